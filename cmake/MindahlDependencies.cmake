@@ -1,0 +1,20 @@
+# Every package comes from the system; nothing is downloaded. CONTRIBUTING.md says why each is here.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Ceres 2.1 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(Boost 1.74 REQUIRED)
+find_package(Threads REQUIRED)
+
+# CLI11 is header-only and Debian ships its package config.
+find_package(CLI11 2.1 REQUIRED)
+
+# libcsv has neither a package config nor a .pc file.
+find_path(LIBCSV_INCLUDE_DIR csv.h REQUIRED)
+find_library(LIBCSV_LIBRARY csv REQUIRED)
+if(NOT TARGET libcsv::libcsv)
+  add_library(libcsv::libcsv UNKNOWN IMPORTED)
+  set_target_properties(libcsv::libcsv PROPERTIES
+    IMPORTED_LOCATION "${LIBCSV_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${LIBCSV_INCLUDE_DIR}")
+endif()

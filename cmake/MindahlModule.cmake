@@ -1,0 +1,28 @@
+# Warnings and sanitizers, linked PRIVATE by every target of the project and never exported.
+add_library(mindahl_build_flags INTERFACE)
+target_compile_options(mindahl_build_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  $<$<BOOL:${MINDAHL_WARNINGS_AS_ERRORS}>:-Werror>)
+if(MINDAHL_SANITIZE)
+  target_compile_options(mindahl_build_flags INTERFACE
+    -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
+  target_link_options(mindahl_build_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# mindahl_add_module(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...])
+# One static library a module, mindahl::NAME, whose public headers are include/mindahl/NAME/*.h.
+function(mindahl_add_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 MODULE "" "" "SOURCES;PUBLIC;PRIVATE")
+  add_library(mindahl_${name} STATIC ${MODULE_SOURCES})
+  add_library(mindahl::${name} ALIAS mindahl_${name})
+  target_compile_features(mindahl_${name} PUBLIC cxx_std_20)
+  set_target_properties(mindahl_${name} PROPERTIES
+    EXPORT_NAME ${name} CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(mindahl_${name}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
+    PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(mindahl_${name}
+    PUBLIC ${MODULE_PUBLIC}
+    PRIVATE ${MODULE_PRIVATE} $<BUILD_INTERFACE:mindahl_build_flags>)
+endfunction()

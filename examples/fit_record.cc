@@ -1,0 +1,16 @@
+// Fits a CSV record and prints sigma, alpha and Tc: the library in ten lines.
+#include <cstdio>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/io/record_reader.h"
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const mindahl::Record record = mindahl::ReadRecord(argv[1]).record;
+  const mindahl::FitResult fit = mindahl::Fit({&record, 1}, {.offsets = true});
+  for (const mindahl::ParameterEstimate& parameter : fit.parameters) {
+    std::printf("%-20s %.10g %s\n", parameter.name.c_str(), parameter.value,
+                parameter.unit.c_str());
+  }
+  return fit.converged ? 0 : 3;
+}

@@ -1,0 +1,54 @@
+#include "mindahl/core/units.h"
+
+#include <gtest/gtest.h>
+
+namespace mindahl {
+namespace {
+
+TEST(Units, ReadTheSymbolsOfTheCommandLine) {
+  EXPECT_EQ(LengthUnit("m")->ToSi(2.5), 2.5);
+  EXPECT_EQ(LengthUnit("mm")->ToSi(2.5), 2.5e-3);
+  EXPECT_EQ(LengthUnit("um")->ToSi(2.5), 2.5e-6);
+  EXPECT_EQ(LengthUnit("nm")->ToSi(2.5), 2.5e-9);
+  EXPECT_EQ(LengthUnit("in")->ToSi(1.0), 0.0254);
+  EXPECT_EQ(ForceUnit("N")->ToSi(3.0), 3.0);
+  EXPECT_EQ(ForceUnit("kN")->ToSi(3.0), 3e3);
+  EXPECT_EQ(ForceUnit("lbf")->ToSi(1.0), 4.4482216152605);
+  EXPECT_EQ(ForceUnit("kgf")->ToSi(1.0), 9.80665);
+  EXPECT_EQ(TimeUnit("ms")->ToSi(4.0), 4e-3);
+}
+
+TEST(Units, CaseTellsMilliFromMega) {
+  EXPECT_EQ(ForceUnit("mN")->ToSi(1.0), 1e-3);
+  EXPECT_EQ(ForceUnit("MN")->ToSi(1.0), 1e6);
+  EXPECT_FALSE(ForceUnit("n"));
+  EXPECT_FALSE(LengthUnit("MM"));
+}
+
+TEST(Units, BothMicroSignsAreMicro) {
+  EXPECT_EQ(LengthUnit("\u00b5m")->ToSi(1.0), 1e-6);
+  EXPECT_EQ(LengthUnit("\u03bcm")->ToSi(1.0), 1e-6);
+  EXPECT_EQ(ForceUnit("\u00b5N")->ToSi(1.0), 1e-6);
+}
+
+TEST(Units, MicrometresDivideByAnExactMillion) {
+  // 0.3e-6 is the double nearest to 0.3/10⁶, which multiplying by the inexact 1e-6 misses.
+  EXPECT_EQ(LengthUnit("um")->ToSi(0.3), 0.3 / 1e6);
+  EXPECT_NE(0.3 / 1e6, 0.3 * 1e-6);
+}
+
+TEST(Units, UnknownSymbolsAreNoUnit) {
+  EXPECT_FALSE(LengthUnit("furlong"));
+  EXPECT_FALSE(LengthUnit("N"));
+  EXPECT_FALSE(ForceUnit("Nm"));
+  EXPECT_FALSE(TimeUnit(""));
+}
+
+TEST(Units, ListTheirSymbolsForMessages) {
+  EXPECT_EQ(LengthUnitSymbols(), "m, mm, um, nm, in");
+  EXPECT_EQ(ForceUnitSymbols(), "N, mN, uN, kN, MN, lbf, kgf");
+  EXPECT_EQ(TimeUnitSymbols(), "s, ms, us, min");
+}
+
+}  // namespace
+}  // namespace mindahl
