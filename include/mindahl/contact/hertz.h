@@ -1,0 +1,84 @@
+#pragma once
+
+#include <limits>
+
+namespace mindahl {
+
+// Hertz contact of two elastic bodies of revolution: a circle of radius a carries the normal load N
+// under the pressure p(r) = p₀·√(1 − r²/a²). It holds while a is small against the radii, the
+// surfaces are smooth and do not adhere, and both materials stay elastic.
+
+/// One of the two bodies: isotropic elastic, with a spherical surface at the contact.
+struct Body {
+  double youngs_modulus = 0.0;  ///< E [Pa], finite, > 0
+  double poisson_ratio = 0.0;   ///< ν [-], in (−1, 0.5]
+  /// R [m], not 0: positive convex, infinite a plane, negative a concave seat
+  double radius = std::numeric_limits<double>::infinity();
+};
+
+/// Shear modulus [Pa] of an isotropic body.
+///   G = E/(2(1 + ν))
+/// The radius is not read.
+/// @throws InvalidArgument on a modulus that is not > 0 or a Poisson ratio outside (−1, 0.5]
+double ShearModulus(const Body& body);
+
+/// Effective modulus E* [Pa] of the pair.
+///   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂
+/// Johnson, Contact Mechanics (1985), §4.2. The radii are not read.
+/// @throws InvalidArgument as ShearModulus, for either body
+double EffectiveModulus(const Body& body_1, const Body& body_2);
+
+/// Equivalent radius ρ [m] of two spherical surfaces.
+///   1/ρ = 1/R₁ + 1/R₂
+/// Johnson (1985) §4.2. A plane has an infinite radius, a concave seat a negative one.
+/// @param radius_1, radius_2  [m], not 0, infinite for a plane; 1/R₁ + 1/R₂ > 0
+/// @throws InvalidArgument on a radius that is 0 or not a number, and where the relative curvature
+/// is
+///   not positive: two planes, or a seat no wider than what sits in it
+/// Relative error < 2 ulp, also for R₁ ≈ −R₂: the sum R₁ + R₂ is then exact.
+double EquivalentRadius(double radius_1, double radius_2);
+
+/// Radius a [m] of the contact circle.
+///   a = ∛(3Nρ/(4E*))
+/// Johnson (1985) eq. 4.22.
+/// @param normal_load        N [N], finite, > 0
+/// @param equivalent_radius  ρ [m], finite, > 0
+/// @param effective_modulus  E* [Pa], finite, > 0
+/// @throws InvalidArgument naming the parameter, its value and the rule
+double HertzContactRadius(double normal_load, double equivalent_radius, double effective_modulus);
+
+/// Equivalent radius ρ [m] under which the load makes a circle of the given radius.
+///   ρ = 4E*a³/(3N)
+/// The inverse of HertzContactRadius in ρ; a relative error of a counts three times.
+/// @param normal_load        N [N], finite, > 0
+/// @param contact_radius     a [m], finite, > 0
+/// @param effective_modulus  E* [Pa], finite, > 0
+/// @throws InvalidArgument naming the parameter, its value and the rule
+double HertzEquivalentRadius(double normal_load, double contact_radius, double effective_modulus);
+
+/// Normal load N [N] that makes a circle of the given radius.
+///   N = 4E*a³/(3ρ)
+/// The inverse of HertzContactRadius in N.
+/// @param contact_radius     a [m], finite, > 0
+/// @param equivalent_radius  ρ [m], finite, > 0
+/// @param effective_modulus  E* [Pa], finite, > 0
+/// @throws InvalidArgument naming the parameter, its value and the rule
+double HertzNormalLoad(double contact_radius, double equivalent_radius, double effective_modulus);
+
+/// Pressure p₀ [Pa] at the centre of the contact circle, 3/2 of the mean.
+///   p₀ = 3N/(2πa²)
+/// Johnson (1985) eq. 4.24.
+/// @param normal_load     N [N], finite, > 0
+/// @param contact_radius  a [m], finite, > 0
+/// @throws InvalidArgument naming the parameter, its value and the rule
+double HertzMaximumPressure(double normal_load, double contact_radius);
+
+/// Mutual approach [m] of distant points of the two bodies under the load.
+///   a²/ρ
+/// Johnson (1985) eq. 4.23.
+/// @param contact_radius     a [m], finite, > 0
+/// @param equivalent_radius  ρ [m], finite, > 0
+/// @throws InvalidArgument naming the parameter, its value and the rule
+double HertzApproach(double contact_radius, double equivalent_radius);
+
+}  // namespace mindahl

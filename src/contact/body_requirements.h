@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cmath>
+#include <string_view>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+
+/// @throws InvalidArgument unless −1 < ν <= 0.5, the bounds of a stable isotropic body.
+inline void RequirePoissonRatio(std::string_view quantity, double poisson_ratio) {
+  if (!(poisson_ratio > -1.0 && poisson_ratio <= 0.5)) {
+    ThrowInvalid(quantity, poisson_ratio, "must be > -1 and <= 0.5");
+  }
+}
+
+/// @throws InvalidArgument on 0 and on what is not a number; planes and seats pass.
+inline void RequireSurfaceRadius(std::string_view quantity, double radius) {
+  if (std::isnan(radius) || radius == 0.0) {
+    ThrowInvalid(
+        quantity, radius,
+        "must be a number other than 0: infinite for a plane, negative for a concave seat");
+  }
+}
+
+}  // namespace mindahl

@@ -1,0 +1,199 @@
+#include "mindahl/contact/hertz.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "message_of.h"
+
+namespace mindahl {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kPlane = std::numeric_limits<double>::infinity();
+// Closed forms of fewer than sixteen roundings, half an ulp each.
+constexpr double kClosedForm = 8.0 * kEpsilon;
+
+const Body kSteel{.youngs_modulus = 210e9, .poisson_ratio = 0.3};
+
+/// A contact with every digit by hand: E* = 100 GPa, ρ = 12 mm, N = 100 N.
+///   a³ = 3·100·0.012/(4·1e11) = 9e-12 m³
+constexpr double kNormalLoad = 100.0;
+constexpr double kEquivalentRadius = 0.012;
+constexpr double kEffectiveModulus = 1e11;
+constexpr double kRadiusCubed = 9e-12;
+
+TEST(HertzContactRadius, IsTheCubeRootOfAWorkedExample) {
+  const double radius = HertzContactRadius(kNormalLoad, kEquivalentRadius, kEffectiveModulus);
+  // Cubing triples the relative error.
+  EXPECT_NEAR(radius * radius * radius / kRadiusCubed, 1.0, 3.0 * kClosedForm);
+}
+
+TEST(HertzContactRadius, GrowsWithTheCubeRootOfTheLoad) {
+  const double once = HertzContactRadius(kNormalLoad, kEquivalentRadius, kEffectiveModulus);
+  const double eightfold =
+      HertzContactRadius(8.0 * kNormalLoad, kEquivalentRadius, kEffectiveModulus);
+  EXPECT_NEAR(eightfold / once, 2.0, 2.0 * kClosedForm);
+}
+
+TEST(HertzContactRadius, IsInvertedByTheEquivalentRadiusAndByTheLoad) {
+  const double radius = HertzContactRadius(kNormalLoad, kEquivalentRadius, kEffectiveModulus);
+  // The cube in the inverse triples the error of a.
+  constexpr double kRoundTrip = 4.0 * kClosedForm;
+  EXPECT_NEAR(HertzEquivalentRadius(kNormalLoad, radius, kEffectiveModulus) / kEquivalentRadius,
+              1.0, kRoundTrip);
+  EXPECT_NEAR(HertzNormalLoad(radius, kEquivalentRadius, kEffectiveModulus) / kNormalLoad, 1.0,
+              kRoundTrip);
+}
+
+TEST(HertzPressure, IntegratesOverTheContactToTheNormalLoad) {
+  const double radius = HertzContactRadius(kNormalLoad, kEquivalentRadius, kEffectiveModulus);
+  const double maximum = HertzMaximumPressure(kNormalLoad, radius);
+  // N = ∫ p₀√(1 − r²/a²)·2πr dr, midpoints in the angle r = a·sin θ: the integrand is then
+  // p₀cos²θ·2πa²sin θ, smooth, and the rule errs by the step squared over 24 times the jump of its
+  // slope, below 1e-7.
+  constexpr int kIntervals = 4000;
+  constexpr double kMidpointRule = 1e-7;
+  const double step = 0.5 * std::numbers::pi / kIntervals;
+  double load = 0.0;
+  for (int interval = 0; interval < kIntervals; ++interval) {
+    const double angle = (interval + 0.5) * step;
+    const double cosine = std::cos(angle);
+    load += maximum * cosine * cosine * 2.0 * std::numbers::pi * radius * radius * std::sin(angle) *
+            step;
+  }
+  EXPECT_NEAR(load / kNormalLoad, 1.0, kMidpointRule);
+}
+
+TEST(HertzPressure, PressesTheSurfacesIntoTheParabolaOfTheBodies) {
+  // Boussinesq: at the centre the pressure sinks the surfaces by ∫ p/(πE*r) dA = 2/E*·∫ p dr, which
+  // must be the approach a²/ρ; for p₀√(1 − r²/a²) that integral is p₀πa/4.
+  const double radius = HertzContactRadius(kNormalLoad, kEquivalentRadius, kEffectiveModulus);
+  const double sink = 2.0 / kEffectiveModulus * HertzMaximumPressure(kNormalLoad, radius) *
+                      std::numbers::pi * radius / 4.0;
+  EXPECT_NEAR(HertzApproach(radius, kEquivalentRadius) / sink, 1.0, 4.0 * kClosedForm);
+}
+
+TEST(HertzPressure, IsThreeHalvesOfTheMean) {
+  const double mean = 200.0 / (std::numbers::pi * 1e-6);
+  EXPECT_NEAR(HertzMaximumPressure(200.0, 1e-3) / mean, 1.5, kClosedForm);
+}
+
+TEST(HertzApproach, GrowsWithTheTwoThirdsPowerOfTheLoad) {
+  // N ∝ δ^{3/2}, so that d ln N/d ln δ = 3/2.
+  const double approach = 1e-6;
+  const auto load_at = [](double depth) {
+    return HertzNormalLoad(std::sqrt(depth * kEquivalentRadius), kEquivalentRadius,
+                           kEffectiveModulus);
+  };
+  constexpr double kStep = 1e-4;  // relative; the central difference errs by less than step²
+  constexpr double kCentralDifference = kStep * kStep;
+  const double exponent = (load_at(approach * (1.0 + kStep)) - load_at(approach * (1.0 - kStep))) /
+                          (2.0 * kStep * load_at(approach));
+  EXPECT_NEAR(exponent, 1.5, kCentralDifference);
+}
+
+TEST(EffectiveModulus, AddsThePlaneStrainCompliances) {
+  // Equal bodies: E* = E/(2(1 − ν²)) = 210e9/1.82.
+  EXPECT_NEAR(EffectiveModulus(kSteel, kSteel) / (210e9 / 1.82), 1.0, kClosedForm);
+  const Body rubber{.youngs_modulus = 3e6, .poisson_ratio = 0.5};
+  // 1/E* = 0.91/210e9 + 0.75/3e6
+  EXPECT_NEAR(EffectiveModulus(kSteel, rubber) * (0.91 / 210e9 + 0.25e-6), 1.0, kClosedForm);
+  EXPECT_EQ(EffectiveModulus(kSteel, rubber), EffectiveModulus(rubber, kSteel));
+}
+
+TEST(ShearModulus, IsAThirdOfYoungsModulusForAnIncompressibleBody) {
+  EXPECT_NEAR(ShearModulus({.youngs_modulus = 3e6, .poisson_ratio = 0.5}), 1e6, 1e6 * kClosedForm);
+  EXPECT_NEAR(ShearModulus(kSteel), 210e9 / 2.6, 210e9 * kClosedForm);
+}
+
+TEST(EquivalentRadius, OfASphereOnAPlaneIsTheSpheres) {
+  EXPECT_EQ(EquivalentRadius(0.01, kPlane), 0.01);
+  EXPECT_EQ(EquivalentRadius(kPlane, 0.01), 0.01);
+  EXPECT_EQ(Body{}.radius, kPlane);
+}
+
+TEST(EquivalentRadius, OfTwoSpheresIsThePairInParallel) {
+  EXPECT_DOUBLE_EQ(EquivalentRadius(0.01, 0.01), 0.005);
+  EXPECT_DOUBLE_EQ(EquivalentRadius(0.03, 0.06), 0.02);
+  EXPECT_DOUBLE_EQ(EquivalentRadius(0.06, 0.03), 0.02);
+}
+
+TEST(EquivalentRadius, OfABallInASeatExceedsTheBalls) {
+  EXPECT_DOUBLE_EQ(EquivalentRadius(0.02, -0.03), 0.06);
+  EXPECT_DOUBLE_EQ(EquivalentRadius(-0.03, 0.02), 0.06);
+}
+
+TEST(EquivalentRadius, KeepsItsDigitsInANearlyConformalSeat) {
+  // 1/ρ = 1/1 − 1/(1 + 2⁻⁴⁰): ρ = 2⁴⁰ + 1 exactly.
+  EXPECT_NEAR(EquivalentRadius(1.0, -(1.0 + std::ldexp(1.0, -40))) / (std::ldexp(1.0, 40) + 1.0),
+              1.0, 2.0 * kEpsilon);
+}
+
+TEST(HertzInput, RefusesSurfacesWithoutAContactCircle) {
+  EXPECT_EQ(MessageOf([] { EquivalentRadius(kPlane, kPlane); }),
+            "relative curvature 1/R1 + 1/R2 [1/m] = 0 is invalid: must be > 0: two planes make no "
+            "Hertz contact, at least one radius must be finite");
+  const std::string seat =
+      " is invalid: must be > 0: a concave seat (negative radius) must be wider than the body in "
+      "it";
+  EXPECT_EQ(MessageOf([] { EquivalentRadius(0.5, -0.25); }),
+            "relative curvature 1/R1 + 1/R2 [1/m] = -2" + seat);
+  EXPECT_EQ(MessageOf([] { EquivalentRadius(0.5, -0.5); }),
+            "relative curvature 1/R1 + 1/R2 [1/m] = 0" + seat);
+  EXPECT_EQ(MessageOf([] { EquivalentRadius(kPlane, -0.5); }),
+            "relative curvature 1/R1 + 1/R2 [1/m] = -2" + seat);
+  EXPECT_EQ(MessageOf([] { EquivalentRadius(-0.5, -0.5); }),
+            "relative curvature 1/R1 + 1/R2 [1/m] = -4" + seat);
+}
+
+TEST(HertzInput, RefusesARadiusOfZero) {
+  EXPECT_EQ(MessageOf([] { EquivalentRadius(0.01, 0.0); }),
+            "radius of body 2 [m] = 0 is invalid: must be a number other than 0: infinite for a "
+            "plane, negative for a concave seat");
+  EXPECT_EQ(MessageOf([] { EquivalentRadius(std::nan(""), 0.01); }),
+            "radius of body 1 [m] = nan is invalid: must be a number other than 0: infinite for a "
+            "plane, negative for a concave seat");
+}
+
+TEST(HertzInput, BoundsThePoissonRatioByStability) {
+  const auto with = [](double poisson_ratio) {
+    return MessageOf([=] {
+      const Body body{.youngs_modulus = 1e9, .poisson_ratio = poisson_ratio};
+      ShearModulus(body);
+      EffectiveModulus(kSteel, body);
+    });
+  };
+  EXPECT_EQ(with(0.5), "");
+  EXPECT_EQ(with(-0.999), "");
+  EXPECT_EQ(with(-1.0), "Poisson ratio = -1 is invalid: must be > -1 and <= 0.5");
+  EXPECT_EQ(with(0.51), "Poisson ratio = 0.51 is invalid: must be > -1 and <= 0.5");
+  EXPECT_EQ(with(std::nan("")), "Poisson ratio = nan is invalid: must be > -1 and <= 0.5");
+}
+
+TEST(HertzInput, NamesTheQuantityThatIsNotPositive) {
+  EXPECT_EQ(
+      MessageOf([] { EffectiveModulus({.youngs_modulus = 0.0, .poisson_ratio = 0.3}, kSteel); }),
+      "Young's modulus [Pa] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { EffectiveModulus(kSteel, {.youngs_modulus = -1.0}); }),
+            "Young's modulus [Pa] = -1 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { HertzContactRadius(-1.0, 0.01, 1e11); }),
+            "normal load [N] = -1 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { HertzContactRadius(1.0, 0.0, 1e11); }),
+            "equivalent radius [m] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { HertzContactRadius(1.0, 0.01, kPlane); }),
+            "effective modulus [Pa] = inf is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { HertzEquivalentRadius(1.0, 0.0, 1e11); }),
+            "contact radius [m] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { HertzNormalLoad(1e-3, 0.0, 1e11); }),
+            "equivalent radius [m] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { HertzMaximumPressure(0.0, 1e-3); }),
+            "normal load [N] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { HertzApproach(0.0, 0.01); }),
+            "contact radius [m] = 0 is invalid: must be finite and > 0");
+}
+
+}  // namespace
+}  // namespace mindahl

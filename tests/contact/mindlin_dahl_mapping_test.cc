@@ -1,0 +1,389 @@
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "message_of.h"
+
+namespace mindahl {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Chains of fewer than forty roundings, half an ulp each, with cubes of them.
+constexpr double kRounding = 64.0 * kEpsilon;
+
+// Two unlike bodies, neither a plane.
+const Body kSteel{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.02};
+const Body kAluminium{.youngs_modulus = 70e9, .poisson_ratio = 0.33, .radius = 0.05};
+constexpr double kNormalLoad = 150.0;
+constexpr double kFriction = 0.4;
+
+/// Knowledge of everything but what the loop or Hertz gives.
+KnownContact KnowBodies() {
+  return {.normal_load = kNormalLoad,
+          .body_1 = {kSteel.youngs_modulus, kSteel.poisson_ratio, kSteel.radius},
+          .body_2 = {kAluminium.youngs_modulus, kAluminium.poisson_ratio, kAluminium.radius}};
+}
+
+HertzMindlinContact Truth() {
+  return SolveHertzMindlin(kSteel, kAluminium, kNormalLoad, kFriction);
+}
+
+// Relative standard errors of the fit, unequal so that a mix-up shows.
+constexpr double kStiffnessError = 0.02;
+constexpr double kForceError = 0.003;
+
+UncertainValue FittedStiffness(double ratio = 1.0) {
+  const double stiffness = ratio * Truth().dahl.tangential_stiffness;
+  return {stiffness, kStiffnessError * stiffness};
+}
+UncertainValue FittedSlipForce() {
+  return {Truth().dahl.slip_force, kForceError * Truth().dahl.slip_force};
+}
+
+void ExpectEstimate(const std::optional<UncertainValue>& estimate, double value,
+                    double relative_error) {
+  ASSERT_TRUE(estimate.has_value());
+  EXPECT_NEAR(estimate->value / value, 1.0, kRounding);
+  EXPECT_NEAR(estimate->standard_error / value, relative_error, kRounding);
+}
+
+TEST(MapMindlinToDahl, GivesThePaperItsParametersForTheUnroundedRadius) {
+  const MindlinDahlParameters dahl = MapMindlinToDahl({.contact_radius = 2.673548e-3,
+                                                       .tangential_compliance = 4.42e-11,
+                                                       .slip_force = GrossSlipForce(0.3, 100.0)});
+  EXPECT_NEAR(dahl.tangential_stiffness, 4.839e8,
+              0.0005e8);  // half a unit of the last printed digit
+  EXPECT_EQ(dahl.shape_exponent, 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(dahl.slip_force, 30.0);
+}
+
+TEST(MapMindlinToDahl, PutsGrossSlipAtOneAndAHalfElasticDisplacements) {
+  const MindlinDahlParameters dahl = Truth().dahl;
+  // δc = Tc/(σ(1 − α)) for any α < 1.
+  EXPECT_NEAR(dahl.gross_slip_displacement * dahl.tangential_stiffness *
+                  (1.0 - dahl.shape_exponent) / dahl.slip_force,
+              1.0, kRounding);
+}
+
+TEST(MapMindlinToDahl, SolvesDahlsEquationWithMindlinsVirginCurve) {
+  const MindlinContact contact = Truth().Mindlin();
+  const MindlinDahlParameters dahl = MapMindlinToDahl(contact);
+  // Fourth-order Runge-Kutta on dT/dδ = σ(1 − T/Tc)^α: its error over n steps to 0.9·δc is of the
+  // order of n⁻⁴·(fifth derivative, below 1e4), 1e-11 of Tc for 5000 steps.
+  constexpr int kSteps = 5000;
+  constexpr double kRungeKutta = 1e-10;
+  const auto slope = [&](double force) {
+    return dahl.tangential_stiffness * std::pow(1.0 - force / dahl.slip_force, dahl.shape_exponent);
+  };
+  const double step = 0.9 * dahl.gross_slip_displacement / kSteps;
+  double force = 0.0;
+  for (int index = 0; index < kSteps; ++index) {
+    const double slope_1 = slope(force);
+    const double slope_2 = slope(force + 0.5 * step * slope_1);
+    const double slope_3 = slope(force + 0.5 * step * slope_2);
+    const double slope_4 = slope(force + step * slope_3);
+    force += step / 6.0 * (slope_1 + 2.0 * slope_2 + 2.0 * slope_3 + slope_4);
+  }
+  EXPECT_NEAR(force / MindlinVirginForce(contact, 0.9 * dahl.gross_slip_displacement), 1.0,
+              kRungeKutta);
+}
+
+TEST(SolveHertzMindlin, CarriesAWorkedExampleThroughEveryQuantity) {
+  // A 12 mm ball on a plane of the same stuff, ν = 0.25, E = 187.5 GPa: all by hand,
+  //   E* = 187.5/(2·0.9375) = 100 GPa,  G = 187.5/2.5 = 75 GPa,  G* = 2·1.75/75e9,  a³ = 9e-12 m³.
+  const Body ball{.youngs_modulus = 187.5e9, .poisson_ratio = 0.25, .radius = 0.012};
+  const Body plane{.youngs_modulus = 187.5e9, .poisson_ratio = 0.25};
+  const HertzMindlinContact contact = SolveHertzMindlin(ball, plane, 100.0, 0.5);
+  const double radius = std::cbrt(9e-12);
+  const double compliance = 3.5 / 75e9;
+  EXPECT_NEAR(contact.effective_modulus / 1e11, 1.0, kRounding);
+  EXPECT_NEAR(contact.tangential_compliance / compliance, 1.0, kRounding);
+  EXPECT_EQ(contact.equivalent_radius, 0.012);
+  EXPECT_NEAR(contact.contact_radius / radius, 1.0, kRounding);
+  EXPECT_NEAR(contact.maximum_pressure * std::numbers::pi * radius * radius, 150.0,
+              150.0 * kRounding);
+  EXPECT_NEAR(contact.approach * 0.012 / (radius * radius), 1.0, kRounding);
+  EXPECT_NEAR(contact.dahl.tangential_stiffness / (8.0 * radius / compliance), 1.0, kRounding);
+  EXPECT_EQ(contact.dahl.slip_force, 50.0);
+  EXPECT_NEAR(contact.dahl.gross_slip_displacement / (150.0 * compliance / (16.0 * radius)), 1.0,
+              kRounding);
+  EXPECT_EQ(contact.Mindlin().contact_radius, contact.contact_radius);
+  EXPECT_EQ(contact.Mindlin().tangential_compliance, contact.tangential_compliance);
+  EXPECT_EQ(contact.Mindlin().slip_force, 50.0);
+}
+
+TEST(SolveHertzMindlin, DoesNotDependOnWhichBodyComesFirst) {
+  const HertzMindlinContact one_way = Truth();
+  const HertzMindlinContact other_way =
+      SolveHertzMindlin(kAluminium, kSteel, kNormalLoad, kFriction);
+  EXPECT_NEAR(one_way.contact_radius / other_way.contact_radius, 1.0, kRounding);
+  EXPECT_NEAR(one_way.dahl.tangential_stiffness / other_way.dahl.tangential_stiffness, 1.0,
+              kRounding);
+}
+
+TEST(SolveHertzMindlin, RefusesWhatIsNotAContact) {
+  EXPECT_EQ(MessageOf([] { SolveHertzMindlin(kSteel, kAluminium, 0.0, 0.4); }),
+            "normal load [N] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(MessageOf([] { SolveHertzMindlin(kSteel, kAluminium, 1.0, -0.4); }),
+            "friction coefficient = -0.4 is invalid: must be finite and > 0");
+  const Body plane{.youngs_modulus = 1e9, .poisson_ratio = 0.3};
+  EXPECT_NE(MessageOf([&] { SolveHertzMindlin(plane, plane, 1.0, 0.4); }).find("two planes"),
+            std::string::npos);
+}
+
+TEST(IdentifyContact, ReturnsTheContactThatTheLoopWasMadeWith) {
+  const HertzMindlinContact truth = Truth();
+  const IdentifiedContact contact =
+      IdentifyContact(FittedStiffness(), FittedSlipForce(), KnowBodies());
+  ExpectEstimate(contact.friction_coefficient, kFriction, kForceError);
+  ExpectEstimate(contact.contact_radius, truth.contact_radius, kStiffnessError);
+  ExpectEstimate(contact.equivalent_radius, truth.equivalent_radius, 3.0 * kStiffnessError);
+  ExpectEstimate(contact.maximum_pressure, truth.maximum_pressure, 2.0 * kStiffnessError);
+  EXPECT_FALSE(contact.tangential_compliance.has_value());
+  EXPECT_FALSE(contact.sigma_over_mindlin.has_value());
+
+  ASSERT_TRUE(contact.hertz.has_value());
+  EXPECT_EQ(contact.hertz->effective_modulus, truth.effective_modulus);
+  EXPECT_EQ(contact.hertz->equivalent_radius, truth.equivalent_radius);
+  EXPECT_EQ(contact.hertz->contact_radius, truth.contact_radius);
+  EXPECT_EQ(contact.hertz->maximum_pressure, truth.maximum_pressure);
+  EXPECT_EQ(contact.hertz->tangential_stiffness, truth.dahl.tangential_stiffness);
+  ExpectEstimate(contact.hertz->gross_slip_displacement, truth.dahl.gross_slip_displacement,
+                 kForceError);
+  ExpectEstimate(contact.hertz->sigma_over_hertz_mindlin, 1.0, kStiffnessError);
+  EXPECT_TRUE(contact.unidentified.empty());
+  EXPECT_TRUE(contact.redundant.empty());
+}
+
+TEST(IdentifyContact, TellsAStiffnessThatHertzDoesNotPredict) {
+  const HertzMindlinContact truth = Truth();
+  constexpr double kRatio = 0.7;  // a rough or compliant contact
+  const IdentifiedContact contact =
+      IdentifyContact(FittedStiffness(kRatio), FittedSlipForce(), KnowBodies());
+  ExpectEstimate(contact.hertz->sigma_over_hertz_mindlin, kRatio, kStiffnessError);
+  ExpectEstimate(contact.contact_radius, kRatio * truth.contact_radius, kStiffnessError);
+  ExpectEstimate(contact.equivalent_radius, kRatio * kRatio * kRatio * truth.equivalent_radius,
+                 3.0 * kStiffnessError);
+  ExpectEstimate(contact.maximum_pressure, truth.maximum_pressure / (kRatio * kRatio),
+                 2.0 * kStiffnessError);
+  EXPECT_EQ(contact.hertz->contact_radius, truth.contact_radius);
+}
+
+TEST(IdentifyContact, PropagatesErrorsAsTheSlopeOfItsOwnResult) {
+  // What linear propagation must equal: the difference that a small change of σ makes.
+  constexpr double kChange = 1e-6;
+  constexpr double kSecondOrder =
+      1e-5;  // the next order, at most 6·kChange, and rounding over kChange
+  const UncertainValue stiffness = FittedStiffness();
+  const UncertainValue changed{stiffness.value * (1.0 + kChange), 0.0};
+  KnownContact known = KnowBodies();
+  const IdentifiedContact before = IdentifyContact(stiffness, FittedSlipForce(), known);
+  const IdentifiedContact after = IdentifyContact(changed, FittedSlipForce(), known);
+  const auto expect_slope = [&](const UncertainValue& one, const UncertainValue& other) {
+    const double slope = std::abs(other.value - one.value) / (kChange * stiffness.value);
+    EXPECT_NEAR(one.standard_error / (slope * stiffness.standard_error), 1.0, kSecondOrder);
+  };
+  expect_slope(*before.contact_radius, *after.contact_radius);
+  expect_slope(*before.equivalent_radius, *after.equivalent_radius);
+  expect_slope(*before.maximum_pressure, *after.maximum_pressure);
+  expect_slope(before.hertz->sigma_over_hertz_mindlin, after.hertz->sigma_over_hertz_mindlin);
+  known.contact_radius = Truth().contact_radius;
+  expect_slope(*IdentifyContact(stiffness, FittedSlipForce(), known).tangential_compliance,
+               *IdentifyContact(changed, FittedSlipForce(), known).tangential_compliance);
+}
+
+TEST(IdentifyContact, FindsTheRadiusOfABodyFromMaterialsAndLoad) {
+  KnownContact known = KnowBodies();
+  known.body_1.radius.reset();
+  const IdentifiedContact contact = IdentifyContact(FittedStiffness(), FittedSlipForce(), known);
+  ExpectEstimate(contact.equivalent_radius, Truth().equivalent_radius, 3.0 * kStiffnessError);
+  EXPECT_FALSE(contact.hertz.has_value());
+  EXPECT_EQ(
+      contact.unidentified,
+      std::vector<std::string>{"Hertz prediction of the stiffness needs the radius of body 1"});
+}
+
+TEST(IdentifyContact, FindsTheComplianceFromAGivenRadius) {
+  const HertzMindlinContact truth = Truth();
+  const IdentifiedContact contact =
+      IdentifyContact(FittedStiffness(), FittedSlipForce(),
+                      {.normal_load = kNormalLoad, .contact_radius = truth.contact_radius});
+  ExpectEstimate(contact.tangential_compliance, truth.tangential_compliance, kStiffnessError);
+  // The given radius is exact, and so is the pressure that follows from it.
+  ExpectEstimate(contact.maximum_pressure, truth.maximum_pressure, 0.0);
+  EXPECT_FALSE(contact.contact_radius.has_value());
+  EXPECT_FALSE(contact.equivalent_radius.has_value());
+  EXPECT_FALSE(contact.sigma_over_mindlin.has_value());
+  const std::string materials =
+      "Young's modulus of body 1, the Poisson ratio of body 1, Young's modulus of body 2, the "
+      "Poisson ratio of body 2";
+  EXPECT_EQ(contact.unidentified,
+            (std::vector<std::string>{
+                "equivalent radius needs " + materials,
+                "comparison of the stiffness with the given contact radius needs the tangential "
+                "compliance (or what gives it: " +
+                    materials + ")",
+                "Hertz prediction of the stiffness needs " + materials +
+                    ", the radius of body 1, the radius of body 2"}));
+}
+
+TEST(IdentifyContact, FindsTheRadiusFromAGivenCompliance) {
+  const HertzMindlinContact truth = Truth();
+  const IdentifiedContact contact = IdentifyContact(
+      FittedStiffness(), FittedSlipForce(), {.tangential_compliance = truth.tangential_compliance});
+  ExpectEstimate(contact.contact_radius, truth.contact_radius, kStiffnessError);
+  EXPECT_FALSE(contact.maximum_pressure.has_value());
+  ASSERT_EQ(contact.unidentified.size(), 4u);
+  EXPECT_EQ(contact.unidentified[0], "friction coefficient needs the normal load");
+  EXPECT_EQ(contact.unidentified[2], "maximum pressure needs the normal load");
+}
+
+TEST(IdentifyContact, ComparesTheStiffnessWithAGivenRadiusAndCompliance) {
+  const HertzMindlinContact truth = Truth();
+  const IdentifiedContact contact =
+      IdentifyContact(FittedStiffness(0.9), FittedSlipForce(),
+                      {.normal_load = kNormalLoad,
+                       .contact_radius = truth.contact_radius,
+                       .tangential_compliance = truth.tangential_compliance});
+  ExpectEstimate(contact.sigma_over_mindlin, 0.9, kStiffnessError);
+  // Each from the stiffness and the other.
+  ExpectEstimate(contact.contact_radius, 0.9 * truth.contact_radius, kStiffnessError);
+  ExpectEstimate(contact.tangential_compliance, truth.tangential_compliance / 0.9, kStiffnessError);
+  ExpectEstimate(contact.maximum_pressure, truth.maximum_pressure, 0.0);
+  EXPECT_TRUE(contact.redundant.empty());
+}
+
+TEST(IdentifyContact, SaysWhatIsMissingWhenNothingIsKnown) {
+  const IdentifiedContact contact = IdentifyContact(FittedStiffness(), FittedSlipForce(), {});
+  EXPECT_FALSE(contact.friction_coefficient || contact.contact_radius ||
+               contact.tangential_compliance || contact.equivalent_radius ||
+               contact.maximum_pressure || contact.sigma_over_mindlin || contact.hertz);
+  const std::string materials =
+      "Young's modulus of body 1, the Poisson ratio of body 1, Young's modulus of body 2, the "
+      "Poisson ratio of body 2";
+  const std::string compliance = "the tangential compliance (or what gives it: " + materials + ")";
+  EXPECT_EQ(contact.unidentified,
+            (std::vector<std::string>{
+                "friction coefficient needs the normal load", "contact radius needs " + compliance,
+                "tangential compliance needs the contact radius",
+                "equivalent radius needs the normal load, " + materials,
+                "maximum pressure needs the normal load, the contact radius or " + compliance,
+                "Hertz prediction of the stiffness needs the normal load, " + materials +
+                    ", the radius of body 1, the radius of body 2"}));
+}
+
+TEST(IdentifyContact, NamesTheOneInputThatIsMissing) {
+  KnownContact known = KnowBodies();
+  known.body_2.poisson_ratio.reset();
+  const IdentifiedContact contact = IdentifyContact(FittedStiffness(), FittedSlipForce(), known);
+  ASSERT_FALSE(contact.unidentified.empty());
+  EXPECT_EQ(
+      contact.unidentified.front(),
+      "contact radius needs the tangential compliance (or what gives it: the Poisson ratio of "
+      "body 2)");
+  EXPECT_EQ(contact.unidentified.back(),
+            "Hertz prediction of the stiffness needs the Poisson ratio of body 2");
+}
+
+TEST(IdentifyContact, PrefersAGivenComplianceToTheMaterialsAndSaysSo) {
+  const HertzMindlinContact truth = Truth();
+  KnownContact known = KnowBodies();
+  known.tangential_compliance = 1.25 * truth.tangential_compliance;
+  const IdentifiedContact contact = IdentifyContact(FittedStiffness(), FittedSlipForce(), known);
+  ExpectEstimate(contact.contact_radius, 1.25 * truth.contact_radius, kStiffnessError);
+  // σ and a predicted by Hertz with the same G*: the ratios of both agree.
+  EXPECT_EQ(contact.hertz->contact_radius, truth.contact_radius);
+  EXPECT_NEAR(contact.hertz->sigma_over_hertz_mindlin.value, 1.25, 1.25 * kRounding);
+  EXPECT_NEAR(contact.contact_radius->value / contact.hertz->contact_radius, 1.25,
+              1.25 * kRounding);
+  ASSERT_EQ(contact.redundant.size(), 1u);
+  EXPECT_NE(contact.redundant[0].find("tangential compliance is given as"), std::string::npos);
+  EXPECT_NE(contact.redundant[0].find("(given/derived = 1.25): the given value is used"),
+            std::string::npos);
+}
+
+TEST(IdentifyContact, KeepsAGivenRadiusApartFromThatOfHertzAndSaysSo) {
+  const HertzMindlinContact truth = Truth();
+  KnownContact known = KnowBodies();
+  known.contact_radius = 2.0 * truth.contact_radius;
+  const IdentifiedContact contact = IdentifyContact(FittedStiffness(), FittedSlipForce(), known);
+  ExpectEstimate(contact.sigma_over_mindlin, 0.5, kStiffnessError);
+  ExpectEstimate(contact.hertz->sigma_over_hertz_mindlin, 1.0, kStiffnessError);
+  ExpectEstimate(contact.maximum_pressure, 0.25 * truth.maximum_pressure, 0.0);
+  ExpectEstimate(contact.equivalent_radius, 8.0 * truth.equivalent_radius, 0.0);
+  EXPECT_EQ(contact.hertz->maximum_pressure, truth.maximum_pressure);
+  ASSERT_EQ(contact.redundant.size(), 1u);
+  EXPECT_NE(contact.redundant[0].find("contact radius is given as"), std::string::npos);
+  EXPECT_NE(contact.redundant[0].find("from Hertz (given/derived = 2)"), std::string::npos);
+}
+
+TEST(IdentifyContact, CarriesAnOpenStandardErrorThrough) {
+  const IdentifiedContact contact = IdentifyContact({FittedStiffness().value, kInfinity},
+                                                    {FittedSlipForce().value, 0.0}, KnowBodies());
+  EXPECT_EQ(contact.contact_radius->standard_error, kInfinity);
+  EXPECT_EQ(contact.equivalent_radius->standard_error, kInfinity);
+  EXPECT_EQ(contact.friction_coefficient->standard_error, 0.0);
+  EXPECT_EQ(contact.hertz->gross_slip_displacement.standard_error, 0.0);
+}
+
+TEST(IdentifyContact, HoldsFromAtomicToTectonicContacts) {
+  for (const double scale : {1e-9, 1.0, 1e6}) {
+    const HertzMindlinContact truth =
+        SolveHertzMindlin({210e9, 0.3, 0.02 * scale}, {70e9, 0.33, 0.05 * scale},
+                          kNormalLoad * scale * scale, kFriction);
+    const IdentifiedContact contact =
+        IdentifyContact({truth.dahl.tangential_stiffness, 0.0}, {truth.dahl.slip_force, 0.0},
+                        {.normal_load = kNormalLoad * scale * scale,
+                         .body_1 = {210e9, 0.3, 0.02 * scale},
+                         .body_2 = {70e9, 0.33, 0.05 * scale}});
+    ExpectEstimate(contact.contact_radius, truth.contact_radius, 0.0);
+    ExpectEstimate(contact.equivalent_radius, truth.equivalent_radius, 0.0);
+    ExpectEstimate(contact.maximum_pressure, truth.maximum_pressure, 0.0);
+  }
+}
+
+TEST(IdentifyContactInput, NamesTheEstimateThatIsInvalid) {
+  const auto identify = [](UncertainValue stiffness, UncertainValue slip_force) {
+    return MessageOf([&] { IdentifyContact(stiffness, slip_force, {}); });
+  };
+  EXPECT_EQ(identify({0.0, 0.0}, {1.0, 0.0}),
+            "tangential stiffness [N/m] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(identify({1.0, 0.0}, {kInfinity, 0.0}),
+            "slip force [N] = inf is invalid: must be finite and > 0");
+  EXPECT_EQ(identify({1.0, -1.0}, {1.0, 0.0}),
+            "standard error of the tangential stiffness [N/m] = -1 is invalid: must be >= 0");
+  EXPECT_EQ(identify({1.0, 0.0}, {1.0, std::nan("")}),
+            "standard error of the slip force [N] = nan is invalid: must be >= 0");
+}
+
+TEST(IdentifyContactInput, NamesTheKnowledgeThatIsInvalidEvenWhereItIsNotNeeded) {
+  const auto identify = [](const KnownContact& known) {
+    return MessageOf([&] { IdentifyContact({1.0, 0.0}, {1.0, 0.0}, known); });
+  };
+  EXPECT_EQ(identify({.normal_load = 0.0}),
+            "normal load [N] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(identify({.body_2 = {.youngs_modulus = -1.0}}),
+            "Young's modulus of body 2 [Pa] = -1 is invalid: must be finite and > 0");
+  EXPECT_EQ(identify({.body_1 = {.poisson_ratio = 0.7}}),
+            "Poisson ratio of body 1 = 0.7 is invalid: must be > -1 and <= 0.5");
+  EXPECT_EQ(identify({.body_1 = {.radius = 0.0}}),
+            "radius of body 1 [m] = 0 is invalid: must be a number other than 0: infinite for a "
+            "plane, negative for a concave seat");
+  EXPECT_EQ(identify({.contact_radius = -2.0}),
+            "contact radius [m] = -2 is invalid: must be finite and > 0");
+  EXPECT_EQ(identify({.tangential_compliance = 0.0}),
+            "tangential compliance [1/Pa] = 0 is invalid: must be finite and > 0");
+  EXPECT_NE(identify({.body_1 = {.radius = kInfinity}, .body_2 = {.radius = kInfinity}})
+                .find("two planes"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace mindahl
