@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace mindahl {
+
+/// One column to write. The values must outlive the call that writes them.
+struct CsvColumn {
+  std::string name;  ///< with its unit, e.g. "displacement [m]"
+  std::span<const double> values;
+};
+
+/// The columns as CSV text (RFC 4180, with LF at line ends): a header, then one row a value, with
+/// 17 significant digits so that every double reads back as itself. NaN, a value that is not known,
+/// is an empty cell.
+/// @param columns  at least one; all of one length
+/// @throws InvalidArgument when lengths differ, there is no column, or a value is infinite
+std::string CsvText(const std::vector<CsvColumn>& columns);
+
+}  // namespace mindahl

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace mindahl {
+
+enum class PlotStyle { kLine, kPoints, kLineAndPoints };
+
+/// One curve. Points are drawn and joined in the order given, so a loop is a loop.
+struct PlotSeries {
+  std::string label;      ///< for the legend; "" = no entry
+  std::vector<double> x;  ///< finite, at least one
+  std::vector<double> y;  ///< finite, as many as x
+  PlotStyle style = PlotStyle::kLine;
+};
+
+/// One pair of axes.
+struct PlotPanel {
+  std::string x_label;  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
+  std::string y_label;
+  std::vector<PlotSeries> series;
+  double height = 1.0;  ///< share of the page, relative to the other panels, > 0
+};
+
+/// Panels one above another.
+struct Plot {
+  std::string title;  ///< "" = none
+  std::vector<PlotPanel> panels;
+  int width = 900;   ///< [px]
+  int height = 700;  ///< [px]
+};
+
+/// Draws a plot with gnuplot into an SVG or PNG file, by the extension of its name, atomically.
+///
+/// Labels are plain UTF-8 text: nothing in them is markup or command. A series of more than 20 000
+/// points is drawn through fewer: it is cut into 5000 runs of consecutive points, and of each run
+/// the points with the least and greatest x and y are kept, in order; no peak is lost and the curve
+/// moves by less than one run.
+/// @throws InputError when the extension is another, gnuplot is not installed or the file cannot be
+///   written
+/// @throws InvalidArgument naming the panel and series when a value is not finite, x and y differ
+///   in length, or there is nothing to draw
+/// @throws std::runtime_error with gnuplot's own words when it fails
+void WritePlot(const Plot& plot, const std::filesystem::path& path);
+
+}  // namespace mindahl

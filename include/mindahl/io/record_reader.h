@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/loop/record.h"
+
+namespace mindahl {
+
+/// Which column of a file holds a quantity, and in what unit.
+struct ColumnChoice {
+  std::string column;  ///< header name or 1-based number; "" = by recognised name
+  std::string unit;    ///< symbol of core/units.h; "" = the header's, else SI
+};
+
+struct RecordColumns {
+  ColumnChoice displacement;
+  ColumnChoice force;
+  ColumnChoice time;
+  ColumnChoice normal_load;
+};
+
+/// A column as it was read.
+struct ChosenColumn {
+  std::string name;        ///< header cell as written; "" in a file without names
+  std::size_t number = 0;  ///< 1-based
+  std::string unit;        ///< symbol the numbers were taken to be in
+};
+
+/// A record and where it came from.
+struct RecordFile {
+  Record record;
+  ChosenColumn displacement;
+  ChosenColumn force;
+  std::optional<ChosenColumn> time;
+  std::optional<ChosenColumn> normal_load;
+  std::vector<std::size_t> line;   ///< physical line of each sample
+  std::vector<std::string> notes;  ///< what was assumed, one sentence each
+};
+
+/// Reads a hysteresis record [m, N, s, N] from a delimited file (see csv_table.h).
+///
+/// *Columns.* As chosen: by number; by header cell, exactly, then whatever the case, then without
+/// its unit. Else by recognised name, the unit taken off, whatever the case (but names of one
+/// letter as written), '_' and '-' as blanks, the first line that matches winning:
+///   displacement  tangential displacement, relative displacement | displacement, disp |
+///                 position, pos, travel, stroke, extension | x, X, d, delta, δ
+///   force         tangential force, friction force, lateral force, shear force | force, friction |
+///                 torque | Ft | F, f, Q | T | F_N
+///   time          time, time stamp, timestamp, elapsed time | t
+///   normal load   normal load, normal force | normal, n load | Fn, F_N, N
+/// A displacement or force that is not recognised is column 1 or 2, or the only one left when that
+/// has another role, with a note. Time and normal load are then absent.
+///
+/// *Units.* As chosen; else of the header, in the name (`x [um]`, `F (kN)`, `Position, mm`,
+/// `x / mm`, `disp_mm`) or in the units row; else m, N, s, with a note.
+///
+/// A time or normal load that was recognised but not asked for is left out, with a note, when none
+/// of its cells is a number or its unit is not one of core/units.h.
+///
+/// @throws InputError naming the file and, where they exist, line and column: an unknown or
+///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
+///   number
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
+
+/// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
+/// file.
+/// @param displacement  column, by default the first whatever its name; unit as for ReadRecord()
+/// @throws InputError as ReadRecord()
+std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
+                                         const ColumnChoice& displacement = {});
+
+}  // namespace mindahl

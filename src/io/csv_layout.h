@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/csv_tokenizer.h"
+
+namespace mindahl {
+
+/// How a text is to be read as a table; csv_table.h states the rules by which it is found.
+struct CsvLayout {
+  Delimiter delimiter = Delimiter::kComma;
+  std::size_t columns = 0;
+  std::vector<std::string> names;  ///< one a column, or none
+  std::vector<std::string> units;  ///< of the units row, one a column, or none
+  std::size_t header_line = 0;     ///< of the names row, else of the units row; 0 without either
+  std::size_t preamble_rows = 0;   ///< rows above the header
+  std::size_t data_offset = 0;     ///< of the first data row [bytes]
+  std::size_t data_line = 0;       ///< its physical line
+};
+
+/// @throws InputError when no row of numbers is found, or the row above the data is no header.
+CsvLayout FindCsvLayout(std::string_view text, const std::string& file);
+
+/// @throws InputError: the quotation mark opened on `line` has no partner.
+[[noreturn]] void ThrowOpenQuote(const std::string& file, std::size_t line);
+
+}  // namespace mindahl

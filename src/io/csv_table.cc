@@ -1,0 +1,172 @@
+#include "mindahl/io/csv_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "io/csv_layout.h"
+#include "io/csv_tokenizer.h"
+#include "io/message_text.h"
+#include "io/number_cell.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
+
+std::string ReadFile(const std::filesystem::path& path) {
+  const auto fail = [&] {
+    throw InputError(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
+  };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             &std::fclose);
+  if (!file) fail();
+  std::string text;
+  std::array<char, 1 << 16> block{};
+  while (const std::size_t size = std::fread(block.data(), 1, block.size(), file.get())) {
+    text.append(block.data(), size);
+  }
+  if (std::ferror(file.get()) != 0) fail();
+  return text;
+}
+
+void RequireText(std::string_view text, const std::string& file) {
+  if (text.empty()) throw InputError(fmt::format("{}: the file is empty", file));
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    throw InputError(fmt::format("{}: is UTF-16: save it as UTF-8", file));
+  }
+  const std::size_t zero = text.find('\0');
+  if (zero != std::string_view::npos) {
+    throw InputError(fmt::format("{}:{}: is not text, it holds a zero byte: export it as CSV", file,
+                                 1 + std::ranges::count(text.substr(0, zero), '\n')));
+  }
+}
+
+/// Refuses a file in which both ',' and '.' are decimal marks.
+class DecimalMarkCheck {
+ public:
+  void Add(char mark, const CsvRow& row, std::size_t column, const std::string& file) {
+    if (mark == '\0' || mark == mark_) return;
+    if (mark_ != '\0') {
+      throw InputError(fmt::format(
+          "{}:{}:{}: '{}' has the decimal mark '{}' and line {} has '{}': use one throughout", file,
+          row.line, column + 1, ForMessage(row[column]), mark, line_, mark_));
+    }
+    mark_ = mark;
+    line_ = row.line;
+  }
+
+ private:
+  char mark_ = '\0';
+  std::size_t line_ = 0;  ///< where it was first seen
+};
+
+void RequireNoExtraCells(const CsvRow& row, std::size_t columns, const std::string& file) {
+  for (std::size_t cell = columns; cell < row.size(); ++cell) {
+    if (Trimmed(row[cell]).empty()) continue;
+    throw InputError(fmt::format("{}:{}:{}: '{}' is one cell too many: the table has {} column{}",
+                                 file, row.line, cell + 1, ForMessage(row[cell]), columns,
+                                 columns == 1 ? "" : "s"));
+  }
+}
+
+}  // namespace
+
+CsvTable ParseCsvTable(std::string text, std::string file) {
+  RequireText(text, file);
+  if (text.starts_with(kUtf8Mark)) text.erase(0, kUtf8Mark.size());
+  CsvLayout layout = FindCsvLayout(text, file);
+
+  CsvTable table;
+  table.file_ = std::move(file);
+  table.text_ = std::move(text);
+  table.delimiter_ = static_cast<char>(layout.delimiter);
+  table.names_ = std::move(layout.names);
+  table.units_ = std::move(layout.units);
+  table.header_line_ = layout.header_line;
+  table.preamble_rows_ = layout.preamble_rows;
+  table.values_.resize(layout.columns);
+
+  const bool decimal_comma = layout.delimiter != Delimiter::kComma;
+  DecimalMarkCheck decimal_marks;
+  CsvTokenizer tokenizer(table.text_, layout.delimiter, layout.data_offset, layout.data_line);
+  CsvRow row;
+  std::size_t cells_in_last_row = layout.columns;
+  while (tokenizer.Next(row)) {
+    RequireNoExtraCells(row, layout.columns, table.file_);
+    table.lines_.push_back(row.line);
+    table.offsets_.push_back(row.offset);
+    for (std::size_t column = 0; column < layout.columns; ++column) {
+      const NumberCell cell =
+          column < row.size() ? ReadNumber(row[column], decimal_comma) : NumberCell{};
+      table.values_[column].push_back(cell.value);
+      if (decimal_comma && cell.kind == NumberCell::Kind::kNumber) {
+        decimal_marks.Add(cell.decimal_mark, row, column, table.file_);
+      }
+    }
+    cells_in_last_row = row.size();
+  }
+  if (tokenizer.EndedInQuotes()) ThrowOpenQuote(table.file_, row.line);
+  const char last = table.text_.back();
+  if (cells_in_last_row < layout.columns && last != '\n' && last != '\r') {
+    throw InputError(
+        fmt::format("{}:{}: the last row is cut short, with {} of {} cells: complete "
+                    "the file or remove the row",
+                    table.file_, table.lines_.back(), cells_in_last_row, layout.columns));
+  }
+  return table;
+}
+
+CsvTable ReadCsvTable(const std::filesystem::path& path) {
+  return ParseCsvTable(ReadFile(path), path.string());
+}
+
+std::span<const double> CsvTable::Numbers(std::size_t column) const {
+  const std::vector<double>& values = values_.at(column);
+  const auto fault = std::ranges::find_if(values, [](double value) { return std::isnan(value); });
+  if (fault != values.end()) {
+    ThrowNotANumber(static_cast<std::size_t>(fault - values.begin()), column);
+  }
+  return values;
+}
+
+bool CsvTable::HasNumbers(std::size_t column) const {
+  return std::ranges::any_of(values_.at(column), [](double value) { return !std::isnan(value); });
+}
+
+// Only the row at fault is cut into cells again: no text need be kept for the others.
+void CsvTable::ThrowNotANumber(std::size_t row_index, std::size_t column) const {
+  const auto delimiter = static_cast<Delimiter>(delimiter_);
+  CsvTokenizer tokenizer(text_, delimiter, offsets_[row_index], lines_[row_index]);
+  CsvRow row;
+  tokenizer.Next(row);
+  const std::string where = fmt::format("{}:{}:{}", file_, row.line, column + 1);
+  if (column >= row.size()) {
+    throw InputError(fmt::format("{}: the row has {} cell{} of {}: complete it or remove it", where,
+                                 row.size(), row.size() == 1 ? "" : "s", columns()));
+  }
+  const std::string_view text = row[column];
+  switch (ReadNumber(text, delimiter != Delimiter::kComma).kind) {
+    case NumberCell::Kind::kEmpty:
+      throw InputError(
+          fmt::format("{}: '' is not a number: fill in the cell or remove the row", where));
+    case NumberCell::Kind::kTooLarge:
+      throw InputError(
+          fmt::format("{}: '{}' is too large: must be below 1.8e308", where, ForMessage(text)));
+    default:
+      throw InputError(
+          fmt::format("{}: '{}' is not a number: write it like -1.5e-3, or remove the "
+                      "row",
+                      where, ForMessage(text)));
+  }
+}
+
+}  // namespace mindahl

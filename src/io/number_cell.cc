@@ -1,0 +1,85 @@
+#include "io/number_cell.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace mindahl {
+namespace {
+
+bool IsDigit(char character) { return character >= '0' && character <= '9'; }
+
+bool EqualsIgnoringCase(std::string_view text, std::string_view lower_case) {
+  return std::ranges::equal(text, lower_case, [](char a, char b) {
+    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+  });
+}
+
+bool IsMissingValueMark(std::string_view text) {
+  constexpr std::array<std::string_view, 7> kMarks = {"nan", "inf",  "infinity", "na",
+                                                      "n/a", "#n/a", "null"};
+  return std::ranges::any_of(kMarks, [&](auto mark) { return EqualsIgnoringCase(text, mark); });
+}
+
+NumberCell ReadWithPoint(std::string_view unsigned_text, bool negative) {
+  NumberCell cell{.kind = NumberCell::Kind::kBroken};
+  const char* const end = unsigned_text.data() + unsigned_text.size();
+  double magnitude = 0.0;
+  const auto [stop, error] = std::from_chars(unsigned_text.data(), end, magnitude);
+  if (stop != end) return cell;
+  if (error == std::errc::result_out_of_range) {
+    // from_chars does not say on which side; only a negative exponent can make a number too small.
+    const bool too_small = unsigned_text.find("e-") != std::string_view::npos ||
+                           unsigned_text.find("E-") != std::string_view::npos;
+    if (!too_small) return {.kind = NumberCell::Kind::kTooLarge};
+    magnitude = 0.0;
+  } else if (error != std::errc{}) {
+    return cell;
+  }
+  cell.kind = NumberCell::Kind::kNumber;
+  cell.value = negative ? -magnitude : magnitude;
+  return cell;
+}
+
+}  // namespace
+
+std::string_view Trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+NumberCell ReadNumber(std::string_view cell, bool decimal_comma) {
+  std::string_view text = Trimmed(cell);
+  if (text.empty()) return {.kind = NumberCell::Kind::kEmpty};
+  const bool negative = text.front() == '-';
+  if (negative || text.front() == '+') text.remove_prefix(1);
+
+  const bool starts_as_number =
+      !text.empty() &&
+      (IsDigit(text[0]) || (text[0] == '.' && text.size() > 1 && IsDigit(text[1])));
+  if (!starts_as_number) {
+    const bool missing = IsMissingValueMark(text);
+    return {.kind = missing ? NumberCell::Kind::kBroken : NumberCell::Kind::kText};
+  }
+
+  const std::size_t comma = decimal_comma ? text.find(',') : std::string_view::npos;
+  if (comma == std::string_view::npos) {
+    NumberCell number = ReadWithPoint(text, negative);
+    if (text.find('.') != std::string_view::npos) number.decimal_mark = '.';
+    return number;
+  }
+  const bool between_digits = comma > 0 && comma + 1 < text.size() && IsDigit(text[comma + 1]);
+  if (!between_digits || text.find('.') != std::string_view::npos) {
+    return {.kind = NumberCell::Kind::kBroken};
+  }
+  std::string with_point(text);
+  with_point[comma] = '.';
+  NumberCell number = ReadWithPoint(with_point, negative);
+  number.decimal_mark = ',';
+  return number;
+}
+
+}  // namespace mindahl

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <limits>
+#include <string_view>
+
+namespace mindahl {
+
+/// What the text of one cell is, read as a number.
+struct NumberCell {
+  enum class Kind {
+    kNumber,
+    kEmpty,
+    kBroken,    ///< meant as a number and not one: "1.2.3", "5;2", "0x1F", "nan", "12:30"
+    kTooLarge,  ///< "1e999": no finite double
+    kText,
+  };
+
+  Kind kind = Kind::kText;
+  double value = std::numeric_limits<double>::quiet_NaN();  ///< NaN unless kind is kNumber
+  char decimal_mark = '\0';                                 ///< '.', ',' or none seen
+};
+
+/// Reads a whole cell, blanks around it aside, as a plain decimal number: sign, digits, one decimal
+/// mark, exponent. "nan", "inf", hexadecimal and thousands separators are not numbers; a magnitude
+/// below the smallest double is 0.
+/// @param decimal_comma  "1,5" is 1.5; a decimal comma needs a digit on both sides
+NumberCell ReadNumber(std::string_view cell, bool decimal_comma);
+
+/// `text` without the blanks and tabs around it.
+std::string_view Trimmed(std::string_view text);
+
+}  // namespace mindahl

@@ -1,0 +1,404 @@
+#include "mindahl/io/record_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "io/column_name.h"
+#include "io/message_text.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/units.h"
+#include "mindahl/io/csv_table.h"
+
+namespace mindahl {
+namespace {
+
+struct Alias {
+  std::string_view name;
+  int rank;  ///< the lower is the better match
+};
+
+constexpr std::array kDisplacementAliases = {
+    Alias{"tangential displacement", 0},
+    Alias{"relative displacement", 0},
+    Alias{"displacement", 1},
+    Alias{"disp", 1},
+    Alias{"position", 2},
+    Alias{"pos", 2},
+    Alias{"travel", 2},
+    Alias{"stroke", 2},
+    Alias{"extension", 2},
+    Alias{"x", 3},
+    Alias{"X", 3},
+    Alias{"d", 3},
+    Alias{"delta", 3},
+    Alias{"δ", 3},
+};
+constexpr std::array kForceAliases = {
+    Alias{"tangential force", 0},
+    Alias{"friction force", 0},
+    Alias{"lateral force", 0},
+    Alias{"shear force", 0},
+    Alias{"force", 1},
+    Alias{"friction", 1},
+    Alias{"torque", 2},
+    Alias{"ft", 3},
+    Alias{"f t", 3},
+    Alias{"F", 4},
+    Alias{"f", 4},
+    Alias{"Q", 4},
+    Alias{"T", 5},    // t is the time
+    Alias{"f n", 6},  // a force in newton, unless there is a better one
+};
+constexpr std::array kTimeAliases = {
+    Alias{"time", 0},         Alias{"time stamp", 0}, Alias{"timestamp", 0},
+    Alias{"elapsed time", 0}, Alias{"t", 1},
+};
+constexpr std::array kNormalLoadAliases = {
+    Alias{"normal load", 0}, Alias{"normal force", 0}, Alias{"normal", 1}, Alias{"n load", 1},
+    Alias{"fn", 2},          Alias{"f n", 2},          Alias{"N", 2},  // n counts the samples
+};
+
+struct Role {
+  std::string_view name;
+  std::span<const Alias> aliases;
+  std::optional<Unit> (*find_unit)(std::string_view);
+  std::string (*unit_symbols)();
+  std::string_view si_unit;
+};
+
+constexpr Role kDisplacement{"displacement", kDisplacementAliases, LengthUnit, LengthUnitSymbols,
+                             "m"};
+constexpr Role kForce{"force", kForceAliases, ForceUnit, ForceUnitSymbols, "N"};
+constexpr Role kTime{"time", kTimeAliases, TimeUnit, TimeUnitSymbols, "s"};
+constexpr Role kNormalLoad{"normal load", kNormalLoadAliases, ForceUnit, ForceUnitSymbols, "N"};
+
+std::string LowerCase(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char character) {
+    return static_cast<char>(std::tolower(character));
+  });
+  return lower;
+}
+
+/// Lower case, with '_' and '-' as blanks; a name of one letter stays as it is.
+std::string Normalized(std::string_view name) {
+  if (name.size() == 1) return std::string(name);
+  std::string normalized = LowerCase(name);
+  std::ranges::replace_if(
+      normalized, [](char character) { return character == '_' || character == '-'; }, ' ');
+  return normalized;
+}
+
+std::optional<int> Rank(std::span<const Alias> aliases, std::string_view name) {
+  const auto alias = std::ranges::find(aliases, Normalized(name), &Alias::name);
+  if (alias == aliases.end()) return std::nullopt;
+  return alias->rank;
+}
+
+/// Finds columns and units in one table by name.
+class ColumnFinder {
+ public:
+  explicit ColumnFinder(const CsvTable& table) : table_(table) {
+    for (const std::string& name : table.names()) split_.push_back(SplitColumnName(name));
+  }
+
+  /// The column, from 0, that the user calls `choice`.
+  std::size_t Chosen(std::string_view choice, const Role& role) const {
+    if (const auto number = WholeNumber(choice)) {
+      if (*number >= 1 && *number <= table_.columns()) return *number - 1;
+      throw InputError(fmt::format("{}: there is no column {} for the {}: the file has {} column{}",
+                                   table_.file(), choice, role.name, table_.columns(),
+                                   table_.columns() == 1 ? "" : "s"));
+    }
+    const std::string lower = LowerCase(choice);
+    const auto full = [&](std::size_t column) -> std::string_view {
+      return table_.names()[column];
+    };
+    const std::array<std::function<bool(std::size_t)>, 3> matches = {
+        [&](std::size_t column) { return full(column) == choice; },
+        [&](std::size_t column) { return LowerCase(full(column)) == lower; },
+        [&](std::size_t column) { return LowerCase(split_[column].name) == lower; }};
+    for (const auto& match : matches) {
+      std::vector<std::size_t> found;
+      for (std::size_t column = 0; column < split_.size(); ++column) {
+        if (match(column)) found.push_back(column);
+      }
+      if (found.size() > 1) ThrowAmbiguous(role, found);
+      if (found.size() == 1) return found.front();
+    }
+    throw InputError(fmt::format("{}: no column is called '{}' (for the {}): {}", table_.file(),
+                                 choice, role.name, Listing()));
+  }
+
+  /// The best match for a role among the columns that are not `taken`.
+  std::optional<std::size_t> Recognized(const Role& role, const std::vector<bool>& taken) const {
+    std::vector<std::size_t> best;
+    std::optional<int> best_rank;
+    for (std::size_t column = 0; column < split_.size(); ++column) {
+      if (taken[column]) continue;
+      std::optional<int> rank = Rank(role.aliases, table_.names()[column]);
+      if (!rank) rank = Rank(role.aliases, split_[column].name);
+      if (!rank || (best_rank && *rank > *best_rank)) continue;
+      if (rank != best_rank) best.clear();
+      best_rank = rank;
+      best.push_back(column);
+    }
+    if (best.size() > 1) ThrowAmbiguous(role, best);
+    if (best.empty()) return std::nullopt;
+    return best.front();
+  }
+
+  /// The unit that the header states for a column, "" when it states none.
+  std::string HeaderUnit(std::size_t column) const {
+    const std::string of_name = split_.empty() ? "" : split_[column].unit;
+    const std::string of_row =
+        table_.units().empty() ? "" : std::string(WithoutBrackets(table_.units()[column]));
+    if (!of_name.empty() && !of_row.empty() && of_name != of_row) {
+      throw InputError(
+          fmt::format("{}: {} has the unit '{}' in its name and '{}' below it: "
+                      "choose its unit",
+                      Header(), Label(column), of_name, of_row));
+    }
+    return of_name.empty() ? of_row : of_name;
+  }
+
+  /// "'x [mm]' (column 2)", or "column 2" without a header.
+  std::string Label(std::size_t column) const {
+    if (table_.names().empty()) return fmt::format("column {}", column + 1);
+    return fmt::format("'{}' (column {})", ForMessage(table_.names()[column]), column + 1);
+  }
+
+  /// "the columns are 'x' (1), 'F' (2)".
+  std::string Listing() const {
+    if (table_.names().empty()) {
+      return fmt::format("the file names none of its {} columns: choose by number",
+                         table_.columns());
+    }
+    std::string listing = "the columns are ";
+    for (std::size_t column = 0; column < split_.size(); ++column) {
+      listing += fmt::format("{}'{}' ({})", column == 0 ? "" : ", ",
+                             ForMessage(table_.names()[column]), column + 1);
+    }
+    return listing;
+  }
+
+  /// "file:line" of the header.
+  std::string Header() const { return fmt::format("{}:{}", table_.file(), table_.header_line()); }
+
+ private:
+  static std::optional<std::size_t> WholeNumber(std::string_view text) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return number;
+  }
+
+  [[noreturn]] void ThrowAmbiguous(const Role& role, std::span<const std::size_t> found) const {
+    std::string labels;
+    for (const std::size_t column : found) {
+      labels += fmt::format("{}{}", labels.empty() ? "" : " and ", Label(column));
+    }
+    throw InputError(fmt::format("{}: {} may each be the {}: choose one by its number", Header(),
+                                 labels, role.name));
+  }
+
+  const CsvTable& table_;
+  std::vector<ColumnName> split_;
+};
+
+/// Reads columns of one table in SI units.
+class ColumnReader {
+ public:
+  ColumnReader(const CsvTable& table, const ColumnFinder& finder, std::vector<std::string>& notes)
+      : table_(table), finder_(finder), notes_(notes) {}
+
+  /// @throws InputError when the choice's unit, or else the header's, is not one for the role.
+  Unit FindUnit(const Role& role, std::size_t column, const std::string& chosen) {
+    if (!chosen.empty()) {
+      if (auto unit = role.find_unit(chosen)) return *unit;
+      throw InputError(fmt::format("{}: the {} unit '{}' is not known: must be one of {}",
+                                   table_.file(), role.name, chosen, role.unit_symbols()));
+    }
+    const std::string stated = finder_.HeaderUnit(column);
+    if (stated.empty()) {
+      notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}", table_.file(), role.name,
+                                   finder_.Label(column), role.si_unit));
+      return *role.find_unit(role.si_unit);
+    }
+    if (auto unit = role.find_unit(stated)) return *unit;
+    throw InputError(
+        fmt::format("{}:{}: the unit '{}' of {} is not known for the {}: must be one "
+                    "of {}, or choose the unit",
+                    finder_.Header(), column + 1, stated, finder_.Label(column), role.name,
+                    role.unit_symbols()));
+  }
+
+  std::vector<double> Read(const Role& role, std::size_t column, const Unit& unit) {
+    const std::span<const double> numbers = table_.Numbers(column);
+    std::vector<double> values(numbers.size());
+    for (std::size_t row = 0; row < numbers.size(); ++row) {
+      values[row] = unit.ToSi(numbers[row]);
+      if (!std::isfinite(values[row])) {
+        throw InputError(fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 {}",
+                                     table_.file(), table_.lines()[row], column + 1, role.name,
+                                     numbers[row], unit.symbol, role.si_unit));
+      }
+    }
+    return values;
+  }
+
+  ChosenColumn Describe(std::size_t column, const Unit& unit) const {
+    return {table_.names().empty() ? "" : table_.names()[column], column + 1, unit.symbol};
+  }
+
+ private:
+  const CsvTable& table_;
+  const ColumnFinder& finder_;
+  std::vector<std::string>& notes_;
+};
+
+/// Columns from 0, by role.
+struct Assignment {
+  std::optional<std::size_t> displacement, force, time, normal_load;
+};
+
+class RoleAssigner {
+ public:
+  RoleAssigner(const CsvTable& table, const ColumnFinder& finder, std::vector<std::string>& notes)
+      : table_(table), finder_(finder), notes_(notes), taken_(table.columns(), false) {}
+
+  Assignment Assign(const RecordColumns& columns) {
+    Assignment assigned{
+        .displacement = TakeChosen(kDisplacement, columns.displacement),
+        .force = TakeChosen(kForce, columns.force),
+        .time = TakeChosen(kTime, columns.time),
+        .normal_load = TakeChosen(kNormalLoad, columns.normal_load),
+    };
+    TakeRecognized(kDisplacement, assigned.displacement);
+    TakeRecognized(kForce, assigned.force);
+    TakeRecognized(kTime, assigned.time);
+    TakeRecognized(kNormalLoad, assigned.normal_load);
+    TakeByPosition(kDisplacement, 0, assigned.displacement);
+    TakeByPosition(kForce, 1, assigned.force);
+    return assigned;
+  }
+
+ private:
+  std::optional<std::size_t> TakeChosen(const Role& role, const ColumnChoice& choice) {
+    if (choice.column.empty()) return std::nullopt;
+    const std::size_t column = finder_.Chosen(choice.column, role);
+    if (taken_[column]) {
+      throw InputError(
+          fmt::format("{}: {} is chosen for the {} and for another quantity: choose "
+                      "two columns",
+                      table_.file(), finder_.Label(column), role.name));
+    }
+    taken_[column] = true;
+    return column;
+  }
+
+  void TakeRecognized(const Role& role, std::optional<std::size_t>& column) {
+    if (column) return;
+    column = finder_.Recognized(role, taken_);
+    if (column) taken_[*column] = true;
+  }
+
+  void TakeByPosition(const Role& role, std::size_t position, std::optional<std::size_t>& column) {
+    if (column) return;
+    if (position < taken_.size() && !taken_[position]) {
+      column = position;
+    } else if (std::ranges::count(taken_, false) == 1) {
+      column = static_cast<std::size_t>(std::ranges::find(taken_, false) - taken_.begin());
+    } else {
+      throw InputError(fmt::format(
+          "{}: no column for the {}: {}", table_.file(), role.name,
+          table_.columns() == 1 ? "the file has 1 column" : finder_.Listing() + ": choose one"));
+    }
+    taken_[*column] = true;
+    notes_.push_back(fmt::format("{}: no column name is recognised as {}: taken from {}",
+                                 table_.file(), role.name, finder_.Label(*column)));
+  }
+
+  const CsvTable& table_;
+  const ColumnFinder& finder_;
+  std::vector<std::string>& notes_;
+  std::vector<bool> taken_;
+};
+
+/// Why a column that nobody asked for cannot be used; "" when it can.
+std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const Role& role,
+                        std::size_t column, const ColumnChoice& choice) {
+  if (!table.HasNumbers(column)) return "holds no numbers";
+  const std::string stated = choice.unit.empty() ? finder.HeaderUnit(column) : "";
+  if (!stated.empty() && !role.find_unit(stated)) {
+    return fmt::format("has the unit '{}', not one of {}", stated, role.unit_symbols());
+  }
+  return "";
+}
+
+}  // namespace
+
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
+  const CsvTable table = ReadCsvTable(path);
+  const ColumnFinder finder(table);
+  RecordFile file;
+  if (table.preamble_rows() > 0) {
+    file.notes.push_back(fmt::format("{}: {} row{} above the header skipped", finder.Header(),
+                                     table.preamble_rows(), table.preamble_rows() == 1 ? "" : "s"));
+  }
+  const Assignment assigned = RoleAssigner(table, finder, file.notes).Assign(columns);
+  ColumnReader reader(table, finder, file.notes);
+
+  const auto read = [&](const Role& role, std::size_t column, const ColumnChoice& choice,
+                        std::vector<double>& values) {
+    const Unit unit = reader.FindUnit(role, column, choice.unit);
+    values = reader.Read(role, column, unit);
+    return reader.Describe(column, unit);
+  };
+  const auto read_optional = [&](const Role& role, std::optional<std::size_t> column,
+                                 const ColumnChoice& choice,
+                                 std::vector<double>& values) -> std::optional<ChosenColumn> {
+    if (!column) return std::nullopt;
+    if (choice.column.empty()) {
+      const std::string fault = WhyUnusable(table, finder, role, *column, choice);
+      if (!fault.empty()) {
+        file.notes.push_back(fmt::format("{}: {} {} {}: left out", table.file(), role.name,
+                                         finder.Label(*column), fault));
+        return std::nullopt;
+      }
+    }
+    return read(role, *column, choice, values);
+  };
+  Record& record = file.record;
+  file.displacement =
+      read(kDisplacement, *assigned.displacement, columns.displacement, record.displacement);
+  file.force = read(kForce, *assigned.force, columns.force, record.force);
+  file.time = read_optional(kTime, assigned.time, columns.time, record.time);
+  file.normal_load =
+      read_optional(kNormalLoad, assigned.normal_load, columns.normal_load, record.normal_load);
+  file.line = table.lines();
+  return file;
+}
+
+std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
+                                         const ColumnChoice& displacement) {
+  const CsvTable table = ReadCsvTable(path);
+  const ColumnFinder finder(table);
+  const std::size_t column =
+      displacement.column.empty() ? 0 : finder.Chosen(displacement.column, kDisplacement);
+  std::vector<std::string> notes;  // taking m for granted is the documented default here
+  ColumnReader reader(table, finder, notes);
+  return reader.Read(kDisplacement, column,
+                     reader.FindUnit(kDisplacement, column, displacement.unit));
+}
+
+}  // namespace mindahl

@@ -1,0 +1,153 @@
+#include "mindahl/io/atomic_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include "mindahl/core/error.h"
+#include "temporary_directory.h"
+
+namespace mindahl {
+namespace {
+
+mode_t Permissions(const std::filesystem::path& path) {
+  struct stat status {};
+  EXPECT_EQ(::stat(path.c_str(), &status), 0);
+  return status.st_mode & 07777;
+}
+
+TEST(AtomicFile, WritesTextAndBytes) {
+  const TemporaryDirectory directory;
+  const std::string content("a\0b\r\n\xFF", 6);
+  WriteFileAtomically(directory.path() / "out", content);
+  EXPECT_EQ(FileContent(directory.path() / "out"), content);
+  EXPECT_EQ(directory.FileCount(), 1u);
+}
+
+TEST(AtomicFile, WritesEmptyFile) {
+  const TemporaryDirectory directory;
+  WriteFileAtomically(directory.path() / "out", "");
+  EXPECT_EQ(FileContent(directory.path() / "out"), "");
+  EXPECT_EQ(directory.FileCount(), 1u);
+}
+
+TEST(AtomicFile, ReplacesLongerFile) {
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("out", "a long content");
+  WriteFileAtomically(path, "short");
+  EXPECT_EQ(FileContent(path), "short");
+}
+
+TEST(AtomicFile, LeavesOldContentToReaderThatHasTheFileOpen) {
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("out", "old");
+  std::ifstream reader(path);
+  WriteFileAtomically(path, "new");
+  std::string content;
+  reader >> content;
+  EXPECT_EQ(content, "old");
+}
+
+TEST(AtomicFile, GivesNewFilePermissionsOfUmask) {
+  const TemporaryDirectory directory;
+  const mode_t old_mask = ::umask(027);
+  WriteFileAtomically(directory.path() / "out", "x");
+  ::umask(old_mask);
+  EXPECT_EQ(Permissions(directory.path() / "out"), 0640u);
+}
+
+TEST(AtomicFile, KeepsPermissionsOfExistingFile) {
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("out", "old");
+  ::chmod(path.c_str(), 0604);
+  WriteFileAtomically(path, "new");
+  EXPECT_EQ(Permissions(path), 0604u);
+}
+
+TEST(AtomicFile, WritesThroughSymbolicLink) {
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("out", "old");
+  std::filesystem::create_symlink("out", directory.path() / "link");
+  WriteFileAtomically(directory.path() / "link", "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(directory.path() / "link"));
+  EXPECT_EQ(FileContent(path), "new");
+}
+
+TEST(AtomicFile, WritesToNameInWorkingDirectory) {
+  const TemporaryDirectory directory;
+  const auto old_directory = std::filesystem::current_path();
+  std::filesystem::current_path(directory.path());
+  WriteFileAtomically("out", "x");
+  std::filesystem::current_path(old_directory);
+  EXPECT_EQ(FileContent(directory.path() / "out"), "x");
+}
+
+TEST(AtomicFile, WritesStraightToDevice) {
+  WriteFileAtomically("/dev/null", "x");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST(AtomicFile, WritesStraightToPipe) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = FileContent(path); });
+  WriteFileAtomically(path, "through the pipe");
+  reader.join();
+  EXPECT_EQ(read, "through the pipe");
+  EXPECT_TRUE(std::filesystem::is_fifo(path));
+}
+
+TEST(AtomicFile, AppendsToRegularFileBehindDescriptor) {
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("out", "begun ");
+  std::FILE* const file = std::fopen(path.c_str(), "a");
+  WriteFileAtomically("/dev/fd/" + std::to_string(::fileno(file)), "continued");
+  std::fclose(file);
+  EXPECT_EQ(FileContent(path), "begun continued");
+}
+
+TEST(AtomicFile, NamesMissingDirectoryAndReason) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path() / "none" / "x.csv";
+  EXPECT_EQ(MessageOf<InputError>([&] { WriteFileAtomically(path, "x"); }),
+            "cannot write '" + path.string() + "': No such file or directory");
+}
+
+TEST(AtomicFile, RefusesDirectory) {
+  const TemporaryDirectory directory;
+  EXPECT_EQ(MessageOf<InputError>([&] { WriteFileAtomically(directory.path(), "x"); }),
+            "cannot write '" + directory.path().string() + "': Is a directory");
+}
+
+TEST(AtomicFile, ReportsFullDevice) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  EXPECT_EQ(MessageOf<InputError>([] { WriteFileAtomically("/dev/full", "x"); }),
+            "cannot write '/dev/full': No space left on device");
+}
+
+TEST(AtomicFile, LeavesOldFileAndNothingElseWhenWritingFails) {
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("out", "old");
+  // A limit on the size of files makes write() fail half-way.
+  rlimit old_limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{1000, old_limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  const std::string message =
+      MessageOf<InputError>([&] { WriteFileAtomically(path, std::string(5000, 'x')); });
+  ::setrlimit(RLIMIT_FSIZE, &old_limit);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_EQ(message, "cannot write '" + path.string() + "': File too large");
+  EXPECT_EQ(FileContent(path), "old");
+  EXPECT_EQ(directory.FileCount(), 1u);
+}
+
+}  // namespace
+}  // namespace mindahl

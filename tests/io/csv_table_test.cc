@@ -1,0 +1,349 @@
+#include "mindahl/io/csv_table.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "temporary_directory.h"
+
+namespace mindahl {
+namespace {
+
+using Strings = std::vector<std::string>;
+using Lines = std::vector<std::size_t>;
+using Numbers = std::vector<double>;
+
+Numbers Column(const CsvTable& table, std::size_t column) {
+  const auto numbers = table.Numbers(column);
+  return {numbers.begin(), numbers.end()};
+}
+
+// --- Formats that all hold the same table: x = 0, 1.5, -2; F = 0.5, 3e-3, 1e5 -------------------
+
+struct Format {
+  std::string name;
+  std::string text;
+  Strings names = {"x", "F"};
+  Strings units = {};
+};
+
+void PrintTo(const Format& format, std::ostream* out) { *out << format.name; }
+
+class CsvTableFormat : public ::testing::TestWithParam<Format> {};
+
+TEST_P(CsvTableFormat, HoldsTheSameTable) {
+  const CsvTable table = ParseCsvTable(GetParam().text, "loop.csv");
+  EXPECT_EQ(table.names(), GetParam().names);
+  EXPECT_EQ(table.units(), GetParam().units);
+  ASSERT_GE(table.columns(), 2u);
+  EXPECT_EQ(Column(table, 0), (Numbers{0, 1.5, -2}));
+  EXPECT_EQ(Column(table, 1), (Numbers{0.5, 3e-3, 1e5}));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , CsvTableFormat,
+    ::testing::Values(
+        Format{"Comma", "x,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
+        Format{"CommaAndBlanks", "x, F\n0, .5\n 1.5 ,\t3e-3 \n-2, 1E5\n"},
+        Format{"CommaBetweenBlanks", "x , F\n0 , .5\n1.5 , 3e-3\n-2 , 1E5\n"},
+        Format{"Semicolon", "x;F\n0;.5\n1.5;3e-3\n-2;1E5\n"},
+        Format{"SemicolonDecimalComma", "x;F\n0;0,5\n1,5;3e-3\n-2;1E5\n"},
+        Format{"Tab", "x\tF\n0\t.5\n1.5\t3e-3\n-2\t1E5\n"},
+        Format{"TabDecimalComma", "x\tF\n0\t0,5\n1,5\t0,003\n-2\t1E5\n"},
+        Format{"Blanks", "x F\n0 .5\n1.5 3e-3\n-2 1E5\n"},
+        Format{"AlignedBlanks", "    x       F\n  0      .5  \n  1.5  3e-3\n -2     1E5\n"},
+        Format{"BlanksDecimalComma", "x F\n0 0,5\n1,5 0,003\n-2 1E5\n"},
+        Format{"BlanksAndTabs", "x F\n0 \t.5\n1.5\t 3e-3\n-2 1E5\n"},
+        Format{"BlanksOrTabs", "x F\n0 .5\n1.5\t3e-3\n-2 1E5\n"},
+        Format{"CrLf", "x,F\r\n0,.5\r\n1.5,3e-3\r\n-2,1E5\r\n"},
+        Format{"Cr", "x,F\r0,.5\r1.5,3e-3\r-2,1E5\r"},
+        Format{"NoNewlineAtTheEnd", "x,F\n0,.5\n1.5,3e-3\n-2,1E5"},
+        Format{"ByteOrderMark", "\xEF\xBB\xBFx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
+        Format{"QuotedCells", "\"x\",\"F\"\n\"0\",\".5\"\n1.5,\"3e-3\"\n-2,\" 1E5 \"\n"},
+        Format{"QuotedCommaInName", "\"x, mm\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x, mm", "F"}},
+        Format{"QuotedLineBreakInName", "\"x\ny\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x\ny", "F"}},
+        Format{
+            "QuotedQuoteInName", "\"x \"\"in\"\"\",F\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x \"in\"", "F"}},
+        Format{"Comments", "# rig, 3\nx,F\n#1,2\n0,.5\n  # note\n1.5,3e-3\n-2,1E5\n#end\n"},
+        Format{"BlankLines", "\n\nx,F\n\n0,.5\n  \t\n1.5,3e-3\n-2,1E5\n\n\n"},
+        Format{"RowsOfDelimiters", "x,F\n,\n0,.5\n1.5,3e-3\n,\n-2,1E5\n,\n"},
+        Format{"PreambleKeysAndValues", "sample_rate,200\nrig,A\nx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
+        Format{"PreambleWithTwoNumbers",
+               "range,0,10\nx,F,c\n0,.5,1\n1.5,3e-3,1\n-2,1E5,1\n",
+               {"x", "F", "c"}},
+        Format{"PreambleOfText", "Run 7, with oil, at night\nx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
+        Format{"PreambleLongerThanData",
+               "a,1\nb,2\nc,3\nd,4\ne,5\nf,6\ng,7\nh,8\nx,F\n0,.5\n1.5,3e-3\n-2,1E5\n"},
+        Format{"UnitsRow", "x,F\nmm,N\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x", "F"}, {"mm", "N"}},
+        Format{"UnitsRowInBracketsThenBlankLine",
+               "x\tF\n[mm]\t[N]\n\n0\t.5\n1.5\t3e-3\n-2\t1E5\n",
+               {"x", "F"},
+               {"[mm]", "[N]"}},
+        Format{"UnknownUnitInUnitsRow",
+               "x,F\nfurlong,N\n0,.5\n1.5,3e-3\n-2,1E5\n",
+               {"x", "F"},
+               {"furlong", "N"}},
+        Format{"UnitsRowAlone", "mm,N\n0,.5\n1.5,3e-3\n-2,1E5\n", {}, {"mm", "N"}},
+        Format{"UnitSymbolAsName", "x,N\n0,.5\n1.5,3e-3\n-2,1E5\n", {"x", "N"}},
+        Format{"TrailingDelimiterOnData", "x,F\n0,.5,\n1.5,3e-3,\n-2,1E5,\n"},
+        Format{"TrailingDelimiterOnHeader", "x,F,\n0,.5\n1.5,3e-3\n-2,1E5\n"},
+        Format{"TrailingDelimiterOnAll", "x;F;\n0;.5;\n1.5;3e-3;\n-2;1E5;\n"},
+        Format{"TrailingTab", "x\tF\t\n0\t.5\t\n1.5\t3e-3\t\n-2\t1E5\t\n"},
+        Format{"NoHeader", "0,.5\n1.5,3e-3\n-2,1E5\n", {}},
+        Format{"BracketsInBlankSeparatedHeader",
+               "x [mm] F (N)\n0 .5\n1.5 3e-3\n-2 1E5\n",
+               {"x [mm]", "F (N)"}},
+        Format{"BlanksInNamesTwoBlanksApart",
+               "pad position  normal load\n0 .5\n1.5 3e-3\n-2 1E5\n",
+               {"pad position", "normal load"}},
+        Format{"BracketsInTabSeparatedHeader",
+               "Pad x [mm]\tF (N)\n0\t.5\n1.5\t3e-3\n-2\t1E5\n",
+               {"Pad x [mm]", "F (N)"}},
+        Format{"ColumnOfText", "x,F,state\n0,.5,ok\n1.5,3e-3,a;b\n-2,1E5,7\n", {"x", "F", "state"}},
+        Format{"ColumnOfTextMostlyEmpty",
+               "x,F,remark\n0,.5,\n1.5,3e-3,\n-2,1E5,slip\n",
+               {"x", "F", "remark"}},
+        Format{"ColumnOfDates",
+               "x;F;date\n0;0,5;2024-07-12 16:46:43\n1,5;0,003;2024-07-12 16:46:44\n"
+               "-2;1E5;2024-07-12 16:46:45\n",
+               {"x", "F", "date"}},
+        Format{"PlusSigns", "x,F\n+0,+.5\n+1.5,+3e-3\n-2,+1E+5\n"}),
+    [](const auto& test) { return test.param.name; });
+
+// --- Broken files, and what is said of each ------------------------------------------------------
+
+struct Fault {
+  std::string name;
+  std::string text;
+  std::string message;
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+class CsvTableFault : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(CsvTableFault, IsReportedInOneLine) {
+  const std::string message = MessageOf<InputError>([&] {
+    const CsvTable table = ParseCsvTable(GetParam().text, "loop.csv");
+    for (std::size_t column = 0; column < table.columns(); ++column) {
+      static_cast<void>(table.Numbers(column));
+    }
+  });
+  EXPECT_EQ(message, GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , CsvTableFault,
+    ::testing::Values(
+        Fault{"Empty", "", "loop.csv: the file is empty"},
+        Fault{"OnlyByteOrderMark", "\xEF\xBB\xBF",
+              "loop.csv: holds no data, only blank or '#' lines"},
+        Fault{"OnlyBlankLinesAndComments", "\n  \n# x\n\t\n",
+              "loop.csv: holds no data, only blank or '#' lines"},
+        Fault{"OnlyHeader", "x,F\n",
+              "loop.csv: no row of numbers in its first 1000 rows: expected columns of numbers "
+              "under an optional header"},
+        Fault{"Prose", "Dear Sir,\nyours, truly\n",
+              "loop.csv: no row of numbers in its first 1000 rows: expected columns of numbers "
+              "under an optional header"},
+        Fault{"Utf16", std::string("\xFF\xFEx\0,\0", 6), "loop.csv: is UTF-16: save it as UTF-8"},
+        Fault{"Binary", std::string("x,F\n1,2\n\0\1", 10),
+              "loop.csv:3: is not text, it holds a zero byte: export it as CSV"},
+        Fault{"Word", "x,F\n1,2\n3,abc\n",
+              "loop.csv:3:2: 'abc' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"UnitInCell", "x,F\n1,2\n3 mm,4\n",
+              "loop.csv:3:1: '3 mm' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"Nan", "x,F\n1,2\nnan,4\n",
+              "loop.csv:3:1: 'nan' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"NanInFirstRowWithoutHeader", "NaN,2\n1,2\n",
+              "loop.csv:1:1: 'NaN' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"Infinity", "x,F\n1,2\n3,-inf\n",
+              "loop.csv:3:2: '-inf' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"Hexadecimal", "x,F\n1,2\n3,0x1F\n",
+              "loop.csv:3:2: '0x1F' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"Thousands", "x,F\n1,2\n3,\"1,234.5\"\n",
+              "loop.csv:3:2: '1,234.5' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"QuotedDecimalComma", "x,F\n1,2\n3,\"4,5\"\n",
+              "loop.csv:3:2: '4,5' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"ThousandsBesideDecimalComma", "x;F\n1;2\n3;1.234,5\n",
+              "loop.csv:3:2: '1.234,5' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"TwoSigns", "x,F\n1,2\n3,+-4\n",
+              "loop.csv:3:2: '+-4' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"NothingAfterDecimalComma", "x;F\n1;2\n3,;4\n",
+              "loop.csv:3:1: '3,' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"ShortLastRow", "x,F,t\n1,2,3\n4,5\n",
+              "loop.csv:3:3: the row has 2 cells of 3: complete it or remove it"},
+        Fault{"WordInEveryRow", "a,1,2\n1,b,2\n1,2,c\n",
+              "loop.csv:1:1: 'a' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"LongText", "x,F\n1,2\n3," + std::string(59, 'a') + "\u00b5bc\n",
+              "loop.csv:3:2: '" + std::string(59, 'a') +
+                  "\u00b5...' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"LettersAfterExponent", "x,F\n1,2\n3,1e\n",
+              "loop.csv:3:2: '1e' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"TooLarge", "x,F\n1,2\n3,-1e999\n",
+              "loop.csv:3:2: '-1e999' is too large: must be below 1.8e308"},
+        Fault{"EmptyCell", "x,F,t\n1,2,3\n3,,4\n",
+              "loop.csv:3:2: '' is not a number: fill in the cell or remove the row"},
+        Fault{"EmptyFirstRow", "x,F\n,1\n1,2\n2,3\n",
+              "loop.csv:2: ',1' is neither a row of data nor a header for the 2 columns of line 3: "
+              "name every column, or begin the line with '#' if it is a remark"},
+        Fault{"BothDecimalMarks", "x;F\n1,5;2\n3;4.5\n",
+              "loop.csv:3:2: '4.5' has the decimal mark '.' and line 2 has ',': use one "
+              "throughout"},
+        Fault{"ShortRow", "x,F,t\n1,2,3\n4,5\n6,7,8\n",
+              "loop.csv:3:3: the row has 2 cells of 3: complete it or remove it"},
+        Fault{"ShortRowOfOne", "x,F\n1,2\n4\n6,7\n",
+              "loop.csv:3:2: the row has 1 cell of 2: complete it or remove it"},
+        Fault{"ShortRowBelowComments", "#\n\nx,F\r\n#\r\n1,2\r\n\r\n4\r\n6,7\r\n",
+              "loop.csv:7:2: the row has 1 cell of 2: complete it or remove it"},
+        Fault{"RowBelowQuotedLineBreak", "x,F\n1,\"2\n\"\n3,4\n5,z\n",
+              "loop.csv:2:2: '2 ' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"ExtraCell", "x,F\n1,2\n3,4,5\n6,7\n",
+              "loop.csv:3:3: '5' is one cell too many: the table has 2 columns"},
+        Fault{"ExtraCellBeyondTrailingDelimiter", "x,F,\n1,2,\n3,4,,5\n6,7,\n",
+              "loop.csv:3:4: '5' is one cell too many: the table has 2 columns"},
+        Fault{"CutShort", "x,F,t\n1,2,3\n4,5",
+              "loop.csv:3: the last row is cut short, with 2 of 3 cells: complete the file or "
+              "remove the row"},
+        Fault{"QuoteNeverClosed", "x,F\n.1,.2\n.3,\".4\n.5,.6\n",
+              "loop.csv:3: a quotation mark opened here is never closed"},
+        Fault{"QuoteNeverClosedInHeader", "\n\"x,F\n1,2\n3,4\n",
+              "loop.csv:2: a quotation mark opened here is never closed"},
+        Fault{"HeaderShorterThanData", "x,F\n1,2,3\n4,5,6\n",
+              "loop.csv:1: 'x,F' is neither a row of data nor a header for the 3 columns of line "
+              "2: name every column, or begin the line with '#' if it is a remark"},
+        Fault{"HeaderLongerThanData", "t,x,F\n1,2\n4,5\n",
+              "loop.csv:1: 't,x,F' is neither a row of data nor a header for the 2 columns of line "
+              "2: name every column, or begin the line with '#' if it is a remark"},
+        Fault{"HeaderWithAnotherDelimiter", "x,F\n1 2\n4 5\n",
+              "loop.csv:1: 'x,F' is neither a row of data nor a header for the 2 columns of line "
+              "2: name every column, or begin the line with '#' if it is a remark"},
+        Fault{"RemarkAboveDataWithoutHeader", "Measured today\n1,2\n4,5\n",
+              "loop.csv:1: 'Measured today' is neither a row of data nor a header for the 2 "
+              "columns of line 2: name every column, or begin the line with '#' if it is a remark"},
+        Fault{"KeyAndValueAboveDataWithoutHeader", "rate,200\n1,2\n4,5\n",
+              "loop.csv:1: 'rate,200' is neither a row of data nor a header for the 2 columns of "
+              "line 2: name every column, or begin the line with '#' if it is a remark"},
+        Fault{"WordInFirstRowBelowHeader", "x,F\nabc,1\n1,2\n2,3\n",
+              "loop.csv:2: 'abc,1' is neither a row of data nor a header for the 2 columns of "
+              "line 3: name every column, or begin the line with '#' if it is a remark"},
+        Fault{"SecondHeaderWithinData", "x,F\n1,2\nx,F\n1,2\n",
+              "loop.csv:3:1: 'x' is not a number: write it like -1.5e-3, or remove the row"}),
+    [](const auto& test) { return test.param.name; });
+
+// --- The rest ------------------------------------------------------------------------------------
+
+TEST(CsvTable, TakesCommaBetweenIntegersAsDelimiter) {
+  const CsvTable table = ParseCsvTable("1,5\n2,7\n", "loop.csv");
+  EXPECT_EQ(Column(table, 0), (Numbers{1, 2}));
+  EXPECT_EQ(Column(table, 1), (Numbers{5, 7}));
+}
+
+TEST(CsvTable, TakesCommaAsDecimalMarkWhenSemicolonSeparates) {
+  const CsvTable table = ParseCsvTable("1,5;2,5;3,5\n", "loop.csv");
+  ASSERT_EQ(table.columns(), 3u);
+  EXPECT_EQ(Column(table, 2), (Numbers{3.5}));
+}
+
+TEST(CsvTable, TakesCommaAsDecimalMarkWhenBlanksSeparate) {
+  const CsvTable table = ParseCsvTable("1,5 2,5\n", "loop.csv");
+  ASSERT_EQ(table.columns(), 2u);
+  EXPECT_EQ(Column(table, 1), (Numbers{2.5}));
+}
+
+TEST(CsvTable, TakesRowWithOneUnitSymbolAmongNamesForNames) {
+  const CsvTable table = ParseCsvTable("rig,with,new,pads\nt,x,F,N\n1,2,3,4\n", "loop.csv");
+  EXPECT_EQ(table.names(), (Strings{"t", "x", "F", "N"}));
+  EXPECT_EQ(table.units(), Strings{});
+}
+
+TEST(CsvTable, ReadsSingleRowOfData) {
+  const CsvTable table = ParseCsvTable("x,F\n1,2\n", "loop.csv");
+  EXPECT_EQ(table.names(), (Strings{"x", "F"}));
+  EXPECT_EQ(table.rows(), 1u);
+}
+
+TEST(CsvTable, ReadsSingleColumn) {
+  const CsvTable table = ParseCsvTable("displacement [m]\n0.5\n-1\n", "path.csv");
+  EXPECT_EQ(table.names(), (Strings{"displacement [m]"}));
+  EXPECT_EQ(Column(table, 0), (Numbers{0.5, -1}));
+}
+
+TEST(CsvTable, ReadsSixteenColumns) {
+  std::string header = "c1";
+  std::string row = "1";
+  for (int column = 2; column <= 16; ++column) {
+    header += ";c" + std::to_string(column);
+    row += ";" + std::to_string(column) + ",5";
+  }
+  const CsvTable table = ParseCsvTable(header + "\n" + row + "\n", "loop.csv");
+  ASSERT_EQ(table.columns(), 16u);
+  EXPECT_EQ(Column(table, 15), (Numbers{16.5}));
+}
+
+TEST(CsvTable, KnowsPhysicalLineOfEachRow) {
+  const CsvTable table =
+      ParseCsvTable("rate,2\r\n\r\nx,\"F\r\n[N]\"\r\n#\r\n1,2\r\n\r\n3,4\r\n", "loop.csv");
+  EXPECT_EQ(table.header_line(), 3u);
+  EXPECT_EQ(table.preamble_rows(), 1u);
+  EXPECT_EQ(table.lines(), (Lines{6, 8}));
+}
+
+TEST(CsvTable, HasNoHeaderLineWithoutHeader) {
+  EXPECT_EQ(ParseCsvTable("1,2\n", "loop.csv").header_line(), 0u);
+}
+
+TEST(CsvTable, DoesNotMindTextInColumnThatNobodyReads) {
+  const CsvTable table = ParseCsvTable("x,state,F\n1,ok,2\n3,,4\n", "loop.csv");
+  EXPECT_EQ(Column(table, 2), (Numbers{2, 4}));
+  EXPECT_FALSE(table.HasNumbers(1));
+  EXPECT_TRUE(table.HasNumbers(2));
+}
+
+TEST(CsvTable, DoesNotMindMissingCellInColumnThatNobodyReads) {
+  const CsvTable table = ParseCsvTable("x,F,c\n1,2,3\n3,4\n5,6,7\n", "loop.csv");
+  EXPECT_EQ(Column(table, 1), (Numbers{2, 4, 6}));
+}
+
+TEST(CsvTable, ReadsEveryDoubleBackAsWritten) {
+  const CsvTable table =
+      ParseCsvTable("x\n0.1\n1.7976931348623157e308\n4.9406564584124654e-324\n1e-400\n", "x.csv");
+  EXPECT_EQ(Column(table, 0), (Numbers{0.1, 1.7976931348623157e308, 5e-324, 0.0}));
+}
+
+TEST(CsvTable, ReadsFileOfSeveralBlocks) {
+  std::string text = "x,F\n";
+  for (int row = 0; row < 20000; ++row) text += std::to_string(row) + ",0.25\n";
+  const TemporaryDirectory directory;
+  const CsvTable table = ReadCsvTable(directory.Write("long.csv", text));
+  ASSERT_EQ(table.rows(), 20000u);
+  EXPECT_EQ(table.Numbers(0).back(), 19999.0);
+}
+
+TEST(CsvTable, NamesMissingFileAndReason) {
+  EXPECT_EQ(MessageOf<InputError>([] { ReadCsvTable("/no/such.csv"); }),
+            "cannot read '/no/such.csv': No such file or directory");
+}
+
+TEST(CsvTable, RefusesDirectory) {
+  const TemporaryDirectory directory;
+  EXPECT_EQ(MessageOf<InputError>([&] { ReadCsvTable(directory.path()); }),
+            "cannot read '" + directory.path().string() + "': Is a directory");
+}
+
+TEST(CsvTable, NamesUnreadableFileAndReason) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read every file";
+  const TemporaryDirectory directory;
+  const std::filesystem::path path = directory.Write("loop.csv", "1,2\n");
+  ::chmod(path.c_str(), 0);
+  EXPECT_EQ(MessageOf<InputError>([&] { ReadCsvTable(path); }),
+            "cannot read '" + path.string() + "': Permission denied");
+}
+
+}  // namespace
+}  // namespace mindahl

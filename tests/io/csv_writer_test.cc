@@ -1,0 +1,87 @@
+#include "mindahl/io/csv_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/io/csv_table.h"
+#include "temporary_directory.h"
+
+namespace mindahl {
+namespace {
+
+using Numbers = std::vector<double>;
+
+TEST(CsvWriter, WritesHeaderAndRows) {
+  const Numbers time = {0, 1};
+  const Numbers force = {-2.5, 1e300};
+  EXPECT_EQ(CsvText({{"time [s]", time}, {"force [N]", force}}),
+            "time [s],force [N]\n0,-2.5\n1,1.0000000000000001e+300\n");
+}
+
+TEST(CsvWriter, WritesHeaderAloneWithoutRows) { EXPECT_EQ(CsvText({{"x", {}}}), "x\n"); }
+
+TEST(CsvWriter, WritesEveryDoubleSoThatItReadsBackAsItself) {
+  const Numbers values = {0.1,
+                          1.0 / 3,
+                          -0.0,
+                          5e-324,
+                          std::numeric_limits<double>::max(),
+                          1e23,
+                          std::nextafter(1.0, 2.0)};
+  const CsvTable table = ParseCsvTable(CsvText({{"x", values}}), "x.csv");
+  const auto read = table.Numbers(0);
+  ASSERT_EQ(read.size(), values.size());
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    EXPECT_EQ(read[row], values[row]);
+    EXPECT_EQ(std::signbit(read[row]), std::signbit(values[row]));
+  }
+}
+
+TEST(CsvWriter, QuotesNamesSoThatTheyReadBackAsThemselves) {
+  const std::vector<std::string> names = {"x, mm", "the \"pad\"", "a\nb", "#1", "x; y", "plain"};
+  const Numbers one = {1};
+  std::vector<CsvColumn> columns;
+  for (const std::string& name : names) columns.push_back({name, one});
+  const std::string text = CsvText(columns);
+  EXPECT_EQ(ParseCsvTable(text, "x.csv").names(), names);
+  EXPECT_EQ(text.substr(0, 24), "\"x, mm\",\"the \"\"pad\"\"\",\"a");
+  EXPECT_NE(text.find(",plain\n"), std::string::npos);
+}
+
+TEST(CsvWriter, QuotesFirstNameThatWouldBeginComment) {
+  const Numbers one = {1};
+  EXPECT_EQ(CsvText({{"#", one}}), "\"#\"\n1\n");
+}
+
+TEST(CsvWriter, LeavesCellOfUnknownValueEmpty) {
+  const Numbers first = {1, std::nan("")};
+  const Numbers second = {std::nan(""), 2};
+  EXPECT_EQ(CsvText({{"a", first}, {"b", second}}), "a,b\n1,\n,2\n");
+}
+
+TEST(CsvWriter, RefusesInfinity) {
+  const Numbers values = {1, -std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(MessageOf<InvalidArgument>([&] {
+              CsvText({{"force [N]", values}});
+            }),
+            "force [N] of row 2 = -inf is invalid: must be finite");
+}
+
+TEST(CsvWriter, RefusesColumnsOfUnequalLength) {
+  const Numbers two = {1, 2};
+  const Numbers one = {1};
+  EXPECT_EQ(MessageOf<InvalidArgument>([&] {
+              CsvText({{"a", two}, {"b", one}});
+            }),
+            "a has 2 values and b has 1: must be equal");
+}
+
+TEST(CsvWriter, RefusesTableWithoutColumns) { EXPECT_THROW(CsvText({}), InvalidArgument); }
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,195 @@
+#include "mindahl/io/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "temporary_directory.h"
+
+namespace mindahl {
+namespace {
+
+/// Sets an environment variable for one test.
+class ScopedVariable {
+ public:
+  ScopedVariable(const char* name, const std::string& value) : name_(name) {
+    if (const char* const old_value = std::getenv(name)) old_value_ = old_value;
+    ::setenv(name, value.c_str(), 1);
+  }
+  ~ScopedVariable() { old_value_ ? ::setenv(name_, old_value_->c_str(), 1) : ::unsetenv(name_); }
+  ScopedVariable(const ScopedVariable&) = delete;
+  ScopedVariable& operator=(const ScopedVariable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_value_;
+};
+
+bool HasGnuplot() { return std::system("gnuplot --version >/dev/null 2>&1") == 0; }
+
+#define REQUIRE_GNUPLOT() \
+  if (!HasGnuplot()) GTEST_SKIP() << "gnuplot is not installed"
+
+Plot OnePanel(PlotSeries series) {
+  Plot plot;
+  plot.panels.push_back({"displacement δ [µm]", "force T [N]", {std::move(series)}});
+  return plot;
+}
+
+std::string Svg(const Plot& plot) {
+  const TemporaryDirectory directory;
+  WritePlot(plot, directory.path() / "plot.svg");
+  EXPECT_EQ(directory.FileCount(), 1u);
+  return FileContent(directory.path() / "plot.svg");
+}
+
+std::size_t Count(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+constexpr const char* kDot = "xlink:href='#gpPt6'";  // what gnuplot draws for a point of type 7
+
+TEST(Plot, WritesSvgWithLabelsAsTheyAre) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"run_7^2 {a} @b 'c' \"d\" \\n %", {0, 1}, {0, 1}});
+  plot.title = "σ = 4·10⁷ N/m, it's";
+  const std::string svg = Svg(plot);
+  EXPECT_EQ(svg.rfind("<?xml", 0), 0u);
+  EXPECT_NE(svg.find("displacement δ [µm]"), std::string::npos);
+  EXPECT_NE(svg.find("σ = 4·10⁷ N/m, it's"), std::string::npos);
+  EXPECT_NE(svg.find("run_7^2 {a} @b 'c' \"d\" \\n %"), std::string::npos);
+}
+
+TEST(Plot, RunsNothingThatLabelsSay) {
+  REQUIRE_GNUPLOT();
+  const TemporaryDirectory directory;
+  const std::string trace = (directory.path() / "trace").string();
+  const std::string attack = "`touch " + trace + "`'\nsystem('touch " + trace + "')\n#";
+  Plot plot = OnePanel({attack, {0, 1}, {0, 1}});
+  plot.title = attack;
+  plot.panels.front().x_label = attack;
+  Svg(plot);
+  EXPECT_EQ(directory.FileCount(), 0u);
+}
+
+TEST(Plot, WritesPngOfTheSizeAsked) {
+  REQUIRE_GNUPLOT();
+  const TemporaryDirectory directory;
+  Plot plot = OnePanel({"", {0, 1}, {0, 1}});
+  plot.width = 320;
+  plot.height = 240;
+  WritePlot(plot, directory.path() / "plot.PNG");
+  const std::string png = FileContent(directory.path() / "plot.PNG");
+  ASSERT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1A\n");
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\1\x40\0\0\0\xF0", 8));
+}
+
+TEST(Plot, DrawsEveryPanel) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"", {0, 1}, {0, 1}});
+  plot.panels.push_back({"time [s]", "residual [N]", {{"", {0, 1}, {0, 1}}}, 0.5});
+  const std::string svg = Svg(plot);
+  EXPECT_EQ(Count(svg, "residual [N]"), 1u);
+  EXPECT_EQ(Count(svg, "force T [N]"), 1u);
+}
+
+TEST(Plot, DrawsPointsOnlyForThatStyle) {
+  REQUIRE_GNUPLOT();
+  EXPECT_EQ(Count(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kPoints})), kDot), 3u);
+  EXPECT_EQ(Count(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kLine})), kDot), 0u);
+}
+
+TEST(Plot, DrawsSinglePoint) {
+  REQUIRE_GNUPLOT();
+  EXPECT_EQ(Count(Svg(OnePanel({"", {3}, {3}, PlotStyle::kPoints})), kDot), 1u);
+}
+
+TEST(Plot, DrawsEveryPointUpToTheLimit) {
+  REQUIRE_GNUPLOT();
+  PlotSeries series{"", {}, {}, PlotStyle::kPoints};
+  for (int point = 0; point < 20000; ++point) {
+    series.x.push_back(point);
+    series.y.push_back(point % 7);
+  }
+  EXPECT_EQ(Count(Svg(OnePanel(series)), kDot), 20000u);
+}
+
+TEST(Plot, ThinsLongSeriesAndKeepsItsPeak) {
+  REQUIRE_GNUPLOT();
+  PlotSeries series{"", {}, {}, PlotStyle::kPoints};
+  for (int point = 0; point < 100000; ++point) {
+    series.x.push_back(point);
+    series.y.push_back(0.001 * (point % 11));
+  }
+  series.y[54321] = 1000;
+  const std::string svg = Svg(OnePanel(series));
+  const std::size_t drawn = Count(svg, kDot);
+  EXPECT_LE(drawn, 20000u);
+  EXPECT_GE(drawn, 10000u);
+  // The tics of the axis reach up to the peak only when it is drawn.
+  EXPECT_NE(svg.find(" 1000<"), std::string::npos) << "the peak is lost";
+}
+
+TEST(Plot, RefusesOtherExtensions) {
+  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
+  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, "dir/loop.pdf"); }),
+            "cannot draw 'dir/loop.pdf': its name must end in .svg or .png");
+}
+
+TEST(Plot, SaysWhatToInstallWithoutGnuplot) {
+  const TemporaryDirectory directory;
+  const ScopedVariable path("PATH", directory.path().string());
+  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
+  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, directory.path() / "plot.svg"); }),
+            "plots need gnuplot, which is not on PATH: install it (Debian: gnuplot-nox)");
+  EXPECT_EQ(directory.FileCount(), 0u);
+}
+
+TEST(Plot, QuotesGnuplotWhenItFails) {
+  const TemporaryDirectory directory;
+  const auto fake =
+      directory.Write("gnuplot", "#!/bin/sh\necho part\necho 'out of ink' >&2\nexit 3\n");
+  std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
+  const ScopedVariable path("PATH", directory.path().string());
+  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
+  EXPECT_EQ(MessageOf<std::runtime_error>([&] { WritePlot(plot, directory.path() / "plot.svg"); }),
+            "gnuplot failed: out of ink\n");
+  EXPECT_EQ(directory.FileCount(), 1u);
+}
+
+TEST(Plot, LeavesNoScratchFilesBehind) {
+  REQUIRE_GNUPLOT();
+  const TemporaryDirectory directory;
+  const ScopedVariable scratch("TMPDIR", directory.path().string());
+  WritePlot(OnePanel({"", {0, 1}, {0, 1}}), directory.path() / "plot.svg");
+  EXPECT_EQ(directory.FileCount(), 1u);
+}
+
+TEST(Plot, RefusesWhatCannotBeDrawn) {
+  const auto refusal = [](const Plot& plot) {
+    return MessageOf<InvalidArgument>([&] { WritePlot(plot, "/nowhere/plot.svg"); });
+  };
+  EXPECT_EQ(refusal(Plot{}), "number of panels = 0 is invalid: must be >= 1");
+  EXPECT_EQ(refusal(OnePanel({"fit", {0, 1}, {0}})),
+            "x of 'fit' of panel 1 has 2 values and y of 'fit' of panel 1 has 1: must be equal");
+  EXPECT_EQ(refusal(OnePanel({"fit", {}, {}})), "'fit' of panel 1 has no points: must have one");
+  EXPECT_EQ(refusal(OnePanel({"fit", {0}, {std::nan("")}})),
+            "y of 'fit' of panel 1 = nan is invalid: must be finite");
+  Plot empty = OnePanel({"fit", {0}, {0}});
+  empty.panels.front().series.clear();
+  EXPECT_EQ(refusal(empty), "panel 1 has no series: must have one");
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,370 @@
+#include "mindahl/io/record_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "temporary_directory.h"
+
+namespace mindahl {
+namespace {
+
+using Strings = std::vector<std::string>;
+using Numbers = std::vector<double>;
+
+RecordColumns Choose(ColumnChoice displacement, ColumnChoice force = {}, ColumnChoice time = {},
+                     ColumnChoice normal_load = {}) {
+  return {displacement, force, time, normal_load};
+}
+
+RecordFile Read(const std::string& text, const RecordColumns& columns = {}) {
+  const TemporaryDirectory directory;
+  return ReadRecord(directory.Write("loop.csv", text), columns);
+}
+
+/// Without the directory, so that a table can hold the whole message.
+std::string WithoutDirectory(std::string message, const std::filesystem::path& directory) {
+  const std::string prefix = directory.string() + "/";
+  for (std::size_t at = message.find(prefix); at != std::string::npos; at = message.find(prefix)) {
+    message.erase(at, prefix.size());
+  }
+  return message;
+}
+
+std::string Refusal(const std::string& text, const RecordColumns& columns = {}) {
+  const TemporaryDirectory directory;
+  const auto path = directory.Write("loop.csv", text);
+  return WithoutDirectory(MessageOf<InputError>([&] { ReadRecord(path, columns); }),
+                          directory.path());
+}
+
+Strings Notes(const std::string& text, const RecordColumns& columns = {}) {
+  const TemporaryDirectory directory;
+  Strings notes = ReadRecord(directory.Write("loop.csv", text), columns).notes;
+  for (std::string& note : notes) note = WithoutDirectory(note, directory.path());
+  return notes;
+}
+
+// --- Which column is which -----------------------------------------------------------------------
+
+struct Header {
+  std::string names;  ///< of the columns 1, 2, 3, 4, comma-separated
+  std::size_t displacement;
+  std::size_t force;
+  std::size_t time = 0;  ///< 0: absent
+  std::size_t normal_load = 0;
+};
+
+void PrintTo(const Header& header, std::ostream* out) { *out << header.names; }
+
+class RecognizedHeader : public ::testing::TestWithParam<Header> {};
+
+TEST_P(RecognizedHeader, GivesEachQuantityItsColumn) {
+  const Header& header = GetParam();
+  const RecordFile file = Read(header.names + "\n1.5,2.5,3.5,4.5\n");
+  EXPECT_EQ(file.displacement.number, header.displacement);
+  EXPECT_EQ(file.force.number, header.force);
+  EXPECT_EQ(file.time ? file.time->number : 0, header.time);
+  EXPECT_EQ(file.normal_load ? file.normal_load->number : 0, header.normal_load);
+  EXPECT_EQ(file.record.time.empty(), header.time == 0);
+  EXPECT_EQ(file.record.normal_load.empty(), header.normal_load == 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , RecognizedHeader,
+    ::testing::Values(Header{"displacement,force,time,normal load", 1, 2, 3, 4},
+                      Header{"Time [s],Normal [uN],Position [mm],Friction [uN]", 3, 4, 1, 2},
+                      Header{"time_s,displacement_m,force_N,velocity_m_s", 2, 3, 1},
+                      Header{"TIME,POSITION,TORQUE,CONTROL_TORQUE", 2, 3, 1},
+                      Header{"F (kN),x [um],a,b", 2, 1}, Header{"t,N,x,T", 3, 4, 1, 2},
+                      Header{"t,x,F,T", 2, 3, 1}, Header{"n,x,F,t", 2, 3, 4},
+                      Header{"F_N,F_t,delta,t", 3, 2, 4, 1}, Header{"x_mm,F_N,a,b", 1, 2},
+                      Header{"F_N,F,x,t", 3, 2, 4, 1},
+                      Header{"Time Stamp,normal-force,tangential_force,stroke", 4, 3, 1, 2},
+                      Header{"friction force,force,disp_mm,x", 3, 1},
+                      Header{"position,displacement,Q,c", 2, 3},
+                      Header{"tangential displacement / mm,displacement / mm,Ft,fn", 1, 3, 0, 4},
+                      Header{"δ,f,a,b", 1, 2}, Header{"a,b,c,d", 4, 2}, Header{"a,b,c,e", 1, 2}));
+
+TEST(RecordReader, TakesTheOnlyColumnLeftForTheForce) {
+  const RecordFile file = Read("load,extension\n1.5,2.5\n");
+  EXPECT_EQ(file.displacement.number, 2u);
+  EXPECT_EQ(file.force.number, 1u);
+}
+
+TEST(RecordReader, FindsChosenColumnByNumberNameCaseAndNameWithoutUnit) {
+  const std::string text = "Pad [mm],pad,Cell [N],four\n1.5,2.5,3.5,4.5\n";
+  const auto force_column = [&](const std::string& name) {
+    return Read(text, Choose({"4", "m"}, {name, "N"})).force.number;
+  };
+  EXPECT_EQ(force_column("3"), 3u);
+  EXPECT_EQ(force_column("pad"), 2u);
+  EXPECT_EQ(force_column("PAD [MM]"), 1u);
+  EXPECT_EQ(force_column("cell"), 3u);
+}
+
+TEST(RecordReader, PrefersExactNameToAnotherCase) {
+  EXPECT_EQ(Read("f,F,x\n1.5,2.5,3.5\n", Choose({}, {"F", ""})).force.number, 2u);
+}
+
+TEST(RecordReader, PutsTheOtherByPositionWhenOneIsChosenInFileWithoutHeader) {
+  const RecordFile file = Read("1.5,2.5,3.5\n", Choose({"3", "mm"}));
+  EXPECT_EQ(file.displacement.number, 3u);
+  EXPECT_EQ(file.force.number, 2u);
+}
+
+TEST(RecordReader, ReadsTimeAndNormalLoadThatAreAskedFor) {
+  const RecordFile file = Read("1.5,2.5,3.5,4.5\n", Choose({}, {}, {"4", "ms"}, {"3", "kN"}));
+  EXPECT_EQ(file.record.time, (Numbers{4.5e-3}));
+  EXPECT_EQ(file.record.normal_load, (Numbers{3500}));
+  EXPECT_EQ(file.time->unit, "ms");
+  EXPECT_EQ(file.normal_load->unit, "kN");
+}
+
+TEST(RecordReader, LeavesOutUnaskedTimeOfClockWithNote) {
+  const std::string text = "time,x [m],F [N]\n12:00:01,1.5,2.5\n12:00:02,3.5,4.5\n";
+  EXPECT_FALSE(Read(text).time);
+  EXPECT_EQ(Notes(text), (Strings{"loop.csv: time 'time' (column 1) holds no numbers: left out"}));
+}
+
+TEST(RecordReader, LeavesOutUnaskedNormalLoadInUnknownUnitWithNote) {
+  const std::string text = "normal [V],x [m],F [N]\n1.5,2.5,3.5\n";
+  EXPECT_FALSE(Read(text).normal_load);
+  EXPECT_EQ(Notes(text), (Strings{"loop.csv: normal load 'normal [V]' (column 1) has the unit 'V', "
+                                  "not one of N, mN, uN, kN, MN, lbf, kgf: left out"}));
+}
+
+// --- Units ---------------------------------------------------------------------------------------
+
+struct UnitHeader {
+  std::string text;
+  std::string unit;     ///< of the displacement
+  double displacement;  ///< [m]
+};
+
+void PrintTo(const UnitHeader& header, std::ostream* out) { *out << header.text; }
+
+class HeaderWithUnits : public ::testing::TestWithParam<UnitHeader> {};
+
+TEST_P(HeaderWithUnits, ConvertsToSi) {
+  const RecordFile file = Read(GetParam().text);
+  EXPECT_EQ(file.displacement.unit, GetParam().unit);
+  EXPECT_EQ(file.force.unit, "kN");
+  EXPECT_EQ(file.record.displacement, (Numbers{GetParam().displacement}));
+  EXPECT_EQ(file.record.force, (Numbers{2500}));
+  EXPECT_EQ(file.notes, Strings{});
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , HeaderWithUnits,
+    ::testing::Values(UnitHeader{"x [mm],F (kN)\n1.5,2.5\n", "mm", 1.5e-3},
+                      UnitHeader{"x[um],F(kN)\n1.5,2.5\n", "um", 1.5e-6},
+                      UnitHeader{"x [\u00b5m],F [kN]\n1.5,2.5\n", "um", 1.5e-6},
+                      UnitHeader{"x [\u03bcm],F [kN]\n1.5,2.5\n", "um", 1.5e-6},
+                      UnitHeader{"disp_mm,force_kN\n1.5,2.5\n", "mm", 1.5e-3},
+                      UnitHeader{"disp mm,force kN\n1.5,2.5\n", "mm", 1.5e-3},
+                      UnitHeader{"\"Position, nm\",\"Force, kN\"\n1.5,2.5\n", "nm", 1.5e-9},
+                      UnitHeader{"x / mm,F/kN\n1.5,2.5\n", "mm", 1.5e-3},
+                      UnitHeader{"x,F\nmm,kN\n1.5,2.5\n", "mm", 1.5e-3},
+                      UnitHeader{"x,F\n[in],[kN]\n\n1.5,2.5\n", "in", 0.0381},
+                      UnitHeader{"x [mm],F\n,kN\n1.5,2.5\n", "mm", 1.5e-3},
+                      UnitHeader{"x [mm] F [kN]\n1.5 2.5\n", "mm", 1.5e-3}));
+
+TEST(RecordReader, PutsChosenUnitAboveThatOfTheHeader) {
+  const RecordFile file = Read("x [mm],F [furlong]\n1.5,2.5\n", Choose({"", "um"}, {"", "mN"}));
+  EXPECT_EQ(file.record.displacement, (Numbers{1.5e-6}));
+  EXPECT_EQ(file.record.force, (Numbers{2.5e-3}));
+}
+
+TEST(RecordReader, TakesSiWithNoteWhenNoUnitIsNamed) {
+  EXPECT_EQ(Notes("x,F\n1.5,2.5\n"),
+            (Strings{"loop.csv: displacement 'x' (column 1) names no unit: taken as m",
+                     "loop.csv: force 'F' (column 2) names no unit: taken as N"}));
+}
+
+TEST(RecordReader, NotesColumnsTakenByPosition) {
+  EXPECT_EQ(Notes("1.5,2.5\n", Choose({"", "m"}, {"", "N"})),
+            (Strings{"loop.csv: no column name is recognised as displacement: taken from column 1",
+                     "loop.csv: no column name is recognised as force: taken from column 2"}));
+}
+
+TEST(RecordReader, NotesSkippedPreamble) {
+  EXPECT_EQ(Notes("rate,200\ngain,3\nx [m],F [N]\n1.5,2.5\n"),
+            (Strings{"loop.csv:3: 2 rows above the header skipped"}));
+}
+
+TEST(RecordReader, KeepsLineOfEachSample) {
+  EXPECT_EQ(Read("# rig\nx,F\n\n1,2\n#\n3,4\n").line, (std::vector<std::size_t>{4, 6}));
+}
+
+// --- Broken files and choices, and what is said of each ------------------------------------------
+
+struct Fault {
+  std::string name;
+  std::string text;
+  RecordColumns columns;
+  std::string message;
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+class RecordFault : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(RecordFault, IsReportedInOneLine) {
+  EXPECT_EQ(Refusal(GetParam().text, GetParam().columns), GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , RecordFault,
+    ::testing::Values(
+        Fault{"UnknownName", "t,x,F\n1,2,3\n", Choose({"y", ""}),
+              "loop.csv: no column is called 'y' (for the displacement): the columns are 't' (1), "
+              "'x' (2), 'F' (3)"},
+        Fault{"NameInFileWithoutHeader", "1,2,3\n", Choose({"y", ""}),
+              "loop.csv: no column is called 'y' (for the displacement): the file names none of "
+              "its 3 columns: choose by number"},
+        Fault{"NumberTooLarge", "t,x,F\n1,2,3\n", Choose({}, {"4", ""}),
+              "loop.csv: there is no column 4 for the force: the file has 3 columns"},
+        Fault{"NumberZero", "t,x,F\n1,2,3\n", Choose({}, {"0", ""}),
+              "loop.csv: there is no column 0 for the force: the file has 3 columns"},
+        Fault{"SameColumnTwice", "t,x,F\n1,2,3\n", Choose({"x", ""}, {"2", ""}),
+              "loop.csv: 'x' (column 2) is chosen for the force and for another quantity: choose "
+              "two columns"},
+        Fault{"AmbiguousNames", "\nx,d,F\n1,2,3\n", Choose({}),
+              "loop.csv:2: 'x' (column 1) and 'd' (column 2) may each be the displacement: choose "
+              "one by its number"},
+        Fault{"RepeatedName", "x,x,F\n1,2,3\n", Choose({"x", ""}),
+              "loop.csv:1: 'x' (column 1) and 'x' (column 2) may each be the displacement: choose "
+              "one by its number"},
+        Fault{"NameInTwoUnits", "x [mm],x [V],F\n1,2,3\n", Choose({"x", ""}),
+              "loop.csv:1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the "
+              "displacement: choose one by its number"},
+        Fault{"ForceUnrecognizedWhereColumn2IsTaken", "t,x,y,z\n1,2,3,4\n", Choose({}),
+              "loop.csv: no column for the force: the columns are 't' (1), 'x' (2), 'y' (3), 'z' "
+              "(4): choose one"},
+        Fault{"OneColumn", "x\n1\n", Choose({}),
+              "loop.csv: no column for the force: the file has 1 column"},
+        Fault{"UnknownChosenUnit", "x,F\n1,2\n", Choose({"", "furlong"}),
+              "loop.csv: the displacement unit 'furlong' is not known: must be one of m, mm, um, "
+              "nm, in"},
+        Fault{"UnknownUnitInHeader", "\nt,x [m],Torque [Nm]\n1,2,3\n", Choose({}),
+              "loop.csv:2:3: the unit 'Nm' of 'Torque [Nm]' (column 3) is not known for the "
+              "force: must be one of N, mN, uN, kN, MN, lbf, kgf, or choose the unit"},
+        Fault{"UnknownUnitInUnitsRow", "x,F\nfurlong,N\n1,2\n", Choose({}),
+              "loop.csv:1:1: the unit 'furlong' of 'x' (column 1) is not known for the "
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+        Fault{"UnknownUnitBehindSlash", "x / m/s,F\n1,2\n", Choose({}),
+              "loop.csv:1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the "
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+        Fault{"UnknownUnitBehindComma", "\"x, furlong\",F\n1,2\n", Choose({}),
+              "loop.csv:1:1: the unit 'furlong' of 'x, furlong' (column 1) is not known for the "
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+        Fault{"ForceUnitForDisplacement", "displacement_N,F\n1,2\n", Choose({}),
+              "loop.csv:1:1: the unit 'N' of 'displacement_N' (column 1) is not known for the "
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+        Fault{"UnknownUnitOfTimeAskedFor", "time [h],x [m],F [N]\n1,2,3\n",
+              Choose({}, {}, {"time", ""}),
+              "loop.csv:1:1: the unit 'h' of 'time [h]' (column 1) is not known for the time: must "
+              "be one of s, ms, us, min, or choose the unit"},
+        Fault{"TwoUnits", "x [mm],F\num,N\n1,2\n", Choose({}),
+              "loop.csv:1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below it: "
+              "choose its unit"},
+        Fault{"OverflowInSi", "x [m],F [kN]\n1,2\n1,1e307\n", Choose({}),
+              "loop.csv:3:2: force = 1e+307 kN is too large: must be below 1.8e308 N"},
+        Fault{"NotANumber", "x [m],F [N]\n1,2\n3,off\n", Choose({}),
+              "loop.csv:3:2: 'off' is not a number: write it like -1.5e-3, or remove the row"},
+        Fault{"TimeBrokenInOneRow", "time,x [m],F [N]\n1,2,3\nnan,2,3\n", Choose({}),
+              "loop.csv:3:1: 'nan' is not a number: write it like -1.5e-3, or remove the row"}),
+    [](const auto& test) { return test.param.name; });
+
+// --- Displacement paths --------------------------------------------------------------------------
+
+Numbers ReadPath(const std::string& text, const ColumnChoice& choice = {}) {
+  const TemporaryDirectory directory;
+  return ReadDisplacementPath(directory.Write("path.csv", text), choice);
+}
+
+TEST(DisplacementPath, KeepsEveryRowInOrderAndEveryDigit) {
+  EXPECT_EQ(ReadPath("displacement\n0.1\n0.1\n-0.30000000000000004\n0\n"),
+            (Numbers{0.1, 0.1, -0.30000000000000004, 0}));
+}
+
+TEST(DisplacementPath, ReadsFileWithoutHeader) {
+  EXPECT_EQ(ReadPath("1e-6\n-1e-6"), (Numbers{1e-6, -1e-6}));
+}
+
+TEST(DisplacementPath, TakesFirstColumnWhateverItsName) {
+  EXPECT_EQ(ReadPath("command,displacement,remark\n0.5,1,go\n0.25,2,\n"), (Numbers{0.5, 0.25}));
+}
+
+TEST(DisplacementPath, ConvertsUnitOfHeader) {
+  EXPECT_EQ(ReadPath("x [um]\n3\n-7\n"), (Numbers{3e-6, -7e-6}));
+}
+
+TEST(DisplacementPath, ConvertsChosenColumnAndUnit) {
+  EXPECT_EQ(ReadPath("a,b\n1,3\n2,-7\n", {"b", "mm"}), (Numbers{3e-3, -7e-3}));
+}
+
+TEST(DisplacementPath, RefusesFirstColumnThatIsNoLength) {
+  EXPECT_THROW(ReadPath("time [s],x [m]\n1,2\n"), InputError);
+}
+
+// --- Measured records, read in place -------------------------------------------------------------
+
+class MeasuredRecord : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* const directory = std::getenv("MINDAHL_MEASURED_DIR");
+    directory_ = directory != nullptr ? directory : MINDAHL_SOURCE_DIR "/../shared/measured";
+    if (!std::filesystem::is_directory(directory_)) {
+      GTEST_SKIP() << "no measured records in " << directory_ << ": set MINDAHL_MEASURED_DIR";
+    }
+  }
+  std::filesystem::path directory_;
+};
+
+TEST_F(MeasuredRecord, TribometerIsReadByItsHeader) {
+  const RecordFile file = ReadRecord(directory_ / "tribometer/test_data_2.txt");
+  ASSERT_EQ(file.record.size(), 42579u);
+  EXPECT_EQ(file.record.displacement.front(), -110.0355 / 1e3);
+  EXPECT_EQ(file.record.force.front(), 242.2 / 1e6);
+  EXPECT_EQ(file.record.time.back(), 213.784);
+  EXPECT_EQ(file.record.normal_load.back(), 6432.7 / 1e6);
+  EXPECT_EQ(file.line.back(), 42580u);
+  EXPECT_EQ(file.notes, Strings{});
+}
+
+TEST_F(MeasuredRecord, SealIsReadByColumnNumbers) {
+  const RecordFile file = ReadRecord(directory_ / "seals/O-ring257_3bar.csv",
+                                     Choose({"5", "mm"}, {"7", "N"}, {"1", "ms"}));
+  ASSERT_EQ(file.record.size(), 6340u);
+  EXPECT_EQ(file.record.displacement[1], 1.724 / 1e3);
+  EXPECT_EQ(file.record.force.front(), 154.659);
+  EXPECT_EQ(file.record.time.back(), 65697.0 / 1e3);
+  EXPECT_EQ(file.line.front(), 1u);
+}
+
+TEST_F(MeasuredRecord, CycloidalGearboxIsReadByItsHeader) {
+  const RecordFile file =
+      ReadRecord(directory_ / "cycloidal/2024-07-12__16-46-43__torqueramp__conic_4pre1.csv");
+  ASSERT_EQ(file.record.size(), 36033u);
+  EXPECT_EQ(file.record.displacement.front(), 0.0178680419921875);
+  EXPECT_EQ(file.record.force.back(), 0.3937549889087677);
+  EXPECT_EQ(file.record.time.back(), 80.5);
+}
+
+TEST_F(MeasuredRecord, BandBrakeIsReadByItsHeader) {
+  const RecordFile file = ReadRecord(directory_ / "band_brake/dataset-1_0.5Hz70lbtension.csv");
+  ASSERT_EQ(file.record.size(), 18433u);
+  EXPECT_EQ(file.record.displacement.front(), -0.00195971641);
+  EXPECT_EQ(file.record.force.back(), -810.21973);
+  EXPECT_EQ(file.record.time[1], 0.0009765625);
+  EXPECT_EQ(file.notes, Strings{});
+}
+
+}  // namespace
+}  // namespace mindahl
