@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/record.h"
+
+namespace mindahl {
+
+/// What a record shows before any model is fitted.
+struct LoopMeasures {
+  /// Complete cycles: half the swings between reversals, rounded down; the ways from the record's
+  /// start and to its end count by their length, 0.02 cycles short of one is one.
+  std::size_t cycles = 0;
+  /// X [m]: half the distance between the mean upper and lower extremes of the main swings, those
+  /// at least half as wide as the widest
+  double amplitude = 0.0;
+  double centre = 0.0;  ///< [m]: midway between those extremes
+  /// T* [N]: half the distance between the greatest and least force of a main swing, medians over
+  /// the swings
+  double peak_force = 0.0;
+  double centre_force = 0.0;  ///< [N]: midway between those forces
+  /// W [J] = ∮ T dδ, mean over the closed cycles; empty when the record closes none
+  std::optional<double> energy_per_cycle;
+};
+
+/// Energy of each closed cycle [J] = ∮ T dδ by the trapezoidal rule, closed by a chord: from every
+/// other reversal to the next but one. The record's ends count as reversals where they lie within 2
+/// % of the range of the extreme on their side. Positive when the contact dissipates and the force
+/// is that of the contact on the displacement's sense.
+std::vector<double> CycleEnergies(const Record& record, std::span<const std::size_t> reversals);
+
+/// @param reversals  as from FindReversals on the same record
+/// @throws InvalidArgument when the record is empty or inconsistent
+LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reversals);
+
+/// +1 when the force has the displacement's sense, −1 when it opposes it (a load cell on the other
+/// body). Decided by the sign of the mean energy of the closed cycles, which an offset in either
+/// channel does not change; without a closed cycle, or where the loop is so thin that rounding and
+/// noise decide (under 1 % of the rectangle round it), by the sign of the covariance of force and
+/// displacement. 0 when neither has a sign (constant force or displacement).
+/// @throws InvalidArgument when the record is inconsistent
+int ForceSense(const Record& record, std::span<const std::size_t> reversals);
+
+}  // namespace mindahl

@@ -1,0 +1,159 @@
+#include "mindahl/loop/cycles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+/// The reversals, with the record's first and last sample where they lie at an extreme.
+std::vector<std::size_t> TurningPoints(std::span<const double> displacement,
+                                       std::span<const std::size_t> reversals) {
+  constexpr double kAtExtreme = 0.02;  // of the range
+  std::vector<std::size_t> points(reversals.begin(), reversals.end());
+  if (points.empty()) return points;
+  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const double tolerance = kAtExtreme * (highest - lowest);
+  const auto at_extreme = [&](std::size_t end, std::size_t neighbour) {
+    const bool upper = displacement[end] > displacement[neighbour];
+    return upper ? highest - displacement[end] <= tolerance
+                 : displacement[end] - lowest <= tolerance;
+  };
+  const std::size_t last = displacement.size() - 1;
+  if (at_extreme(0, points.front())) points.insert(points.begin(), 0);
+  if (at_extreme(last, reversals.back())) points.push_back(last);
+  return points;
+}
+
+/// Swings between turning points, with the record's ends as fractions of one.
+double CountSwings(std::span<const double> displacement, std::span<const std::size_t> points,
+                   double amplitude) {
+  const double head = std::abs(displacement[points.front()] - displacement.front());
+  const double tail = std::abs(displacement.back() - displacement[points.back()]);
+  return static_cast<double>(points.size() - 1) + (head + tail) / (2 * amplitude);
+}
+
+/// The way from one turning point to the next.
+struct Swing {
+  double lowest = 0.0;  // [m]
+  double highest = 0.0;
+  double least_force = 0.0;  // [N]
+  double greatest_force = 0.0;
+};
+
+Swing MeasureSwing(const Record& record, std::size_t first, std::size_t last) {
+  const auto part = [&](const std::vector<double>& column) {
+    return std::ranges::minmax(std::span(column).subspan(first, last - first + 1));
+  };
+  const auto displacement = part(record.displacement);
+  const auto force = part(record.force);
+  return {displacement.min, displacement.max, force.min, force.max};
+}
+
+/// The swings that reach at least half as far as the widest: not nested loops, run-in or run-out.
+/// Without two turning points the whole record is one.
+std::vector<Swing> MainSwings(const Record& record, std::span<const std::size_t> points) {
+  if (points.size() < 2) return {MeasureSwing(record, 0, record.size() - 1)};
+  std::vector<Swing> swings;
+  double widest = 0.0;
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    swings.push_back(MeasureSwing(record, points[k], points[k + 1]));
+    widest = std::max(widest, swings.back().highest - swings.back().lowest);
+  }
+  std::erase_if(swings,
+                [&](const Swing& swing) { return swing.highest - swing.lowest < widest / 2; });
+  return swings;
+}
+
+double MeanOf(std::span<const Swing> swings, double Swing::*member) {
+  double sum = 0.0;
+  for (const Swing& swing : swings) sum += swing.*member;
+  return sum / static_cast<double>(swings.size());
+}
+
+/// Median: one spike in one swing must not make the peak force.
+double MedianOf(std::span<const Swing> swings, double Swing::*member) {
+  std::vector<double> values;
+  for (const Swing& swing : swings) values.push_back(swing.*member);
+  std::ranges::sort(values);
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : values[middle - 1] / 2 + values[middle] / 2;
+}
+
+double Mean(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+int SignOf(double value) { return (value > 0) - (value < 0); }
+
+}  // namespace
+
+std::vector<double> CycleEnergies(const Record& record, std::span<const std::size_t> reversals) {
+  std::vector<double> energies;
+  const auto& x = record.displacement;
+  const std::vector<std::size_t> points = TurningPoints(x, reversals);
+  for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
+    const std::size_t first = points[k];
+    const std::size_t last = points[k + 2];
+    // Forces relative to the first sample: an offset must not cost digits on a small loop.
+    const auto force = [&](std::size_t i) { return record.force[i] - record.force[first]; };
+    double energy = 0.5 * force(last) * (x[first] - x[last]);
+    for (std::size_t i = first + 1; i <= last; ++i) {
+      energy += 0.5 * (force(i) + force(i - 1)) * (x[i] - x[i - 1]);
+    }
+    energies.push_back(energy);
+  }
+  return energies;
+}
+
+LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reversals) {
+  Validate(record);
+  if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
+  const auto& x = record.displacement;
+  LoopMeasures measures;
+
+  const std::vector<std::size_t> points = TurningPoints(x, reversals);
+  const std::vector<Swing> swings = MainSwings(record, points);
+  const double highest = MeanOf(swings, &Swing::highest);
+  const double lowest = MeanOf(swings, &Swing::lowest);
+  measures.amplitude = (highest - lowest) / 2;
+  measures.centre = lowest + measures.amplitude;
+  const double greatest_force = MedianOf(swings, &Swing::greatest_force);
+  const double least_force = MedianOf(swings, &Swing::least_force);
+  measures.peak_force = (greatest_force - least_force) / 2;
+  measures.centre_force = least_force + measures.peak_force;
+
+  if (!reversals.empty() && measures.amplitude > 0) {
+    constexpr double kShortOfACycle = 0.02;  // as for the record's ends
+    measures.cycles =
+        static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 + kShortOfACycle);
+  }
+  const std::vector<double> energies = CycleEnergies(record, reversals);
+  if (!energies.empty()) measures.energy_per_cycle = Mean(energies);
+  return measures;
+}
+
+int ForceSense(const Record& record, std::span<const std::size_t> reversals) {
+  Validate(record);
+  if (record.size() == 0) return 0;
+  constexpr double kThin = 0.01;  // energy over that of the rectangle round the loop, 4XT*
+  const auto displacement = std::ranges::minmax(record.displacement);
+  const auto force = std::ranges::minmax(record.force);
+  const double rectangle = (displacement.max - displacement.min) * (force.max - force.min);
+  const std::vector<double> energies = CycleEnergies(record, reversals);
+  if (!energies.empty() && std::abs(Mean(energies)) > kThin * rectangle) {
+    return SignOf(Mean(energies));
+  }
+  const double mean_displacement = Mean(record.displacement);
+  const double mean_force = Mean(record.force);
+  double covariance = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    covariance += (record.displacement[i] - mean_displacement) * (record.force[i] - mean_force);
+  }
+  return SignOf(covariance);
+}
+
+}  // namespace mindahl

@@ -1,0 +1,239 @@
+#include "mindahl/loop/cycles.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "../support/histories.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+
+namespace mindahl {
+namespace {
+
+using testing::Generator;
+
+constexpr double kPi = std::numbers::pi;
+
+/// An ellipse x = centre + X·sin θ, T = offset + T*·sin(θ + lag): its area is π·X·T*·sin(lag).
+struct Ellipse {
+  double amplitude = 2e-6;
+  double peak_force = 30.0;
+  double lag = 0.4;
+  double centre = 0.0;
+  double offset = 0.0;
+  double cycles = 4.0;
+  double start = 0.0;  // θ of the first sample
+};
+
+constexpr std::size_t kSamplesPerCycle = 1000;
+
+Record MakeRecord(const Ellipse& ellipse) {
+  Record record;
+  const auto samples = static_cast<std::size_t>(std::llround(ellipse.cycles * kSamplesPerCycle));
+  for (std::size_t i = 0; i <= samples; ++i) {
+    const double theta =
+        ellipse.start + 2 * kPi * static_cast<double>(i) / static_cast<double>(kSamplesPerCycle);
+    record.displacement.push_back(ellipse.centre + ellipse.amplitude * std::sin(theta));
+    record.force.push_back(ellipse.offset + ellipse.peak_force * std::sin(theta + ellipse.lag));
+  }
+  return record;
+}
+
+double Area(const Ellipse& ellipse) {
+  return kPi * ellipse.amplitude * ellipse.peak_force * std::sin(ellipse.lag);
+}
+
+/// A polygon of n sides in an ellipse has 1 − (2π/n)²/6 of its area.
+constexpr double kPolygon = 1.01 * (2 * kPi / kSamplesPerCycle) * (2 * kPi / kSamplesPerCycle) / 6;
+
+std::vector<std::size_t> Reversals(const Record& record) {
+  return FindReversals(record.displacement, 0.0);
+}
+
+TEST(CycleEnergies, AreTheAreaOfTheLoop) {
+  const Ellipse ellipse;
+  const Record record = MakeRecord(ellipse);
+  const std::vector<double> energies = CycleEnergies(record, Reversals(record));
+  ASSERT_EQ(energies.size(), 3U);  // of 4 cycles from mid-swing, 3 run from extreme to extreme
+  for (const double energy : energies) {
+    EXPECT_NEAR(energy, Area(ellipse), kPolygon * Area(ellipse));
+  }
+}
+
+TEST(CycleEnergies, IncludeTheCyclesAtTheEndsWhereTheRecordStartsAtAnExtreme) {
+  const Ellipse ellipse{.start = kPi / 2};
+  const Record record = MakeRecord(ellipse);
+  EXPECT_EQ(CycleEnergies(record, Reversals(record)).size(), 4U);
+}
+
+TEST(CycleEnergies, AnEndALittleShortOfTheExtremeIsAtIt) {
+  // Started 1 % of the range before the extreme, as records cut by hand are; 10 % is not.
+  const auto count = [](double start) {
+    const Record record = MakeRecord({.cycles = 4.1, .start = start});
+    return CycleEnergies(record, Reversals(record)).size();
+  };
+  EXPECT_EQ(count(std::asin(-0.98)), 4U);
+  EXPECT_EQ(count(std::asin(-0.8)), 3U);
+}
+
+TEST(CycleEnergies, DoNotChangeWithOffsets) {
+  const Ellipse plain;
+  // Far off centre: 1e3 times the amplitude; rounding is then 1e3 times larger too.
+  constexpr double kRounding = 1e3 * kSamplesPerCycle * std::numeric_limits<double>::epsilon();
+  const Record record = MakeRecord(plain);
+  const Record moved = MakeRecord({.centre = 2e-3, .offset = 3e4});
+  const auto energies = CycleEnergies(record, Reversals(record));
+  const auto moved_energies = CycleEnergies(moved, Reversals(moved));
+  ASSERT_EQ(moved_energies.size(), energies.size());
+  for (std::size_t i = 0; i < energies.size(); ++i) {
+    EXPECT_NEAR(moved_energies[i], energies[i], kRounding * energies[i]);
+  }
+}
+
+TEST(CycleEnergies, AreNegativeWhenTheForceOpposesTheDisplacement) {
+  Record record = MakeRecord({});
+  for (double& force : record.force) force = -force;
+  for (const double energy : CycleEnergies(record, Reversals(record))) EXPECT_LT(energy, 0.0);
+}
+
+TEST(CycleEnergies, CloseADriftingLoopByAChord) {
+  // A ratchet: the second maximum lies beyond the first. From (2,2) by (0,0) to (3,1) and back by
+  // the chord: by hand, ∮T dx = −2 + 1.5 − 1.5 = −2.
+  const Record record{{1, 2, 0, 3, 1}, {0, 2, 0, 1, 0}, {}, {}};
+  const auto energies = CycleEnergies(record, Reversals(record));
+  ASSERT_EQ(energies.size(), 1U);
+  EXPECT_DOUBLE_EQ(energies.front(), -2.0);
+}
+
+TEST(CycleEnergies, NeedAClosedCycle) {
+  const Record record = MakeRecord({.cycles = 0.6});
+  EXPECT_TRUE(CycleEnergies(record, Reversals(record)).empty());
+  EXPECT_TRUE(CycleEnergies({{0, 1}, {0, 1}, {}, {}}, {}).empty());
+}
+
+TEST(MeasureLoop, ReadsAmplitudeCentreAndForces) {
+  const Ellipse ellipse{.lag = 0.0, .centre = 5e-6, .offset = -7.0};
+  constexpr double kRounding = 1e-14;  // of sums of a few numbers of this size
+  const Record record = MakeRecord(ellipse);
+  const LoopMeasures measures = MeasureLoop(record, Reversals(record));
+  EXPECT_NEAR(measures.amplitude, 2e-6, kRounding * 5e-6);
+  EXPECT_NEAR(measures.centre, 5e-6, kRounding * 5e-6);
+  EXPECT_NEAR(measures.peak_force, 30.0, kRounding * 30);
+  EXPECT_NEAR(measures.centre_force, -7.0, kRounding * 30);
+}
+
+TEST(MeasureLoop, ReadsThePeakForceAtTheExtremeOfDisplacement) {
+  const Record record = MakeRecord({.lag = 0.4});
+  constexpr double kRounding = 1e-12;  // the extreme is flat in x but not in T: θ is known to 1e-14
+  EXPECT_NEAR(MeasureLoop(record, Reversals(record)).peak_force, 30.0 * std::cos(0.4),
+              kRounding * 30);
+}
+
+TEST(MeasureLoop, CountsCompleteCycles) {
+  const auto cycles = [](double count, double start) {
+    const Record record = MakeRecord({.cycles = count, .start = start});
+    return MeasureLoop(record, Reversals(record)).cycles;
+  };
+  for (const double start : {0.0, kPi / 2, kPi, 3 * kPi / 2}) {
+    EXPECT_EQ(cycles(1.0, start), 1U) << start;
+    EXPECT_EQ(cycles(5.0, start), 5U) << start;
+    EXPECT_EQ(cycles(1.5, start), 1U) << start;
+    EXPECT_EQ(cycles(9.5, start), 9U) << start;
+    EXPECT_EQ(cycles(2.25, start), 2U) << start;
+  }
+  EXPECT_EQ(cycles(0.2, 0.0), 0U);
+}
+
+TEST(MeasureLoop, MonotoneLoadingHasNoCycle) {
+  const LoopMeasures measures = MeasureLoop({{1, 2, 4}, {0, 3, 5}, {}, {}}, {});
+  EXPECT_EQ(measures.cycles, 0U);
+  EXPECT_DOUBLE_EQ(measures.amplitude, 1.5);
+  EXPECT_DOUBLE_EQ(measures.centre, 2.5);
+  EXPECT_DOUBLE_EQ(measures.peak_force, 2.5);
+  EXPECT_FALSE(measures.energy_per_cycle.has_value());
+}
+
+TEST(MeasureLoop, AConstantRecordHasNoAmplitude) {
+  const LoopMeasures measures = MeasureLoop({{2, 2, 2}, {1, 1, 1}, {}, {}}, {});
+  EXPECT_EQ(measures.amplitude, 0.0);
+  EXPECT_EQ(measures.cycles, 0U);
+}
+
+TEST(MeasureLoop, RejectsAnEmptyOrInconsistentRecord) {
+  EXPECT_THROW(MeasureLoop({}, {}), InvalidArgument);
+  EXPECT_THROW(MeasureLoop({{1, 2}, {1}, {}, {}}, {}), InvalidArgument);
+  EXPECT_THROW(MeasureLoop({{1, 2}, {1, std::nan("")}, {}, {}}, {}), InvalidArgument);
+}
+
+TEST(ForceSense, IsThatOfTheEnergy) {
+  Record record = MakeRecord({});
+  EXPECT_EQ(ForceSense(record, Reversals(record)), 1);
+  for (double& force : record.force) force = -force;
+  EXPECT_EQ(ForceSense(record, Reversals(record)), -1);
+}
+
+TEST(ForceSense, IsNotMisledByOffsets) {
+  for (const double sign : {1.0, -1.0}) {
+    Record record = MakeRecord({.centre = -0.11, .offset = 500.0});
+    for (double& force : record.force) force *= sign;
+    EXPECT_EQ(ForceSense(record, Reversals(record)), sign > 0 ? 1 : -1);
+  }
+}
+
+TEST(ForceSense, OfAnElasticLineIsThatOfItsSlope) {
+  // Its energy is rounding alone: either sign.
+  for (const double slope : {4.8e8, -4.8e8}) {
+    for (const double offset : {0.0, 1e-3, 17.0}) {
+      Record record = MakeRecord({.centre = 0.3e-6});
+      for (std::size_t i = 0; i < record.size(); ++i) {
+        record.force[i] = offset + slope * record.displacement[i];
+      }
+      EXPECT_EQ(ForceSense(record, Reversals(record)), slope > 0 ? 1 : -1);
+    }
+  }
+}
+
+TEST(ForceSense, OfAGrossSlipLoopIsItsEnergysEvenAgainstAFallingPlateau) {
+  // A rectangle with a plateau that falls: the covariance is negative, the contact dissipates.
+  Record record;
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    for (int i = -50; i <= 50; ++i) {
+      record.displacement.push_back(i);
+      record.force.push_back(1.0 - 0.01 * i);
+    }
+    for (int i = 50; i >= -50; --i) {
+      record.displacement.push_back(i);
+      record.force.push_back(-1.0 - 0.01 * i);
+    }
+  }
+  EXPECT_EQ(ForceSense(record, Reversals(record)), 1);
+}
+
+TEST(ForceSense, WithoutAClosedCycleIsThatOfTheCovariance) {
+  EXPECT_EQ(ForceSense({{0, 1, 2}, {5, 6, 8}, {}, {}}, {}), 1);
+  EXPECT_EQ(ForceSense({{0, 1, 2}, {-5, -6, -8}, {}, {}}, {}), -1);
+}
+
+TEST(ForceSense, OfAConstantForceIsUnknown) {
+  EXPECT_EQ(ForceSense({{0, 1, 2, 1, 0}, {3, 3, 3, 3, 3}, {}, {}}, {}), 0);
+  EXPECT_EQ(ForceSense({}, {}), 0);
+}
+
+TEST(ForceSense, SurvivesNoiseOnManyRecords) {
+  Generator generator(12);
+  for (int i = 0; i < 200; ++i) {
+    const double sign = i % 2 == 0 ? 1.0 : -1.0;
+    Record record = MakeRecord({.lag = testing::Uniform(generator, 0.0, 1.4),
+                                .offset = testing::Uniform(generator, -100, 100)});
+    for (double& force : record.force) force = sign * force + testing::Normal(generator);
+    ASSERT_EQ(ForceSense(record, Reversals(record)), sign > 0 ? 1 : -1);
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,42 @@
+#include "mindahl/loop/record.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+std::string MessageOf(const Record& record) {
+  try {
+    Validate(record);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Record, IsValidWithOrWithoutTheOptionalColumns) {
+  EXPECT_EQ(MessageOf({{1, 2}, {3, 4}, {}, {}}), "");
+  EXPECT_EQ(MessageOf({{1, 2}, {3, 4}, {0, 1}, {5, 5}}), "");
+}
+
+TEST(Record, NamesColumnsOfDifferentLengths) {
+  EXPECT_EQ(MessageOf({{1, 2}, {3}, {}, {}}),
+            "displacement has 2 values and force has 1: must be equal");
+  EXPECT_EQ(MessageOf({{1, 2}, {3, 4}, {0}, {}}),
+            "displacement has 2 values and time has 1: must be equal");
+  EXPECT_EQ(MessageOf({{1, 2}, {3, 4}, {}, {5, 5, 5}}),
+            "displacement has 2 values and normal load has 3: must be equal");
+}
+
+TEST(Record, NamesTheSampleThatIsNotFinite) {
+  EXPECT_EQ(MessageOf({{1, 2}, {3, std::numeric_limits<double>::infinity()}, {}, {}}),
+            "force [N] of sample 1 = inf is invalid: must be finite");
+}
+
+}  // namespace
+}  // namespace mindahl
