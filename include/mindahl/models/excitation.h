@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace mindahl {
+
+enum class Waveform { kSine, kTriangle, kGrowingSine };
+
+/// "sine", "triangle", "growing-sine"; empty for any other name.
+std::optional<Waveform> FindWaveform(std::string_view name);
+
+struct ExcitationOptions {
+  Waveform waveform = Waveform::kSine;
+  double amplitude = 0.0;  ///< [m], finite, > 0; of a growing sine the last cycle's end
+  double cycles = 1.0;     ///< finite, > 0, multiples of 1/samples_per_cycle
+  std::size_t samples_per_cycle = 200;  ///< >= 4; a multiple of 4 puts samples on the extremes
+  double frequency = 1.0;               ///< [Hz], finite, > 0
+  double growth = 10.0;  ///< of a growing sine: last over first envelope, finite, >= 1
+};
+
+/// Imposed displacement, from 0 at time 0; Peyret et al. (2017) eq. 22 and fig. 7.
+struct Excitation {
+  std::vector<double> time;          ///< [s]
+  std::vector<double> displacement;  ///< [m]
+  std::vector<double> envelope;      ///< amplitude [m] at each sample
+};
+
+/// sine: A·sin(2πft), triangle: the same extremes and zeros joined by straight lines, growing sine:
+/// A·g^{t/t_end − 1}·sin(2πft). The sine is exact at its zeros and extremes and repeats bit for
+/// bit.
+/// @throws InvalidArgument for values out of range
+Excitation MakeExcitation(const ExcitationOptions& options);
+
+}  // namespace mindahl

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mindahl {
+
+/// What of the past a branch depends on.
+enum class Memory {
+  kReturnPoint,  ///< every surviving extremum (Masing with Madelung's rules)
+  kNone,         ///< the force at the last reversal only
+};
+
+/// How the branch law is scaled on a branch, in units of Tc:
+///   t(x) = t₀ + span·v·φ(k·x),   k = (σ/Tc)·v^{α−1}/span,
+/// i.e. the branch law with stiffness σ·v^α that would slip after a further span·v·Tc. v is 1 for a
+/// Masing law, which always restarts with the virgin stiffness.
+struct BranchScale {
+  double remaining = 1.0;            ///< v >= 0
+  double span = 1.0;                 ///< 1 or 2
+  double remaining_per_force = 0.0;  ///< ∂v/∂(s·t₀), s the branch's direction
+  double remaining_per_peak = 0.0;   ///< ∂v/∂t*, t* the steady peak force over Tc
+};
+
+/// Force over Tc at the extremes of the steady loop between ±X, y = σX/Tc, with its derivatives.
+struct SteadyPeak {
+  double force = 0.0;              ///< t*
+  double per_log_stiffness = 0.0;  ///< ∂t*/∂ln y
+  double per_shape = 0.0;          ///< ∂t*/∂α
+};
+
+/// A friction model: how a branch of the one law starts. Everything else - evaluation along a
+/// history, derivatives, steady states, energy, fitting, the command line - follows from these few
+/// entries, so a new model is one row of the table in friction_model.cc.
+struct FrictionModel {
+  std::string_view name;   ///< on the command line
+  std::string_view title;  ///< in reports
+  std::string_view source;
+  Memory memory = Memory::kReturnPoint;
+  std::optional<double> shape_exponent = std::nullopt;  ///< α where the model prescribes it
+  bool bounded = true;                                  ///< |T| <= Tc on every path
+  /// `scale` looks at the peak: the model must be told the amplitude, so it cannot be fitted.
+  bool scaled_by_peak = false;
+
+  /// @param signed_force  s·T₀/Tc at the branch's origin, s its direction
+  /// @param peak          T*/Tc of the steady loop at the amplitude of the excitation
+  /// @param virgin        the branch starts at the unloaded contact
+  BranchScale (*scale)(double signed_force, double peak, bool virgin) = nullptr;
+  SteadyPeak (*steady_peak)(double y, double shape_exponent) = nullptr;
+};
+
+/// All models, in the order of the documentation.
+std::span<const FrictionModel> FrictionModels();
+
+/// nullptr when there is no such model.
+const FrictionModel* FindFrictionModel(std::string_view name);
+
+}  // namespace mindahl

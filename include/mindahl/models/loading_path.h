@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mindahl/models/friction_model.h"
+
+namespace mindahl {
+
+/// What happened before the first sample.
+enum class InitialState {
+  kVirgin,  ///< nothing: the contact was unloaded at a known displacement
+  kSteady,  ///< it had settled on the loop between the record's extremes
+};
+
+/// Where a branch of the response begins.
+enum class BranchStart : std::uint8_t {
+  kUnloaded,      ///< T = 0 at the displacement where the contact is unloaded
+  kSteadyCentre,  ///< T = 0 at the centre of the steady loop: the virgin curve of its first loading
+  kSteadyExtreme,  ///< the steady loop's force at its extreme
+  kReversal,       ///< the force that the parent branch has there
+};
+
+/// Does the branch start at T = 0 on the virgin curve?
+[[nodiscard]] constexpr bool IsVirgin(BranchStart start) {
+  return start == BranchStart::kUnloaded || start == BranchStart::kSteadyCentre;
+}
+
+/// One branch of the response: T(δ) = T₀ + s·(branch law of |δ − origin|).
+struct Branch {
+  double origin = 0.0;       ///< [m]
+  double direction = 1.0;    ///< s = ±1; on the virgin curve, which is run both ways, the first
+  double amplitude = 0.0;    ///< X [m] of the excitation, for models that refer to its steady loop
+  std::int32_t parent = -1;  ///< branch on which the origin lies; −1 unless start is kReversal
+  BranchStart start = BranchStart::kReversal;
+};
+
+/// Successive samples on one branch: [begin, end).
+struct BranchRun {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::int32_t branch = 0;
+};
+
+/// Which branch each sample of a record lies on, and which branch each branch starts from.
+///
+/// It follows from the displacements alone, never from σ, α or Tc (docs/theory.md §5): it is found
+/// once a record, and evaluating a model is then one branch law a sample. A parent always precedes
+/// its branches, so origin forces are found in one pass.
+struct LoadingPath {
+  std::vector<Branch> branches;
+  std::vector<BranchRun> runs;  ///< contiguous, covering all samples in order
+};
+
+/// The contact's past, where it is not in the record.
+struct InitialContact {
+  InitialState state = InitialState::kVirgin;
+  double unloaded_displacement = 0.0;  ///< [m], used when virgin: where T = 0
+};
+
+/// Path of a record under the rules of `memory`:
+/// - kReturnPoint: a branch that passes the previous extremum of its side erases the inner loop and
+///   continues the branch before it; passing the mirror image of the first extremum rejoins the
+///   virgin curve (Madelung's rules). Reaching it exactly counts as passing.
+/// - kNone: every reversal opens a branch from the last one.
+/// With a virgin contact the way from `unloaded_displacement` to the first sample is the first
+/// loading step. With a steady one the record is taken to go on from a loop between its own
+/// extremes.
+///
+/// @param displacement  [m], finite
+/// @param reversals     as from FindReversals on the same displacements; between them samples may
+///                      step back within the gate
+/// @throws InvalidArgument when a value is not finite or the record is empty
+/// Cost: linear in the samples, however deep the nesting.
+LoadingPath MakeLoadingPath(std::span<const double> displacement,
+                            std::span<const std::size_t> reversals, Memory memory,
+                            const InitialContact& initial);
+
+/// Path of a model without memory whose steady amplitude changes along the way: every sample is a
+/// branch of its own, from the last, with the amplitude X given for it.
+/// @param amplitude  [m] of the excitation's envelope, one a sample
+LoadingPath MakeEnvelopePath(std::span<const double> displacement,
+                             std::span<const double> amplitude, double unloaded_displacement);
+
+}  // namespace mindahl

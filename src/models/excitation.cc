@@ -1,0 +1,69 @@
+#include "mindahl/models/excitation.h"
+
+#include <algorithm>
+#include <boost/math/special_functions/sin_pi.hpp>
+#include <cmath>
+#include <utility>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+/// In units of the amplitude, at `phase` in [0, 1).
+double UnitWave(Waveform waveform, double phase) {
+  if (waveform != Waveform::kTriangle) return boost::math::sin_pi(2 * phase);
+  if (phase <= 0.25) return 4 * phase;
+  if (phase <= 0.75) return 2 - 4 * phase;
+  return 4 * phase - 4;
+}
+
+void Validate(const ExcitationOptions& options) {
+  RequirePositive("amplitude [m]", options.amplitude);
+  RequirePositive("cycles [-]", options.cycles);
+  RequirePositive("frequency [Hz]", options.frequency);
+  RequireFinite("growth [-]", options.growth);
+  if (options.growth < 1) ThrowInvalid("growth [-]", options.growth, "must be >= 1");
+  if (options.samples_per_cycle < 4) {
+    ThrowInvalid("samples per cycle [-]", static_cast<double>(options.samples_per_cycle),
+                 "must be >= 4");
+  }
+  constexpr double kMostSamples = 1e9;
+  if (options.cycles * static_cast<double>(options.samples_per_cycle) > kMostSamples) {
+    ThrowInvalid("cycles times samples per cycle [-]",
+                 options.cycles * static_cast<double>(options.samples_per_cycle), "must be <= 1e9");
+  }
+}
+
+}  // namespace
+
+std::optional<Waveform> FindWaveform(std::string_view name) {
+  if (name == "sine") return Waveform::kSine;
+  if (name == "triangle") return Waveform::kTriangle;
+  if (name == "growing-sine") return Waveform::kGrowingSine;
+  return std::nullopt;
+}
+
+Excitation MakeExcitation(const ExcitationOptions& options) {
+  Validate(options);
+  const auto per_cycle = static_cast<double>(options.samples_per_cycle);
+  const auto steps = static_cast<std::size_t>(std::llround(options.cycles * per_cycle));
+  Excitation excitation;
+  excitation.time.reserve(steps + 1);
+  excitation.displacement.reserve(steps + 1);
+  excitation.envelope.reserve(steps + 1);
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const double phase = static_cast<double>(i % options.samples_per_cycle) / per_cycle;
+    const double progress =
+        static_cast<double>(i) / static_cast<double>(std::max<std::size_t>(steps, 1));
+    const double envelope = options.waveform == Waveform::kGrowingSine
+                                ? options.amplitude * std::pow(options.growth, progress - 1)
+                                : options.amplitude;
+    excitation.time.push_back(static_cast<double>(i) / per_cycle / options.frequency);
+    excitation.displacement.push_back(envelope * UnitWave(options.waveform, phase));
+    excitation.envelope.push_back(envelope);
+  }
+  return excitation;
+}
+
+}  // namespace mindahl

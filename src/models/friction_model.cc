@@ -1,0 +1,140 @@
+#include "mindahl/models/friction_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "mindahl/models/backbone.h"
+
+namespace mindahl {
+namespace {
+
+constexpr double kMindlinExponent = 1.0 / 3.0;
+constexpr double kJenkinsExponent = 0.0;
+
+/// Masing: the virgin curve, then the same curve twice as large from every reversal.
+BranchScale MasingScale(double /*signed_force*/, double /*peak*/, bool virgin) {
+  return {.remaining = 1.0, .span = virgin ? 1.0 : 2.0};
+}
+
+/// Peyret et al. eq. 10: dT/dx = σ(1 − sT/Tc)^α, so v₀ = 1 − s·t₀.
+BranchScale DahlScale(double signed_force, double /*peak*/, bool /*virgin*/) {
+  return {.remaining = std::max(1 - signed_force, 0.0), .span = 1.0, .remaining_per_force = -1.0};
+}
+
+/// Peyret et al. eq. 27 from the very start: v₀ = 1 − (t* + s·t₀)/2.
+BranchScale SimplifiedDahlScale(double signed_force, double peak, bool /*virgin*/) {
+  return {.remaining = std::max(1 - (peak + signed_force) / 2, 0.0),
+          .span = 2.0,
+          .remaining_per_force = -0.5,
+          .remaining_per_peak = -0.5};
+}
+
+/// A Masing loop touches the virgin curve at its extremes.
+SteadyPeak MasingPeak(double y, double shape_exponent) {
+  const auto phi = backbone::Differentiate(y, shape_exponent);
+  return {phi.force, phi.elastic, phi.shape_derivative};
+}
+
+/// Dahl's own steady loop: v grows from 1 − t* to 1 + t* over 2X. With t* = tanh θ that is
+///   y(θ) = sinh(βθ)/(β·coshᵝθ),  dy/dθ = cosh(αθ)/cosh^{1+β}θ,  β = 1 − α,
+/// free of cancellation; t* = tanh y for α = 1, t* = 1 from y = 2^{β−1}/β on for α < 1.
+struct DahlLoop {
+  double shape_exponent;
+
+  [[nodiscard]] double Beta() const { return 1 - shape_exponent; }
+  [[nodiscard]] double Amplitude(double theta) const {
+    const double x = Beta() * theta;
+    return theta * (x == 0 ? 1.0 : std::sinh(x) / x) / std::pow(std::cosh(theta), Beta());
+  }
+  [[nodiscard]] double Slope(double theta) const {
+    return std::cosh(shape_exponent * theta) / std::pow(std::cosh(theta), 1 + Beta());
+  }
+  [[nodiscard]] double PerBeta(double theta) const {
+    const double x = Beta() * theta;
+    // (x·cosh x − sinh x)/x², by its series where these cancel: x⁹/3991680 < 1e-16 of x/3.
+    const double bend = std::abs(x) < 0.05
+                            ? x / 3 * (1 + x * x / 10 * (1 + x * x / 28 * (1 + x * x / 54)))
+                            : (x * std::cosh(x) - std::sinh(x)) / (x * x);
+    const double half = std::sinh(theta / 2);
+    const double log_cosh = std::log1p(2 * half * half);
+    return theta * theta * bend / std::pow(std::cosh(theta), Beta()) - Amplitude(theta) * log_cosh;
+  }
+};
+
+/// θ where the loop's amplitude is y, in (0, highest): Newton's rule on ln y(θ), which grows
+/// exponentially for α > 1, and bisection where it leaves the bracket.
+double SolveAmplitude(const DahlLoop& loop, double y, double highest) {
+  constexpr double kTolerance = 2 * std::numeric_limits<double>::epsilon();
+  constexpr int kIterations = 500;  // halvings from 20 to 1e-100, where α = 1e100 turns
+  double lowest = 0.0;
+  double theta = std::min(y, highest / 2);
+  for (int i = 0; i < kIterations; ++i) {
+    const double amplitude = loop.Amplitude(theta);
+    const double log_ratio = std::log(amplitude / y);
+    (log_ratio > 0 ? highest : lowest) = theta;
+    double next = theta - log_ratio * amplitude / loop.Slope(theta);
+    if (!(next > lowest && next < highest)) next = lowest + (highest - lowest) / 2;
+    if (std::abs(next - theta) <= kTolerance * theta) return next;
+    theta = next;
+  }
+  return theta;
+}
+
+SteadyPeak DahlPeak(double y, double shape_exponent) {
+  constexpr double kSaturated = 20.0;  // tanh 20 rounds to 1
+  y = std::min(y, backbone::kLargestDisplacement<double>);
+  if (y == 0) return {};
+  const DahlLoop loop{shape_exponent};
+  if (loop.Amplitude(kSaturated) <= y) return {.force = 1.0};
+  const double theta = SolveAmplitude(loop, y, kSaturated);
+  const double cosh = std::cosh(theta);
+  const double force_per_amplitude = 1 / (cosh * cosh * loop.Slope(theta));
+  return {std::tanh(theta), y * force_per_amplitude, loop.PerBeta(theta) * force_per_amplitude};
+}
+
+constexpr std::array kModels = {
+    FrictionModel{.name = "mindlin-dahl",
+                  .title = "Masing law with free shape exponent (Full-Dahl)",
+                  .source = "Peyret et al. (2017) eqs 26, 27; Masing (1926)",
+                  .scale = MasingScale,
+                  .steady_peak = MasingPeak},
+    FrictionModel{.name = "mindlin",
+                  .title = "Mindlin's sphere contact",
+                  .source = "Mindlin & Deresiewicz (1953); Johnson (1985) 7.42",
+                  .shape_exponent = kMindlinExponent,
+                  .scale = MasingScale,
+                  .steady_peak = MasingPeak},
+    FrictionModel{.name = "jenkins",
+                  .title = "Jenkins element: spring and Coulomb slider",
+                  .source = "Iwan (1966)",
+                  .shape_exponent = kJenkinsExponent,
+                  .scale = MasingScale,
+                  .steady_peak = MasingPeak},
+    FrictionModel{.name = "dahl",
+                  .title = "Dahl's own law",
+                  .source = "Dahl (1968); Peyret et al. (2017) eq. 10",
+                  .memory = Memory::kNone,
+                  .scale = DahlScale,
+                  .steady_peak = DahlPeak},
+    FrictionModel{.name = "simplified-dahl",
+                  .title = "Simplified-Dahl: the steady branch without a virgin phase",
+                  .source = "Peyret et al. (2017) eq. 27",
+                  .memory = Memory::kNone,
+                  .bounded = false,
+                  .scaled_by_peak = true,
+                  .scale = SimplifiedDahlScale,
+                  .steady_peak = MasingPeak},
+};
+
+}  // namespace
+
+std::span<const FrictionModel> FrictionModels() { return kModels; }
+
+const FrictionModel* FindFrictionModel(std::string_view name) {
+  const auto model = std::ranges::find(kModels, name, &FrictionModel::name);
+  return model == kModels.end() ? nullptr : &*model;
+}
+
+}  // namespace mindahl

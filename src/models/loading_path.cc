@@ -1,0 +1,168 @@
+#include "mindahl/models/loading_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+void RequireDisplacements(std::span<const double> displacement) {
+  if (displacement.empty()) {
+    throw InvalidArgument("the displacement history is empty: must have samples");
+  }
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    if (!std::isfinite(displacement[i])) {
+      ThrowInvalid(fmt::format("displacement [m] of sample {}", i), displacement[i],
+                   "must be finite");
+    }
+  }
+}
+
+double SignOf(double value) { return value < 0 ? -1.0 : 1.0; }
+
+/// Direction in which the record sets out.
+double FirstDirection(std::span<const double> displacement,
+                      std::span<const std::size_t> reversals) {
+  const double first_extreme =
+      reversals.empty() ? displacement.back() : displacement[reversals.front()];
+  const double next = reversals.size() > 1    ? displacement[reversals[1]]
+                      : reversals.size() == 1 ? displacement.back()
+                                              : displacement.front();
+  return SignOf(first_extreme - next);
+}
+
+/// The branches that are open at the present displacement, oldest first, and the rules by which
+/// they close. The only state is the stack: the origins on it are the surviving extrema.
+class OpenBranches {
+ public:
+  OpenBranches(LoadingPath& path, Memory memory) : path_(path), memory_(memory) {}
+
+  void Open(Branch branch) {
+    branch.parent = open_.empty() ? -1 : open_.back();
+    direction_ = branch.direction;
+    path_.branches.push_back(branch);
+    open_.push_back(static_cast<std::int32_t>(path_.branches.size() - 1));
+  }
+
+  /// Starts the branch back from `extreme` on the present one.
+  void Reverse(double extreme) {
+    const Branch& present = path_.branches[static_cast<std::size_t>(open_.back())];
+    Open({.origin = extreme, .direction = -direction_, .amplitude = present.amplitude});
+  }
+
+  /// Moves on to `displacement` in the present direction; closes what it passes.
+  void Advance(double displacement) {
+    if (memory_ == Memory::kNone) return;
+    while (Passes(displacement)) {
+      // The inner loop is the present branch and the one it answers; the virgin curve answers none.
+      const bool rejoins_virgin_curve = open_.size() == 2;
+      open_.resize(open_.size() - (rejoins_virgin_curve ? 1 : 2));
+    }
+  }
+
+  [[nodiscard]] std::int32_t Present() const { return open_.back(); }
+
+ private:
+  [[nodiscard]] const Branch& Top() const {
+    return path_.branches[static_cast<std::size_t>(open_.back())];
+  }
+
+  [[nodiscard]] bool Passes(double displacement) const {
+    if (open_.size() < 2) return false;
+    const Branch& present = Top();
+    const Branch& answered = path_.branches[static_cast<std::size_t>(open_[open_.size() - 2])];
+    const double previous_extreme = IsVirgin(answered.start)
+                                        ? 2 * answered.origin - present.origin  // the mirror image
+                                        : answered.origin;
+    return direction_ * (displacement - previous_extreme) >= 0;
+  }
+
+  LoadingPath& path_;
+  Memory memory_;
+  std::vector<std::int32_t> open_;
+  double direction_ = 1.0;  // of the motion; the virgin curve is run both ways
+};
+
+void AppendToRuns(std::vector<BranchRun>& runs, std::size_t sample, std::int32_t branch) {
+  if (!runs.empty() && runs.back().branch == branch) {
+    runs.back().end = sample + 1;
+  } else {
+    runs.push_back({sample, sample + 1, branch});
+  }
+}
+
+/// Opens what is open before the first sample.
+void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement, double direction,
+                         Memory memory, const InitialContact& initial) {
+  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  if (initial.state == InitialState::kVirgin) {
+    const double origin = initial.unloaded_displacement;
+    const double amplitude = std::max(highest - origin, origin - lowest);
+    const double first_step = displacement.front() - origin;
+    const double first_direction = first_step == 0 ? direction : SignOf(first_step);
+    open.Open({origin, first_direction, amplitude, -1, BranchStart::kUnloaded});
+    if (first_direction != direction) open.Reverse(displacement.front());
+    return;
+  }
+  const double centre = lowest + (highest - lowest) / 2;
+  const double amplitude = (highest - lowest) / 2;
+  const double near_extreme = direction > 0 ? lowest : highest;
+  if (memory == Memory::kNone) {
+    open.Open({near_extreme, direction, amplitude, -1, BranchStart::kSteadyExtreme});
+    return;
+  }
+  // One turn of the loop from the unloaded contact: a Masing law is steady after it.
+  open.Open({centre, direction, amplitude, -1, BranchStart::kSteadyCentre});
+  open.Reverse(direction > 0 ? highest : lowest);
+  open.Reverse(near_extreme);
+}
+
+}  // namespace
+
+LoadingPath MakeLoadingPath(std::span<const double> displacement,
+                            std::span<const std::size_t> reversals, Memory memory,
+                            const InitialContact& initial) {
+  RequireDisplacements(displacement);
+  RequireFinite("unloaded displacement [m]", initial.unloaded_displacement);
+  LoadingPath path;
+  OpenBranches open(path, memory);
+  OpenInitialBranches(open, displacement, FirstDirection(displacement, reversals), memory, initial);
+
+  std::size_t next_reversal = 0;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    open.Advance(displacement[i]);
+    AppendToRuns(path.runs, i, open.Present());
+    if (next_reversal < reversals.size() && reversals[next_reversal] == i) {
+      open.Reverse(displacement[i]);
+      ++next_reversal;
+    }
+  }
+  return path;
+}
+
+LoadingPath MakeEnvelopePath(std::span<const double> displacement,
+                             std::span<const double> amplitude, double unloaded_displacement) {
+  RequireDisplacements(displacement);
+  RequireSameSize("displacement", displacement.size(), "amplitude", amplitude.size());
+  LoadingPath path;
+  double origin = unloaded_displacement;
+  double direction = 1.0;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    RequireNonNegative(fmt::format("amplitude [m] of sample {}", i), amplitude[i]);
+    const double step = displacement[i] - origin;
+    if (step != 0) direction = SignOf(step);
+    const auto id = static_cast<std::int32_t>(i);
+    path.branches.push_back({origin, direction, amplitude[i], id - 1,
+                             i == 0 ? BranchStart::kUnloaded : BranchStart::kReversal});
+    path.runs.push_back({i, i + 1, id});
+    origin = displacement[i];
+  }
+  return path;
+}
+
+}  // namespace mindahl

@@ -1,0 +1,152 @@
+#include "mindahl/models/branch_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A handful of roundings in the test's own closed form.
+constexpr double kClosedForm = 1e-15;
+
+TEST(BranchLaw, WithAThirdIsMindlin) {
+  // Johnson 7.42 in the paper's symbols: T = μN[1 − (1 − 16aδ/(3μN·G*))^{3/2}].
+  const double a = 0.0027, compliance = 4.42e-11, slip_force = 30.0;
+  const BranchLaw law{8 * a / compliance, 1.0 / 3.0, slip_force};
+  const double slip = 3 * slip_force * compliance / (16 * a);
+  EXPECT_NEAR(GrossSlipDisplacement(law), slip, kClosedForm * slip);
+  for (const double share : {0.1, 0.5, 0.9}) {
+    const double mindlin = slip_force * (1 - std::pow(1 - share, 1.5));
+    EXPECT_NEAR(BackboneForce(law, share * slip), mindlin, 4 * kClosedForm * slip_force);
+    EXPECT_NEAR(std::cbrt(BackboneRemaining(law, share * slip)), std::sqrt(1 - share),
+                4 * kClosedForm);  // c/a, eq. 5
+  }
+}
+
+TEST(BranchLaw, WithZeroIsElasticThenPlastic) {
+  const BranchLaw law{2.0, 0.0, 3.0};
+  EXPECT_EQ(BackboneForce(law, 1.0), 2.0);
+  EXPECT_EQ(BackboneForce(law, 1.5), 3.0);
+  EXPECT_EQ(BackboneForce(law, 7.0), 3.0);
+  EXPECT_EQ(BackboneSlope(law, 1.0), 2.0);
+  EXPECT_EQ(BackboneSlope(law, 2.0), 0.0);
+}
+
+TEST(BranchLaw, WithOneIsExponential) {
+  const BranchLaw law{2.0, 1.0, 3.0};
+  EXPECT_NEAR(BackboneForce(law, 1.2), 3.0 * (1 - std::exp(-0.8)), 3 * kClosedForm);
+  EXPECT_NEAR(BackboneSlope(law, 1.2), 2.0 * std::exp(-0.8), 2 * kClosedForm);
+}
+
+TEST(BranchLaw, WithTwoIsHyperbolic) {
+  const BranchLaw law{2.0, 2.0, 3.0};
+  EXPECT_NEAR(BackboneForce(law, 1.2), 3.0 * 0.8 / 1.8, 3 * kClosedForm);
+  EXPECT_NEAR(BackboneSlope(law, 1.2), 2.0 / (1.8 * 1.8), 2 * kClosedForm);
+}
+
+TEST(BranchLaw, IsContinuousThroughOne) {
+  for (const double off : {1e-15, 1e-12, 1e-9}) {
+    for (const double x : {0.01, 1.0, 20.0}) {
+      // ∂f/∂α = −u·y²/2 at α = 1, at most 2/e² of Tc.
+      const double one = BackboneForce({1.0, 1.0, 1.0}, x);
+      EXPECT_NEAR(BackboneForce({1.0, 1.0 + off, 1.0}, x), one, off + kClosedForm);
+      EXPECT_NEAR(BackboneForce({1.0, 1.0 - off, 1.0}, x), one, off + kClosedForm);
+    }
+  }
+}
+
+TEST(BranchLaw, SolvesItsDifferentialEquation) {
+  // dT/dx = σ(1 − T/Tc)^α: slope against force.
+  for (const double alpha : {0.1, 1.0 / 3.0, 0.7, 1.0, 1.5, 4.0}) {
+    const BranchLaw law{5.0, alpha, 2.0};
+    for (const double x : {1e-3, 0.1, 0.3, 0.45}) {
+      const double remaining = 1 - BackboneForce(law, x) / 2.0;
+      EXPECT_NEAR(BackboneSlope(law, x), 5.0 * std::pow(remaining, alpha), 1e-13) << alpha;
+    }
+  }
+}
+
+TEST(BranchLaw, WorkIsTheIntegralOfTheForce) {
+  // Simpson's rule in 2000 steps away from slip: h⁴/180·f⁗ < 1e-13 here.
+  constexpr int kSteps = 2000;
+  constexpr double kSimpson = 1e-12;
+  for (const double alpha : {0.1, 1.0 / 3.0, 1.0, 2.0, 5.0}) {
+    const BranchLaw law{1.0, alpha, 1.0};
+    for (const double x : {0.3, 0.9}) {
+      double integral = BackboneForce(law, 0) + BackboneForce(law, x);
+      for (int i = 1; i < kSteps; ++i) {
+        integral += (i % 2 == 0 ? 2 : 4) * BackboneForce(law, x * i / kSteps);
+      }
+      EXPECT_NEAR(BackboneWork(law, x), integral * x / (3 * kSteps), kSimpson) << alpha;
+    }
+  }
+}
+
+TEST(BranchLaw, ForceIsOddSlopeAndWorkAreEven) {
+  const BranchLaw law{4.839e8, 0.4, 30.0};
+  EXPECT_EQ(BackboneForce(law, -3e-8), -BackboneForce(law, 3e-8));
+  EXPECT_EQ(BackboneSlope(law, -3e-8), BackboneSlope(law, 3e-8));
+  EXPECT_EQ(BackboneWork(law, -3e-8), BackboneWork(law, 3e-8));
+  EXPECT_EQ(DifferentiateBackbone(law, -3e-8).shape_exponent,
+            -DifferentiateBackbone(law, 3e-8).shape_exponent);
+}
+
+TEST(BranchLaw, IsExactAtAndBeyondSlip) {
+  const BranchLaw law{1.0, 0.5, 1.0};  // δc = 2
+  EXPECT_EQ(GrossSlipDisplacement(law), 2.0);
+  for (const double x : {2.0, std::nextafter(2.0, 3.0), 5.0, 1e300, kInfinity}) {
+    EXPECT_EQ(BackboneForce(law, x), 1.0) << x;
+    EXPECT_EQ(BackboneSlope(law, x), 0.0) << x;
+    EXPECT_EQ(BackboneRemaining(law, x), 0.0) << x;
+  }
+  // An ulp below, z = 2⁻⁵³ and u = z² — not what 1 − f would give.
+  EXPECT_EQ(BackboneRemaining(law, std::nextafter(2.0, 0.0)), 0x1p-106);
+}
+
+TEST(BranchLaw, NeverSlipsFullyFromOneOn) {
+  EXPECT_EQ(GrossSlipDisplacement({1.0, 1.0, 1.0}), kInfinity);
+  EXPECT_EQ(GrossSlipDisplacement({1.0, 3.0, 1.0}), kInfinity);
+  EXPECT_GT(BackboneRemaining({1.0, 3.0, 1.0}, 1e12), 0.0);
+}
+
+TEST(BranchLaw, GradientObeysItsScaling) {
+  // f depends on σ and Tc as Tc·φ(σx/Tc): ∂f/∂ln σ + ∂f/∂ln Tc = f.
+  for (const double alpha : {0.0, 1.0 / 3.0, 1.0, 7.0}) {
+    const BranchLaw law{3.0, alpha, 2.0};
+    const BackboneGradient gradient = DifferentiateBackbone(law, 0.4);
+    EXPECT_NEAR(gradient.log_stiffness + gradient.log_slip_force, BackboneForce(law, 0.4),
+                kClosedForm);
+    EXPECT_NEAR(gradient.log_stiffness, 0.4 * BackboneSlope(law, 0.4), kClosedForm);
+  }
+}
+
+TEST(BranchLaw, ValidationNamesParameterUnitValueAndRule) {
+  const auto message = [](const BranchLaw& law) -> std::string {
+    try {
+      Validate(law);
+    } catch (const InvalidArgument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message({1.0, 0.5, 1.0}), "");
+  EXPECT_EQ(message({0.0, 0.5, 1.0}),
+            "tangential stiffness [N/m] = 0 is invalid: must be finite and > 0");
+  EXPECT_EQ(message({1.0, 0.5, -3.0}), "slip force [N] = -3 is invalid: must be finite and > 0");
+  EXPECT_EQ(message({1.0, -0.1, 1.0}),
+            "shape exponent [-] = -0.1 is invalid: must be finite and >= 0");
+  EXPECT_EQ(message({1.0, 1e101, 1.0}), "shape exponent [-] = 1e+101 is invalid: must be <= 1e100");
+  EXPECT_NE(message({1e300, 0.5, 1e-300}).find("stiffness over slip force [1/m]"),
+            std::string::npos);
+  EXPECT_NE(message({1.0, std::nan(""), 1.0}), "");
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,93 @@
+#include "mindahl/models/excitation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+TEST(Excitation, SineIsExactAtZerosAndExtremesAndRepeatsBitForBit) {
+  const Excitation sine =
+      MakeExcitation({.amplitude = 3e-7, .cycles = 5, .samples_per_cycle = 200});
+  ASSERT_EQ(sine.displacement.size(), 1001U);
+  for (std::size_t cycle = 0; cycle < 5; ++cycle) {
+    const auto at = [&](std::size_t i) { return sine.displacement[200 * cycle + i]; };
+    EXPECT_EQ(at(0), 0.0);
+    EXPECT_EQ(at(50), 3e-7);
+    EXPECT_EQ(at(100), 0.0);
+    EXPECT_EQ(at(150), -3e-7);
+    for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(at(i), sine.displacement[i]);
+  }
+}
+
+TEST(Excitation, SineIsASine) {
+  constexpr double kRounding = 1e-15;
+  const Excitation sine =
+      MakeExcitation({.amplitude = 2.0, .cycles = 1.5, .samples_per_cycle = 90, .frequency = 4.0});
+  ASSERT_EQ(sine.displacement.size(), 136U);
+  for (std::size_t i = 0; i < sine.time.size(); ++i) {
+    EXPECT_NEAR(sine.time[i], static_cast<double>(i) / 360, kRounding);
+    EXPECT_NEAR(sine.displacement[i], 2 * std::sin(2 * std::numbers::pi * 4.0 * sine.time[i]),
+                20 * kRounding);  // the argument of this one is rounded, to 1e-15 of 10
+    EXPECT_EQ(sine.envelope[i], 2.0);
+  }
+}
+
+TEST(Excitation, TriangleIsStraightBetweenTheSameExtremes) {
+  const Excitation triangle = MakeExcitation(
+      {.waveform = Waveform::kTriangle, .amplitude = 1.0, .cycles = 1, .samples_per_cycle = 8});
+  EXPECT_EQ(triangle.displacement, (std::vector<double>{0, 0.5, 1, 0.5, 0, -0.5, -1, -0.5, 0}));
+}
+
+TEST(Excitation, GrowingSineGrowsByTheFactorAsked) {
+  const Excitation growing = MakeExcitation({.waveform = Waveform::kGrowingSine,
+                                             .amplitude = 5.0,
+                                             .cycles = 4,
+                                             .samples_per_cycle = 100,
+                                             .growth = 20.0});
+  constexpr double kRounding = 1e-14;
+  EXPECT_EQ(growing.envelope.back(), 5.0);
+  EXPECT_NEAR(growing.envelope.front(), 0.25, kRounding);
+  EXPECT_NEAR(growing.envelope[200], 5.0 / std::sqrt(20.0), kRounding);  // geometric
+  for (std::size_t i = 0; i < growing.displacement.size(); ++i) {
+    EXPECT_LE(std::abs(growing.displacement[i]), growing.envelope[i]);
+  }
+  EXPECT_EQ(growing.displacement[325], growing.envelope[325]);
+}
+
+TEST(Excitation, GrowthOfOneIsTheSine) {
+  const ExcitationOptions sine{.amplitude = 5.0, .cycles = 2};
+  ExcitationOptions growing = sine;
+  growing.waveform = Waveform::kGrowingSine;
+  growing.growth = 1.0;
+  EXPECT_EQ(MakeExcitation(growing).displacement, MakeExcitation(sine).displacement);
+}
+
+TEST(Excitation, NamesAreThoseOfTheCommandLine) {
+  EXPECT_EQ(FindWaveform("sine"), Waveform::kSine);
+  EXPECT_EQ(FindWaveform("triangle"), Waveform::kTriangle);
+  EXPECT_EQ(FindWaveform("growing-sine"), Waveform::kGrowingSine);
+  EXPECT_FALSE(FindWaveform("square").has_value());
+}
+
+TEST(Excitation, RejectsValuesOutOfRange) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(MakeExcitation({.amplitude = 0.0}), InvalidArgument);
+  EXPECT_THROW(MakeExcitation({.amplitude = nan}), InvalidArgument);
+  EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .cycles = 0.0}), InvalidArgument);
+  EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .cycles = 1e9}), InvalidArgument);
+  EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .samples_per_cycle = 3}), InvalidArgument);
+  EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .frequency = -1.0}), InvalidArgument);
+  EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .growth = 0.5}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,230 @@
+#include "mindahl/models/loading_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "../support/histories.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+
+namespace mindahl {
+namespace {
+
+using testing::Generator;
+using testing::History;
+
+LoadingPath MasingPath(const History& history, const InitialContact& initial = {},
+                       double gate = 0.0) {
+  return MakeLoadingPath(history, FindReversals(history, gate), Memory::kReturnPoint, initial);
+}
+
+LoadingPath MemorylessPath(const History& history, const InitialContact& initial = {}) {
+  return MakeLoadingPath(history, FindReversals(history, 0.0), Memory::kNone, initial);
+}
+
+/// Origins of the branches that the last sample's branch goes back to, youngest first.
+std::vector<double> OriginsAtTheEnd(const LoadingPath& path) {
+  std::vector<double> origins;
+  for (std::int32_t i = path.runs.back().branch; i >= 0;) {
+    const Branch& branch = path.branches[static_cast<std::size_t>(i)];
+    origins.push_back(branch.origin);
+    i = branch.parent;
+  }
+  return origins;
+}
+
+using Origins = std::vector<double>;
+
+TEST(LoadingPath, StartsOnTheVirginCurve) {
+  const LoadingPath path = MasingPath({0.5, 1.0, 2.0});
+  ASSERT_EQ(path.branches.size(), 1U);
+  EXPECT_EQ(path.branches[0].start, BranchStart::kUnloaded);
+  EXPECT_EQ(path.branches[0].origin, 0.0);
+  EXPECT_EQ(path.branches[0].direction, 1.0);
+  EXPECT_EQ(path.branches[0].parent, -1);
+}
+
+TEST(LoadingPath, AReversalOpensABranchFromTheExtremum) {
+  const LoadingPath path = MasingPath({1.0, 3.0, 2.0});
+  EXPECT_EQ(OriginsAtTheEnd(path), (Origins{3.0, 0.0}));
+  EXPECT_EQ(path.branches.back().direction, -1.0);
+  EXPECT_EQ(path.branches.back().start, BranchStart::kReversal);
+}
+
+TEST(LoadingPath, RemembersEveryExtremumOfANestedHistory) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3, 2, -1, 0.5})), (Origins{-1, 2, -3, 4, 0}));
+}
+
+TEST(LoadingPath, ErasesInnerLoopWhenPassed) {
+  // 4, 0, 2, then on below 0: the loop 0-2 is gone and the branch from 4 goes on.
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 0, 2, 0.1})), (Origins{2, 0, 4, 0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 0, 2, -0.1})), (Origins{4, 0}));
+}
+
+TEST(LoadingPath, ReachingTheExtremumExactlyCountsAsPassing) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 0, 2, 0})), (Origins{4, 0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({-4, 0, -2, 0})), (Origins{-4, 0}));
+}
+
+TEST(LoadingPath, ErasesSeveralLoopsInOneStep) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3, 2, -1, 1, -2})), (Origins{2, -3, 4, 0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3, 2, -1, 1, -3.5})), (Origins{4, 0}));
+}
+
+TEST(LoadingPath, RejoinsTheVirginCurveAtItsFirstExtremum) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 1, 3.999})), (Origins{1, 4, 0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 1, 4})), (Origins{0}));
+}
+
+TEST(LoadingPath, RejoinsTheVirginCurveAtTheMirrorImageOfItsFirstExtremum) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -3.999})), (Origins{4, 0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -4})), (Origins{0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, 1, 2, -1, 0, -5})), (Origins{0}));
+}
+
+TEST(LoadingPath, TheMirrorImageIsTakenAboutTheUnloadedDisplacement) {
+  const InitialContact at_one{.unloaded_displacement = 1.0};
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -1.9}, at_one)), (Origins{4, 1}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({4, -2}, at_one)), (Origins{1}));
+}
+
+TEST(LoadingPath, AfterRejoiningTheNewExtremumIsTheFirst) {
+  // 2, then −3 on the virgin curve, then back: the mirror image is now 3.
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, -3, 2.9})), (Origins{-3, 0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, -3, 3})), (Origins{0}));
+}
+
+TEST(LoadingPath, StartingDownwardIsTheMirrorImage) {
+  Generator generator(21);
+  for (int i = 0; i < 500; ++i) {
+    History history = testing::RandomHistory(generator);
+    const LoadingPath up = MasingPath(history);
+    for (double& displacement : history) displacement = -displacement;
+    const LoadingPath down = MasingPath(history);
+    ASSERT_EQ(up.branches.size(), down.branches.size());
+    for (std::size_t k = 0; k < up.branches.size(); ++k) {
+      ASSERT_EQ(up.branches[k].origin, -down.branches[k].origin);
+      ASSERT_EQ(up.branches[k].direction, -down.branches[k].direction);
+      ASSERT_EQ(up.branches[k].parent, down.branches[k].parent);
+    }
+  }
+}
+
+TEST(LoadingPath, AFirstRowAwayFromTheUnloadedContactIsTheFirstStep) {
+  // Up to 2 before the record, then down: 2 is an extremum although no sample turns there.
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, 1, 0})), (Origins{2, 0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({2, 3})), (Origins{0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({-2, -1, -1.5})), (Origins{-1, -2, 0}));
+}
+
+TEST(LoadingPath, AFirstRowAtTheUnloadedContactIsNoStep) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({0, -1, -2})), (Origins{0}));
+  EXPECT_EQ(MasingPath({0, -1, -2}).branches.front().direction, -1.0);
+}
+
+TEST(LoadingPath, ADwellAtAnExtremumOpensNothing) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({3, 3, 3, 1, 1, 2})), (Origins{1, 3, 0}));
+  EXPECT_EQ(MasingPath({3, 3, 3, 1, 1, 2}).branches.size(), 3U);
+}
+
+TEST(LoadingPath, ASingleSampleOrAConstantRecordIsOnTheVirginCurve) {
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({0.7})), (Origins{0}));
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath({0.7, 0.7, 0.7})), (Origins{0}));
+}
+
+TEST(LoadingPath, GatedNoiseOpensNothing) {
+  const History noisy = {1, 2, 1.9, 3, 2.95, 4, 3, 3.1, 1, 1.05, 0};
+  EXPECT_EQ(MasingPath(noisy, {}, 0.2).branches.size(), 2U);
+  EXPECT_EQ(OriginsAtTheEnd(MasingPath(noisy, {}, 0.2)), (Origins{4, 0}));
+  EXPECT_GT(MasingPath(noisy).branches.size(), 2U);
+}
+
+TEST(LoadingPath, RunsCoverEverySampleInOrderAndParentsComeFirst) {
+  Generator generator(22);
+  for (int i = 0; i < 1000; ++i) {
+    const History history = testing::RandomHistory(generator);
+    for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
+      for (const Memory memory : {Memory::kReturnPoint, Memory::kNone}) {
+        const LoadingPath path =
+            MakeLoadingPath(history, FindReversals(history, 0.0), memory, {.state = state});
+        std::size_t next = 0;
+        for (const BranchRun& run : path.runs) {
+          ASSERT_EQ(run.begin, next);
+          ASSERT_LT(run.begin, run.end);
+          next = run.end;
+        }
+        ASSERT_EQ(next, history.size());
+        for (std::size_t k = 0; k < path.branches.size(); ++k) {
+          ASSERT_LT(path.branches[k].parent, static_cast<std::int32_t>(k));
+        }
+      }
+    }
+  }
+}
+
+TEST(LoadingPath, ASteadyContactStartsInsideItsLoop) {
+  // Upward from mid-swing: on the branch from the lower extreme, which answers the upper.
+  const LoadingPath path = MasingPath({0, 1, -3, 0}, {.state = InitialState::kSteady});
+  const Branch& first = path.branches[static_cast<std::size_t>(path.runs.front().branch)];
+  EXPECT_EQ(first.origin, -3.0);
+  EXPECT_EQ(first.direction, 1.0);
+  EXPECT_EQ(path.branches[static_cast<std::size_t>(first.parent)].origin, 1.0);
+  EXPECT_EQ(path.branches[0].start, BranchStart::kSteadyCentre);
+  EXPECT_EQ(path.branches[0].origin, -1.0);
+  EXPECT_EQ(path.branches[0].amplitude, 2.0);
+}
+
+TEST(LoadingPath, ASteadyContactWithoutMemoryStartsAtAnExtremeOfItsLoop) {
+  const LoadingPath path = MemorylessPath({0, -3, 1, 0}, {.state = InitialState::kSteady});
+  EXPECT_EQ(path.branches[0].start, BranchStart::kSteadyExtreme);
+  EXPECT_EQ(path.branches[0].origin, 1.0);
+  EXPECT_EQ(path.branches[0].direction, -1.0);
+}
+
+TEST(LoadingPath, WithoutMemoryEveryReversalStartsFromTheLast) {
+  EXPECT_EQ(OriginsAtTheEnd(MemorylessPath({4, 0, 2, -0.1})), (Origins{2, 0, 4, 0}));
+}
+
+TEST(LoadingPath, AnEnvelopeMakesEverySampleABranch) {
+  const History history = {1, -2, -2, 3};
+  const std::vector<double> envelope = {1, 2, 2, 3};
+  const LoadingPath path = MakeEnvelopePath(history, envelope, 0.5);
+  ASSERT_EQ(path.branches.size(), 4U);
+  EXPECT_EQ(path.branches[0].origin, 0.5);
+  EXPECT_EQ(path.branches[0].start, BranchStart::kUnloaded);
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_EQ(path.branches[i].origin, history[i - 1]);
+    EXPECT_EQ(path.branches[i].amplitude, envelope[i]);
+  }
+  EXPECT_EQ(path.branches[1].direction, -1.0);
+  EXPECT_EQ(path.branches[2].direction, -1.0);  // a repeated sample keeps it
+  EXPECT_EQ(path.branches[3].direction, 1.0);
+}
+
+TEST(LoadingPath, RejectsWhatIsNoHistory) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(MakeLoadingPath({}, {}, Memory::kNone, {}), InvalidArgument);
+  const History bad = {0, kNan};
+  EXPECT_THROW(MakeLoadingPath(bad, {}, Memory::kNone, {}), InvalidArgument);
+  const History good = {0, 1};
+  EXPECT_THROW(MakeLoadingPath(good, {}, Memory::kNone, {.unloaded_displacement = kNan}),
+               InvalidArgument);
+  EXPECT_THROW(MakeEnvelopePath(good, std::vector<double>{1}, 0.0), InvalidArgument);
+  EXPECT_THROW(MakeEnvelopePath(good, std::vector<double>{1, -1}, 0.0), InvalidArgument);
+}
+
+TEST(LoadingPath, NamesTheSampleThatIsNotFinite) {
+  const History bad = {0, 1, std::numeric_limits<double>::infinity()};
+  try {
+    MakeLoadingPath(bad, {}, Memory::kNone, {});
+    FAIL() << "accepted";
+  } catch (const InvalidArgument& error) {
+    EXPECT_STREQ(error.what(), "displacement [m] of sample 2 = inf is invalid: must be finite");
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../support/histories.h"
+#include "../support/reference_table.h"
+#include "mindahl/models/backbone.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl {
+namespace {
+
+using testing::Model;
+using testing::ReadTable;
+using testing::ToDouble;
+using testing::ToLongDouble;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// branch_law.h: computed in long double (64 bits) and rounded once. Half an ulp of rounding is at
+/// most kEpsilon/2 and the closed forms lose 4 bits of the spare 11.
+constexpr double kRoundedOnce = 1.0 * kEpsilon;
+
+/// The kernels work in double. log1p, expm1 and three products, each within an ulp.
+constexpr double kKernelForce = 4 * kEpsilon;
+
+/// exp passes on the error of its argument: |log u| <= 745 in double, half an ulp each.
+constexpr double kKernelDerivative = 400 * kEpsilon;
+
+/// steady_loop.h; the amplitude over the elastic limit is rounded first, and the energy is its
+/// cube.
+constexpr double kEnergy = 8 * kEpsilon;
+
+struct Row {
+  double shape_exponent, y;
+  long double force, remaining, slope, work, per_log_stiffness, per_shape, per_log_slip_force,
+      loop_energy;
+};
+
+std::vector<Row> ReadRows() {
+  std::vector<Row> rows;
+  for (const auto& line : ReadTable("branch_law.csv")) {
+    rows.push_back({ToDouble(line[0]), ToDouble(line[1]), ToLongDouble(line[2]),
+                    ToLongDouble(line[3]), ToLongDouble(line[4]), ToLongDouble(line[5]),
+                    ToLongDouble(line[6]), ToLongDouble(line[7]), ToLongDouble(line[8]),
+                    ToLongDouble(line[9])});
+  }
+  return rows;
+}
+
+/// Error over `scale`; what underflows double must be 0 or as small.
+double Error(double value, long double reference, long double scale) {
+  constexpr long double kSmallestNormal = std::numeric_limits<double>::min();
+  const long double error = std::abs(value - reference);
+  if (error <= kSmallestNormal) return 0.0;
+  return static_cast<double>(error / std::abs(scale));
+}
+
+/// Runs `error(law, row)` over the table and compares with `bound`.
+template <typename ErrorOf>
+void ExpectWithin(double bound, ErrorOf error_of) {
+  for (const Row& row : ReadRows()) {
+    const BranchLaw law{1.0, row.shape_exponent, 1.0};
+    EXPECT_LE(error_of(law, row), bound) << "alpha = " << row.shape_exponent << ", y = " << row.y;
+  }
+}
+
+TEST(BranchLawTable, CoversEveryShapeExponentFarBelowToFarBeyondSlip) {
+  const std::vector<Row> rows = ReadRows();
+  EXPECT_GE(rows.size(), 15U * 45U);
+  for (const double alpha : {0.0, 1e-300, 1.0 / 3.0, 1 - 1e-15, 1.0, 1 + 1e-15, 100.0}) {
+    const auto smallest = std::ranges::find_if(
+        rows, [&](const Row& row) { return row.shape_exponent == alpha && row.y < 1e-17; });
+    const auto largest = std::ranges::find_if(
+        rows, [&](const Row& row) { return row.shape_exponent == alpha && row.y > 1e11; });
+    EXPECT_TRUE(smallest != rows.end() && largest != rows.end()) << alpha;
+  }
+}
+
+TEST(BranchLawTable, ForceIsRoundedOnce) {
+  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
+    return Error(BackboneForce(law, row.y), row.force, row.force);
+  });
+}
+
+TEST(BranchLawTable, RemainingShareIsRoundedOnce) {
+  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
+    return Error(BackboneRemaining(law, row.y), row.remaining, row.remaining);
+  });
+}
+
+TEST(BranchLawTable, SlopeIsRoundedOnce) {
+  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
+    return Error(BackboneSlope(law, row.y), row.slope, row.slope);
+  });
+}
+
+TEST(BranchLawTable, WorkIsRoundedOnce) {
+  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
+    return Error(BackboneWork(law, row.y), row.work, row.work);
+  });
+}
+
+TEST(BranchLawTable, StiffnessAndShapeDerivativesAreRoundedOnce) {
+  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
+    const BackboneGradient gradient = DifferentiateBackbone(law, row.y);
+    return std::max(Error(gradient.log_stiffness, row.per_log_stiffness, row.per_log_stiffness),
+                    Error(gradient.shape_exponent, row.per_shape, row.per_shape));
+  });
+}
+
+TEST(BranchLawTable, SlipForceDerivativeIsRoundedOnceOnTheForcesScale) {
+  // f − y·f' is of second order in y: below y = 1e-16 it is lost against either term.
+  ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
+    return Error(DifferentiateBackbone(law, row.y).log_slip_force, row.per_log_slip_force,
+                 row.force);
+  });
+}
+
+TEST(BranchLawTable, MasingLoopEnergyHasNoCancellation) {
+  ExpectWithin(kEnergy, [](const BranchLaw& law, const Row& row) {
+    return Error(SteadyLoopEnergy(Model("mindlin-dahl"), law, row.y), row.loop_energy,
+                 row.loop_energy);
+  });
+}
+
+TEST(BranchLawTable, KernelForceIsWithinFourUlp) {
+  ExpectWithin(kKernelForce, [](const BranchLaw& law, const Row& row) {
+    const double force = backbone::WithShape(law.shape_exponent,
+                                             [&](const auto& shape) { return shape.Force(row.y); });
+    return Error(force, row.force, row.force);
+  });
+}
+
+TEST(BranchLawTable, KernelDerivativesKeepTheDigitsOfTheExponential) {
+  ExpectWithin(kKernelDerivative, [](const BranchLaw& law, const Row& row) {
+    const auto phi = backbone::Differentiate(row.y, law.shape_exponent);
+    return std::max({Error(phi.force, row.force, row.force), Error(phi.slope, row.slope, row.slope),
+                     Error(phi.elastic, row.per_log_stiffness, row.per_log_stiffness),
+                     Error(phi.shape_derivative, row.per_shape, row.per_shape)});
+  });
+}
+
+TEST(BranchLawTable, SinglePrecisionKernelKeepsSevenDigits) {
+  // As in double: a few roundings of 2⁻²⁴; α and y are rounded to float first, which moves f by
+  // (∂ln f/∂α)·α and (∂ln f/∂ln y), both <= 1 in size away from slip.
+  constexpr double kFloatForce = 8 * static_cast<double>(std::numeric_limits<float>::epsilon());
+  ExpectWithin(kFloatForce, [](const BranchLaw& law, const Row& row) {
+    if (law.shape_exponent > 0 && law.shape_exponent < 1e-30) return 0.0;  // no float
+    const auto y = static_cast<float>(row.y);
+    const float force = backbone::WithShape(static_cast<float>(law.shape_exponent),
+                                            [&](const auto& shape) { return shape.Force(y); });
+    return Error(static_cast<double>(force), row.force, row.force);
+  });
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,108 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "../support/histories.h"
+#include "../support/reference_table.h"
+#include "mindahl/models/branch_law.h"
+
+namespace mindahl {
+namespace {
+
+using testing::Model;
+using testing::ReadTable;
+using testing::Respond;
+using testing::ToDouble;
+using testing::ToLongDouble;
+
+/// What response.h promises. A force is a sum of at most 40 branches, each with a few roundings of
+/// a number below 2Tc: 40·2·2⁻⁵³ = 9e-15, and as much again from the argument of φ.
+constexpr double kTolerance = 5e-14;  // of Tc
+
+struct HistoryCase {
+  std::string name;
+  BranchLaw law;
+  std::vector<double> displacement;
+  std::vector<std::vector<long double>> force;  // by column: masing, dahl, simplified
+};
+
+constexpr std::size_t kMasing = 0;
+constexpr std::size_t kDahl = 1;
+constexpr std::size_t kSimplified = 2;
+
+std::vector<HistoryCase> ReadCases() {
+  std::vector<HistoryCase> cases;
+  for (const auto& line : ReadTable("histories.csv")) {
+    if (line[0] == "case") {
+      const BranchLaw law{ToDouble(line[2]), ToDouble(line[3]), ToDouble(line[4])};
+      cases.push_back({line[1], law, {}, std::vector<std::vector<long double>>(3)});
+      continue;
+    }
+    HistoryCase& present = cases.back();
+    present.displacement.push_back(ToDouble(line[0]));
+    for (std::size_t i = 0; i < 3; ++i) present.force[i].push_back(ToLongDouble(line[i + 1]));
+  }
+  return cases;
+}
+
+/// Largest error over Tc of a model against a column of the table.
+double WorstError(const FrictionModel& model, const HistoryCase& history, std::size_t column) {
+  const std::vector<double> force = Respond(model, history.law, history.displacement);
+  long double worst = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    worst = std::max(worst, std::abs(force[i] - history.force[column][i]));
+  }
+  return static_cast<double>(worst / history.law.slip_force);
+}
+
+class HistoryTable : public ::testing::Test {
+ protected:
+  void ExpectMatch(const FrictionModel& model, std::size_t column) {
+    double worst = 0.0;
+    std::size_t compared = 0;
+    for (const HistoryCase& history : ReadCases()) {
+      if (model.shape_exponent && *model.shape_exponent != history.law.shape_exponent) continue;
+      const double error = WorstError(model, history, column);
+      EXPECT_LE(error, kTolerance) << history.name << ", alpha = " << history.law.shape_exponent;
+      worst = std::max(worst, error);
+      ++compared;
+    }
+    EXPECT_GE(compared, 11U);  // one exponent of every pattern at least
+    RecordProperty("worst_error_over_slip_force", std::to_string(worst * 1e16) + "e-16");
+  }
+};
+
+TEST_F(HistoryTable, MindlinDahlIsMasingWithMemory) { ExpectMatch(Model("mindlin-dahl"), kMasing); }
+
+TEST_F(HistoryTable, MindlinIsMasingWithAThird) { ExpectMatch(Model("mindlin"), kMasing); }
+
+TEST_F(HistoryTable, JenkinsIsMasingWithZero) { ExpectMatch(Model("jenkins"), kMasing); }
+
+TEST_F(HistoryTable, DahlFollowsItsOwnEquation) { ExpectMatch(Model("dahl"), kDahl); }
+
+TEST_F(HistoryTable, SimplifiedDahlFollowsItsOwnEquation) {
+  ExpectMatch(Model("simplified-dahl"), kSimplified);
+}
+
+TEST_F(HistoryTable, HoldsEveryPatternForEveryShapeExponent) {
+  constexpr std::size_t kPatterns = 11;
+  constexpr std::size_t kShapeExponents = 7;
+  EXPECT_EQ(ReadCases().size(), kPatterns * kShapeExponents);
+}
+
+TEST_F(HistoryTable, TellsTheLawsApart) {
+  // Were two columns alike, a model could pass against the wrong one.
+  constexpr double kApart = 0.01;  // of Tc
+  for (const HistoryCase& history : ReadCases()) {
+    if (history.name != "white-macro" || history.law.shape_exponent == 0) continue;
+    EXPECT_GT(WorstError(Model("mindlin-dahl"), history, kDahl), kApart);
+    EXPECT_GT(WorstError(Model("dahl"), history, kSimplified), kApart);
+    EXPECT_GT(WorstError(Model("simplified-dahl"), history, kMasing), kApart);
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/loop/reversals.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
+
+/// Seeded displacement histories, and the response to them through the library's public steps.
+namespace mindahl::testing {
+
+using History = std::vector<double>;
+using Generator = std::mt19937_64;
+
+/// The same on every platform, unlike std::uniform_real_distribution.
+inline double Uniform(Generator& generator, double low, double high) {
+  return low + (high - low) * static_cast<double>(generator() >> 11) * 0x1p-53;
+}
+
+inline double Normal(Generator& generator) {  // Box and Muller
+  constexpr double kTwoPi = 6.283185307179586;
+  const double radius = std::sqrt(-2 * std::log(1 - Uniform(generator, 0, 1)));
+  return radius * std::cos(kTwoPi * Uniform(generator, 0, 1));
+}
+
+/// Log-uniform between two positive numbers.
+inline double LogUniform(Generator& generator, double low, double high) {
+  return std::exp(Uniform(generator, std::log(low), std::log(high)));
+}
+
+inline History RandomWalk(Generator& generator, std::size_t samples, double step) {
+  History history(samples);
+  double at = 0.0;
+  for (double& displacement : history) displacement = at += Uniform(generator, -step, step);
+  return history;
+}
+
+inline History WhiteSequence(Generator& generator, std::size_t samples, double reach) {
+  History history(samples);
+  for (double& displacement : history) displacement = Uniform(generator, -reach, reach);
+  return history;
+}
+
+/// A walk or a white sequence of 3 to 60 samples, of micro to gross slip for a law whose elastic
+/// limit is 1, off centre, with dwells.
+inline History RandomHistory(Generator& generator) {
+  const std::size_t samples = 3 + generator() % 58;
+  const double size = LogUniform(generator, 0.03, 5.0);
+  History history = generator() % 2 == 0 ? RandomWalk(generator, samples, size)
+                                         : WhiteSequence(generator, samples, size);
+  const double offset = generator() % 2 == 0 ? 0.0 : Uniform(generator, -size, size);
+  for (std::size_t i = 0; i < samples; ++i) {
+    history[i] += offset;
+    if (i > 0 && generator() % 8 == 0) history[i] = history[i - 1];
+  }
+  return history;
+}
+
+inline LoadingPath PathOf(const FrictionModel& model, std::span<const double> displacement,
+                          const InitialContact& initial = {}, double gate = 0.0) {
+  return MakeLoadingPath(displacement, FindReversals(displacement, gate), model.memory, initial);
+}
+
+/// Force [N] at every sample.
+inline std::vector<double> Respond(const FrictionModel& model, const BranchLaw& law,
+                                   std::span<const double> displacement,
+                                   const InitialContact& initial = {}) {
+  std::vector<double> force(displacement.size());
+  EvaluateForce(model, law, PathOf(model, displacement, initial), displacement, force);
+  return force;
+}
+
+inline const FrictionModel& Model(std::string_view name) { return *FindFrictionModel(name); }
+
+}  // namespace mindahl::testing
