@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "mindahl/core/error.h"
@@ -38,6 +39,7 @@ double CountSwings(std::span<const double> displacement, std::span<const std::si
 
 /// The way from one turning point to the next.
 struct Swing {
+  bool rising = false;
   double lowest = 0.0;  // [m]
   double highest = 0.0;
   double least_force = 0.0;  // [N]
@@ -50,10 +52,12 @@ Swing MeasureSwing(const Record& record, std::size_t first, std::size_t last) {
   };
   const auto displacement = part(record.displacement);
   const auto force = part(record.force);
-  return {displacement.min, displacement.max, force.min, force.max};
+  return {record.displacement[last] > record.displacement[first], displacement.min,
+          displacement.max, force.min, force.max};
 }
 
-/// The swings that reach at least half as far as the widest: not nested loops, run-in or run-out.
+/// The swings that reach at least three quarters as far as the widest: not nested loops, run-in or
+/// run-out.
 /// Without two turning points the whole record is one.
 std::vector<Swing> MainSwings(const Record& record, std::span<const std::size_t> points) {
   if (points.size() < 2) return {MeasureSwing(record, 0, record.size() - 1)};
@@ -64,7 +68,7 @@ std::vector<Swing> MainSwings(const Record& record, std::span<const std::size_t>
     widest = std::max(widest, swings.back().highest - swings.back().lowest);
   }
   std::erase_if(swings,
-                [&](const Swing& swing) { return swing.highest - swing.lowest < widest / 2; });
+                [&](const Swing& swing) { return swing.highest - swing.lowest < 0.75 * widest; });
   return swings;
 }
 
@@ -74,13 +78,22 @@ double MeanOf(std::span<const Swing> swings, double Swing::*member) {
   return sum / static_cast<double>(swings.size());
 }
 
-/// Median: one spike in one swing must not make the peak force.
-double MedianOf(std::span<const Swing> swings, double Swing::*member) {
-  std::vector<double> values;
-  for (const Swing& swing : swings) values.push_back(swing.*member);
+double Median(std::vector<double> values) {
   std::ranges::sort(values);
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 == 1 ? values[middle] : values[middle - 1] / 2 + values[middle] / 2;
+}
+
+/// What swings of one direction usually reach, for the direction that reaches further as `compare`
+/// has it. Medians: a spike in one swing must not make the peak force.
+template <typename Compare>
+double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compare compare) {
+  std::vector<double> rising;
+  std::vector<double> falling;
+  for (const Swing& swing : swings) (swing.rising ? rising : falling).push_back(swing.*member);
+  if (rising.empty()) return Median(falling);
+  if (falling.empty()) return Median(rising);
+  return std::max(Median(rising), Median(falling), compare);
 }
 
 double Mean(std::span<const double> values) {
@@ -121,8 +134,8 @@ LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reve
   const double lowest = MeanOf(swings, &Swing::lowest);
   measures.amplitude = (highest - lowest) / 2;
   measures.centre = lowest + measures.amplitude;
-  const double greatest_force = MedianOf(swings, &Swing::greatest_force);
-  const double least_force = MedianOf(swings, &Swing::least_force);
+  const double greatest_force = UsualExtreme(swings, &Swing::greatest_force, std::less<>());
+  const double least_force = UsualExtreme(swings, &Swing::least_force, std::greater<>());
   measures.peak_force = (greatest_force - least_force) / 2;
   measures.centre_force = least_force + measures.peak_force;
 

@@ -32,9 +32,9 @@ TEST(Units, BothMicroSignsAreMicro) {
 }
 
 TEST(Units, MicrometresDivideByAnExactMillion) {
-  // 0.3e-6 is the double nearest to 0.3/10⁶, which multiplying by the inexact 1e-6 misses.
-  EXPECT_EQ(LengthUnit("um")->ToSi(0.3), 0.3 / 1e6);
-  EXPECT_NE(0.3 / 1e6, 0.3 * 1e-6);
+  // The quotient is rounded once; multiplying by the inexact 1e-6 misses it.
+  EXPECT_EQ(LengthUnit("um")->ToSi(2.3), 2.3e-6);
+  EXPECT_NE(2.3 * 1e-6, 2.3e-6);
 }
 
 TEST(Units, UnknownSymbolsAreNoUnit) {

@@ -15,11 +15,11 @@ struct LoopMeasures {
   /// start and to its end count by their length, 0.02 cycles short of one is one.
   std::size_t cycles = 0;
   /// X [m]: half the distance between the mean upper and lower extremes of the main swings, those
-  /// at least half as wide as the widest
+  /// at least three quarters as wide as the widest
   double amplitude = 0.0;
   double centre = 0.0;  ///< [m]: midway between those extremes
-  /// T* [N]: half the distance between the greatest and least force of a main swing, medians over
-  /// the swings
+  /// T* [N]: half the distance between the greatest and least force of the main swings, medians
+  /// over the swings of a direction
   double peak_force = 0.0;
   double centre_force = 0.0;  ///< [N]: midway between those forces
   /// W [J] = ∮ T dδ, mean over the closed cycles; empty when the record closes none
