@@ -1,0 +1,261 @@
+#include "mindahl/identification/mapping_validation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_real_distribution.hpp>
+#include <cmath>
+
+#include "mindahl/contact/cattaneo_mindlin.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/models/excitation.h"
+
+namespace mindahl {
+namespace {
+
+constexpr std::array kCycles = {1.0, 1.25, 2.0, 2.5, 3.0, 4.0};
+constexpr std::array<std::size_t, 3> kSamplesPerCycle = {100, 200, 400};
+
+struct Case {
+  double friction_coefficient = 0.0;
+  double normal_load = 0.0;
+  MindlinContact contact;
+  double lambda = 0.0;
+  double direction = 1.0;
+  ExcitationOptions excitation;
+};
+
+class CaseGenerator {
+ public:
+  explicit CaseGenerator(const ValidationOptions& options)
+      : options_(options), engine_(options.seed) {}
+
+  Case Next(std::size_t index) {
+    Case drawn;
+    drawn.friction_coefficient = Uniform(0.05, 1.2);
+    drawn.normal_load = LogUniform(1e-6, 1e5);
+    drawn.contact.contact_radius = LogUniform(1e-8, 3e-2);
+    drawn.contact.tangential_compliance = LogUniform(1e-12, 1e-8);
+    drawn.contact.slip_force = GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
+    drawn.lambda = options_.lambdas[index % options_.lambdas.size()];
+    const std::size_t round = index / options_.lambdas.size();
+    drawn.direction = round % 2 == 0 ? 1.0 : -1.0;
+    drawn.excitation.waveform = round / 2 % 2 == 0 ? Waveform::kSine : Waveform::kTriangle;
+    drawn.excitation.cycles = kCycles[round % kCycles.size()];
+    drawn.excitation.samples_per_cycle = kSamplesPerCycle[index % kSamplesPerCycle.size()];
+    drawn.excitation.amplitude = drawn.lambda * GrossSlipDisplacement(drawn.contact);
+    return drawn;
+  }
+
+  double Normal() { return normal_(engine_); }
+
+ private:
+  double Uniform(double lower, double upper) {
+    return boost::random::uniform_real_distribution<double>(lower, upper)(engine_);
+  }
+  double LogUniform(double lower, double upper) {
+    return std::exp(Uniform(std::log(lower), std::log(upper)));
+  }
+
+  const ValidationOptions& options_;
+  boost::random::mt19937_64 engine_;
+  boost::random::normal_distribution<double> normal_;
+};
+
+/// The loop by Mindlin's equations 13 to 15, phase by phase.
+Record MindlinRecord(const Case& drawn) {
+  const Excitation excitation = MakeExcitation(drawn.excitation);
+  const double amplitude = drawn.excitation.amplitude;
+  const double per_cycle = static_cast<double>(drawn.excitation.samples_per_cycle);
+  Record record;
+  record.time = excitation.time;
+  for (std::size_t i = 0; i < excitation.displacement.size(); ++i) {
+    const double x = excitation.displacement[i];
+    const double phase = static_cast<double>(i) / per_cycle;
+    double force = 0.0;
+    if (phase <= 0.25) {
+      force = MindlinVirginForce(drawn.contact, x);
+    } else {
+      const bool unloading = std::fmod(phase - 0.25, 1.0) < 0.5;
+      force = unloading ? MindlinUnloadingForce(drawn.contact, x, amplitude)
+                        : MindlinReloadingForce(drawn.contact, x, amplitude);
+    }
+    record.displacement.push_back(drawn.direction * x);
+    record.force.push_back(drawn.direction * force);
+  }
+  return record;
+}
+
+struct Errors {
+  double sigma = 0.0;
+  double alpha = 0.0;
+  double slip_force = 0.0;
+  double standardized = 0.0;
+  bool undetermined = false;
+  bool converged = false;
+  std::string termination;
+  std::size_t intervals = 0;
+  std::size_t covering = 0;
+};
+
+Errors Compare(const FitResult& fit, const MindlinDahlParameters& truth) {
+  Errors errors;
+  errors.converged = fit.converged;
+  errors.termination = fit.termination;
+  if (fit.parameters.empty()) return errors;
+  const auto judge = [&](const char* name, double value, double& error, double unit) {
+    const ParameterEstimate& estimate = *fit.Find(name);
+    error = std::abs(estimate.value - value) / unit;
+    if (estimate.identifiability != Identifiability::kIdentifiable) {
+      errors.undetermined = true;
+      return;
+    }
+    ++errors.intervals;
+    if (estimate.lower95 <= value && value <= estimate.upper95) ++errors.covering;
+  };
+  judge("sigma", truth.tangential_stiffness, errors.sigma, truth.tangential_stiffness);
+  judge("alpha", truth.shape_exponent, errors.alpha, 1.0);
+  judge("slip_force", truth.slip_force, errors.slip_force, truth.slip_force);
+  return errors;
+}
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::ranges::sort(values);
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+double Largest(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::ranges::max_element(values);
+}
+
+/// Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
+/// unlike an error over a standard error it also holds where the likelihood is not a parabola.
+double StandardizedDistance(const FitResult& fit, const MindlinDahlParameters& truth,
+                            const Record& record) {
+  FitOptions options;
+  options.initial_state = fit.initial_state;
+  options.fixed = {{"sigma", truth.tangential_stiffness},
+                   {"alpha", truth.shape_exponent},
+                   {"slip_force", truth.slip_force}};
+  const FitResult at_truth = Fit({&record, 1}, options);
+  const double ratio = at_truth.residuals.rms / fit.residuals.rms;
+  return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.residuals.degrees_of_freedom);
+}
+
+/// Collects one row of the table.
+struct RowBuilder {
+  ValidationRow row;
+  std::vector<double> sigma;
+  std::vector<double> alpha;
+  std::vector<double> slip_force;
+  std::size_t intervals = 0;
+  std::size_t covering = 0;
+
+  /// @returns whether the case met the tolerance
+  bool Add(const Errors& errors) {
+    ++row.cases;
+    row.undetermined += errors.undetermined ? 1 : 0;
+    sigma.push_back(errors.sigma);
+    alpha.push_back(errors.alpha);
+    slip_force.push_back(errors.slip_force);
+    row.worst_standardized = std::max(row.worst_standardized, errors.standardized);
+    intervals += errors.intervals;
+    covering += errors.covering;
+    const double worst = row.noise == 0 ? std::max({errors.sigma, errors.alpha, errors.slip_force})
+                                        : errors.standardized;
+    const bool met =
+        errors.converged && worst <= row.tolerance && (row.noise > 0 || !errors.undetermined);
+    row.failures += met ? 0 : 1;
+    return met;
+  }
+
+  ValidationRow Finish() {
+    row.median_sigma_error = Median(sigma);
+    row.worst_sigma_error = Largest(sigma);
+    row.median_alpha_error = Median(alpha);
+    row.worst_alpha_error = Largest(alpha);
+    row.median_slip_force_error = Median(slip_force);
+    row.worst_slip_force_error = Largest(slip_force);
+    row.coverage =
+        intervals == 0 ? 0.0 : static_cast<double>(covering) / static_cast<double>(intervals);
+    return row;
+  }
+};
+
+void Require(const ValidationOptions& options) {
+  if (options.cases < 1) ThrowInvalid("cases [-]", 0, "must be >= 1");
+  if (options.lambdas.empty() || options.noise_levels.empty()) {
+    throw InvalidArgument("amplitudes and noise levels must not be empty");
+  }
+  for (const double lambda : options.lambdas) RequirePositive("lambda [-]", lambda);
+  for (const double noise : options.noise_levels) RequireNonNegative("noise level [-]", noise);
+}
+
+std::string Describe(const Case& drawn, std::size_t index, double noise, const Errors& errors) {
+  return fmt::format(
+      "case {}: lambda {}, noise {}, N {:.6g} N, a {:.6g} m, G* {:.6g} 1/Pa, mu {:.4g}, {} cycles: "
+      "{}errors sigma {:.2e}, alpha {:.2e}, slip_force {:.2e}; {:.1f} standard errors",
+      index, drawn.lambda, noise, drawn.normal_load, drawn.contact.contact_radius,
+      drawn.contact.tangential_compliance, drawn.friction_coefficient, drawn.excitation.cycles,
+      errors.converged ? "" : fmt::format("not converged ({}), ", errors.termination), errors.sigma,
+      errors.alpha, errors.slip_force, errors.standardized);
+}
+
+}  // namespace
+
+double NoiseFreeTolerance(double lambda) {
+  // Below λ = 1/2 the loop's departure from a straight line, which alone tells α from Tc, shrinks
+  // as λ² and magnifies rounding errors likewise.
+  return lambda >= 0.5 ? 1e-8 : 1e-6;
+}
+
+ValidationReport ValidateMapping(const ValidationOptions& options,
+                                 const std::function<void(std::size_t)>& progress) {
+  Require(options);
+  std::vector<RowBuilder> rows;
+  for (const double noise : options.noise_levels) {
+    for (const double lambda : options.lambdas) {
+      RowBuilder& builder = rows.emplace_back();
+      builder.row.noise = noise;
+      builder.row.lambda = lambda;
+      builder.row.tolerance = noise == 0 ? NoiseFreeTolerance(lambda) : kStandardErrorsTolerated;
+    }
+  }
+  ValidationReport report;
+  CaseGenerator generator(options);
+  for (std::size_t index = 0; index < options.cases; ++index) {
+    const Case drawn = generator.Next(index);
+    const MindlinDahlParameters truth = MapMindlinToDahl(drawn.contact);
+    const Record clean = MindlinRecord(drawn);
+    const double peak =
+        *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });
+    for (std::size_t level = 0; level < options.noise_levels.size(); ++level) {
+      Record noisy = clean;
+      const double noise = options.noise_levels[level];
+      for (double& force : noisy.force) force += noise * std::abs(peak) * generator.Normal();
+      const FitResult fit = Fit({&noisy, 1}, {});
+      Errors errors = Compare(fit, truth);
+      if (noise > 0 && errors.converged) {
+        errors.standardized = StandardizedDistance(fit, truth, noisy);
+      }
+      ++report.fits;
+      RowBuilder& row = rows[level * options.lambdas.size() + index % options.lambdas.size()];
+      if (!row.Add(errors)) {
+        ++report.failures;
+        report.failed_cases.push_back(Describe(drawn, index, noise, errors));
+      }
+    }
+    if (progress) progress(index + 1);
+  }
+  for (RowBuilder& row : rows) report.rows.push_back(row.Finish());
+  return report;
+}
+
+}  // namespace mindahl

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identification/scaled_records.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/models/branch_law.h"
+
+namespace mindahl {
+
+/// One parameter as the solver sees it: θ, non-dimensional and of order one.
+///   value = reference + scale·θ,  or  value = scale·exp(θ) where logarithmic
+struct ScaledParameter {
+  std::string name;
+  std::string unit;
+  bool logarithmic = false;
+  double reference = 0.0;
+  double scale = 1.0;
+  double theta = 0.0;
+  double lower = 0.0;  // of θ
+  double upper = 0.0;
+  bool fixed = false;
+  bool estimated_elsewhere = false;  // fixed by the data, not by the user
+
+  [[nodiscard]] double ToValue(double at_theta) const;
+  [[nodiscard]] double ToTheta(double value) const;
+};
+
+/// Positions in the vector of parameters: three shared, then three a record.
+enum ParameterIndex : std::size_t {
+  kLogStiffness = 0,
+  kShapeExponent = 1,
+  kLogSlipForce = 2,
+  kSharedParameters = 3,
+  kForceOffset = 0,  // within a record
+  kUnloadedDisplacement = 1,
+  kForceDrift = 2,
+  kRecordParameters = 3,
+};
+
+class ParameterLayout {
+ public:
+  /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
+  ParameterLayout(const ScaledRecords& data, const FitOptions& options, InitialState state);
+
+  static std::size_t OfRecord(std::size_t record, std::size_t index) {
+    return kSharedParameters + record * kRecordParameters + index;
+  }
+
+  [[nodiscard]] const std::vector<ScaledParameter>& parameters() const { return parameters_; }
+  /// Positions of the free ones.
+  [[nodiscard]] const std::vector<std::size_t>& free() const { return free_; }
+
+  /// A copy in which one more parameter is held at θ.
+  [[nodiscard]] ParameterLayout WithFixed(std::size_t index, double theta) const;
+
+  /// σ, α, Tc in the units of the data.
+  static BranchLaw ScaledLaw(const std::vector<double>& theta);
+  /// σ, α, Tc in SI.
+  [[nodiscard]] BranchLaw Law(const std::vector<double>& theta) const;
+
+ private:
+  void ApplyOptions(const FitOptions& options);
+  void CollectFree();
+
+  std::vector<ScaledParameter> parameters_;
+  std::vector<std::size_t> free_;
+};
+
+}  // namespace mindahl

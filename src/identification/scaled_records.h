@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/record.h"
+
+namespace mindahl {
+
+/// A record in units of the data, with the force in the displacement's sense.
+struct ScaledRecord {
+  std::vector<double> displacement;    // (δ − displacement_reference)/length
+  std::vector<double> force;           // (sense·T − force_reference)/force unit
+  std::vector<double> time;            // −1 … 1 over the record; by sample where it has no time
+  std::vector<std::size_t> reversals;  // samples
+  double displacement_reference = 0.0;  // [m]
+  double force_reference = 0.0;         // [N], in the displacement's sense
+  double half_duration = 1.0;           // [s], or samples where the record has no time
+};
+
+/// All records in common units: what makes a fit independent of the units of its files.
+struct ScaledRecords {
+  std::vector<ScaledRecord> records;
+  double length = 1.0;  // [m]: largest half range of displacement
+  double force = 1.0;   // [N]: largest half range of force
+  int sense = 1;
+
+  [[nodiscard]] std::size_t samples() const;
+};
+
+/// @param reversals  of each record
+/// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
+/// more
+///   than 1e100
+ScaledRecords Scale(std::span<const Record> records,
+                    std::span<const std::vector<std::size_t>> reversals, int sense);
+
+}  // namespace mindahl

@@ -1,0 +1,198 @@
+#include "identification/starting_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "identification/force_residual.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl {
+namespace {
+
+constexpr std::array kReaches = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0,  // σX/Tc
+                                 1.5,  2.5,  4.0, 7.0, 15., 40., 150.};
+constexpr std::array kShapeExponents = {0.0, 1.0 / 3.0, 1.0, 2.5};
+
+/// Sums for the regression of force on normalised response, one record: force = Tc·t + F₀.
+struct Regression {
+  double count = 0.0;
+  double t = 0.0;
+  double tt = 0.0;
+  double force = 0.0;
+  double t_force = 0.0;
+};
+
+Regression Accumulate(std::span<const double> t, std::span<const double> force) {
+  Regression sums;
+  sums.count = static_cast<double>(t.size());
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    sums.t += t[i];
+    sums.tt += t[i] * t[i];
+    sums.force += force[i];
+    sums.t_force += t[i] * force[i];
+  }
+  return sums;
+}
+
+/// Least-squares Tc over all records; an offset of its own for each unless it is fixed.
+double RegressSlipForce(std::span<const Regression> records, const ParameterLayout& layout) {
+  double numerator = 0.0;
+  double denominator = 0.0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Regression& sums = records[r];
+    const ScaledParameter& offset = layout.parameters()[ParameterLayout::OfRecord(r, kForceOffset)];
+    if (offset.fixed) {
+      numerator += sums.t_force - offset.theta * sums.t;
+      denominator += sums.tt;
+    } else {
+      numerator += sums.t_force - sums.t * sums.force / sums.count;
+      denominator += sums.tt - sums.t * sums.t / sums.count;
+    }
+  }
+  return denominator > 0 ? numerator / denominator : 0.0;
+}
+
+class StartingGrid {
+ public:
+  StartingGrid(const ScaledRecords& data, const ParameterLayout& layout, const FitOptions& options,
+               InitialState state)
+      : data_(data),
+        layout_(layout),
+        model_(*options.model),
+        state_(state),
+        residual_(data, *options.model, state) {}
+
+  /// Paths for one guess of where the contact was unloaded, in the units of each record.
+  void SetUnloaded(const std::vector<double>& unloaded) {
+    unloaded_ = unloaded;
+    paths_.clear();
+    for (std::size_t r = 0; r < data_.records.size(); ++r) {
+      const ScaledRecord& record = data_.records[r];
+      paths_.push_back(MakeLoadingPath(record.displacement, record.reversals, model_.memory,
+                                       {.state = state_, .unloaded_displacement = unloaded_[r]}));
+    }
+  }
+
+  [[nodiscard]] StartingPoint At(double reach, double shape_exponent) const {
+    const std::vector<ScaledParameter>& parameters = layout_.parameters();
+    StartingPoint point;
+    point.theta.resize(parameters.size());
+    for (std::size_t i = 0; i < parameters.size(); ++i) point.theta[i] = parameters[i].theta;
+    point.sum_of_squares = std::numeric_limits<double>::infinity();
+
+    std::vector<Regression> sums;
+    std::vector<double> t;
+    for (std::size_t r = 0; r < data_.records.size(); ++r) {
+      const ScaledRecord& record = data_.records[r];
+      t.resize(record.force.size());
+      EvaluateForce(model_, {reach, shape_exponent, 1.0}, paths_[r], record.displacement, t);
+      sums.push_back(Accumulate(t, record.force));
+    }
+    const ScaledParameter& stiffness = parameters[kLogStiffness];
+    const ScaledParameter& slip = parameters[kLogSlipForce];
+    double slip_force = slip.fixed        ? std::exp(slip.theta)
+                        : stiffness.fixed ? std::exp(stiffness.theta) / reach
+                                          : RegressSlipForce(sums, layout_);
+    if (!(slip_force > 0)) return point;
+
+    point.theta[kShapeExponent] = shape_exponent;
+    if (!slip.fixed) point.theta[kLogSlipForce] = std::log(slip_force);
+    if (!stiffness.fixed) point.theta[kLogStiffness] = std::log(reach * slip_force);
+    for (std::size_t r = 0; r < data_.records.size(); ++r) {
+      const std::size_t offset = ParameterLayout::OfRecord(r, kForceOffset);
+      if (!parameters[offset].fixed) {
+        point.theta[offset] = (sums[r].force - slip_force * sums[r].t) / sums[r].count;
+      }
+      const std::size_t unloaded = ParameterLayout::OfRecord(r, kUnloadedDisplacement);
+      if (!parameters[unloaded].fixed) point.theta[unloaded] = unloaded_[r];
+    }
+    for (const std::size_t i : layout_.free()) {
+      point.theta[i] = std::clamp(point.theta[i], parameters[i].lower, parameters[i].upper);
+    }
+    std::vector<double> residual(residual_.size());
+    residual_.Evaluate(point.theta, residual);
+    point.sum_of_squares = 0.0;
+    for (const double value : residual) point.sum_of_squares += value * value;
+    return point;
+  }
+
+ private:
+  const ScaledRecords& data_;
+  const ParameterLayout& layout_;
+  const FrictionModel& model_;
+  InitialState state_;
+  ForceResidual residual_;
+  std::vector<double> unloaded_;
+  std::vector<LoadingPath> paths_;
+};
+
+/// Guesses of where each record's contact was unloaded.
+std::vector<std::vector<double>> UnloadedGuesses(const ScaledRecords& data,
+                                                 const ParameterLayout& layout,
+                                                 InitialState state) {
+  std::vector<double> fixed;
+  std::vector<double> first;
+  std::vector<double> centre(data.records.size(), 0.0);
+  std::vector<double> zero;
+  bool all_fixed = true;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledParameter& parameter =
+        layout.parameters()[ParameterLayout::OfRecord(r, kUnloadedDisplacement)];
+    all_fixed = all_fixed && parameter.fixed;
+    fixed.push_back(parameter.theta);
+    first.push_back(parameter.fixed ? parameter.theta : data.records[r].displacement.front());
+    zero.push_back(parameter.fixed ? parameter.theta : parameter.ToTheta(0.0));
+  }
+  if (state == InitialState::kSteady) return {centre};
+  if (all_fixed) return {fixed};
+  std::vector<std::vector<double>> guesses = {first, centre};
+  const bool zero_is_near = std::ranges::all_of(zero, [](double x) { return std::abs(x) <= 1; });
+  if (zero_is_near && zero != first && zero != centre) guesses.push_back(zero);
+  return guesses;
+}
+
+}  // namespace
+
+std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
+                                              const ParameterLayout& layout,
+                                              const FitOptions& options, InitialState state) {
+  StartingGrid grid(data, layout, options, state);
+  const ScaledParameter& shape = layout.parameters()[kShapeExponent];
+  std::vector<double> shape_exponents(kShapeExponents.begin(), kShapeExponents.end());
+  if (shape.fixed) shape_exponents = {shape.theta};
+
+  std::vector<StartingPoint> best_of_shape(shape_exponents.size());
+  for (StartingPoint& point : best_of_shape) {
+    point.sum_of_squares = std::numeric_limits<double>::infinity();
+  }
+  for (const std::vector<double>& unloaded : UnloadedGuesses(data, layout, state)) {
+    grid.SetUnloaded(unloaded);
+    for (std::size_t k = 0; k < shape_exponents.size(); ++k) {
+      for (const double reach : kReaches) {
+        StartingPoint point = grid.At(reach, shape_exponents[k]);
+        if (point.sum_of_squares < best_of_shape[k].sum_of_squares) {
+          best_of_shape[k] = std::move(point);
+        }
+      }
+    }
+  }
+  std::erase_if(best_of_shape,
+                [](const StartingPoint& point) { return !std::isfinite(point.sum_of_squares); });
+  std::ranges::sort(best_of_shape, {}, &StartingPoint::sum_of_squares);
+  if (best_of_shape.size() > options.starts) best_of_shape.resize(options.starts);
+
+  for (StartingPoint& point : best_of_shape) {
+    for (std::size_t i = 0; i < point.theta.size(); ++i) {
+      const ScaledParameter& parameter = layout.parameters()[i];
+      const auto given = options.start.find(parameter.name);
+      if (given != options.start.end() && !parameter.fixed) {
+        point.theta[i] = parameter.ToTheta(given->second);
+      }
+    }
+  }
+  return best_of_shape;
+}
+
+}  // namespace mindahl

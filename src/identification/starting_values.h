@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "identification/parameter_layout.h"
+#include "identification/scaled_records.h"
+#include "mindahl/identification/fit.h"
+
+namespace mindahl {
+
+struct StartingPoint {
+  std::vector<double> theta;  // all parameters
+  double sum_of_squares = 0.0;
+};
+
+/// Starting points from the data, best first.
+///
+/// In t(δ; σ/Tc, α) the response is Tc·t + F₀: on a grid over σX/Tc and α the slip force and the
+/// force offset follow by linear regression, so that the grid has two dimensions and needs neither
+/// slopes nor plateaus read off noisy data. A virgin contact is tried unloaded at the first sample,
+/// at the centre of the record and at displacement zero. Points on the same α compete; the best of
+/// each α go on.
+std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
+                                              const ParameterLayout& layout,
+                                              const FitOptions& options, InitialState state);
+
+}  // namespace mindahl
