@@ -1,0 +1,23 @@
+#pragma once
+
+#include <ostream>
+
+namespace mindahl::cli {
+
+/// What every command is given, and where it leaves its exit status.
+struct Console {
+  std::ostream& out;  // results
+  std::ostream& err;  // messages and progress
+  int exit_status = 0;
+};
+
+inline constexpr int kDone = 0;
+inline constexpr int kInternalError = 1;
+inline constexpr int kBadInput = 2;
+inline constexpr int kNotEstablished = 3;  // not converged, not identifiable when strict, not valid
+
+/// The command line, as main() calls it and as tests do.
+/// @returns the exit status of docs/cli.md
+int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
+
+}  // namespace mindahl::cli

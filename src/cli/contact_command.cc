@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/contact_options.h"
+#include "cli/contact_parameters.h"
+#include "cli/json_output.h"
+#include "cli/output_path.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/version.h"
+
+namespace mindahl::cli {
+namespace {
+
+struct ContactCommandOptions {
+  ContactOptions contact;
+  std::string json_path;
+};
+
+void RunContact(const ContactCommandOptions& options, Console& console) {
+  Validate(options.contact);
+  if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
+  const ContactParameters contact = ResolveContact(options.contact);
+  if (!options.json_path.empty()) {
+    nlohmann::ordered_json json = {{"schema", "mindahl.contact/1"}, {"version", Version()}};
+    for (const ContactQuantity& quantity : contact.quantities) {
+      json[quantity.section][quantity.name] = {{"value", NumberOrNull(quantity.value)},
+                                               {"unit", quantity.unit}};
+    }
+    WriteJson(json, options.json_path, console);
+  }
+  if (options.json_path == "-") return;
+  for (const ContactQuantity& quantity : contact.quantities) {
+    console.out << fmt::format("{:<26} {:>24.17g} {:<5} {}\n", quantity.name, quantity.value,
+                               quantity.unit, quantity.meaning);
+  }
+}
+
+}  // namespace
+
+void AddContactCommand(CLI::App& app, Console& console) {
+  const auto options = std::make_shared<ContactCommandOptions>();
+  CLI::App* command = app.add_subcommand(
+      "contact",
+      "Hertz, Mindlin and the Mindlin-Dahl mapping: from materials, radii, load and friction, or\n"
+      "from contact radius and compliance, to sigma = 8a/G*, alpha = 1/3 and Tc = mu N.");
+  AddContactOptions(*command, options->contact);
+  AddFrictionOption(*command, options->contact);
+  command->add_option("--json", options->json_path, "result as JSON; - for standard output")
+      ->type_name("PATH");
+  command->callback([options, &console] { RunContact(*options, console); });
+}
+
+}  // namespace mindahl::cli

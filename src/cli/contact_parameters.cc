@@ -1,0 +1,96 @@
+#include "cli/contact_parameters.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <optional>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::cli {
+namespace {
+
+void CollectMissing(const KnownBody& body, int number, std::vector<std::string>& missing) {
+  if (!body.youngs_modulus) missing.push_back(fmt::format("--youngs-modulus-{}", number));
+  if (!body.poisson_ratio) missing.push_back(fmt::format("--poisson-{}", number));
+  if (!body.radius) missing.push_back(fmt::format("--radius-{}", number));
+}
+
+[[noreturn]] void ThrowMissing(const std::vector<std::string>& missing) {
+  throw InputError(fmt::format(
+      "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
+      "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
+      fmt::join(missing, ", ")));
+}
+
+Body Complete(const KnownBody& body) {
+  return {*body.youngs_modulus, *body.poisson_ratio, *body.radius};
+}
+
+}  // namespace
+
+ContactParameters ResolveContact(const ContactOptions& options) {
+  const KnownContact& known = options.known;
+  std::vector<std::string> missing;
+  if (!options.friction_coefficient) missing.emplace_back("--friction");
+  if (!known.normal_load) missing.emplace_back("--normal-load");
+  const bool by_radius = known.contact_radius || known.tangential_compliance;
+  std::vector<std::string> missing_bodies;
+  CollectMissing(known.body_1, 1, missing_bodies);
+  CollectMissing(known.body_2, 2, missing_bodies);
+  constexpr std::size_t kBodyOptions = 6;
+  if (by_radius && missing_bodies.size() < kBodyOptions) {
+    throw InputError(
+        "a contact is described either by --contact-radius with --compliance or by the materials "
+        "and radii of its bodies: give one of the two");
+  }
+  if (by_radius) {
+    if (!known.contact_radius) missing.emplace_back("--contact-radius");
+    if (!known.tangential_compliance) missing.emplace_back("--compliance");
+  } else {
+    missing.insert(missing.end(), missing_bodies.begin(), missing_bodies.end());
+  }
+  if (!missing.empty()) ThrowMissing(missing);
+
+  ContactParameters result;
+  const double friction = *options.friction_coefficient;
+  const double load = *known.normal_load;
+  auto& quantities = result.quantities;
+  const auto add = [&](const char* section, const char* name, double value, const char* unit,
+                       const char* meaning) {
+    quantities.push_back({section, name, value, unit, meaning});
+  };
+  MindlinContact contact;
+  double maximum_pressure = 0.0;
+  add("contact", "friction_coefficient", friction, "-", "mu");
+  add("contact", "normal_load", load, "N", "N");
+  if (by_radius) {
+    contact = {*known.contact_radius, *known.tangential_compliance, GrossSlipForce(friction, load)};
+    maximum_pressure = HertzMaximumPressure(load, contact.contact_radius);
+    result.dahl = MapMindlinToDahl(contact);
+  } else {
+    const HertzMindlinContact hertz =
+        SolveHertzMindlin(Complete(known.body_1), Complete(known.body_2), load, friction);
+    contact = hertz.Mindlin();
+    maximum_pressure = hertz.maximum_pressure;
+    result.dahl = hertz.dahl;
+    add("contact", "effective_modulus", hertz.effective_modulus, "Pa", "E*");
+    add("contact", "equivalent_radius", hertz.equivalent_radius, "m", "rho");
+    add("contact", "approach", hertz.approach, "m", "normal approach a^2/rho");
+  }
+  add("contact", "compliance", contact.tangential_compliance, "1/Pa",
+      "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
+  add("contact", "contact_radius", contact.contact_radius, "m", "a");
+  add("contact", "maximum_pressure", maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
+  add("contact", "gross_slip_displacement", result.dahl.gross_slip_displacement, "m",
+      "delta_c = 3 mu N G*/(16 a)");
+  add("parameters", "sigma", result.dahl.tangential_stiffness, "N/m", "8a/G*");
+  add("parameters", "alpha", result.dahl.shape_exponent, "-", "1/3, Mindlin");
+  add("parameters", "slip_force", result.dahl.slip_force, "N", "Tc = mu N");
+  for (const ContactQuantity& quantity : quantities) {
+    RequirePositive(fmt::format("{} [{}]", quantity.name, quantity.unit), quantity.value);
+  }
+  return result;
+}
+
+}  // namespace mindahl::cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/contact_options.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+
+namespace mindahl::cli {
+
+/// A line of the report on a contact.
+struct ContactQuantity {
+  std::string section;  // of the JSON
+  std::string name;
+  double value = 0.0;
+  std::string unit;
+  std::string meaning;
+};
+
+struct ContactParameters {
+  MindlinDahlParameters dahl;
+  std::vector<ContactQuantity> quantities;
+};
+
+/// Dahl's parameters of a contact described by friction and normal load with either contact radius
+/// and compliance or the materials and radii of both bodies.
+/// @throws InputError naming the options that are missing
+ContactParameters ResolveContact(const ContactOptions& options);
+
+}  // namespace mindahl::cli

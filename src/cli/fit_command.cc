@@ -1,0 +1,352 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/contact_options.h"
+#include "cli/fit_report.h"
+#include "cli/json_output.h"
+#include "cli/output_path.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/io/atomic_file.h"
+#include "mindahl/io/plot.h"
+#include "mindahl/io/record_reader.h"
+
+namespace mindahl::cli {
+namespace {
+
+struct FitCommandOptions {
+  std::vector<std::string> files;
+  RecordColumns columns;
+  std::string time_window;
+  std::string model = "mindlin-dahl";
+  std::string initial_state = "auto";
+  std::string force_sign = "auto";
+  std::string offsets = "on";
+  bool drift = false;
+  bool strict = false;
+  std::vector<std::string> fix;
+  std::vector<std::string> start;
+  std::vector<std::string> bound;
+  std::optional<double> force_noise;
+  std::optional<double> reversal_gate;
+  ContactOptions contact;
+  std::string json_path;
+  std::string residuals_path;
+  std::string plot_path;
+};
+
+double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
+  double value = 0.0;
+  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) {
+    throw InputError(fmt::format("{}: '{}' is not a number: write {}", option, text, form));
+  }
+  return value;
+}
+
+/// "left<separator>right"
+std::pair<std::string_view, std::string_view> Split(std::string_view text, char separator,
+                                                    std::string_view option,
+                                                    std::string_view form) {
+  const std::size_t at = text.find(separator);
+  if (at == std::string_view::npos || at == 0 || at + 1 == text.size()) {
+    throw InputError(fmt::format("{}: '{}' is incomplete: write {}", option, text, form));
+  }
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+[[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
+  throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
+}
+
+std::map<std::string, double> ParseAssignments(const std::vector<std::string>& texts,
+                                               std::string_view option) {
+  constexpr std::string_view kForm = "NAME=VALUE, e.g. alpha=0.3333";
+  std::map<std::string, double> assignments;
+  for (const std::string& text : texts) {
+    const auto [name, value] = Split(text, '=', option, kForm);
+    const double number = ParseNumber(value, option, kForm);
+    if (!assignments.emplace(name, number).second) ThrowTwice(option, name);
+  }
+  return assignments;
+}
+
+Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form) {
+  const auto [lower, upper] = Split(text, ':', option, form);
+  const Interval interval{ParseNumber(lower, option, form), ParseNumber(upper, option, form)};
+  if (!(interval.lower < interval.upper)) {
+    throw InputError(
+        fmt::format("{}: '{}' is empty: the first number must be the smaller", option, text));
+  }
+  return interval;
+}
+
+std::map<std::string, Interval> ParseBounds(const std::vector<std::string>& texts) {
+  constexpr std::string_view kForm = "NAME=LO:HI, e.g. alpha=0:2";
+  std::map<std::string, Interval> bounds;
+  for (const std::string& text : texts) {
+    const auto [name, interval] = Split(text, '=', "--bound", kForm);
+    const Interval parsed = ParseInterval(interval, "--bound", kForm);
+    if (!bounds.emplace(name, parsed).second) ThrowTwice("--bound", name);
+  }
+  return bounds;
+}
+
+FitOptions MakeFitOptions(const FitCommandOptions& options) {
+  FitOptions fit;
+  fit.model = FindFrictionModel(options.model);
+  if (options.initial_state == "virgin") fit.initial_state = InitialState::kVirgin;
+  if (options.initial_state == "steady") fit.initial_state = InitialState::kSteady;
+  if (options.force_sign == "same") fit.force_sense = 1;
+  if (options.force_sign == "opposite") fit.force_sense = -1;
+  fit.offsets = options.offsets == "on";
+  fit.drift = options.drift;
+  if (options.force_noise) RequirePositive("--force-noise [N]", *options.force_noise);
+  fit.force_noise = options.force_noise;
+  if (options.reversal_gate) RequireNonNegative("--reversal-gate [m]", *options.reversal_gate);
+  fit.reversal_gate = options.reversal_gate;
+  fit.fixed = ParseAssignments(options.fix, "--fix");
+  fit.start = ParseAssignments(options.start, "--start");
+  fit.bounds = ParseBounds(options.bound);
+  return fit;
+}
+
+/// Keeps the samples whose time lies in the window.
+void ApplyTimeWindow(RecordFile& input, const std::string& file, const Interval& window) {
+  Record& record = input.record;
+  if (record.time.empty()) {
+    throw InputError(
+        fmt::format("{}: --time-window needs a time column: name it with --time", file));
+  }
+  Record kept;
+  std::vector<std::size_t> lines;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (record.time[i] < window.lower || record.time[i] > window.upper) continue;
+    kept.displacement.push_back(record.displacement[i]);
+    kept.force.push_back(record.force[i]);
+    kept.time.push_back(record.time[i]);
+    if (!record.normal_load.empty()) kept.normal_load.push_back(record.normal_load[i]);
+    lines.push_back(input.line[i]);
+  }
+  if (kept.size() == 0) {
+    const auto [first, last] = std::ranges::minmax(record.time);
+    throw InputError(
+        fmt::format("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s",
+                    file, window.lower, window.upper, first, last));
+  }
+  input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
+                                    kept.size(), record.size(), window.lower, window.upper));
+  record = std::move(kept);
+  input.line = std::move(lines);
+}
+
+std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& console) {
+  std::vector<RecordFile> inputs;
+  for (const std::string& file : options.files) {
+    RecordFile& input = inputs.emplace_back(ReadRecord(file, options.columns));
+    if (!options.time_window.empty()) {
+      ApplyTimeWindow(input, file,
+                      ParseInterval(options.time_window, "--time-window", "LO:HI in seconds"));
+    }
+    for (const std::string& note : input.notes) {
+      console.err << fmt::format("mindahl fit: note: {}\n", note);
+    }
+  }
+  return inputs;
+}
+
+/// The measured normal load where it was not given: its mean, which a steady test keeps to.
+void UseMeasuredNormalLoad(ContactOptions& contact, const std::vector<RecordFile>& inputs,
+                           Console& console) {
+  if (contact.known.normal_load) return;
+  double sum = 0.0;
+  double count = 0.0;
+  for (const RecordFile& input : inputs) {
+    const std::vector<double>& load = input.record.normal_load;
+    if (load.empty()) return;
+    sum += std::accumulate(load.begin(), load.end(), 0.0);
+    count += static_cast<double>(load.size());
+  }
+  const double mean = sum / count;
+  if (!(mean > 0)) {
+    console.err << fmt::format(
+        "mindahl fit: note: the mean normal load is {:.4g} N, not positive: it is not used\n",
+        mean);
+    return;
+  }
+  contact.known.normal_load = mean;
+  console.err << fmt::format("mindahl fit: note: normal load: the mean of its column, {:.6g} N\n",
+                             mean);
+}
+
+bool Established(const FitResult& fit, bool strict) {
+  if (!fit.converged) return false;
+  if (!strict) return true;
+  return std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
+    return estimate.status == ParameterStatus::kFixed ||
+           estimate.identifiability == Identifiability::kIdentifiable;
+  });
+}
+
+void RunFit(FitCommandOptions options, Console& console) {
+  Validate(options.contact);
+  if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
+  if (!options.residuals_path.empty()) RequireOutputPath("--residuals", options.residuals_path);
+  if (!options.plot_path.empty()) RequireOutputPath("--plot", options.plot_path);
+  const FitOptions fit_options = MakeFitOptions(options);
+  std::vector<RecordFile> inputs = ReadInputs(options, console);
+  UseMeasuredNormalLoad(options.contact, inputs, console);
+  std::vector<Record> records;
+  for (const RecordFile& input : inputs) records.push_back(input.record);
+
+  FitResult fit = Fit(records, fit_options);
+  const bool failed = fit.parameters.empty();
+  console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
+  const FitReport report =
+      MakeFitReport(options.files, std::move(inputs), std::move(fit), options.contact.known);
+  for (const FitWarning& warning : report.fit.warnings) {
+    console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
+  }
+  if (failed) {  // no curve to draw, no residual to list
+    console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.termination);
+    if (!options.json_path.empty()) WriteJson(ToJson(report), options.json_path, console);
+    return;
+  }
+  // The plot first: it alone may still fail.
+  if (!options.plot_path.empty()) WritePlot(ToPlot(report), options.plot_path);
+  if (!options.residuals_path.empty()) {
+    WriteFileAtomically(options.residuals_path, ResidualsCsv(report));
+  }
+  if (!options.json_path.empty()) WriteJson(ToJson(report), options.json_path, console);
+  if (options.json_path != "-") console.out << ToText(report);
+}
+
+void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {
+  const std::string group = "Columns and units";
+  const auto column = [&](const char* name, ColumnChoice& choice, const char* description) {
+    command.add_option(name, choice.column, description)->type_name("COL")->group(group);
+  };
+  const auto unit = [&](const char* name, ColumnChoice& choice, const char* description) {
+    command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
+  };
+  column("--displacement", options.columns.displacement,
+         "column by header name or 1-based number; default a recognised name, else column 1");
+  column("--force", options.columns.force, "likewise, else column 2");
+  column("--time", options.columns.time, "time column; optional");
+  column("--normal-load-column", options.columns.normal_load, "normal load column; optional");
+  unit("--displacement-unit", options.columns.displacement,
+       "m, mm, um, nm, in; default the header's, else m");
+  unit("--force-unit", options.columns.force,
+       "N, mN, uN, kN, MN, lbf, kgf; default the header's, else N");
+  unit("--time-unit", options.columns.time, "s, ms, us, min; default the header's, else s");
+  unit("--normal-load-unit", options.columns.normal_load, "as --force-unit");
+  command.add_option("--time-window", options.time_window, "fit only samples from LO to HI [s]")
+      ->type_name("LO:HI")
+      ->group(group);
+}
+
+void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
+  const std::string group = "Model";
+  std::vector<std::string> models;
+  std::string description = "friction model:";
+  for (const FrictionModel& model : FrictionModels()) {
+    if (model.scaled_by_peak) continue;
+    models.emplace_back(model.name);
+    description += fmt::format(" {} ({});", model.name, model.title);
+  }
+  description.back() = '.';
+  command.add_option("--model", options.model, description)
+      ->capture_default_str()
+      ->check(CLI::IsMember(models))
+      ->group(group);
+  command
+      .add_option("--initial-state", options.initial_state,
+                  "does the record start from an unloaded contact; auto fits both and keeps the "
+                  "smaller AICc")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "virgin", "steady"}))
+      ->group(group);
+  command
+      .add_option(
+          "--force-sign", options.force_sign,
+          "has the force the displacement's sense in the file; auto decides from the sign of "
+          "the loop's energy")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "same", "opposite"}))
+      ->group(group);
+  command.add_option("--offsets", options.offsets, "fit offsets of force and displacement")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"on", "off"}))
+      ->group(group);
+  command.add_flag("--drift", options.drift, "fit a force drift linear in time [N/s]")
+      ->group(group);
+  command
+      .add_option(
+          "--fix", options.fix,
+          "hold a parameter: sigma [N/m], alpha [-], slip_force [N], force_offset [N], "
+          "displacement_offset [m], force_drift [N/s]; with several files the last three are "
+          "numbered, force_offset_2")
+      ->type_name("NAME=VALUE")
+      ->group(group);
+  command.add_option("--start", options.start, "start from a value instead of the data's")
+      ->type_name("NAME=VALUE")
+      ->group(group);
+  command.add_option("--bound", options.bound, "keep a parameter between two values")
+      ->type_name("NAME=LO:HI")
+      ->group(group);
+  AddOptional(command, "--force-noise", options.force_noise,
+              "known standard deviation of the force [N]; default from the residuals", "N")
+      ->group(group);
+  AddOptional(command, "--reversal-gate", options.reversal_gate,
+              "excursions up to this [m] are noise, not reversals; default from the data", "M")
+      ->group(group);
+}
+
+}  // namespace
+
+void AddFitCommand(CLI::App& app, Console& console) {
+  const auto options = std::make_shared<FitCommandOptions>();
+  CLI::App* command = app.add_subcommand("fit",
+                                         "Fits sigma, alpha and Tc to one or more records of a "
+                                         "contact (several files: one joint fit)\n"
+                                         "and translates them into the contact. Exit status 3 when "
+                                         "the fit does not converge or, with\n"
+                                         "--strict, a parameter is not identifiable.");
+  command->add_option("files", options->files, "CSV records of one contact")
+      ->type_name("FILE")
+      ->required();
+  AddColumnOptions(*command, *options);
+  AddModelOptions(*command, *options);
+  AddContactOptions(*command, options->contact);
+  const std::string group = "Results";
+  command->add_option("--json", options->json_path, "result as JSON; - for standard output alone")
+      ->type_name("PATH")
+      ->group(group);
+  command
+      ->add_option("--residuals", options->residuals_path,
+                   "measured and fitted force of every sample as CSV")
+      ->type_name("PATH")
+      ->group(group);
+  command->add_option("--plot", options->plot_path, "loop and residuals as svg or png")
+      ->type_name("PATH")
+      ->group(group);
+  command
+      ->add_flag("--strict", options->strict,
+                 "exit status 3 unless every free parameter is identifiable")
+      ->group(group);
+  command->callback([options, &console] { RunFit(*options, console); });
+}
+
+}  // namespace mindahl::cli

@@ -1,0 +1,596 @@
+#include "cli/fit_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+#include "cli/json_output.h"
+#include "mindahl/contact/cattaneo_mindlin.h"
+#include "mindahl/core/version.h"
+#include "mindahl/io/csv_writer.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl::cli {
+namespace {
+
+/// As the contact module takes it: infinite where the fit leaves a parameter open.
+UncertainValue Uncertain(const ParameterEstimate& estimate) {
+  const bool known = estimate.status == ParameterStatus::kFixed;
+  return {estimate.value,
+          estimate.standard_error.value_or(known ? 0.0 : std::numeric_limits<double>::infinity())};
+}
+
+void DescribeLoop(FitReport& report) {
+  const BranchLaw& law = report.fit.law;
+  const LoopMeasures& measures = report.fit.WidestRecord().measures;
+  report.model_energy = SteadyLoopEnergy(*report.fit.model, law, measures.amplitude);
+  const double energy = measures.energy_per_cycle.value_or(*report.model_energy);
+  if (measures.amplitude > 0 && measures.peak_force > 0) {
+    report.energy_ratio = energy / (4 * measures.amplitude * measures.peak_force);
+  }
+  const double gross_slip = GrossSlipDisplacement(law);
+  if (std::isfinite(gross_slip)) report.gross_slip_displacement = gross_slip;
+  const double peak = SteadyPeakForce(*report.fit.model, law, measures.amplitude);
+  // A law with α >= 1 never slips as a whole; within 1 % of Tc no record tells the difference.
+  constexpr double kAsGoodAsSlip = 0.99;
+  report.gross_slip = std::isfinite(gross_slip) ? measures.amplitude >= gross_slip
+                                                : peak >= kAsGoodAsSlip * law.slip_force;
+  report.stick_radius_ratio =
+      report.gross_slip ? 0.0 : StickRadiusRatio(std::min(peak, law.slip_force), law.slip_force);
+}
+
+void TestMapping(FitReport& report) {
+  const ParameterEstimate& alpha = *report.fit.Find("alpha");
+  if (alpha.status == ParameterStatus::kFixed) {
+    report.warnings.push_back({"alpha_not_tested",
+                               "mapping: alpha was held fixed, so alpha = 1/3 is not tested and "
+                               "alpha_minus_third, z and p_value are null; use --model "
+                               "mindlin-dahl without --fix alpha"});
+    return;
+  }
+  report.alpha_minus_third = alpha.value - kMindlinShapeExponent;
+  if (!alpha.standard_error || !(*alpha.standard_error > 0)) {
+    report.warnings.push_back(
+        {"alpha_not_tested",
+         "mapping: alpha has no standard error (at a bound or undetermined), so alpha = 1/3 is not "
+         "tested and z and p_value are null"});
+    return;
+  }
+  report.alpha_z = *report.alpha_minus_third / *alpha.standard_error;
+  const boost::math::students_t distribution(report.fit.residuals.degrees_of_freedom);
+  report.alpha_p_value =
+      2 * boost::math::cdf(boost::math::complement(distribution, std::abs(*report.alpha_z)));
+}
+
+void AddName(std::string& list, std::string_view name) {
+  list += list.empty() ? "" : ", ";
+  list += name;
+}
+
+/// A sentence for each standard error and interval that is null, and why.
+void ExplainMissingErrors(FitReport& report) {
+  const auto warn = [&](const char* code, std::string message) {
+    report.warnings.push_back({code, std::move(message)});
+  };
+  std::string held;
+  std::string uncorrelated;
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    if (estimate.status == ParameterStatus::kFixed) {
+      AddName(held, estimate.name);
+      continue;
+    }
+    if (!estimate.standard_error) {
+      const bool at_bound = estimate.status != ParameterStatus::kFree;
+      warn("no_standard_error",
+           fmt::format("{}: standard_error is null: {}", estimate.name,
+                       at_bound ? "it lies at its bound, where the interval is one-sided"
+                                : "the record leaves it open"));
+    }
+    if (!estimate.lower95 || !estimate.upper95) {
+      warn("open_interval",
+           fmt::format("{}: ci95 is open {}: the record sets no limit there", estimate.name,
+                       estimate.lower95   ? "above"
+                       : estimate.upper95 ? "below"
+                                          : "on both sides"));
+    }
+  }
+  if (!held.empty()) {
+    warn("held_fixed", fmt::format("{}: not fitted, so standard_error and ci95 are null", held));
+  }
+  const std::size_t count = report.fit.parameters.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const ParameterEstimate& estimate = report.fit.parameters[i];
+    const bool defined = std::isfinite(report.fit.correlation[i * count + i]);
+    if (estimate.status != ParameterStatus::kFixed && !defined) {
+      AddName(uncorrelated, estimate.name);
+    }
+  }
+  if (!uncorrelated.empty()) {
+    warn("no_correlation",
+         fmt::format("correlation: null with {}: at a bound or undetermined", uncorrelated));
+  }
+  const IdentifiedContact& contact = report.contact;
+  const auto explain = [&](const char* name, const std::optional<UncertainValue>& value) {
+    if (!value || std::isfinite(value->standard_error)) return;
+    warn("no_standard_error",
+         fmt::format("contact: {}: standard_error is null, as that of the parameter it rests on",
+                     name));
+  };
+  explain("friction_coefficient", contact.friction_coefficient);
+  explain("contact_radius", contact.contact_radius);
+  explain("compliance", contact.tangential_compliance);
+  explain("equivalent_radius", contact.equivalent_radius);
+  explain("maximum_pressure", contact.maximum_pressure);
+  if (contact.hertz) {
+    explain("hertz_mindlin: gross_slip_displacement", contact.hertz->gross_slip_displacement);
+  }
+  if (!report.sigma_over_hertz_mindlin ||
+      !std::isfinite(report.sigma_over_hertz_mindlin->standard_error)) {
+    warn("no_standard_error",
+         "mapping: sigma_over_hertz_mindlin_standard_error is null, as sigma has no standard error "
+         "or there is no ratio");
+  }
+}
+
+std::string_view Name(ParameterStatus status) {
+  switch (status) {
+    case ParameterStatus::kFree:
+      return "free";
+    case ParameterStatus::kFixed:
+      return "fixed";
+    case ParameterStatus::kAtLowerBound:
+      return "at_lower_bound";
+    case ParameterStatus::kAtUpperBound:
+      return "at_upper_bound";
+  }
+  return "";
+}
+
+std::string_view Name(Identifiability identifiability) {
+  switch (identifiability) {
+    case Identifiability::kIdentifiable:
+      return "identifiable";
+    case Identifiability::kBoundedBelow:
+      return "bounded_below";
+    case Identifiability::kBoundedAbove:
+      return "bounded_above";
+    case Identifiability::kNotIdentifiable:
+      return "not_identifiable";
+  }
+  return "";
+}
+
+std::string_view Name(InitialState state) {
+  return state == InitialState::kVirgin ? "virgin" : "steady";
+}
+
+nlohmann::ordered_json ParametersJson(const FitResult& fit) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  if (fit.parameters.empty()) {  // the fit failed
+    for (const auto& [name, unit] :
+         {std::pair{"sigma", "N/m"}, {"alpha", "-"}, {"slip_force", "N"}}) {
+      json[name] = {{"value", nullptr},
+                    {"unit", unit},
+                    {"standard_error", nullptr},
+                    {"ci95", {nullptr, nullptr}},
+                    {"status", Name(ParameterStatus::kFree)},
+                    {"identifiability", Name(Identifiability::kNotIdentifiable)}};
+    }
+  }
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    json[estimate.name] = {
+        {"value", NumberOrNull(estimate.value)},
+        {"unit", estimate.unit},
+        {"standard_error", NumberOrNull(estimate.standard_error)},
+        {"ci95", {NumberOrNull(estimate.lower95), NumberOrNull(estimate.upper95)}},
+        {"status", Name(estimate.status)},
+        {"identifiability", Name(estimate.identifiability)}};
+  }
+  return json;
+}
+
+nlohmann::ordered_json CorrelationJson(const FitResult& fit) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  const std::size_t count = fit.parameters.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (fit.parameters[i].status == ParameterStatus::kFixed) continue;
+    for (std::size_t j = 0; j < count; ++j) {
+      if (fit.parameters[j].status == ParameterStatus::kFixed) continue;
+      json[fit.parameters[i].name][fit.parameters[j].name] =
+          NumberOrNull(fit.correlation[i * count + j]);
+    }
+  }
+  return json;
+}
+
+nlohmann::ordered_json LawJson(const BranchLaw& law) {
+  return {{"sigma", law.tangential_stiffness},
+          {"alpha", law.shape_exponent},
+          {"slip_force", law.slip_force}};
+}
+
+nlohmann::ordered_json SolverJson(const FitResult& fit) {
+  nlohmann::ordered_json starts = nlohmann::ordered_json::array();
+  for (const StartReport& start : fit.starts) {
+    starts.push_back({{"start", LawJson(start.start)},
+                      {"initial_rms", NumberOrNull(start.initial_rms)},
+                      {"reached", LawJson(start.reached)},
+                      {"final_rms", NumberOrNull(start.final_rms)},
+                      {"converged", start.converged}});
+  }
+  return {{"converged", fit.converged},
+          {"iterations", fit.iterations},
+          {"termination", fit.termination},
+          {"starts", std::move(starts)}};
+}
+
+nlohmann::ordered_json InputJson(const FitReport& report) {
+  std::size_t samples = 0;
+  std::size_t cycles = 0;
+  std::size_t reversals = 0;
+  nlohmann::ordered_json gates = nlohmann::ordered_json::array();
+  for (const RecordFile& input : report.inputs) samples += input.record.size();
+  for (const RecordFit& record : report.fit.records) {
+    cycles += record.measures.cycles;
+    reversals += record.reversals.size();
+    gates.push_back(record.reversal_gate);
+  }
+  const RecordFile& first = report.inputs.front();
+  nlohmann::ordered_json units = {{"displacement", first.displacement.unit},
+                                  {"force", first.force.unit}};
+  if (first.time) units["time"] = first.time->unit;
+  if (first.normal_load) units["normal_load"] = first.normal_load->unit;
+  return {{"files", report.files},
+          {"samples", samples},
+          {"cycles", cycles},
+          {"reversals", reversals},
+          {"units", std::move(units)},
+          {"reversal_gate", std::move(gates)},
+          {"force_sign", report.fit.force_sense > 0 ? "same" : "opposite"}};
+}
+
+nlohmann::ordered_json ResidualsJson(const ResidualStatistics& residuals) {
+  const bool computed = residuals.samples > 0;
+  const auto number = [computed](double value) -> nlohmann::ordered_json {
+    return computed ? NumberOrNull(value) : nullptr;
+  };
+  return {{"rms", number(residuals.rms)},
+          {"max_abs", number(residuals.max_abs)},
+          {"normalized_rms", number(residuals.normalized_rms)},
+          {"r_squared", number(residuals.r_squared)},
+          {"durbin_watson", number(residuals.durbin_watson)},
+          {"effective_samples", number(residuals.effective_samples)},
+          {"degrees_of_freedom", number(residuals.degrees_of_freedom)}};
+}
+
+nlohmann::ordered_json UncertainJson(const std::optional<UncertainValue>& value,
+                                     std::string_view unit) {
+  if (!value) return nullptr;
+  return {{"value", NumberOrNull(value->value)},
+          {"standard_error", NumberOrNull(value->standard_error)},
+          {"unit", unit}};
+}
+
+nlohmann::ordered_json SlipRegimeJson(const FitReport& report) {
+  if (!report.model_energy) return nullptr;  // the fit failed
+  return report.gross_slip ? "gross" : "partial";
+}
+
+nlohmann::ordered_json ContactJson(const FitReport& report) {
+  const IdentifiedContact& contact = report.contact;
+  nlohmann::ordered_json json = {
+      {"friction_coefficient", UncertainJson(contact.friction_coefficient, "-")},
+      {"contact_radius", UncertainJson(contact.contact_radius, "m")},
+      {"compliance", UncertainJson(contact.tangential_compliance, "1/Pa")},
+      {"compliance_definition", "G* = (2-nu1)/G1 + (2-nu2)/G2"},
+      {"equivalent_radius", UncertainJson(contact.equivalent_radius, "m")},
+      {"maximum_pressure", UncertainJson(contact.maximum_pressure, "Pa")},
+      {"normal_load", NumberOrNull(report.given_normal_load)}};
+  if (contact.hertz) {
+    json["hertz_mindlin"] = {
+        {"contact_radius", contact.hertz->contact_radius},
+        {"sigma", contact.hertz->tangential_stiffness},
+        {"gross_slip_displacement", UncertainJson(contact.hertz->gross_slip_displacement, "m")},
+        {"equivalent_radius", contact.hertz->equivalent_radius},
+        {"maximum_pressure", contact.hertz->maximum_pressure}};
+  }
+  return json;
+}
+
+std::string Significant(double value) { return fmt::format("{:.6g}", value); }
+
+std::string Bound(const std::optional<double>& value) {
+  return value ? fmt::format("{:.5g}", *value) : "open";
+}
+
+std::string Words(Identifiability identifiability) {
+  std::string words(Name(identifiability));
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
+std::string ParameterTable(const FitResult& fit) {
+  std::string text = fmt::format("{:<22} {:<5} {:>14} {:>12}   {:<27} {}\n", "parameter", "unit",
+                                 "value", "std. error", "95 % interval", "verdict");
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.status == ParameterStatus::kFixed) {
+      text += fmt::format("{:<22} {:<5} {:>14} {:>12}   {:<27} {}\n", estimate.name, estimate.unit,
+                          Significant(estimate.value), "-", "-", "fixed");
+      continue;
+    }
+    std::string verdict = Words(estimate.identifiability);
+    if (estimate.status == ParameterStatus::kAtLowerBound) verdict += ", at its lower bound";
+    if (estimate.status == ParameterStatus::kAtUpperBound) verdict += ", at its upper bound";
+    text += fmt::format(
+        "{:<22} {:<5} {:>14} {:>12}   {:<27} {}\n", estimate.name, estimate.unit,
+        Significant(estimate.value),
+        estimate.standard_error ? fmt::format("{:.2g}", *estimate.standard_error) : "-",
+        fmt::format("{} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
+  }
+  return text;
+}
+
+std::string ContactText(const IdentifiedContact& contact) {
+  std::string text;
+  const auto line = [&](const char* name, const std::optional<UncertainValue>& value,
+                        const char* unit, const char* formula) {
+    if (!value) return;
+    const std::string error = std::isfinite(value->standard_error)
+                                  ? fmt::format("± {:.2g}", value->standard_error)
+                                  : "± open";
+    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} {}\n", name, Significant(value->value), error,
+                        unit, formula);
+  };
+  line("friction coefficient", contact.friction_coefficient, "", "μ = Tc/N");
+  line("contact radius", contact.contact_radius, "m", "a = σG*/8");
+  line("tangential compliance", contact.tangential_compliance, "1/Pa",
+       "G* = 8a/σ, a compliance: (2−ν₁)/G₁ + (2−ν₂)/G₂");
+  line("equivalent radius", contact.equivalent_radius, "m", "ρ = 4E*a³/(3N)");
+  line("maximum pressure", contact.maximum_pressure, "Pa", "p₀ = 3N/(2πa²)");
+  for (const std::string& sentence : contact.redundant) text += fmt::format("  {}\n", sentence);
+  for (const std::string& sentence : contact.unidentified) {
+    text += fmt::format("  not identified: {}\n", sentence);
+  }
+  return text;
+}
+
+std::string MappingText(const FitReport& report) {
+  std::string text;
+  if (report.alpha_z) {
+    // Two-sided 5 %: the usual convention.
+    constexpr double kSignificance = 0.05;
+    text += fmt::format(
+        "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}: Mindlin's exponent is {}\n",
+        *report.alpha_minus_third, *report.alpha_z, *report.alpha_p_value,
+        *report.alpha_p_value < kSignificance ? "rejected" : "tenable");
+  }
+  if (report.sigma_over_hertz_mindlin) {
+    text += fmt::format("  σ/(8a/G*) = {:.4g} ± {:.2g}: 1 where Hertz and Mindlin hold\n",
+                        report.sigma_over_hertz_mindlin->value,
+                        report.sigma_over_hertz_mindlin->standard_error);
+  }
+  return text.empty() ? "  not tested\n" : text;
+}
+
+}  // namespace
+
+FitReport MakeFitReport(std::vector<std::string> files, std::vector<RecordFile> inputs,
+                        FitResult fit, const KnownContact& known) {
+  FitReport report;
+  report.files = std::move(files);
+  report.inputs = std::move(inputs);
+  report.fit = std::move(fit);
+  report.warnings = report.fit.warnings;
+  report.given_normal_load = known.normal_load;
+  if (report.fit.parameters.empty()) {
+    report.warnings.push_back(
+        {"fit_failed", fmt::format("the fit failed, so no parameter, residual, loop, contact or "
+                                   "mapping value was computed: {}",
+                                   report.fit.termination)});
+    return report;
+  }
+
+  DescribeLoop(report);
+  TestMapping(report);
+  const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
+  report.contact =
+      IdentifyContact(Uncertain(*report.fit.Find("sigma")), Uncertain(slip_force), known);
+  if (slip_force.identifiability != Identifiability::kIdentifiable && known.normal_load) {
+    report.contact.friction_coefficient.reset();
+    report.contact.unidentified.push_back(fmt::format(
+        "friction coefficient needs an identifiable slip force; from this loop it is at "
+        "least {:.3g}",
+        slip_force.lower95.value_or(0.0) / *known.normal_load));
+  }
+  for (const std::string& sentence : report.contact.unidentified) {
+    report.warnings.push_back({"contact_not_identified", "contact: " + sentence});
+  }
+  for (const std::string& sentence : report.contact.redundant) {
+    report.warnings.push_back({"contact_redundant", "contact: " + sentence});
+  }
+  report.sigma_over_hertz_mindlin = report.contact.hertz
+                                        ? report.contact.hertz->sigma_over_hertz_mindlin
+                                        : report.contact.sigma_over_mindlin;
+  if (!report.sigma_over_hertz_mindlin) {
+    report.warnings.push_back(
+        {"stiffness_not_tested",
+         "mapping: sigma_over_hertz_mindlin needs a contact radius known besides the fit: "
+         "materials, "
+         "radii and load of both bodies, or --contact-radius with --compliance or materials"});
+  }
+  if (!report.fit.WidestRecord().measures.energy_per_cycle) {
+    report.warnings.push_back(
+        {"energy_not_measured",
+         "loop: the record closes no cycle, so energy_per_cycle_measured is null and energy_ratio "
+         "is the model's"});
+  }
+  if (!report.gross_slip_displacement) {
+    report.warnings.push_back({"no_gross_slip",
+                               "loop: with alpha >= 1 the force only approaches slip_force, so "
+                               "gross_slip_displacement is null"});
+  }
+  if (!report.energy_ratio) {
+    report.warnings.push_back(
+        {"no_energy_ratio",
+         "loop: energy_ratio needs a force that differs between the extremes of the displacement"});
+  }
+  ExplainMissingErrors(report);
+  return report;
+}
+
+nlohmann::ordered_json ToJson(const FitReport& report) {
+  const FitResult& fit = report.fit;
+  nlohmann::ordered_json json = {{"schema", "mindahl.fit/1"},
+                                 {"version", Version()},
+                                 {"input", InputJson(report)},
+                                 {"model", fit.model->name},
+                                 {"initial_state", Name(fit.initial_state)},
+                                 {"parameters", ParametersJson(fit)},
+                                 {"correlation", CorrelationJson(fit)}};
+  json["residuals"] = ResidualsJson(fit.residuals);
+  json["solver"] = SolverJson(fit);
+  const LoopMeasures& measures = fit.WidestRecord().measures;
+  json["loop"] = {{"amplitude", measures.amplitude},
+                  {"centre", measures.centre},
+                  {"peak_force", measures.peak_force},
+                  {"energy_per_cycle_measured", NumberOrNull(measures.energy_per_cycle)},
+                  {"energy_per_cycle_model", NumberOrNull(report.model_energy)},
+                  {"energy_ratio", NumberOrNull(report.energy_ratio)},
+                  {"slip_regime", SlipRegimeJson(report)},
+                  {"gross_slip_displacement", NumberOrNull(report.gross_slip_displacement)},
+                  {"stick_radius_ratio", NumberOrNull(report.stick_radius_ratio)}};
+  json["contact"] = ContactJson(report);
+  json["mapping"] = {
+      {"alpha_minus_third", NumberOrNull(report.alpha_minus_third)},
+      {"z", NumberOrNull(report.alpha_z)},
+      {"p_value", NumberOrNull(report.alpha_p_value)},
+      {"sigma_over_hertz_mindlin", report.sigma_over_hertz_mindlin
+                                       ? NumberOrNull(report.sigma_over_hertz_mindlin->value)
+                                       : nullptr},
+      {"sigma_over_hertz_mindlin_standard_error",
+       report.sigma_over_hertz_mindlin
+           ? NumberOrNull(report.sigma_over_hertz_mindlin->standard_error)
+           : nullptr}};
+  json["warnings"] = nlohmann::ordered_json::array();
+  for (const FitWarning& warning : report.warnings) {
+    json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+  }
+  return json;
+}
+
+std::string ToText(const FitReport& report) {
+  const FitResult& fit = report.fit;
+  const RecordFit& widest = fit.WidestRecord();
+  std::size_t samples = 0;
+  std::size_t reversals = 0;
+  std::size_t cycles = 0;
+  for (const RecordFit& record : fit.records) {
+    samples += record.residual.size();
+    reversals += record.reversals.size();
+    cycles += record.measures.cycles;
+  }
+  std::string text = fmt::format(
+      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} m), {} cycles; force has "
+      "the "
+      "{} sense as displacement\n\n",
+      fit.model->title, Name(fit.initial_state),
+      fit.converged ? "converged" : "NOT CONVERGED: " + fit.termination, samples, reversals,
+      widest.reversal_gate, cycles, fit.force_sense > 0 ? "same" : "opposite");
+  text += ParameterTable(fit);
+  const ResidualStatistics& residuals = fit.residuals;
+  text += fmt::format(
+      "\nresiduals: rms {:.4g} N ({:.3g} % of Tc), largest {:.4g} N, R² {:.6f}, Durbin-Watson "
+      "{:.2f},\n           {:.0f} effective samples of {}\n",
+      residuals.rms, 100 * residuals.normalized_rms, residuals.max_abs, residuals.r_squared,
+      residuals.durbin_watson, residuals.effective_samples, samples);
+  const LoopMeasures& measures = widest.measures;
+  text += fmt::format(
+      "\nloop: X = {:.5g} m, T* = {:.5g} N, {} slip{}\n      energy per cycle {} J measured, "
+      "{:.5g} J "
+      "model; energy ratio {:.4g}, gross slip from {:.4g}\n",
+      measures.amplitude, measures.peak_force, report.gross_slip ? "gross" : "partial",
+      report.gross_slip_displacement
+          ? fmt::format(" (gross-slip displacement {:.5g} m)", *report.gross_slip_displacement)
+          : "",
+      measures.energy_per_cycle ? fmt::format("{:.5g}", *measures.energy_per_cycle) : "not",
+      *report.model_energy, report.energy_ratio.value_or(0.0),
+      GrossSlipEnergyRatio(fit.law.shape_exponent));
+  text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report.contact);
+  text += "\nis it Mindlin's contact?\n" + MappingText(report);
+  return text;
+}
+
+Plot ToPlot(const FitReport& report) {
+  Plot plot;
+  const ParameterEstimate& sigma = *report.fit.Find("sigma");
+  const ParameterEstimate& alpha = *report.fit.Find("alpha");
+  const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
+  plot.title = fmt::format("{}: σ = {:.4g} N/m, α = {:.4g}, Tc = {:.4g} N", report.fit.model->name,
+                           sigma.value, alpha.value, slip_force.value);
+  double extent = 0.0;
+  for (const RecordFit& fit : report.fit.records) {
+    extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
+  }
+  const auto [unit, per_unit] = extent < 1e-6   ? std::pair{"nm", 1e9}
+                                : extent < 1e-3 ? std::pair{"µm", 1e6}
+                                : extent < 1    ? std::pair{"mm", 1e3}
+                                                : std::pair{"m", 1.0};
+  const auto scaled = [per_unit = per_unit](std::vector<double> values) {
+    for (double& value : values) value *= per_unit;
+    return values;
+  };
+  PlotPanel loop{.x_label = "", .y_label = "force [N]", .series = {}, .height = 2.5};
+  PlotPanel residual{.x_label = fmt::format("displacement [{}]", unit),
+                     .y_label = "fitted − measured [N]",
+                     .series = {}};
+  for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
+    const RecordFit& fit = report.fit.records[r];
+    const Record& record = report.inputs[r].record;
+    const std::string suffix =
+        report.files.size() > 1 ? fmt::format(" {}", report.files[r]) : std::string();
+    loop.series.push_back(
+        {"measured" + suffix, scaled(record.displacement), record.force, PlotStyle::kPoints});
+    loop.series.push_back(
+        {"fitted" + suffix, scaled(record.displacement), fit.fitted_force, PlotStyle::kLine});
+    residual.series.push_back({"", scaled(record.displacement), fit.residual, PlotStyle::kPoints});
+  }
+  plot.panels = {std::move(loop), std::move(residual)};
+  return plot;
+}
+
+std::string ResidualsCsv(const FitReport& report) {
+  std::vector<double> file;
+  std::vector<double> time;
+  std::vector<double> displacement;
+  std::vector<double> force;
+  std::vector<double> fitted;
+  std::vector<double> residual;
+  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  bool timed = true;
+  for (std::size_t r = 0; r < report.inputs.size(); ++r) {
+    const Record& record = report.inputs[r].record;
+    timed = timed && !record.time.empty();
+    file.insert(file.end(), record.size(), static_cast<double>(r + 1));
+    append(time, record.time);
+    append(displacement, record.displacement);
+    append(force, record.force);
+    append(fitted, report.fit.records[r].fitted_force);
+    append(residual, report.fit.records[r].residual);
+  }
+  std::vector<CsvColumn> columns;
+  if (report.inputs.size() > 1) columns.push_back({"file", file});
+  if (timed) columns.push_back({"time [s]", time});
+  columns.push_back({"displacement [m]", displacement});
+  columns.push_back({"force [N]", force});
+  columns.push_back({"fitted_force [N]", fitted});
+  columns.push_back({"residual [N]", residual});
+  return CsvText(columns);
+}
+
+}  // namespace mindahl::cli

@@ -1,0 +1,127 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/json_output.h"
+#include "cli/output_path.h"
+#include "cli/whole_number.h"
+#include "mindahl/core/version.h"
+#include "mindahl/identification/mapping_validation.h"
+
+namespace mindahl::cli {
+namespace {
+
+struct ValidateOptions {
+  ValidationOptions validation;
+  std::string json_path;
+};
+
+nlohmann::ordered_json ToJson(const ValidationReport& report, const ValidationOptions& options) {
+  nlohmann::ordered_json json = {
+      {"schema", "mindahl.validate/1"}, {"version", Version()}, {"cases", options.cases},
+      {"seed", options.seed},           {"fits", report.fits},  {"failures", report.failures},
+      {"passed", report.failures == 0}};
+  for (const ValidationRow& row : report.rows) {
+    nlohmann::ordered_json entry = {
+        {"lambda", row.lambda},
+        {"noise", row.noise},
+        {"cases", row.cases},
+        {"failures", row.failures},
+        {"not_identifiable", row.undetermined},
+        {"tolerance", row.tolerance},
+        {"sigma_error", {{"median", row.median_sigma_error}, {"worst", row.worst_sigma_error}}},
+        {"alpha_error", {{"median", row.median_alpha_error}, {"worst", row.worst_alpha_error}}},
+        {"slip_force_error",
+         {{"median", row.median_slip_force_error}, {"worst", row.worst_slip_force_error}}}};
+    if (row.noise > 0) {
+      entry["worst_standard_errors"] = row.worst_standardized;
+      entry["coverage"] = row.coverage;
+    }
+    json["rows"].push_back(std::move(entry));
+  }
+  json["failed_cases"] = report.failed_cases;
+  return json;
+}
+
+std::string Table(const ValidationReport& report) {
+  std::string text =
+      "noise    lambda  cases  |sigma/(8a/G*)-1|      |alpha-1/3|           |Tc/(mu N)-1|         "
+      "not    coverage  worst   failed\n"
+      "of T*                   median   worst        median   worst        median   worst        "
+      "ident.   of 95%   error\n";
+  for (const ValidationRow& row : report.rows) {
+    const std::string worst =
+        row.noise > 0
+            ? fmt::format("{:5.1f} SE", row.worst_standardized)
+            : fmt::format("{:8.1e}", std::max({row.worst_sigma_error, row.worst_alpha_error,
+                                               row.worst_slip_force_error}));
+    text += fmt::format(
+        "{:<8g} {:<6g} {:6}   {:.1e}  {:.1e}     {:.1e}  {:.1e}     {:.1e}  {:.1e}     {:5}   "
+        "{:>7} "
+        "{:>9} {:6}\n",
+        row.noise, row.lambda, row.cases, row.median_sigma_error, row.worst_sigma_error,
+        row.median_alpha_error, row.worst_alpha_error, row.median_slip_force_error,
+        row.worst_slip_force_error, row.undetermined,
+        row.noise > 0 ? fmt::format("{:.1f} %", 100 * row.coverage) : "-", worst, row.failures);
+  }
+  return text;
+}
+
+void RunValidate(const ValidateOptions& options, Console& console) {
+  if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
+  const std::size_t step = std::max<std::size_t>(options.validation.cases / 10, 1);
+  const ValidationReport report = ValidateMapping(options.validation, [&](std::size_t done) {
+    if (done % step == 0) {
+      console.err << fmt::format("{} of {} contacts\n", done, options.validation.cases)
+                  << std::flush;
+    }
+  });
+  if (!options.json_path.empty()) {
+    WriteJson(ToJson(report, options.validation), options.json_path, console);
+  }
+  if (options.json_path != "-") {
+    console.out << fmt::format(
+        "Mindlin loops of {} contacts (seed {}), fitted with free alpha: {} fits\n\n{}\n",
+        options.validation.cases, options.validation.seed, report.fits, Table(report));
+    console.out << fmt::format(
+        "Tolerance: noise-free {:g} relative for lambda >= 0.5 and {:g} below; with noise the "
+        "truth "
+        "within\n{:g} standard errors (likelihood ratio). A parameter may be reported as not "
+        "identifiable with noise only.\n",
+        NoiseFreeTolerance(0.5), NoiseFreeTolerance(0.3), kStandardErrorsTolerated);
+    console.out << (report.failures == 0
+                        ? std::string("passed: every case within its tolerance\n")
+                        : fmt::format("FAILED: {} of {} fits\n", report.failures, report.fits));
+  }
+  for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
+  console.exit_status = report.failures == 0 ? kDone : kNotEstablished;
+}
+
+}  // namespace
+
+void AddValidateCommand(CLI::App& app, Console& console) {
+  constexpr std::uint64_t kMostCases = 1'000'000'000;
+  const auto options = std::make_shared<ValidateOptions>();
+  CLI::App* command = app.add_subcommand(
+      "validate",
+      "Tests the mapping: fits Mindlin loops of many contacts at many amplitudes and noise levels\n"
+      "and compares sigma with 8a/G*, alpha with 1/3 and Tc with mu N. Exit status 3 when a case\n"
+      "misses its tolerance.");
+  command->add_option("--cases", options->validation.cases, "contacts to draw")
+      ->capture_default_str()
+      ->check(WholeNumber(1, kMostCases));
+  command->add_option("--seed", options->validation.seed, "of the random numbers")
+      ->capture_default_str()
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+  command->add_option("--json", options->json_path, "report as JSON; - for standard output")
+      ->type_name("PATH");
+  command->callback([options, &console] { RunValidate(*options, console); });
+}
+
+}  // namespace mindahl::cli
