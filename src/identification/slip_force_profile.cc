@@ -118,6 +118,12 @@ SlipForceProfile ProfileSlipForce(const ForceResidual& residual, const Parameter
   };
   walk(/*upwards=*/false);
   profile.open_above = walk(/*upwards=*/true);
+  // α rises with Tc along the valley: where its bound ends the valley, the data do not.
+  constexpr double kAtBound = 1e-6;
+  const ScaledParameter& shape = layout.parameters()[kShapeExponent];
+  if (!shape.fixed && profile.shape_exponent.upper >= shape.upper * (1 - kAtBound)) {
+    profile.open_above = true;
+  }
   return profile;
 }
 

@@ -23,10 +23,11 @@ struct Range {
 /// point, and every parameter's range is collected over the points that a likelihood-ratio test
 /// does not reject.
 struct SlipForceProfile {
-  bool open_above = false;  // not rejected where Tc is twenty times the largest force
-  Range slip_force;         // ln Tc
-  Range shape_exponent;     // α
-  Range stiffness;          // ln σ
+  // Not rejected where Tc is twenty times the largest force, or where α has reached its bound.
+  bool open_above = false;
+  Range slip_force;      // ln Tc
+  Range shape_exponent;  // α
+  Range stiffness;       // ln σ
 };
 
 /// @param critical          rejected when (SS − SS_best)/variance · effective_share exceeds this

@@ -14,6 +14,8 @@ namespace {
 constexpr std::array kReaches = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0,  // σX/Tc
                                  1.5,  2.5,  4.0, 7.0, 15., 40., 150.};
 constexpr std::array kShapeExponents = {0.0, 1.0 / 3.0, 1.0, 2.5};
+constexpr int kSubdivisions = 5;
+constexpr int kRefinements = 2;
 
 /// Sums for the regression of force on normalised response, one record: force = Tc·t + F₀.
 struct Regression {
@@ -153,6 +155,37 @@ std::vector<std::vector<double>> UnloadedGuesses(const ScaledRecords& data,
   return guesses;
 }
 
+/// A point of the grid and where it lies there.
+struct GridPoint {
+  StartingPoint point{.theta = {}, .sum_of_squares = std::numeric_limits<double>::infinity()};
+  std::vector<double> unloaded;
+  double reach = 0.0;
+  double shape_exponent = 0.0;
+};
+
+void KeepBetter(GridPoint& best, const StartingGrid& grid, const std::vector<double>& unloaded,
+                double reach, double shape_exponent) {
+  StartingPoint point = grid.At(reach, shape_exponent);
+  if (point.sum_of_squares < best.point.sum_of_squares) {
+    best = {std::move(point), unloaded, reach, shape_exponent};
+  }
+}
+
+/// Looks closer between the best point's neighbours. A Jenkins element that does not slip does not
+/// depend on its slip force: a start that is only near the slipping one has no way to it.
+void Refine(GridPoint& best, const StartingGrid& grid) {
+  double step = std::log(2.5);  // the widest of the grid, but for its far end
+  for (int round = 0; round < kRefinements; ++round) {
+    const double middle = best.reach;
+    for (int i = -kSubdivisions + 1; i < kSubdivisions; ++i) {
+      if (i == 0) continue;
+      const double reach = middle * std::exp(step * i / kSubdivisions);
+      KeepBetter(best, grid, best.unloaded, reach, best.shape_exponent);
+    }
+    step /= kSubdivisions;
+  }
+}
+
 }  // namespace
 
 std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
@@ -163,27 +196,28 @@ std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
   std::vector<double> shape_exponents(kShapeExponents.begin(), kShapeExponents.end());
   if (shape.fixed) shape_exponents = {shape.theta};
 
-  std::vector<StartingPoint> best_of_shape(shape_exponents.size());
-  for (StartingPoint& point : best_of_shape) {
-    point.sum_of_squares = std::numeric_limits<double>::infinity();
-  }
+  std::vector<GridPoint> best_of_shape(shape_exponents.size());
   for (const std::vector<double>& unloaded : UnloadedGuesses(data, layout, state)) {
     grid.SetUnloaded(unloaded);
     for (std::size_t k = 0; k < shape_exponents.size(); ++k) {
       for (const double reach : kReaches) {
-        StartingPoint point = grid.At(reach, shape_exponents[k]);
-        if (point.sum_of_squares < best_of_shape[k].sum_of_squares) {
-          best_of_shape[k] = std::move(point);
-        }
+        KeepBetter(best_of_shape[k], grid, unloaded, reach, shape_exponents[k]);
       }
     }
   }
   std::erase_if(best_of_shape,
-                [](const StartingPoint& point) { return !std::isfinite(point.sum_of_squares); });
-  std::ranges::sort(best_of_shape, {}, &StartingPoint::sum_of_squares);
+                [](const GridPoint& best) { return !std::isfinite(best.point.sum_of_squares); });
+  std::ranges::sort(best_of_shape, {},
+                    [](const GridPoint& best) { return best.point.sum_of_squares; });
   if (best_of_shape.size() > options.starts) best_of_shape.resize(options.starts);
 
-  for (StartingPoint& point : best_of_shape) {
+  std::vector<StartingPoint> starts;
+  for (GridPoint& best : best_of_shape) {
+    grid.SetUnloaded(best.unloaded);
+    Refine(best, grid);
+    starts.push_back(std::move(best.point));
+  }
+  for (StartingPoint& point : starts) {
     for (std::size_t i = 0; i < point.theta.size(); ++i) {
       const ScaledParameter& parameter = layout.parameters()[i];
       const auto given = options.start.find(parameter.name);
@@ -192,7 +226,7 @@ std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
       }
     }
   }
-  return best_of_shape;
+  return starts;
 }
 
 }  // namespace mindahl

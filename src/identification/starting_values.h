@@ -19,7 +19,7 @@ struct StartingPoint {
 /// force offset follow by linear regression, so that the grid has two dimensions and needs neither
 /// slopes nor plateaus read off noisy data. A virgin contact is tried unloaded at the first sample,
 /// at the centre of the record and at displacement zero. Points on the same α compete; the best of
-/// each α go on.
+/// each α go on, after a closer look round each.
 std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
                                               const ParameterLayout& layout,
                                               const FitOptions& options, InitialState state);
