@@ -32,7 +32,7 @@ constexpr std::array kTimes = {
 /// "µ" has two code points, U+00B5 and U+03BC; both become "u".
 std::string WithAsciiMicro(std::string_view symbol) {
   for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
-    if (symbol.starts_with(micro)) return "u" + std::string(symbol.substr(micro.size()));
+    if (symbol.starts_with(micro)) return std::string("u").append(symbol.substr(micro.size()));
   }
   return std::string(symbol);
 }

@@ -9,6 +9,8 @@ namespace {
 
 /// Tc over half the range of the force.
 constexpr std::array kGrid = {0.9, 0.95, 1.0, 1.03, 1.1, 1.25, 1.5, 2.0, 3.0, 6.0, 20.0};
+/// A barrier this many times the critical ratio high has no valley behind it.
+constexpr double kHopeless = 100.0;
 constexpr int kBisections = 6;
 constexpr double kRigid = 1e3;
 
@@ -98,6 +100,7 @@ SlipForceProfile ProfileSlipForce(const ForceResidual& residual, const Parameter
       } else {
         if (!any_rejected) rejected = theta;
         any_rejected = true;
+        if (value > kHopeless * critical) break;
       }
     }
     if (!any_rejected)

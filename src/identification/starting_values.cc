@@ -15,7 +15,7 @@ constexpr std::array kReaches = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0,  // σX/Tc
                                  1.5,  2.5,  4.0, 7.0, 15., 40., 150.};
 constexpr std::array kShapeExponents = {0.0, 1.0 / 3.0, 1.0, 2.5};
 constexpr int kSubdivisions = 5;
-constexpr int kRefinements = 2;
+constexpr int kRefinements = 3;
 
 /// Sums for the regression of force on normalised response, one record: force = Tc·t + F₀.
 struct Regression {
@@ -165,8 +165,11 @@ struct GridPoint {
 
 void KeepBetter(GridPoint& best, const StartingGrid& grid, const std::vector<double>& unloaded,
                 double reach, double shape_exponent) {
+  // Where no slip is reached nothing depends on the reach: of equals the last, nearest to slip.
+  constexpr double kEqual = 1 + 1e-9;
   StartingPoint point = grid.At(reach, shape_exponent);
-  if (point.sum_of_squares < best.point.sum_of_squares) {
+  if (std::isfinite(point.sum_of_squares) &&
+      point.sum_of_squares <= kEqual * best.point.sum_of_squares) {
     best = {std::move(point), unloaded, reach, shape_exponent};
   }
 }
