@@ -67,6 +67,8 @@ std::vector<std::string> MissingElasticConstants(const KnownContact& known) {
       missing.push_back(fmt::format("the Poisson ratio of body {}", number));
     }
   }
+  constexpr std::size_t kAll = 4;
+  if (missing.size() == kAll) return {"E and ν of both bodies"};
   return missing;
 }
 
@@ -74,6 +76,8 @@ std::vector<std::string> MissingRadii(const KnownContact& known) {
   std::vector<std::string> missing;
   if (!known.body_1.radius) missing.emplace_back("the radius of body 1");
   if (!known.body_2.radius) missing.emplace_back("the radius of body 2");
+  constexpr std::size_t kAll = 2;
+  if (missing.size() == kAll) return {"the radii of both bodies"};
   return missing;
 }
 

@@ -221,17 +221,15 @@ TEST(IdentifyContact, FindsTheComplianceFromAGivenRadius) {
   EXPECT_FALSE(contact.contact_radius.has_value());
   EXPECT_FALSE(contact.equivalent_radius.has_value());
   EXPECT_FALSE(contact.sigma_over_mindlin.has_value());
-  const std::string materials =
-      "Young's modulus of body 1, the Poisson ratio of body 1, Young's modulus of body 2, the "
-      "Poisson ratio of body 2";
-  EXPECT_EQ(contact.unidentified,
-            (std::vector<std::string>{
-                "equivalent radius needs " + materials,
-                "comparison of the stiffness with the given contact radius needs the tangential "
-                "compliance (or what gives it: " +
-                    materials + ")",
-                "Hertz prediction of the stiffness needs " + materials +
-                    ", the radius of body 1, the radius of body 2"}));
+  const std::string materials = "E and ν of both bodies";
+  EXPECT_EQ(
+      contact.unidentified,
+      (std::vector<std::string>{
+          "equivalent radius needs " + materials,
+          "comparison of the stiffness with the given contact radius needs the tangential "
+          "compliance (or what gives it: " +
+              materials + ")",
+          "Hertz prediction of the stiffness needs " + materials + ", the radii of both bodies"}));
 }
 
 TEST(IdentifyContact, FindsTheRadiusFromAGivenCompliance) {
@@ -265,9 +263,7 @@ TEST(IdentifyContact, SaysWhatIsMissingWhenNothingIsKnown) {
   EXPECT_FALSE(contact.friction_coefficient || contact.contact_radius ||
                contact.tangential_compliance || contact.equivalent_radius ||
                contact.maximum_pressure || contact.sigma_over_mindlin || contact.hertz);
-  const std::string materials =
-      "Young's modulus of body 1, the Poisson ratio of body 1, Young's modulus of body 2, the "
-      "Poisson ratio of body 2";
+  const std::string materials = "E and ν of both bodies";
   const std::string compliance = "the tangential compliance (or what gives it: " + materials + ")";
   EXPECT_EQ(contact.unidentified,
             (std::vector<std::string>{
@@ -276,7 +272,7 @@ TEST(IdentifyContact, SaysWhatIsMissingWhenNothingIsKnown) {
                 "equivalent radius needs the normal load, " + materials,
                 "maximum pressure needs the normal load, the contact radius or " + compliance,
                 "Hertz prediction of the stiffness needs the normal load, " + materials +
-                    ", the radius of body 1, the radius of body 2"}));
+                    ", the radii of both bodies"}));
 }
 
 TEST(IdentifyContact, NamesTheOneInputThatIsMissing) {
