@@ -16,6 +16,7 @@
 #include "identification/slip_force_profile.h"
 #include "identification/solver.h"
 #include "identification/starting_values.h"
+#include "identification/turning_points.h"
 #include "identification/uncertainty.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
@@ -389,6 +390,34 @@ int PrepareRecords(std::span<const Record> records, const FitOptions& options, F
   return sense;
 }
 
+/// Frees the turning points where the record was sampled too coarsely to show them.
+void RefineTurningPoints(Candidate& best, const ScaledRecords& data, const FitOptions& options,
+                         FitResult& result) {
+  if (!best.solution.converged) return;
+  // Residuals of rounding size have nothing left to explain.
+  const double rms = std::sqrt(best.solution.sum_of_squares / static_cast<double>(data.samples()));
+  if (rms < kRoundingRms) return;
+  std::optional<TurningPointFit> refined =
+      FitTurningPoints(data, best.residual, best.layout, best.solution, options);
+  if (!refined) return;
+  best.layout = std::move(refined->layout);
+  best.solution = std::move(refined->solution);
+  std::size_t position = best.layout.reported();
+  double largest = 0.0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    for (std::size_t j = 0; j < data.records[r].reversals.size(); ++j, ++position) {
+      const double overshoot =
+          best.layout.parameters()[position].ToValue(best.solution.theta[position]);
+      result.records[r].overshoot.push_back(overshoot);
+      largest = std::max(largest, overshoot);
+    }
+  }
+  Warn(result, "turning_points_between_samples",
+       fmt::format("the motion turns between samples, up to {:.3g} m beyond the outermost: the "
+                   "turning points were fitted too; sample more densely",
+                   largest));
+}
+
 std::vector<std::vector<std::size_t>> ReversalsOf(const FitResult& result) {
   std::vector<std::vector<std::size_t>> reversals;
   for (const RecordFit& fit : result.records) reversals.push_back(fit.reversals);
@@ -415,6 +444,7 @@ FitResult Fit(std::span<const Record> records, const FitOptions& options) {
   const ScaledRecords data = Scale(records, ReversalsOf(result), result.force_sense);
 
   Candidate best = FitBestState(data, options);
+  RefineTurningPoints(best, data, options, result);
   result.initial_state = best.state;
   result.starts = best.starts;
   result.termination = best.solution.termination;
@@ -446,7 +476,7 @@ FitResult Fit(std::span<const Record> records, const FitOptions& options) {
                           : best.solution.sum_of_squares / std::max(samples - free_parameters, 1.0),
       kRoundingRms * kRoundingRms);
   const Estimator estimator(best, variance, result.residuals);
-  const std::size_t count = best.layout.parameters().size();
+  const std::size_t count = best.layout.reported();
   for (std::size_t i = 0; i < count; ++i) {
     result.parameters.push_back(estimator.Estimate(i));
     for (std::size_t j = 0; j < count; ++j) {

@@ -19,7 +19,7 @@ class ForceResidual {
 
   [[nodiscard]] std::size_t size() const { return data_.samples(); }
 
-  /// @param theta     all parameters, in the order of ParameterLayout
+  /// @param theta     all parameters, in the order of ParameterLayout, with or without overshoots
   /// @param residual  written, size() values
   void Evaluate(const std::vector<double>& theta, std::span<double> residual) const;
 
@@ -29,12 +29,16 @@ class ForceResidual {
                      std::span<double> residual, std::span<double> jacobian) const;
 
  private:
+  /// One record's response: EvaluateForce or EvaluateForceAndGradient at its samples.
+  void Respond(std::size_t record, const std::vector<double>& theta, std::span<double> force,
+               std::vector<double>* gradient) const;
   [[nodiscard]] LoadingPath PathOf(std::size_t record, const std::vector<double>& theta) const;
 
   const ScaledRecords& data_;
   const FrictionModel& model_;
   InitialState state_;
-  std::vector<LoadingPath> steady_paths_;  // a virgin contact's path moves with δ₀
+  std::vector<LoadingPath> steady_paths_;     // a virgin contact's path moves with δ₀
+  std::vector<std::size_t> first_overshoot_;  // position in theta of each record's first
 };
 
 }  // namespace mindahl

@@ -118,6 +118,20 @@ ParameterLayout::ParameterLayout(const ScaledRecords& data, const FitOptions& op
   }
   ApplyOptions(options);
   CollectFree();
+  reported_ = parameters_.size();
+}
+
+ParameterLayout ParameterLayout::WithOvershoots(const ScaledRecords& data) const {
+  ParameterLayout copy = *this;
+  for (const ScaledRecord& record : data.records) {
+    const std::vector<double>& x = record.displacement;
+    for (const std::size_t i : record.reversals) {
+      const double step = std::max(std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i]));
+      copy.parameters_.push_back(Linear("overshoot", "m", 0.0, data.length, 0.0, step));
+    }
+  }
+  copy.CollectFree();
+  return copy;
 }
 
 void ParameterLayout::ApplyOptions(const FitOptions& options) {

@@ -46,6 +46,13 @@ class ParameterLayout {
   /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
   ParameterLayout(const ScaledRecords& data, const FitOptions& options, InitialState state);
 
+  /// A copy with one more free parameter a reversal: how far the turning point lies beyond the
+  /// outermost sample, in units of the data, at most the longer of the steps beside it.
+  [[nodiscard]] ParameterLayout WithOvershoots(const ScaledRecords& data) const;
+
+  /// Parameters that a result reports: all but the overshoots, which come last.
+  [[nodiscard]] std::size_t reported() const { return reported_; }
+
   static std::size_t OfRecord(std::size_t record, std::size_t index) {
     return kSharedParameters + record * kRecordParameters + index;
   }
@@ -68,6 +75,7 @@ class ParameterLayout {
 
   std::vector<ScaledParameter> parameters_;
   std::vector<std::size_t> free_;
+  std::size_t reported_ = 0;
 };
 
 }  // namespace mindahl

@@ -13,6 +13,9 @@ constexpr std::array kGrid = {0.9, 0.95, 1.0, 1.03, 1.1, 1.25, 1.5, 2.0, 3.0, 6.
 constexpr double kHopeless = 100.0;
 constexpr int kBisections = 6;
 constexpr double kRigid = 1e3;
+/// A likelihood ratio of five standard errors. A loop far from slip would pass for one that slips
+/// once in twenty times if the 95 % test decided the verdict.
+constexpr double kVerdict = 25.0;
 
 class LikelihoodRatio {
  public:
@@ -89,10 +92,12 @@ SlipForceProfile ProfileSlipForce(const ForceResidual& residual, const Parameter
     std::vector<double> accepted_theta = best.theta;  // the outermost accepted point
     double rejected = 0.0;                            // the next point beyond it
     bool any_rejected = false;
+    bool far_end_is_open = true;  // by the test of the verdict
     for (const double theta : grid) {
       const Solution solution = ratio.At(kLogSlipForce, theta, Continue(layout, last_theta, theta));
       last_theta = solution.theta;
       const double value = ratio.Of(solution);
+      far_end_is_open = value < std::max(critical, kVerdict);
       if (value < critical) {
         Include(profile, solution.theta);
         accepted_theta = solution.theta;
@@ -103,8 +108,9 @@ SlipForceProfile ProfileSlipForce(const ForceResidual& residual, const Parameter
         if (value > kHopeless * critical) break;
       }
     }
-    if (!any_rejected)
-      return upwards && (grid.empty() || parameter.upper >= std::log(kGrid.back()));
+    const bool open =
+        far_end_is_open && upwards && (grid.empty() || parameter.upper >= std::log(kGrid.back()));
+    if (!any_rejected) return open;
     double outside = rejected;
     for (int i = 0; i < kBisections; ++i) {
       const double middle = accepted_theta[kLogSlipForce] / 2 + outside / 2;
@@ -117,7 +123,7 @@ SlipForceProfile ProfileSlipForce(const ForceResidual& residual, const Parameter
         outside = middle;
       }
     }
-    return false;
+    return open;
   };
   walk(/*upwards=*/false);
   profile.open_above = walk(/*upwards=*/true);

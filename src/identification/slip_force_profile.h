@@ -24,10 +24,10 @@ struct Range {
 /// does not reject.
 struct SlipForceProfile {
   // Not rejected where Tc is twenty times the largest force, or where α has reached its bound.
-  bool open_above = false;
-  Range slip_force;      // ln Tc
-  Range shape_exponent;  // α
-  Range stiffness;       // ln σ
+  bool open_above = false;  // not clearly rejected where Tc is twenty times the largest force
+  Range slip_force;         // ln Tc
+  Range shape_exponent;     // α
+  Range stiffness;          // ln σ
 };
 
 /// @param critical          rejected when (SS − SS_best)/variance · effective_share exceeds this

@@ -102,9 +102,12 @@ struct FitWarning {
 struct RecordFit {
   double reversal_gate = 0.0;          ///< [m]
   std::vector<std::size_t> reversals;  ///< samples
-  LoopMeasures measures;               ///< with the force in the displacement's sense
-  std::vector<double> fitted_force;    ///< [N], in the file's sense, offsets included
-  std::vector<double> residual;        ///< fitted − measured [N]
+  /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
+  /// record is sampled so coarsely that it had to be fitted.
+  std::vector<double> overshoot;
+  LoopMeasures measures;             ///< with the force in the displacement's sense
+  std::vector<double> fitted_force;  ///< [N], in the file's sense, offsets included
+  std::vector<double> residual;      ///< fitted − measured [N]
 };
 
 /// Pessimistic by default: a result that nobody filled in has not converged.

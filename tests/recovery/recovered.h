@@ -1,0 +1,113 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/record.h"
+#include "mindahl/models/branch_law.h"
+#include "support/histories.h"
+
+/// Records of known contacts, and how far a fit is from what made them.
+namespace mindahl::testing {
+
+/// What the tool promises for noise-free loops between half and three times gross slip. Rounding
+/// errors of the samples, 1e-16, are magnified by at most the condition of the fit, below 1e4
+/// there.
+inline constexpr double kNoiseFree = 1e-8;
+
+/// Sine or triangle of amplitude 1 and mean 0.
+enum class Wave { kSine, kTriangle };
+
+/// `phase` in cycles; 0 at phase 0, then up.
+inline double WaveAt(Wave wave, double phase) {
+  constexpr double kTwoPi = 6.283185307179586;
+  if (wave == Wave::kSine) return std::sin(kTwoPi * phase);
+  const double turn = phase - std::floor(phase);
+  if (turn <= 0.25) return 4 * turn;
+  if (turn <= 0.75) return 2 - 4 * turn;
+  return 4 * turn - 4;
+}
+
+/// Displacements of `cycles` cycles from zero, samples on the extremes.
+inline History Cycling(Wave wave, double amplitude, double cycles, int samples_per_cycle) {
+  History history;
+  const int last = static_cast<int>(std::lround(cycles * samples_per_cycle));
+  for (int i = 0; i <= last; ++i) {
+    // Whole samples in a cycle: the extremes repeat to the last bit.
+    const double phase = static_cast<double>(i % samples_per_cycle) / samples_per_cycle;
+    history.push_back(amplitude * WaveAt(wave, phase));
+  }
+  return history;
+}
+
+inline Record MakeRecord(History displacement, std::vector<double> force) {
+  Record record;
+  record.displacement = std::move(displacement);
+  record.force = std::move(force);
+  return record;
+}
+
+/// The samples from `begin` on.
+inline Record From(Record record, std::size_t begin) {
+  const auto cut = [begin](std::vector<double>& column) {
+    if (!column.empty()) column.erase(column.begin(), column.begin() + static_cast<long>(begin));
+  };
+  cut(record.displacement);
+  cut(record.force);
+  cut(record.time);
+  cut(record.normal_load);
+  return record;
+}
+
+inline Record Shifted(Record record, double displacement, double force) {
+  for (double& x : record.displacement) x += displacement;
+  for (double& f : record.force) f += force;
+  return record;
+}
+
+inline Record Scaled(Record record, double displacement, double force) {
+  for (double& x : record.displacement) x *= displacement;
+  for (double& f : record.force) f *= force;
+  return record;
+}
+
+inline Record WithForceNoise(Record record, double standard_deviation, Generator& generator) {
+  for (double& force : record.force) force += standard_deviation * Normal(generator);
+  return record;
+}
+
+inline FitResult FitOne(const Record& record, const FitOptions& options = {}) {
+  return Fit({&record, 1}, options);
+}
+
+/// Largest of the relative errors of σ, α and Tc; of an α below 0.1 that over 0.1.
+inline double WorstError(const FitResult& fit, const BranchLaw& truth) {
+  const double sigma = std::abs(fit.law.tangential_stiffness / truth.tangential_stiffness - 1);
+  const double alpha =
+      std::abs(fit.law.shape_exponent - truth.shape_exponent) / std::max(truth.shape_exponent, 0.1);
+  const double slip_force = std::abs(fit.law.slip_force / truth.slip_force - 1);
+  const double worst = std::max({sigma, alpha, slip_force});
+  return std::isfinite(sigma + alpha + slip_force) ? worst : HUGE_VAL;
+}
+
+inline ::testing::AssertionResult Recovers(const FitResult& fit, const BranchLaw& truth,
+                                           double tolerance) {
+  const double worst = WorstError(fit, truth);
+  if (fit.converged && worst <= tolerance) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure()
+         << (fit.converged ? "" : "not converged (" + fit.termination + "), ") << "relative error "
+         << worst << " above " << tolerance << ": sigma " << fit.law.tangential_stiffness << " of "
+         << truth.tangential_stiffness << ", alpha " << fit.law.shape_exponent << " of "
+         << truth.shape_exponent << ", slip force " << fit.law.slip_force << " of "
+         << truth.slip_force << "; rms over Tc " << fit.residuals.normalized_rms << ", "
+         << (fit.initial_state == InitialState::kVirgin ? "virgin" : "steady");
+}
+
+}  // namespace mindahl::testing
