@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 #include "mindahl/core/error.h"
 
@@ -42,18 +43,40 @@ struct Swing {
   bool rising = false;
   double lowest = 0.0;  // [m]
   double highest = 0.0;
-  double least_force = 0.0;  // [N]
+  double lower_end_force = 0.0;  // [N]
+  double upper_end_force = 0.0;
+  double least_force = 0.0;  // of the moving mean
   double greatest_force = 0.0;
 };
 
+/// Least and greatest mean over a twentieth of the swing: what the force keeps to, not its noise.
+std::pair<double, double> MovingMeanRange(std::span<const double> force) {
+  const std::size_t width = std::max<std::size_t>(force.size() / 20, 1);
+  double sum =
+      std::accumulate(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(width), 0.0);
+  double least = sum;
+  double greatest = sum;
+  for (std::size_t i = width; i < force.size(); ++i) {
+    sum += force[i] - force[i - width];
+    least = std::min(least, sum);
+    greatest = std::max(greatest, sum);
+  }
+  return {least / static_cast<double>(width), greatest / static_cast<double>(width)};
+}
+
 Swing MeasureSwing(const Record& record, std::size_t first, std::size_t last) {
-  const auto part = [&](const std::vector<double>& column) {
-    return std::ranges::minmax(std::span(column).subspan(first, last - first + 1));
-  };
-  const auto displacement = part(record.displacement);
-  const auto force = part(record.force);
-  return {record.displacement[last] > record.displacement[first], displacement.min,
-          displacement.max, force.min, force.max};
+  const std::size_t count = last - first + 1;
+  const auto displacement =
+      std::ranges::minmax(std::span(record.displacement).subspan(first, count));
+  const auto [least, greatest] = MovingMeanRange(std::span(record.force).subspan(first, count));
+  const bool rising = record.displacement[last] > record.displacement[first];
+  return {.rising = rising,
+          .lowest = displacement.min,
+          .highest = displacement.max,
+          .lower_end_force = record.force[rising ? first : last],
+          .upper_end_force = record.force[rising ? last : first],
+          .least_force = least,
+          .greatest_force = greatest};
 }
 
 /// The swings that reach at least three quarters as far as the widest: not nested loops, run-in or
@@ -134,8 +157,13 @@ LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reve
   const double lowest = MeanOf(swings, &Swing::lowest);
   measures.amplitude = (highest - lowest) / 2;
   measures.centre = lowest + measures.amplitude;
-  const double greatest_force = UsualExtreme(swings, &Swing::greatest_force, std::less<>());
-  const double least_force = UsualExtreme(swings, &Swing::least_force, std::greater<>());
+  // Most loops peak where they turn; some before, when the force relaxes in a dwell.
+  const double lower_end = MeanOf(swings, &Swing::lower_end_force);
+  const double upper_end = MeanOf(swings, &Swing::upper_end_force);
+  const double greatest_force =
+      std::max({lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>())});
+  const double least_force =
+      std::min({lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>())});
   measures.peak_force = (greatest_force - least_force) / 2;
   measures.centre_force = least_force + measures.peak_force;
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "../support/histories.h"
@@ -134,6 +135,23 @@ TEST(MeasureLoop, ReadsThePeakForceWhereverInTheSwingItIs) {
   constexpr double kHalfStep = kPi / kSamplesPerCycle;
   constexpr double kSampling = kHalfStep * kHalfStep / 2;
   EXPECT_NEAR(MeasureLoop(record, Reversals(record)).peak_force, 30.0, kSampling * 30);
+}
+
+TEST(MeasureLoop, ReadsASharpTipExactly) {
+  // A triangle of displacement and force: the peak is one sample, which averaging would blunt.
+  const std::vector<double> x = {0,  1,  2,  3,  4,  3, 2, 1, 0, -1, -2,
+                                 -3, -4, -3, -2, -1, 0, 1, 2, 3, 4,  3};
+  const Record record{x, x, {}, {}};
+  EXPECT_DOUBLE_EQ(MeasureLoop(record, Reversals(record)).peak_force, 4.0);
+}
+
+TEST(MeasureLoop, NoiseDoesNotRaiseThePeakForce) {
+  Record record = MakeRecord({.lag = 0.4, .cycles = 20});
+  std::mt19937_64 engine(3);
+  constexpr double kNoise = 0.6;  // 2 % of the peak; its extremes would add three times as much
+  std::normal_distribution<double> noise(0.0, kNoise);
+  for (double& force : record.force) force += noise(engine);
+  EXPECT_NEAR(MeasureLoop(record, Reversals(record)).peak_force, 30.0, kNoise);
 }
 
 TEST(MeasureLoop, ASpikeInOneSwingIsNoPeakForce) {

@@ -18,8 +18,10 @@ struct LoopMeasures {
   /// at least three quarters as wide as the widest
   double amplitude = 0.0;
   double centre = 0.0;  ///< [m]: midway between those extremes
-  /// T* [N]: half the distance between the greatest and least force of the main swings, medians
-  /// over the swings of a direction
+  /// T* [N]: half the distance between the greatest and least force of the main swings: the mean at
+  /// their ends, or, where the force peaks before it turns, the extreme of its mean over a
+  /// twentieth of a swing (median over the swings of a direction), so that neither noise nor a
+  /// spike makes it
   double peak_force = 0.0;
   double centre_force = 0.0;  ///< [N]: midway between those forces
   /// W [J] = ∮ T dδ, mean over the closed cycles; empty when the record closes none
