@@ -130,11 +130,10 @@ TEST(MeasureLoop, ReadsAmplitudeCentreAndForces) {
 
 TEST(MeasureLoop, ReadsThePeakForceWhereverInTheSwingItIs) {
   const Record record = MakeRecord({.lag = 0.4});
-  // The nearest sample to the peak is at most half a step away, where sin has lost its square's
-  // half.
-  constexpr double kHalfStep = kPi / kSamplesPerCycle;
-  constexpr double kSampling = kHalfStep * kHalfStep / 2;
-  EXPECT_NEAR(MeasureLoop(record, Reversals(record)).peak_force, 30.0, kSampling * 30);
+  // The mean of a sine over 1/40 of a cycle about its peak is short of it by (π/40)²/6.
+  constexpr double kHalfWindow = kPi / 40;
+  constexpr double kAveraging = 1.05 * kHalfWindow * kHalfWindow / 6;
+  EXPECT_NEAR(MeasureLoop(record, Reversals(record)).peak_force, 30.0, kAveraging * 30);
 }
 
 TEST(MeasureLoop, ReadsASharpTipExactly) {
