@@ -100,6 +100,7 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
       "them.",
       "mindahl"};
   app.footer(
+      "Every command takes its options from a TOML file too: --config FILE.\n"
       "Exit status: 0 done, 1 internal error, 2 bad usage or input, 3 ran but not established\n"
       "(not converged, not identifiable with --strict, or a validation failed).");
   app.set_version_flag("--version", std::string(Version()));

@@ -406,6 +406,14 @@ FitReport MakeFitReport(std::vector<std::string> files, std::vector<RecordFile> 
         "least {:.3g}",
         slip_force.lower95.value_or(0.0) / *known.normal_load));
   }
+  const bool compliance_is_missing = std::ranges::any_of(
+      report.contact.unidentified,
+      [](const std::string& sentence) { return sentence.starts_with("tangential compliance"); });
+  if (!report.contact.tangential_compliance && !compliance_is_missing) {
+    report.warnings.push_back({"compliance_taken_as_known",
+                               "contact: compliance is null: it is taken as known, and measured "
+                               "only where --contact-radius gives the radius"});
+  }
   for (const std::string& sentence : report.contact.unidentified) {
     report.warnings.push_back({"contact_not_identified", "contact: " + sentence});
   }

@@ -111,14 +111,17 @@ ResidualStatistics DescribeScaled(const ScaledRecords& data, const Candidate& ca
                            candidate.layout.free().size());
 }
 
-/// Akaike's criterion with its small-sample term, for Gaussian residuals of unknown variance.
+/// Akaike's criterion with its small-sample term, for Gaussian residuals of unknown variance. The
+/// effective samples weigh the likelihood only: a wrong law leaves a handful of them, for which the
+/// small-sample term would outweigh any difference between two fits.
 double CorrectedAkaike(const Candidate& candidate, double samples, const ScaledRecords& data) {
   const double mean_square =
       std::max(candidate.solution.sum_of_squares / static_cast<double>(data.samples()),
                kRoundingRms * kRoundingRms);
   const auto parameters = static_cast<double>(candidate.layout.free().size() + 1);
   return samples * std::log(mean_square) + 2 * parameters +
-         2 * parameters * (parameters + 1) / std::max(samples - parameters - 1, 1.0);
+         2 * parameters * (parameters + 1) /
+             std::max(static_cast<double>(data.samples()) - parameters - 1, 1.0);
 }
 
 Candidate FitBestState(const ScaledRecords& data, const FitOptions& options) {
@@ -394,6 +397,12 @@ int PrepareRecords(std::span<const Record> records, const FitOptions& options, F
 void RefineTurningPoints(Candidate& best, const ScaledRecords& data, const FitOptions& options,
                          FitResult& result) {
   if (!best.solution.converged) return;
+  // A gate means noise in the displacement: its outermost samples are the noisiest, and say nothing
+  // of where the motion turned.
+  if (std::ranges::any_of(result.records,
+                          [](const RecordFit& fit) { return fit.reversal_gate > 0; })) {
+    return;
+  }
   // Residuals of rounding size have nothing left to explain.
   const double rms = std::sqrt(best.solution.sum_of_squares / static_cast<double>(data.samples()));
   if (rms < kRoundingRms) return;

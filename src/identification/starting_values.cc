@@ -199,23 +199,27 @@ std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
   std::vector<double> shape_exponents(kShapeExponents.begin(), kShapeExponents.end());
   if (shape.fixed) shape_exponents = {shape.theta};
 
-  std::vector<GridPoint> best_of_shape(shape_exponents.size());
+  // Points that compete: those of one α, or where α is held those of one third of the reaches.
+  constexpr std::size_t kThirds = 3;
+  const bool by_shape = shape_exponents.size() > 1;
+  std::vector<GridPoint> best_of_group(by_shape ? shape_exponents.size() : kThirds);
   for (const std::vector<double>& unloaded : UnloadedGuesses(data, layout, state)) {
     grid.SetUnloaded(unloaded);
     for (std::size_t k = 0; k < shape_exponents.size(); ++k) {
-      for (const double reach : kReaches) {
-        KeepBetter(best_of_shape[k], grid, unloaded, reach, shape_exponents[k]);
+      for (std::size_t i = 0; i < kReaches.size(); ++i) {
+        GridPoint& best = best_of_group[by_shape ? k : i * kThirds / kReaches.size()];
+        KeepBetter(best, grid, unloaded, kReaches[i], shape_exponents[k]);
       }
     }
   }
-  std::erase_if(best_of_shape,
+  std::erase_if(best_of_group,
                 [](const GridPoint& best) { return !std::isfinite(best.point.sum_of_squares); });
-  std::ranges::sort(best_of_shape, {},
+  std::ranges::sort(best_of_group, {},
                     [](const GridPoint& best) { return best.point.sum_of_squares; });
-  if (best_of_shape.size() > options.starts) best_of_shape.resize(options.starts);
+  if (best_of_group.size() > options.starts) best_of_group.resize(options.starts);
 
   std::vector<StartingPoint> starts;
-  for (GridPoint& best : best_of_shape) {
+  for (GridPoint& best : best_of_group) {
     grid.SetUnloaded(best.unloaded);
     Refine(best, grid);
     starts.push_back(std::move(best.point));

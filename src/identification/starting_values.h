@@ -18,8 +18,9 @@ struct StartingPoint {
 /// In t(δ; σ/Tc, α) the response is Tc·t + F₀: on a grid over σX/Tc and α the slip force and the
 /// force offset follow by linear regression, so that the grid has two dimensions and needs neither
 /// slopes nor plateaus read off noisy data. A virgin contact is tried unloaded at the first sample,
-/// at the centre of the record and at displacement zero. Points on the same α compete; the best of
-/// each α go on, after a closer look round each.
+/// at the centre of the record and at displacement zero. Points on the same α compete, or, where α
+/// is held, of the same third of the grid; the best of each α go on, after a closer look round
+/// each.
 std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
                                               const ParameterLayout& layout,
                                               const FitOptions& options, InitialState state);

@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.25)
 # The modules that each module may include, itself aside. Keep in step with src/CMakeLists.txt.
 set(allowed_core "")
 set(allowed_contact core)

@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.25)
 # Installs the build into a scratch prefix and builds the example of examples/ against it.
 set(prefix ${BUILD_DIR}/installed_package/prefix)
 set(user ${BUILD_DIR}/installed_package/user)

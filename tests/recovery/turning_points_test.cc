@@ -118,7 +118,9 @@ TEST(TurningPoints, KeepDahlsOwnLawExactToo) {
     record.displacement.push_back(x);
     record.force.push_back(force_at(x));
   }
-  const FitResult fit = Fit({&record, 1}, {.model = FindFrictionModel("dahl")});
+  FitOptions options;
+  options.model = FindFrictionModel("dahl");
+  const FitResult fit = Fit({&record, 1}, options);
   EXPECT_NEAR(fit.law.tangential_stiffness / kStiffness, 1, testing::kNoiseFree);
   EXPECT_NEAR(fit.law.shape_exponent, 1, testing::kNoiseFree);
   EXPECT_NEAR(fit.law.slip_force / kSlipForce, 1, testing::kNoiseFree);

@@ -1,0 +1,392 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <regex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+
+// fit: the JSON that scripts rely on, files in every unit and format, outputs, exit status.
+namespace mindahl {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::Outcome;
+using testing::RunCommand;
+using testing::SampleRecord;
+using ::testing::SizeIs;
+using Words = std::vector<std::string>;
+
+json FitJson(Words words) {
+  words.insert(words.begin(), "fit");
+  words.insert(words.end(), {"--json", "-"});
+  const Outcome outcome = RunCommand(words);
+  EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("error")));
+  return outcome.Json();
+}
+
+bool IsNumberOrNull(const json& value) { return value.is_number() || value.is_null(); }
+
+void ExpectParameter(const json& parameter, const std::string& unit) {
+  EXPECT_TRUE(IsNumberOrNull(parameter.at("value")));
+  EXPECT_EQ(parameter.at("unit"), unit);
+  EXPECT_TRUE(IsNumberOrNull(parameter.at("standard_error")));
+  ASSERT_THAT(parameter.at("ci95"), SizeIs(2));
+  for (const json& end : parameter.at("ci95")) EXPECT_TRUE(IsNumberOrNull(end));
+  const Words statuses = {"free", "fixed", "at_lower_bound", "at_upper_bound"};
+  EXPECT_THAT(statuses, ::testing::Contains(parameter.at("status").get<std::string>()));
+  const Words verdicts = {"identifiable", "bounded_below", "bounded_above", "not_identifiable"};
+  EXPECT_THAT(verdicts, ::testing::Contains(parameter.at("identifiability").get<std::string>()));
+}
+
+/// Every key of docs/cli.md, with its type.
+void ExpectContract(const json& fit) {
+  EXPECT_EQ(fit.at("schema"), "mindahl.fit/1");
+  EXPECT_TRUE(fit.at("version").is_string());
+  const json& input = fit.at("input");
+  EXPECT_TRUE(input.at("files").is_array());
+  for (const char* key : {"samples", "cycles", "reversals"}) {
+    EXPECT_TRUE(input.at(key).is_number_unsigned()) << key;
+  }
+  EXPECT_TRUE(input.at("units").is_object());
+  EXPECT_TRUE(fit.at("model").is_string());
+  const Words states = {"virgin", "steady"};
+  EXPECT_THAT(states, ::testing::Contains(fit.at("initial_state").get<std::string>()));
+  ExpectParameter(fit.at("parameters").at("sigma"), "N/m");
+  ExpectParameter(fit.at("parameters").at("alpha"), "-");
+  ExpectParameter(fit.at("parameters").at("slip_force"), "N");
+  EXPECT_TRUE(fit.at("correlation").is_object());
+  for (const char* key : {"rms", "max_abs", "normalized_rms", "r_squared", "durbin_watson",
+                          "effective_samples", "degrees_of_freedom"}) {
+    EXPECT_TRUE(IsNumberOrNull(fit.at("residuals").at(key))) << key;
+  }
+  const json& solver = fit.at("solver");
+  EXPECT_TRUE(solver.at("converged").is_boolean());
+  EXPECT_TRUE(solver.at("iterations").is_number_integer());
+  EXPECT_TRUE(solver.at("termination").is_string());
+  EXPECT_TRUE(solver.at("starts").is_array());
+  const json& loop = fit.at("loop");
+  for (const char* key :
+       {"amplitude", "peak_force", "energy_per_cycle_measured", "energy_per_cycle_model",
+        "energy_ratio", "gross_slip_displacement", "stick_radius_ratio"}) {
+    EXPECT_TRUE(IsNumberOrNull(loop.at(key))) << key;
+  }
+  EXPECT_TRUE(loop.at("slip_regime") == "partial" || loop.at("slip_regime") == "gross" ||
+              loop.at("slip_regime").is_null());
+  for (const char* key : {"friction_coefficient", "contact_radius", "compliance"}) {
+    const json& quantity = fit.at("contact").at(key);
+    if (quantity.is_null()) continue;
+    EXPECT_TRUE(quantity.at("value").is_number()) << key;
+    EXPECT_TRUE(IsNumberOrNull(quantity.at("standard_error"))) << key;
+  }
+  for (const char* key : {"alpha_minus_third", "z", "p_value", "sigma_over_hertz_mindlin"}) {
+    EXPECT_TRUE(IsNumberOrNull(fit.at("mapping").at(key))) << key;
+  }
+  for (const json& warning : fit.at("warnings")) {
+    EXPECT_TRUE(warning.at("code").is_string());
+    EXPECT_FALSE(warning.at("message").get<std::string>().empty());
+  }
+}
+
+/// Names on the way to each null.
+void CollectNulls(const json& value, const Words& path, std::vector<Words>& nulls) {
+  if (value.is_null()) nulls.push_back(path);
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) {
+      Words longer = path;
+      longer.push_back(key);
+      CollectNulls(member, longer, nulls);
+    }
+  }
+  if (value.is_array()) {
+    for (const json& element : value) CollectNulls(element, path, nulls);
+  }
+}
+
+/// "tangential compliance needs …" speaks of compliance, "the normal load" of normal_load.
+bool Mentions(std::string message, std::string name) {
+  std::ranges::replace(message, ' ', '_');
+  std::ranges::replace(message, '-', '_');
+  return std::regex_search(message, std::regex("(^|[^a-z0-9])" + name + "([^a-z0-9]|$)")) ||
+         std::regex_search(message, std::regex("_" + name + "([^a-z0-9]|$)"));
+}
+
+/// A null must be explained by a warning that names it: its own name and, where it belongs to a
+/// quantity, the quantity's.
+void ExpectEveryNullExplained(const json& fit) {
+  std::vector<Words> nulls;
+  CollectNulls(fit, {}, nulls);
+  for (const Words& path : nulls) {
+    const bool explained = std::ranges::any_of(fit.at("warnings"), [&](const json& warning) {
+      const std::string message = warning.at("message");
+      if (warning.at("code") == "fit_failed") return true;
+      if (path.front() == "correlation") {
+        return Mentions(message, "correlation") &&
+               (Mentions(message, path[1]) || Mentions(message, path[2]));
+      }
+      return std::all_of(path.begin() + 1, path.end(),
+                         [&](const std::string& name) { return Mentions(message, name); });
+    });
+    EXPECT_TRUE(explained) << ::testing::PrintToString(path)
+                           << " is null and no warning says why: " << fit.at("warnings").dump(1);
+  }
+}
+
+struct Situation {
+  const char* name;
+  Words words;
+};
+
+class FitJsonOf : public ::testing::TestWithParam<Situation> {
+ protected:
+  json Run() {
+    Words words = GetParam().words;
+    for (std::string& word : words) {
+      if (word == "@") word = SampleRecord();
+      if (word == "partial") word = Simulated("partial.csv", {"--lambda", "0.15"});
+      if (word == "exponential") {
+        word = Simulated("exponential.csv",
+                         {"--alpha", "1.5", "--amplitude", "3e-6", "--model", "mindlin-dahl"});
+      }
+      if (word == "slider") {
+        word = Simulated("slider.csv", {"--model", "jenkins", "--lambda", "3", "--seed", "2"});
+      }
+      if (word == "quarter") {
+        word = Simulated("quarter.csv", {"--lambda", "1.2", "--cycles", "0.25"});
+      }
+    }
+    return FitJson(words);
+  }
+
+ private:
+  std::string Simulated(const char* file, const Words& options) {
+    const std::string path = (directory_.path() / file).string();
+    Words words = {"simulate", "--sigma",       "4e7",  "--slip-force", "40", "--cycles",
+                   "2.5",      "--noise-force", "0.05", "-o",           path};
+    for (std::size_t i = 0; i < options.size(); ++i) {
+      if (options[i] == "--cycles") words.erase(words.begin() + 5, words.begin() + 7);
+    }
+    words.insert(words.end(), options.begin(), options.end());
+    EXPECT_EQ(RunCommand(words).status, cli::kDone);
+    return path;
+  }
+  TemporaryDirectory directory_;
+};
+
+TEST_P(FitJsonOf, HasEveryKeyOfTheContract) { ExpectContract(Run()); }
+
+TEST_P(FitJsonOf, ExplainsEveryNullInAWarning) { ExpectEveryNullExplained(Run()); }
+
+const Words kBodies = {"@",   "--normal-load", "50",   "--youngs-modulus-1", "210e9", "--poisson-1",
+                       "0.3", "--radius-1",    "0.02", "--youngs-modulus-2", "210e9", "--poisson-2",
+                       "0.3", "--radius-2",    "inf"};
+
+Words Join(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    FitCommand, FitJsonOf,
+    ::testing::Values(
+        Situation{"GrossSlip", {"@"}}, Situation{"Mindlin", {"@", "--model", "mindlin"}},
+        Situation{"Jenkins", {"@", "--model", "jenkins"}},
+        Situation{"Dahl", {"@", "--model", "dahl"}}, Situation{"Partial", {"partial"}},
+        Situation{"PartialWithLoad", {"partial", "--normal-load", "80"}},
+        Situation{"Exponential", {"exponential"}}, Situation{"AtItsBound", {"slider"}},
+        Situation{"MonotoneLoading", {"quarter"}},
+        Situation{"Failed", {"@", "--force-sign", "opposite"}},
+        Situation{"AllFixed",
+                  {"@", "--fix", "sigma=4.8e7", "--fix", "alpha=0.3", "--fix", "slip_force=15"}},
+        Situation{"WithLoad", {"@", "--normal-load", "50"}},
+        Situation{"WithCompliance", {"@", "--compliance", "4.2e-11"}},
+        Situation{"WithRadiusAndCompliance",
+                  {"@", "--compliance", "4.2e-11", "--contact-radius", "2.5e-4"}},
+        Situation{"WithBodies", kBodies},
+        Situation{"WithBodiesPartial",
+                  Join({"partial"}, Words(kBodies.begin() + 1, kBodies.end()))},
+        Situation{"Joint", {"@", "@"}}, Situation{"Steady", {"@", "--initial-state", "steady"}},
+        Situation{"Drift", {"@", "--drift"}}, Situation{"NoOffsets", {"@", "--offsets", "off"}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(FitCommand, JsonOnStdoutIsAloneAndTheSameAsInAFile) {
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "fit.json").string();
+  const Outcome to_stdout = RunCommand({"fit", SampleRecord(), "--json", "-"});
+  const Outcome to_file = RunCommand({"fit", SampleRecord(), "--json", path});
+  EXPECT_EQ(to_stdout.status, cli::kDone);
+  EXPECT_EQ(to_file.status, cli::kDone);
+  EXPECT_EQ(to_stdout.out, FileContent(path));
+  EXPECT_THAT(to_file.out, HasSubstr("sigma"));
+  EXPECT_EQ(to_stdout.out.front(), '{');
+}
+
+TEST(FitCommand, NumbersOfTheJsonReadBackToTheSameDouble) {
+  const Outcome outcome = RunCommand({"fit", SampleRecord(), "--json", "-"});
+  const json first = outcome.Json();
+  EXPECT_EQ(json::parse(first.dump()), first);
+  // 17 significant digits or the shortest that reads back: fewer than 12 would be a rounded copy.
+  const std::string sigma = first["parameters"]["sigma"]["value"].dump();
+  EXPECT_GE(std::ranges::count_if(sigma, [](char c) { return c >= '0' && c <= '9'; }), 12);
+  EXPECT_THAT(outcome.out, HasSubstr(sigma));
+}
+
+TEST(FitCommand, FileNameThatIsNoUtf8StillGivesValidJson) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.Write("caf\xe9.csv", FileContent(SampleRecord())).string();
+  const Outcome outcome = RunCommand({"fit", path, "--json", "-"});
+  EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
+  EXPECT_TRUE(json::accept(outcome.out));
+}
+
+class SimulatedFile : public ::testing::Test {
+ protected:
+  // Sample Mindlin contact: δc = 3Tc/(2σ) = 1.5 µm.
+  static constexpr double kSigma = 4e7;
+  static constexpr double kSlipForce = 40.0;
+  // Noise-free promise of the fit; the file holds 17 digits.
+  static constexpr double kRoundTrip = 1e-8;
+
+  std::vector<Words> Rows() {
+    const Outcome outcome = RunCommand(
+        {"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "1.3", "--cycles", "2"});
+    EXPECT_EQ(outcome.status, cli::kDone);
+    std::vector<Words> rows;
+    for (const std::string& line : testing::Lines(outcome.out)) {
+      rows.push_back(testing::Cells(line));
+    }
+    rows.erase(rows.begin());
+    return rows;
+  }
+
+  void ExpectRecovered(const Words& words) {
+    const json fit = FitJson(words);
+    EXPECT_NEAR(fit["parameters"]["sigma"]["value"].get<double>() / kSigma, 1, kRoundTrip);
+    EXPECT_NEAR(fit["parameters"]["alpha"]["value"].get<double>(), 1.0 / 3, kRoundTrip);
+    EXPECT_NEAR(fit["parameters"]["slip_force"]["value"].get<double>() / kSlipForce, 1, kRoundTrip);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+std::string Digits(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+TEST_F(SimulatedFile, IsRecoveredAsItIsWritten) {
+  const std::string path = (directory_.path() / "loop.csv").string();
+  ASSERT_EQ(RunCommand({"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "1.3",
+                        "--cycles", "2", "-o", path})
+                .status,
+            cli::kDone);
+  ExpectRecovered({path});
+}
+
+TEST_F(SimulatedFile, IsRecoveredFromMicrometresAndMillinewtonsOfTheHeader) {
+  std::string text = "Fx (mN),x [um]\n";
+  for (const Words& row : Rows()) {
+    text += Digits(std::stod(row[2]) * 1e3) + "," + Digits(std::stod(row[1]) * 1e6) + "\n";
+  }
+  ExpectRecovered({directory_.Write("loop.csv", text).string(), "--force", "1"});
+}
+
+TEST_F(SimulatedFile, IsRecoveredFromSemicolonsAndDecimalCommas) {
+  std::string text = "Zeit [s];disp_mm;F [kN]\r\n";
+  for (const Words& row : Rows()) {
+    std::string line = row[0] + ";" + Digits(std::stod(row[1]) * 1e3) + ";" +
+                       Digits(std::stod(row[2]) * 1e-3) + "\r\n";
+    std::ranges::replace(line, '.', ',');
+    text += line;
+  }
+  ExpectRecovered({directory_.Write("loop.csv", text).string()});
+}
+
+TEST_F(SimulatedFile, IsRecoveredWithUnitsAndColumnsFromTheOptions) {
+  std::string text;
+  for (const Words& row : Rows()) {
+    text += "1\t" + Digits(std::stod(row[2]) / 4.4482216152605) + "\t" +
+            Digits(std::stod(row[1]) / 0.0254) + "\n";
+  }
+  ExpectRecovered({directory_.Write("loop.txt", text).string(), "--displacement", "3",
+                   "--displacement-unit", "in", "--force", "2", "--force-unit", "lbf"});
+}
+
+TEST(FitCommand, ContactComesFromItsDefinitions) {
+  const json fit = FitJson({SampleRecord(), "--normal-load", "50", "--compliance", "4.2e-11"});
+  const double sigma = fit["parameters"]["sigma"]["value"];
+  const double slip_force = fit["parameters"]["slip_force"]["value"];
+  constexpr double kRounding = 1e-14;
+  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>() / (slip_force / 50), 1,
+              kRounding);
+  EXPECT_NEAR(fit["contact"]["contact_radius"]["value"].get<double>() / (sigma * 4.2e-11 / 8), 1,
+              kRounding);
+  EXPECT_NEAR(fit["mapping"]["alpha_minus_third"].get<double>(),
+              fit["parameters"]["alpha"]["value"].get<double>() - 1.0 / 3, kRounding);
+}
+
+TEST(FitCommand, ResidualsListEverySampleWithMeasuredAndFitted) {
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "residuals.csv").string();
+  ASSERT_EQ(RunCommand({"fit", SampleRecord(), "--residuals", path}).status, cli::kDone);
+  const Words lines = testing::Lines(FileContent(path));
+  const Words input = testing::Lines(FileContent(SampleRecord()));
+  ASSERT_EQ(lines.size(), input.size());
+  EXPECT_EQ(lines[0], "time [s],displacement [m],force [N],fitted_force [N],residual [N]");
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const Words cells = testing::Cells(lines[i]);
+    ASSERT_THAT(cells, SizeIs(5));
+    EXPECT_EQ(cells[0] + "," + cells[1] + "," + cells[2], input[i]);
+    constexpr double kRounding = 1e-13;  // of forces below 20 N
+    EXPECT_NEAR(std::stod(cells[3]) - std::stod(cells[2]), std::stod(cells[4]), kRounding);
+  }
+}
+
+TEST(FitCommand, StrictExitsWithThreeWhereAParameterIsNotIdentifiable) {
+  const TemporaryDirectory directory;
+  const std::string path = (directory.path() / "partial.csv").string();
+  ASSERT_EQ(RunCommand({"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "0.15",
+                        "--noise-force", "0.1", "-o", path})
+                .status,
+            cli::kDone);
+  const Outcome lenient = RunCommand({"fit", path});
+  EXPECT_EQ(lenient.status, cli::kDone);
+  EXPECT_THAT(lenient.err, HasSubstr("warning: slip_force"));
+  EXPECT_EQ(RunCommand({"fit", path, "--strict"}).status, cli::kNotEstablished);
+  EXPECT_EQ(RunCommand({"fit", SampleRecord(), "--strict"}).status, cli::kDone);
+}
+
+TEST(FitCommand, FitThatFailsExitsWithThreeAndStillWritesJson) {
+  const Outcome outcome =
+      RunCommand({"fit", SampleRecord(), "--force-sign", "opposite", "--json", "-"});
+  EXPECT_EQ(outcome.status, cli::kNotEstablished);
+  EXPECT_THAT(outcome.err, HasSubstr("the fit failed"));
+  EXPECT_EQ(outcome.Json()["solver"]["converged"], false);
+  EXPECT_TRUE(outcome.Json()["parameters"]["sigma"]["value"].is_null());
+}
+
+TEST(FitCommand, TimeWindowKeepsTheSamplesInIt) {
+  const json fit = FitJson({SampleRecord(), "--time-window", "1:2"});
+  // 200 samples a second, both ends included.
+  EXPECT_EQ(fit["input"]["samples"], 201);
+}
+
+TEST(FitCommand, JointFitNumbersTheOffsetsOfItsRecords) {
+  const json fit = FitJson({SampleRecord(), SampleRecord()});
+  EXPECT_THAT(fit["input"]["files"], SizeIs(2));
+  EXPECT_TRUE(fit["parameters"].contains("force_offset_1"));
+  EXPECT_TRUE(fit["parameters"].contains("force_offset_2"));
+  EXPECT_FALSE(fit["parameters"].contains("force_offset"));
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,290 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+
+// Help, exit status and messages, of good usage and bad.
+namespace mindahl {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::Outcome;
+using testing::RunCommand;
+using testing::SampleRecord;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
+
+using Words = std::vector<std::string>;
+
+TEST(Help, OfEveryCommandExitsWithZeroAndGoesToStdout) {
+  for (const char* command : {"fit", "simulate", "validate", "contact"}) {
+    SCOPED_TRACE(command);
+    const Outcome outcome = RunCommand({command, "--help"});
+    EXPECT_EQ(outcome.status, cli::kDone);
+    EXPECT_THAT(outcome.err, IsEmpty());
+    EXPECT_THAT(outcome.out, HasSubstr("Usage: mindahl " + std::string(command)));
+    EXPECT_THAT(outcome.out, HasSubstr("--config"));
+  }
+}
+
+TEST(Help, OfCommandsWithPhysicalOptionsStatesTheirUnits) {
+  const auto expect_all = [](const char* command, const Words& texts) {
+    const std::string help = RunCommand({command, "--help"}).out;
+    for (const std::string& text : texts) EXPECT_THAT(help, HasSubstr(text)) << command;
+  };
+  expect_all("fit", {"[N/m]", "[N]", "[m]", "[Pa]", "[1/Pa]", "compliance", "um, nm, in"});
+  expect_all("simulate", {"[N/m]", "[N]", "[m]", "[Hz]", "[1/Pa]"});
+  expect_all("contact", {"[N]", "[m]", "[Pa]", "[1/Pa]"});
+  expect_all("validate", {"--cases", "--seed", "--json"});
+}
+
+TEST(Help, OfTheProgramListsCommandsAndExitStatus) {
+  const Outcome outcome = RunCommand({"--help"});
+  EXPECT_EQ(outcome.status, cli::kDone);
+  for (const char* text : {"fit", "simulate", "validate", "contact", "Exit status", "[N/m]"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(text));
+  }
+}
+
+TEST(Version, IsPrintedAlone) {
+  const Outcome outcome = RunCommand({"--version"});
+  EXPECT_EQ(outcome.status, cli::kDone);
+  EXPECT_THAT(outcome.out, ::testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+struct BadUsage {
+  const char* name;
+  Words words;  // "@" is the sample record, "#" a file that must not be written
+  const char* message;
+};
+
+class BadUsageIsRefused : public ::testing::TestWithParam<BadUsage> {
+ protected:
+  Outcome Run() {
+    Words words = GetParam().words;
+    for (std::string& word : words) {
+      if (word == "@") word = SampleRecord();
+      if (word == "#") word = (directory_.path() / "output").string();
+    }
+    return RunCommand(words);
+  }
+  TemporaryDirectory directory_;
+};
+
+TEST_P(BadUsageIsRefused, WithStatusTwo) { EXPECT_EQ(Run().status, cli::kBadInput); }
+
+TEST_P(BadUsageIsRefused, WithOneLineOnStderrThatNamesTheFault) {
+  const Outcome outcome = Run();
+  ASSERT_THAT(outcome.Errors(), SizeIs(1)) << outcome.err;
+  EXPECT_THAT(outcome.Errors().front(), StartsWith("mindahl"));
+  EXPECT_THAT(outcome.Errors().front(), HasSubstr(GetParam().message));
+}
+
+TEST_P(BadUsageIsRefused, WithNothingWritten) {
+  EXPECT_THAT(Run().out, IsEmpty());
+  EXPECT_EQ(directory_.FileCount(), 0u);
+}
+
+const std::vector<BadUsage> kBadUsage = {
+    {"NoCommand", {}, "subcommand is required"},
+    {"UnknownCommand", {"fitt", "@"}, "there is no command 'fitt': must be one of fit, simulate"},
+    {"UnknownOption", {"fit", "@", "--stiffness", "3"}, "--stiffness"},
+    {"NoFile", {"fit"}, "required"},
+    {"MissingFile", {"fit", "no/such/file.csv", "--json", "#"}, "no/such/file.csv"},
+    {"DirectoryForAFile", {"fit", "/", "--json", "#"}, "cannot read '/'"},
+    {"UnknownColumn", {"fit", "@", "--force", "load", "--json", "#"}, "no column is called 'load'"},
+    {"ColumnZero", {"fit", "@", "--force", "0"}, "there is no column 0"},
+    {"UnknownUnit", {"fit", "@", "--force-unit", "stone", "--json", "#"}, "'stone'"},
+    {"UnknownModel", {"fit", "@", "--model", "coulomb"}, "--model"},
+    {"ModelThatNeedsTheAmplitude", {"fit", "@", "--model", "simplified-dahl"}, "--model"},
+    {"FixWithoutValue", {"fit", "@", "--fix", "alpha", "--json", "#"}, "--fix: 'alpha'"},
+    {"FixWithEmptyValue", {"fit", "@", "--fix", "alpha="}, "--fix: 'alpha='"},
+    {"FixWithoutName", {"fit", "@", "--fix", "=3"}, "--fix: '=3'"},
+    {"FixWithText", {"fit", "@", "--fix", "alpha=third"}, "'third' is not a number"},
+    {"FixWithTrailingText", {"fit", "@", "--fix", "alpha=0.3x"}, "'0.3x' is not a number"},
+    {"FixWithDecimalComma", {"fit", "@", "--fix", "alpha=0,3"}, "'0,3' is not a number"},
+    {"FixUnknown", {"fit", "@", "--fix", "beta=1"}, "'beta' is unknown: must be one of sigma"},
+    {"FixTwice", {"fit", "@", "--fix", "alpha=1", "--fix", "alpha=2"}, "'alpha' is given twice"},
+    {"FixNegativeStiffness", {"fit", "@", "--fix", "sigma=-1"}, "sigma [N/m] = -1 is invalid"},
+    {"FixNotANumber", {"fit", "@", "--fix", "sigma=nan"}, "sigma [N/m] = nan is invalid"},
+    {"FixAgainstTheModel", {"fit", "@", "--model", "mindlin", "--fix", "alpha=1"}, "prescribes"},
+    {"StartUnknown", {"fit", "@", "--start", "beta=1"}, "'beta' is unknown"},
+    {"StartWithoutValue", {"fit", "@", "--start", "sigma"}, "--start: 'sigma' is incomplete"},
+    {"StartOutsideItsBounds", {"fit", "@", "--start", "alpha=1e6"}, "must lie within its bounds"},
+    {"BoundWithoutInterval", {"fit", "@", "--bound", "alpha=1"}, "--bound: '1' is incomplete"},
+    {"BoundReversed", {"fit", "@", "--bound", "alpha=1:0"}, "the first number must be the smaller"},
+    {"BoundWithText", {"fit", "@", "--bound", "alpha=0:one"}, "'one' is not a number"},
+    {"BoundTwice", {"fit", "@", "--bound", "alpha=0:1", "--bound", "alpha=0:2"}, "given twice"},
+    {"ForceNoiseZero", {"fit", "@", "--force-noise", "0"}, "--force-noise [N] = 0"},
+    {"GateNegative", {"fit", "@", "--reversal-gate", "-1"}, "--reversal-gate [m] = -1"},
+    {"LoadNotPositive", {"fit", "@", "--normal-load", "0"}, "--normal-load [N] = 0"},
+    {"LoadNotANumber", {"fit", "@", "--normal-load", "ten"}, "--normal-load"},
+    {"PoissonTooLarge", {"fit", "@", "--poisson-1", "0.6"}, "--poisson-1 [-] = 0.6"},
+    {"RadiusZero", {"fit", "@", "--radius-2", "0"}, "--radius-2 [m] = 0"},
+    {"WindowMalformed", {"fit", "@", "--time-window", "3"}, "--time-window: '3' is incomplete"},
+    {"WindowEmpty", {"fit", "@", "--time-window", "50:60"}, "holds no sample"},
+    {"PlotOfUnknownKind", {"fit", "@", "--json", "#", "--plot", "loop.txt"}, ".svg or .png"},
+    {"JsonInNoDirectory",
+     {"fit", "@", "--json", "/no/such/x.json", "--residuals", "#"},
+     "there is no directory '/no/such'"},
+    {"JsonOverADirectory", {"fit", "@", "--json", "/tmp", "--residuals", "#"}, "is a directory"},
+    {"ResidualsInNoDirectory",
+     {"fit", "@", "--json", "#", "--residuals", "/no/such/r.csv"},
+     "--residuals: cannot write"},
+    {"ConfigMissing", {"fit", "@", "--config", "no.toml"}, "no.toml"},
+    {"SimulateWithoutParameters", {"simulate", "--lambda", "1"}, "--sigma missing"},
+    {"SimulateWithoutSlipForce",
+     {"simulate", "--sigma", "1", "--lambda", "1"},
+     "--slip-force missing"},
+    {"SimulateWithoutAmplitude",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "-o", "#"},
+     "--lambda or --amplitude"},
+    {"SimulateWithTwoAmplitudes",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--amplitude", "1"},
+     "--lambda or --amplitude"},
+    {"SimulateWithTwoContacts",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--contact-radius", "1"},
+     "exclude"},
+    {"SimulatePathWithWaveform",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--path", "p.csv", "--waveform", "sine"},
+     "excludes --path"},
+    {"SimulateLambdaWithoutSlip",
+     {"simulate", "--model", "dahl", "--sigma", "1", "--slip-force", "1", "--alpha", "1",
+      "--lambda", "1"},
+     "give --amplitude"},
+    {"SimulateAlphaAgainstTheModel",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--alpha", "1", "--lambda", "1"},
+     "contradicts --model mindlin"},
+    {"SimulateNegativeNoise",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--noise-force", "-1"},
+     "--noise-force [N] = -1"},
+    {"SimulateThreeSamples",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--samples-per-cycle", "3"},
+     "must be a whole number from 4"},
+    {"SimulateNegativeSeed",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--seed", "-1"},
+     "must be a whole number from 0"},
+    {"SimulateInNoDirectory",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "-o", "/no/such/x.csv"},
+     "cannot write"},
+    {"SimulateBeyondDoubles",
+     {"simulate", "--sigma", "1e300", "--slip-force", "1e-300", "--lambda", "1", "-o", "#"},
+     "stiffness over slip force"},
+    {"ValidateNoCases", {"validate", "--cases", "0", "--json", "#"}, "whole number from 1"},
+    {"ValidateNegativeCases", {"validate", "--cases", "-3"}, "whole number from 1"},
+    {"ValidateInNoDirectory",
+     {"validate", "--cases", "1", "--json", "/no/such/v.json"},
+     "there is no directory"},
+    {"ContactIncomplete", {"contact", "--friction", "0.3", "--json", "#"}, "--normal-load"},
+    {"ContactDescribedTwice",
+     {"contact", "--friction", "0.3", "--normal-load", "1", "--contact-radius", "1", "--compliance",
+      "1", "--radius-1", "1"},
+     "give one of the two"},
+    {"ContactOfTwoPlanes",
+     {"contact", "--friction", "0.3", "--normal-load", "1", "--youngs-modulus-1", "1e9",
+      "--poisson-1", "0.3", "--radius-1", "inf", "--youngs-modulus-2", "1e9", "--poisson-2", "0.3",
+      "--radius-2", "inf"},
+     "two planes"},
+    {"ContactBeyondDoubles",
+     {"contact", "--friction", "0.3", "--normal-load", "1e300", "--contact-radius", "1e-200",
+      "--compliance", "4e-300", "--json", "#"},
+     "maximum_pressure"},
+};
+
+INSTANTIATE_TEST_SUITE_P(CommandLine, BadUsageIsRefused, ::testing::ValuesIn(kBadUsage),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+struct BadFile {
+  const char* name;
+  const char* content;
+  const char* message;
+};
+
+TEST(BadFiles, AreRefusedWithOneLineThatSaysWhatIsWrong) {
+  const std::vector<BadFile> files = {
+      {"empty.csv", "", "the file is empty"},
+      {"header.csv", "x [m],F [N]\n", "no row of numbers"},
+      {"one.csv", "x [m],F [N]\n1,2\n", "the displacement never changes"},
+      {"still.csv", "x [m],F [N]\n1,2\n1,3\n1,4\n", "the displacement never changes"},
+      {"slack.csv", "x [m],F [N]\n1,2\n2,2\n1,2\n", "the force never changes"},
+      {"two.csv", "x [m],F [N]\n0,0\n1,1\n", "2 samples are too few"},
+      {"nan.csv", "x [m],F [N]\n0,0\n1,nan\n2,1\n", "nan.csv:3:2: 'nan' is not a number"},
+      {"text.csv", "x [m],F [N]\n0,0\n1,one\n2,1\n", "text.csv:3:2"},
+      {"huge.csv", "x [m],F [N]\n0,0\n1e300,1\n-1e300,-1\n", "must lie between 1e-100 and 1e100"},
+      {"tiny.csv", "x [m],F [N]\n0,0\n1,1e-300\n-1,-1e-300\n0,0\n", "choose other units"}};
+  for (const BadFile& file : files) {
+    SCOPED_TRACE(file.name);
+    const TemporaryDirectory directory;
+    const std::string path = directory.Write(file.name, file.content).string();
+    const Outcome outcome =
+        RunCommand({"fit", path, "--json", (directory.path() / "out.json").string()});
+    EXPECT_EQ(outcome.status, cli::kBadInput);
+    EXPECT_THAT(outcome.out, IsEmpty());
+    ASSERT_THAT(outcome.Errors(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.Errors().front(), HasSubstr(file.message));
+    EXPECT_EQ(directory.FileCount(), 1u) << "an output was left behind";
+  }
+}
+
+class Config : public ::testing::Test {
+ protected:
+  Outcome FitWith(const std::string& toml, const Words& more = {}) {
+    const std::string path = directory_.Write("options.toml", toml).string();
+    Words words = {"fit", SampleRecord(), "--json", "-", "--config", path};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words);
+  }
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Config, GivesOptionsWithAndWithoutTheCommandsSection) {
+  for (const char* toml :
+       {"model = \"mindlin\"\nnormal-load = 50\n", "[fit]\nmodel = \"mindlin\"\nnormal-load = 50\n",
+        "[simulate]\nsigma = 1\n[fit]\nmodel = \"mindlin\"\nnormal-load = 50\n"}) {
+    SCOPED_TRACE(toml);
+    const Outcome outcome = FitWith(toml);
+    ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
+    EXPECT_EQ(outcome.Json()["model"], "mindlin");
+    EXPECT_EQ(outcome.Json()["contact"]["normal_load"], 50.0);
+  }
+}
+
+TEST_F(Config, TakesListsAndYieldsToTheCommandLine) {
+  const Outcome outcome =
+      FitWith("fix = [\"alpha=0.3\", \"force_offset=0\"]\nmodel = \"jenkins\"\n",
+              {"--model", "mindlin-dahl"});
+  ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
+  const nlohmann::json json = outcome.Json();
+  EXPECT_EQ(json["model"], "mindlin-dahl");
+  EXPECT_EQ(json["parameters"]["alpha"]["value"], 0.3);
+  EXPECT_EQ(json["parameters"]["alpha"]["status"], "fixed");
+  EXPECT_EQ(json["parameters"]["force_offset"]["status"], "fixed");
+}
+
+TEST_F(Config, RefusesWhatItDoesNotKnow) {
+  struct Case {
+    const char* toml;
+    const char* message;
+  };
+  for (const Case& c : {Case{"modle = \"mindlin\"\n", "'fit.modle' is no option of fit"},
+                        Case{"[fit]\nmodle = 1\n", "'fit.modle' is no option of fit"},
+                        Case{"[fit.model]\nname = 1\n", "is no option of fit"},
+                        Case{"[fits]\nmodel = \"mindlin\"\n", "section 'fits' is no command"},
+                        Case{"model = \"coulomb\"\n", "--model"},
+                        Case{"normal-load = \"heavy\"\n", "--normal-load"}}) {
+    SCOPED_TRACE(c.toml);
+    const Outcome outcome = FitWith(c.toml);
+    EXPECT_EQ(outcome.status, cli::kBadInput);
+    EXPECT_THAT(outcome.out, IsEmpty());
+    ASSERT_THAT(outcome.Errors(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.Errors().front(), HasSubstr(c.message));
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,262 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "recovery/recovered.h"
+
+// What Fit accepts, what it refuses with which words, and what each option does.
+namespace mindahl {
+namespace {
+
+using testing::Cycling;
+using testing::FitOne;
+using ::testing::HasSubstr;
+using testing::History;
+using testing::kNoiseFree;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Recovers;
+using testing::Respond;
+using testing::Wave;
+
+constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
+constexpr double kReach = 2.5e-6;  // 1.25 of gross slip
+
+Record Loop() {
+  const History displacement = Cycling(Wave::kSine, kReach, 2.0, 120);
+  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+}
+
+std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
+  try {
+    Fit(records, options);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
+  struct Case {
+    std::function<void(FitOptions&)> spoil;
+    const char* message;
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Case> cases = {
+      {[](FitOptions& o) { o.model = nullptr; },
+       "the model cannot be fitted: it must be told the amplitude"},
+      {[](FitOptions& o) { o.model = &Model("simplified-dahl"); },
+       "the model cannot be fitted: it must be told the amplitude"},
+      {[](FitOptions& o) { o.force_sense = 2; },
+       "force sense [-] = 2 is invalid: must be +1 or -1"},
+      {[](FitOptions& o) { o.force_noise = 0; },
+       "force noise [N] = 0 is invalid: must be finite and > 0"},
+      {[](FitOptions& o) { o.reversal_gate = -1; },
+       "reversal gate [m] = -1 is invalid: must be finite and >= 0"},
+      {[](FitOptions& o) { o.max_iterations = 0; },
+       "maximum iterations [-] = 0 is invalid: must be >= 1"},
+      {[](FitOptions& o) { o.starts = 0; }, "starts [-] = 0 is invalid: must be >= 1"},
+      {[](FitOptions& o) { o.fixed["stiffness"] = 1; },
+       "parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, force_offset, "
+       "displacement_offset, force_drift"},
+      {[](FitOptions& o) { o.start["force_offset_2"] = 1; },
+       "parameter 'force_offset_2' is unknown: must be one of sigma, alpha, slip_force, "
+       "force_offset, displacement_offset, force_drift"},
+      {[](FitOptions& o) { o.fixed["sigma"] = 0; },
+       "sigma [N/m] = 0 is invalid: must be finite and > 0"},
+      {[](FitOptions& o) { o.fixed["alpha"] = -0.1; },
+       "alpha [-] = -0.1 is invalid: must be finite and >= 0"},
+      {[](FitOptions& o) { o.start["slip_force"] = -3; },
+       "slip_force [N] = -3 is invalid: must be finite and > 0"},
+      {[](FitOptions& o) { o.fixed["force_offset"] = kNan; },
+       "force_offset [N] = nan is invalid: must be finite"},
+      {[](FitOptions& o) {
+         o.bounds["alpha"] = {1, 0.5};
+       },
+       "bounds 1:0.5 of alpha are invalid: the first must be smaller"},
+      {[](FitOptions& o) {
+         o.bounds["sigma"] = {-1, 5};
+       },
+       "sigma [N/m] = -1 is invalid: must be finite and > 0"},
+      {[](FitOptions& o) {
+         o.model = &Model("mindlin");
+         o.fixed["alpha"] = 0.5;
+       },
+       "alpha cannot be fixed at 0.5: the model 'mindlin' prescribes alpha = 0.3333333333333333; "
+       "use mindlin-dahl"},
+      {[](FitOptions& o) {
+         o.initial_state = InitialState::kSteady;
+         o.fixed["displacement_offset"] = 0;
+       },
+       "displacement_offset cannot be fixed: that of a steady contact is the centre of its loop; "
+       "fix it for a virgin contact"},
+      {[](FitOptions& o) {
+         o.bounds["alpha"] = {0.1, 0.5};
+         o.start["alpha"] = 0.75;
+       },
+       "start of alpha [-] = 0.75 is invalid: must lie within its bounds 0.1 … 0.5"},
+  };
+  for (const Case& c : cases) {
+    FitOptions options;
+    c.spoil(options);
+    EXPECT_EQ(RefusalOf({Loop()}, options), c.message);
+  }
+}
+
+TEST(FitOptions, EachRecordThatCannotBeFittedIsRefusedWithTheReason) {
+  EXPECT_EQ(RefusalOf({}, {}), "there is no record: a fit needs at least one");
+  EXPECT_EQ(RefusalOf({MakeRecord({2, 2, 2}, {1, 2, 3})}, {}),
+            "the displacement never changes: a fit needs a moving contact");
+  EXPECT_EQ(RefusalOf({MakeRecord({1, 2, 3}, {4, 4, 4})}, {}),
+            "the force never changes: a fit needs a loaded contact");
+  EXPECT_EQ(RefusalOf({MakeRecord({0, 1}, {0, 1})}, {}),
+            "2 samples are too few for 3 free parameters: record more or fix some");
+  EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0}, {0, 1, -1})}, {}),
+            "3 samples are too few for 5 free parameters: record more or fix some");
+  EXPECT_THAT(RefusalOf({MakeRecord({0, 1, 0}, {0, 1})}, {}), HasSubstr("force"));
+  Record broken = Loop();
+  broken.force[17] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(RefusalOf({broken}, {}), "force [N] of sample 17 = nan is invalid: must be finite");
+  broken = Loop();
+  broken.displacement[3] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(RefusalOf({broken}, {}),
+            "displacement [m] of sample 3 = inf is invalid: must be finite");
+}
+
+TEST(FitOptions, NumbersWhoseSquaresOverflowOrVanishAreRefused) {
+  for (const double scale : {1e250, 1e-250}) {
+    EXPECT_THAT(RefusalOf({testing::Scaled(Loop(), scale, 1)}, {}),
+                HasSubstr("half range of the displacement [m]"));
+    EXPECT_THAT(RefusalOf({testing::Scaled(Loop(), 1, scale)}, {}),
+                HasSubstr("must lie between 1e-100 and 1e100"));
+  }
+  // Just inside, the answer is as good as ever.
+  const BranchLaw scaled = {kLaw.tangential_stiffness * 1e150, kLaw.shape_exponent,
+                            kLaw.slip_force * 1e75};
+  EXPECT_TRUE(Recovers(FitOne(testing::Scaled(Loop(), 1e-75, 1e75)), scaled, kNoiseFree));
+}
+
+TEST(FitOptions, FixedParametersKeepTheirValueAndFreeTheRest) {
+  FitOptions options;
+  options.fixed = {{"alpha", kLaw.shape_exponent}, {"force_offset", 0.0}};
+  const FitResult fit = FitOne(Loop(), options);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  const ParameterEstimate& alpha = *fit.Find("alpha");
+  EXPECT_EQ(alpha.value, kLaw.shape_exponent);
+  EXPECT_EQ(alpha.status, ParameterStatus::kFixed);
+  EXPECT_FALSE(alpha.standard_error || alpha.lower95 || alpha.upper95);
+  EXPECT_EQ(fit.Find("sigma")->status, ParameterStatus::kFree);
+  EXPECT_EQ(fit.Find("force_offset")->value, 0.0);
+}
+
+TEST(FitOptions, FixingEveryParameterEvaluatesTheModelThere) {
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  options.fixed = {{"sigma", kLaw.tangential_stiffness},
+                   {"alpha", kLaw.shape_exponent},
+                   {"slip_force", kLaw.slip_force},
+                   {"force_offset", 7.0},
+                   {"displacement_offset", 0.0}};
+  const FitResult fit = FitOne(Loop(), options);
+  EXPECT_TRUE(fit.converged);
+  // The record has no offset: every residual is the 7 N.
+  EXPECT_NEAR(fit.residuals.rms, 7.0, 1e-9);
+  for (const double residual : fit.records[0].residual) EXPECT_NEAR(residual, 7.0, 1e-9);
+}
+
+TEST(FitOptions, FixedUnloadedDisplacementMeansAVirginContact) {
+  FitOptions options;
+  options.fixed = {{"displacement_offset", 0.0}};
+  const FitResult fit = FitOne(Loop(), options);
+  EXPECT_EQ(fit.initial_state, InitialState::kVirgin);
+  EXPECT_EQ(fit.Find("displacement_offset")->value, 0.0);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+}
+
+TEST(FitOptions, BoundThatExcludesTheTruthHoldsAndIsReported) {
+  FitOptions options;
+  options.bounds["alpha"] = {0.5, 2.0};
+  const double rounding = 1e-8;  // the bound is a scaled number
+  const ParameterEstimate lower = *FitOne(Loop(), options).Find("alpha");
+  EXPECT_EQ(lower.status, ParameterStatus::kAtLowerBound);
+  EXPECT_NEAR(lower.value, 0.5, rounding);
+  EXPECT_FALSE(lower.standard_error);
+
+  options.bounds["alpha"] = {0.0, 0.3};
+  const ParameterEstimate upper = *FitOne(Loop(), options).Find("alpha");
+  EXPECT_EQ(upper.status, ParameterStatus::kAtUpperBound);
+  EXPECT_NEAR(upper.value, 0.3, rounding);
+
+  options.bounds["alpha"] = {0.0, 0.5};
+  EXPECT_EQ(FitOne(Loop(), options).Find("alpha")->status, ParameterStatus::kFree);
+}
+
+TEST(FitOptions, BoundOfAnOffsetIsMeantInTheFilesSense) {
+  // The fit turns an opposite force round: its lower bound is the file's upper one.
+  const Record opposite = testing::Scaled(Loop(), 1, -1);
+  FitOptions options;
+  options.bounds["force_offset"] = {3.0, 9.0};
+  const FitResult fit = FitOne(opposite, options);
+  EXPECT_EQ(fit.force_sense, -1);
+  const ParameterEstimate& offset = *fit.Find("force_offset");
+  EXPECT_EQ(offset.status, ParameterStatus::kAtLowerBound);
+  EXPECT_NEAR(offset.value, 3.0, 1e-7);
+}
+
+TEST(FitOptions, GivenStartIsWhereEveryReportedStartBegins) {
+  FitOptions options;
+  options.start = {{"sigma", 3e7}, {"alpha", 0.9}};
+  const FitResult fit = FitOne(Loop(), options);
+  ASSERT_FALSE(fit.starts.empty());
+  for (const StartReport& start : fit.starts) {
+    EXPECT_NEAR(start.start.tangential_stiffness, 3e7, 1e-6);
+    EXPECT_EQ(start.start.shape_exponent, 0.9);
+  }
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+}
+
+TEST(FitOptions, NumberOfStartsIsKeptAndEachSaysWhatItReached) {
+  for (const std::size_t starts : {std::size_t{1}, std::size_t{3}}) {
+    FitOptions options;
+    options.starts = starts;
+    const FitResult fit = FitOne(Loop(), options);
+    ASSERT_EQ(fit.starts.size(), starts);
+    double best = HUGE_VAL;
+    for (const StartReport& start : fit.starts) {
+      EXPECT_LE(start.final_rms, start.initial_rms);
+      best = std::min(best, start.final_rms);
+    }
+    EXPECT_EQ(best, fit.residuals.rms > best ? best : fit.residuals.rms);
+  }
+}
+
+TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
+  FitOptions options;
+  options.max_iterations = 1;
+  options.starts = 1;
+  const FitResult fit = FitOne(Loop(), options);
+  EXPECT_FALSE(fit.converged);
+  EXPECT_THAT(fit.termination, HasSubstr("iterations"));
+  EXPECT_FALSE(fit.parameters.empty());
+}
+
+TEST(FitOptions, WrongForceSenseIsAFailedFitAndNotACrash) {
+  FitOptions options;
+  options.force_sense = -1;
+  const FitResult fit = FitOne(Loop(), options);
+  EXPECT_FALSE(fit.converged);
+  EXPECT_TRUE(fit.parameters.empty());
+  EXPECT_THAT(fit.termination, HasSubstr("sense"));
+}
+
+TEST(FitOptions, DefaultResultHasNotConverged) { EXPECT_FALSE(FitResult{}.converged); }
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,215 @@
+#include "mindahl/identification/fit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "recovery/recovered.h"
+
+// What a fit reports beside the parameters: state, drift, correlation, residuals, verdicts.
+namespace mindahl {
+namespace {
+
+using testing::Cycling;
+using testing::FitOne;
+using testing::From;
+using testing::Generator;
+using ::testing::HasSubstr;
+using testing::History;
+using testing::kNoiseFree;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Recovers;
+using testing::Respond;
+using testing::Wave;
+
+constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
+constexpr double kReach = 2.5e-6;  // 1.25 of gross slip
+
+Record Loop(double cycles = 2.0) {
+  const History displacement = Cycling(Wave::kSine, kReach, cycles, 120);
+  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+}
+
+TEST(Fit, TellsAVirginRecordFromASteadyOneWithAndWithoutNoise) {
+  Generator generator(1);
+  for (const double noise : {0.0, 0.02}) {
+    const Record virgin = testing::WithForceNoise(Loop(), noise * kLaw.slip_force, generator);
+    EXPECT_EQ(FitOne(virgin).initial_state, InitialState::kVirgin) << noise;
+    // From the first minimum on, no sample of first loading is left, and the loop's own centre is
+    // no unloaded state on it.
+    const Record steady =
+        testing::WithForceNoise(From(Loop(3.0), 95), noise * kLaw.slip_force, generator);
+    EXPECT_EQ(FitOne(steady).initial_state, InitialState::kSteady) << noise;
+  }
+}
+
+TEST(Fit, TellsTheStateAlsoWhereTheLawIsWrong) {
+  // With α held off the truth both states leave autocorrelated residuals, i.e. few effective
+  // samples, but the virgin one is ten times the nearer.
+  FitOptions options;
+  options.fixed["alpha"] = kLaw.shape_exponent + 0.05;
+  EXPECT_EQ(FitOne(Loop(), options).initial_state, InitialState::kVirgin);
+}
+
+TEST(Fit, StateThatIsGivenIsKept) {
+  FitOptions options;
+  options.initial_state = InitialState::kSteady;
+  EXPECT_EQ(FitOne(Loop(), options).initial_state, InitialState::kSteady);
+  options.initial_state = InitialState::kVirgin;
+  EXPECT_EQ(FitOne(From(Loop(3.0), 95), options).initial_state, InitialState::kVirgin);
+}
+
+TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
+  History displacement;
+  for (int i = 0; i <= 80; ++i) displacement.push_back(kReach * i / 80);
+  for (const double direction : {1.0, -1.0}) {
+    Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+    record = testing::Scaled(record, direction, direction);
+    const FitResult fit = FitOne(record);
+    EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+    EXPECT_EQ(fit.initial_state, InitialState::kVirgin);
+    // One curve looks the same from wherever its origin is: the offsets are not for the fit.
+    EXPECT_EQ(fit.Find("force_offset")->status, ParameterStatus::kFixed);
+    EXPECT_EQ(fit.Find("displacement_offset")->status, ParameterStatus::kFixed);
+  }
+}
+
+TEST(Fit, DriftOverTimeOrSamplesIsRecovered) {
+  constexpr double kDriftPerSecond = -3.0;
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(40.0 + 0.01 * static_cast<double>(i));
+    record.force[i] += kDriftPerSecond * (record.time[i] - record.time[0]);
+  }
+  FitOptions options;
+  options.drift = true;
+  const FitResult timed = FitOne(record, options);
+  EXPECT_TRUE(Recovers(timed, kLaw, kNoiseFree));
+  EXPECT_NEAR(timed.Find("force_drift")->value, kDriftPerSecond, 1e-7);
+  EXPECT_EQ(timed.Find("force_drift")->unit, "N/s");
+  EXPECT_FALSE(Recovers(FitOne(record), kLaw, 1e-4)) << "without the option drift is not free";
+
+  record.time.clear();
+  const FitResult counted = FitOne(record, options);
+  EXPECT_TRUE(Recovers(counted, kLaw, kNoiseFree));
+  EXPECT_NEAR(counted.Find("force_drift")->value, 0.01 * kDriftPerSecond, 1e-9);
+}
+
+TEST(Fit, ResidualIsFittedMinusMeasuredInTheFilesSense) {
+  constexpr double kRounding = 1e-13;  // of forces below 100 N
+  Generator generator(2);
+  for (const double sense : {1.0, -1.0}) {
+    const Record record = testing::WithForceNoise(testing::Scaled(Loop(), 1, sense),
+                                                  0.01 * kLaw.slip_force, generator);
+    const FitResult fit = FitOne(record);
+    const RecordFit& part = fit.records.at(0);
+    ASSERT_EQ(part.residual.size(), record.size());
+    double sum = 0.0;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      EXPECT_NEAR(part.fitted_force[i] - record.force[i], part.residual[i], kRounding);
+      sum += part.residual[i] * part.residual[i];
+    }
+    EXPECT_NEAR(fit.residuals.rms, std::sqrt(sum / static_cast<double>(record.size())), 1e-12);
+    EXPECT_DOUBLE_EQ(fit.residuals.normalized_rms, fit.residuals.rms / fit.law.slip_force);
+    // The noise put in, known to 1/√(2n) = 4.5 %; four times that.
+    EXPECT_NEAR(fit.residuals.rms, 0.01 * kLaw.slip_force, 0.18 * 0.01 * kLaw.slip_force);
+  }
+}
+
+TEST(Fit, CorrelationIsSymmetricWithUnitDiagonalAndEmptyForTheFixed) {
+  Generator generator(3);
+  const FitResult fit = FitOne(testing::WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator));
+  const std::size_t count = fit.parameters.size();
+  ASSERT_EQ(fit.correlation.size(), count * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) {
+      const double correlation = fit.correlation[i * count + j];
+      const bool fixed = fit.parameters[i].status == ParameterStatus::kFixed ||
+                         fit.parameters[j].status == ParameterStatus::kFixed;
+      EXPECT_EQ(std::isnan(correlation), fixed);
+      if (fixed) continue;
+      EXPECT_LE(std::abs(correlation), 1.0);
+      EXPECT_DOUBLE_EQ(correlation, fit.correlation[j * count + i]);
+      EXPECT_TRUE(i != j || correlation == 1.0);
+    }
+  }
+}
+
+TEST(Fit, CorrelationOfSigmaAndAlphaHasTheSignOfTheScatter) {
+  // A larger α bends the branch earlier; a larger σ makes up for it.
+  Generator generator(4);
+  double covariance = 0.0;
+  double stated = 0.0;
+  for (int loop = 0; loop < 40; ++loop) {
+    const FitResult fit =
+        FitOne(testing::WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator));
+    covariance += (fit.law.tangential_stiffness / kLaw.tangential_stiffness - 1) *
+                  (fit.law.shape_exponent - kLaw.shape_exponent);
+    stated += fit.correlation[1];
+  }
+  EXPECT_GT(covariance, 0.0);
+  EXPECT_GT(stated, 0.0);
+}
+
+TEST(Fit, CyclesOfReversalsAndGateAreReported) {
+  const FitResult fit = FitOne(Loop(2.0));
+  EXPECT_EQ(fit.records[0].reversals, (std::vector<std::size_t>{30, 90, 150, 210}));
+  EXPECT_EQ(fit.records[0].reversal_gate, 0.0);
+  EXPECT_EQ(fit.records[0].measures.cycles, 2u);
+
+  FitOptions options;
+  options.reversal_gate = 3 * kReach;  // nothing is a reversal any more
+  EXPECT_TRUE(FitOne(Loop(), options).records[0].reversals.empty());
+}
+
+TEST(Fit, WidestRecordIsTheOneOfLargestAmplitude) {
+  const Record wide = Loop();
+  const History narrow = Cycling(Wave::kSine, kReach / 2, 2.0, 120);
+  const Record small = MakeRecord(narrow, Respond(Model("mindlin-dahl"), kLaw, narrow));
+  const std::vector<Record> records = {small, wide};
+  const FitResult fit = Fit(records, {});
+  EXPECT_DOUBLE_EQ(fit.WidestRecord().measures.amplitude, kReach);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+}
+
+TEST(Fit, ParameterWithoutEffectIsNamedAlone) {
+  // Plateaus only: neither σ nor α changes a sample, each by itself.
+  const History sine = Cycling(Wave::kSine, 1.0, 2.0, 40);
+  std::vector<double> force;
+  for (std::size_t i = 0; i < sine.size(); ++i)
+    force.push_back(i % 40 <= 10 || i % 40 > 30 ? 1 : -1);
+  FitOptions options;
+  options.model = &Model("jenkins");
+  const FitResult fit = FitOne(MakeRecord(sine, force), options);
+  const auto warning =
+      std::ranges::find(fit.warnings, std::string("undetermined_parameter"), &FitWarning::code);
+  ASSERT_NE(warning, fit.warnings.end());
+  EXPECT_THAT(warning->message, HasSubstr("sigma: the record does not depend on it"));
+}
+
+TEST(Fit, OpenIntervalStillHoldsItsOwnValue) {
+  // A loop that opposes its own model: lag instead of lead, the force sense forced.
+  History displacement;
+  std::vector<double> force;
+  for (int i = 0; i < 200; ++i) {
+    displacement.push_back(std::sin(0.1 * i));
+    force.push_back(std::sin(0.1 * i - 0.5));
+  }
+  for (const int sense : {1, -1}) {
+    FitOptions options;
+    options.force_sense = sense;
+    const FitResult fit = FitOne(MakeRecord(displacement, force), options);
+    for (const ParameterEstimate& estimate : fit.parameters) {
+      EXPECT_LE(estimate.lower95.value_or(-HUGE_VAL), estimate.value) << estimate.name;
+      EXPECT_GE(estimate.upper95.value_or(HUGE_VAL), estimate.value) << estimate.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

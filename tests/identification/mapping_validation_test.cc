@@ -1,0 +1,79 @@
+#include "mindahl/identification/mapping_validation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+TEST(MappingValidation, NoiseFreeLoopsReturnTheContactAtEveryAmplitude) {
+  ValidationOptions options;
+  options.cases = 28;
+  options.seed = 77;
+  options.noise_levels = {0.0};
+  std::size_t last = 0;
+  const ValidationReport report =
+      ValidateMapping(options, [&](std::size_t done) { EXPECT_EQ(done, ++last); });
+  EXPECT_EQ(last, options.cases);
+  EXPECT_EQ(report.fits, options.cases);
+  EXPECT_EQ(report.failures, 0u) << ::testing::PrintToString(report.failed_cases);
+  ASSERT_EQ(report.rows.size(), options.lambdas.size());
+  std::size_t cases = 0;
+  for (std::size_t i = 0; i < report.rows.size(); ++i) {
+    const ValidationRow& row = report.rows[i];
+    EXPECT_EQ(row.lambda, options.lambdas[i]);
+    EXPECT_EQ(row.undetermined, 0u);
+    EXPECT_LE(row.worst_sigma_error, NoiseFreeTolerance(row.lambda));
+    EXPECT_LE(row.median_alpha_error, row.worst_alpha_error);
+    cases += row.cases;
+  }
+  EXPECT_EQ(cases, options.cases);
+}
+
+TEST(MappingValidation, SameSeedGivesTheSameReportAndAnotherSeedAnother) {
+  ValidationOptions options;
+  options.cases = 2;
+  options.noise_levels = {0.01};
+  const auto worst = [&](std::uint64_t seed) {
+    options.seed = seed;
+    return ValidateMapping(options).rows[0].worst_sigma_error;
+  };
+  EXPECT_EQ(worst(1), worst(1));
+  EXPECT_NE(worst(1), worst(2));
+}
+
+TEST(MappingValidation, NoiseMakesTheErrorsItShould) {
+  // With 1 % noise the errors are of the order of 1 %, not of rounding: the loops are fitted, not
+  // copied.
+  ValidationOptions options;
+  options.cases = 4;
+  options.noise_levels = {0.01};
+  options.lambdas = {1.2};
+  const ValidationReport report = ValidateMapping(options);
+  ASSERT_EQ(report.rows.size(), 1u);
+  EXPECT_GT(report.rows[0].median_sigma_error, 1e-5);
+  EXPECT_LT(report.rows[0].worst_sigma_error, 0.1);
+  EXPECT_GT(report.rows[0].worst_standardized, 0.0);
+}
+
+TEST(MappingValidation, OptionsOutOfRangeAreRefused) {
+  const auto refuses = [](auto spoil) {
+    ValidationOptions options;
+    options.cases = 1;
+    spoil(options);
+    EXPECT_THROW(ValidateMapping(options), InvalidArgument);
+  };
+  refuses([](ValidationOptions& o) { o.cases = 0; });
+  refuses([](ValidationOptions& o) { o.lambdas.clear(); });
+  refuses([](ValidationOptions& o) { o.lambdas = {-1}; });
+  refuses([](ValidationOptions& o) { o.noise_levels.clear(); });
+  refuses([](ValidationOptions& o) { o.noise_levels = {-0.1}; });
+}
+
+}  // namespace
+}  // namespace mindahl
