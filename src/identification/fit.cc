@@ -59,6 +59,28 @@ double Rms(double sum_of_squares, const ScaledRecords& data) {
   return data.force * std::sqrt(sum_of_squares / static_cast<double>(data.samples()));
 }
 
+/// Where α is held the likelihood may have kinks (a Jenkins loop just past slip has a false minimum
+/// where none of its samples slips); with α free it is smooth, and its minimum is a start.
+std::optional<StartingPoint> StartWithFreeShape(InitialState state, const ScaledRecords& data,
+                                                const FitOptions& options,
+                                                const ParameterLayout& held) {
+  FrictionModel model = *options.model;
+  model.shape_exponent.reset();
+  FitOptions relaxed = options;
+  relaxed.model = &model;
+  relaxed.fixed.erase("alpha");
+  const ParameterLayout layout(data, relaxed, state);
+  const ForceResidual residual(data, model, state);
+  const std::vector<StartingPoint> starts = FindStartingPoints(data, layout, relaxed, state);
+  if (starts.empty()) return {};
+  Solution solution = Solve(residual, layout, starts.front().theta, relaxed);
+  solution.theta[kShapeExponent] = held.parameters()[kShapeExponent].theta;
+  std::vector<double> values(residual.size());
+  residual.Evaluate(solution.theta, values);
+  return StartingPoint{solution.theta,
+                       std::inner_product(values.begin(), values.end(), values.begin(), 0.0)};
+}
+
 Candidate FitFrom(InitialState state, const ScaledRecords& data, const FitOptions& options) {
   Candidate candidate{.state = state,
                       .layout = ParameterLayout(data, options, state),
@@ -72,7 +94,12 @@ Candidate FitFrom(InitialState state, const ScaledRecords& data, const FitOption
   }
   candidate.solution.sum_of_squares = std::numeric_limits<double>::infinity();
   candidate.solution.termination = "no starting point has the force's sense";
-  for (const StartingPoint& start : FindStartingPoints(data, candidate.layout, options, state)) {
+  std::vector<StartingPoint> starts = FindStartingPoints(data, candidate.layout, options, state);
+  if (!starts.empty() && candidate.layout.parameters()[kShapeExponent].fixed) {
+    const auto relaxed = StartWithFreeShape(state, data, options, candidate.layout);
+    if (relaxed) starts.push_back(*relaxed);
+  }
+  for (const StartingPoint& start : starts) {
     Solution solution = Solve(candidate.residual, candidate.layout, start.theta, options);
     candidate.starts.push_back({.start = candidate.layout.Law(start.theta),
                                 .initial_rms = Rms(start.sum_of_squares, data),

@@ -85,6 +85,28 @@ TEST(ModelRecovery, VirginLoopsOfEveryModelReturnItsParameters) {
   }
 }
 
+TEST(ModelRecovery, JenkinsLoopJustPastSlipIsRecovered) {
+  // Where none of the samples slips the slip force has no effect: a false minimum beside the true
+  // one.
+  constexpr BranchLaw kLaw{.tangential_stiffness = 1e6, .shape_exponent = 0.0, .slip_force = 10.0};
+  const FrictionModel& model = *FindFrictionModel("jenkins");
+  for (const double lambda : {1.003, 1.01, 1.02, 1.03, 1.1}) {
+    const History displacement =
+        testing::Cycling(testing::Wave::kSine, lambda * GrossSlipDisplacement(kLaw), 2, 200);
+    std::vector<double> force(displacement.size());
+    EvaluateForce(model, kLaw,
+                  MakeLoadingPath(displacement, FindReversals(displacement, 0.0), model.memory, {}),
+                  displacement, force);
+    const Record record = testing::MakeRecord(displacement, force);
+    FitOptions options;
+    options.model = &model;
+    const FitResult fit = Fit({&record, 1}, options);
+    EXPECT_NEAR(fit.law.slip_force / kLaw.slip_force, 1, testing::kNoiseFree) << lambda;
+    EXPECT_NEAR(fit.law.tangential_stiffness / kLaw.tangential_stiffness, 1, testing::kNoiseFree)
+        << lambda;
+  }
+}
+
 TEST(ModelRecovery, SteadyLoopsOfEveryModelReturnItsParametersFromAnySample) {
   constexpr int kSamples = 160;
   for (const ModelCase& c : kModelCases) {
