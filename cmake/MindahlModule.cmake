@@ -5,7 +5,8 @@ target_compile_options(mindahl_build_flags INTERFACE
   $<$<BOOL:${MINDAHL_WARNINGS_AS_ERRORS}>:-Werror>)
 if(MINDAHL_SANITIZE)
   target_compile_options(mindahl_build_flags INTERFACE
-    -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all
+    -fsanitize=address,undefined,float-cast-overflow,float-divide-by-zero
+    -fno-sanitize-recover=all
     -fno-omit-frame-pointer)
   target_link_options(mindahl_build_flags INTERFACE -fsanitize=address,undefined)
 endif()

@@ -369,7 +369,7 @@ std::string MappingText(const FitReport& report) {
         *report.alpha_p_value < kSignificance ? "rejected" : "tenable");
   }
   if (report.sigma_over_hertz_mindlin) {
-    text += fmt::format("  σ/(8a/G*) = {:.4g} ± {:.2g}: 1 where Hertz and Mindlin hold\n",
+    text += fmt::format("  σ/(8a/G*) = {:.6g} ± {:.2g}: 1 where Hertz and Mindlin hold\n",
                         report.sigma_over_hertz_mindlin->value,
                         report.sigma_over_hertz_mindlin->standard_error);
   }
