@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "contact/in_range.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl {
@@ -39,8 +40,9 @@ double EnergyShare(double stick_ratio, double one_minus_stick_ratio) {
 
 /// Loss per cycle [J] at the onset of gross slip.
 double EnergyAtGrossSlip(const MindlinContact& contact) {
-  return 0.15 * contact.slip_force *
-         (contact.slip_force * contact.tangential_compliance / contact.contact_radius);
+  return InRange("energy per cycle at gross slip [J]",
+                 3.0L * contact.slip_force * contact.slip_force * contact.tangential_compliance /
+                     (20.0L * contact.contact_radius));
 }
 
 /// T₀ for a contact that is known to be valid.
@@ -61,25 +63,29 @@ void Validate(const MindlinContact& contact) {
 }
 
 double TangentialCompliance(const Body& body_1, const Body& body_2) {
-  return (2.0 - body_1.poisson_ratio) / ShearModulus(body_1) +
-         (2.0 - body_2.poisson_ratio) / ShearModulus(body_2);
+  const auto compliance = [](const Body& body) {
+    return (2.0L - body.poisson_ratio) / ShearModulus(body);
+  };
+  return InRange("tangential compliance [1/Pa]", compliance(body_1) + compliance(body_2));
 }
 
 double GrossSlipForce(double friction_coefficient, double normal_load) {
   RequirePositive("friction coefficient", friction_coefficient);
   RequirePositive("normal load [N]", normal_load);
-  return friction_coefficient * normal_load;
+  return InRange("slip force [N]", static_cast<long double>(friction_coefficient) * normal_load);
 }
 
 double MindlinTangentialStiffness(double contact_radius, double tangential_compliance) {
   RequirePositive("contact radius [m]", contact_radius);
   RequirePositive("tangential compliance [1/Pa]", tangential_compliance);
-  return 8.0 * contact_radius / tangential_compliance;
+  return InRange("tangential stiffness [N/m]", 8.0L * contact_radius / tangential_compliance);
 }
 
 double GrossSlipDisplacement(const MindlinContact& contact) {
   Validate(contact);
-  return 3.0 * contact.slip_force * contact.tangential_compliance / (16.0 * contact.contact_radius);
+  return InRange(
+      "gross-slip displacement [m]",
+      3.0L * contact.slip_force * contact.tangential_compliance / (16.0L * contact.contact_radius));
 }
 
 double StickRadiusRatio(double tangential_force, double slip_force) {

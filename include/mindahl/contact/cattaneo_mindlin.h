@@ -32,25 +32,30 @@ void Validate(const MindlinContact& contact);
 /// shear changes the pressure between dissimilar bodies, an effect that is nil for (1 − 2ν₁)/G₁ =
 /// (1 − 2ν₂)/G₂.
 /// @throws InvalidArgument on a modulus that is not > 0 or a Poisson ratio outside (−1, 0.5]
+/// Relative error < 2 ε.
 double TangentialCompliance(const Body& body_1, const Body& body_2);
 
 /// Force Tc [N] at which the whole contact slips.
 ///   Tc = μN
 /// @param friction_coefficient  μ [-], finite, > 0
 /// @param normal_load           N [N], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
+/// @throws InvalidArgument naming the parameter, its value and the rule; also for a result beyond
+///   the normal doubles
+/// Relative error < 1 ε.
 double GrossSlipForce(double friction_coefficient, double normal_load);
 
 /// Stiffness σ [N/m] of the contact before any slip.
 ///   σ = 8a/G*
 /// @param contact_radius         a [m], finite, > 0
 /// @param tangential_compliance  G* [1/Pa], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule
+/// @throws InvalidArgument naming the parameter, its value and the rule; also for a result beyond
+///   the normal doubles
+/// Relative error < 1 ε.
 double MindlinTangentialStiffness(double contact_radius, double tangential_compliance);
 
 /// Displacement δc [m] at which a virgin contact slips as a whole.
 ///   δc = 3·Tc·G*/(16a)
-/// Eq. 6 at T = Tc; the paper's eq. 23 prints 12a. Relative error < 2 ulp.
+/// Eq. 6 at T = Tc; the paper's eq. 23 prints 12a. Relative error < 1 ε = 2.2e-16.
 /// @throws InvalidArgument as Validate
 double GrossSlipDisplacement(const MindlinContact& contact);
 

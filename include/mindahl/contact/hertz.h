@@ -7,6 +7,9 @@ namespace mindahl {
 // Hertz contact of two elastic bodies of revolution: a circle of radius a carries the normal load N
 // under the pressure p(r) = p₀·√(1 − r²/a²). It holds while a is small against the radii, the
 // surfaces are smooth and do not adhere, and both materials stay elastic.
+//
+// The functions work in long double and round once: where it has 64 bits their relative error is
+// below 1 ε = 2.2e-16. A result beyond the normal doubles is refused.
 
 /// One of the two bodies: isotropic elastic, with a spherical surface at the contact.
 struct Body {

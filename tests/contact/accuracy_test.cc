@@ -1,0 +1,103 @@
+// Hertz and the scales of Cattaneo and Mindlin within the bounds of their docstrings, from atomic
+// to tectonic, against the same closed forms at 50 digits; and refused where no double holds them.
+
+#include <gtest/gtest.h>
+
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "message_of.h"
+#include "mindahl/contact/cattaneo_mindlin.h"
+#include "mindahl/contact/hertz.h"
+
+namespace mindahl {
+namespace {
+
+using Real = boost::multiprecision::cpp_bin_float_50;
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+void ExpectWithin(double bound, double value, const Real& exact, const char* name) {
+  const Real error = abs(Real(value) - exact) / (abs(exact) * kEpsilon);
+  EXPECT_LE(static_cast<double>(error), bound) << name << " = " << value;
+}
+
+class Draw {
+ public:
+  double Log(double low, double high) { return low * std::pow(high / low, Share()); }
+  double Share() { return static_cast<double>(generator_() >> 11) * 0x1p-53; }
+
+ private:
+  std::mt19937_64 generator_{20170652};
+};
+
+TEST(ContactAccuracy, HoldsItsBoundsFromAtomicToTectonic) {
+  constexpr double kOnce = 1.0;       // [ε]: rounded once
+  constexpr double kOfRounded = 2.0;  // from two rounded moduli, added
+  Draw draw;
+  for (int i = 0; i < 20'000; ++i) {
+    const double load = draw.Log(1e-15, 1e15);
+    const double radius = draw.Log(1e-10, 1e6);
+    const double modulus = draw.Log(1e3, 1e13);
+    const double a = draw.Log(1e-12, 1e5);
+    const double compliance = draw.Log(1e-14, 1e-2);
+    const double slip_force = draw.Log(1e-15, 1e12);
+    const Body body_1{modulus, -0.999 + 1.498 * draw.Share(), radius};
+    const Body body_2{draw.Log(1e3, 1e13), -0.999 + 1.498 * draw.Share(), radius};
+    const auto shear = [](const Body& body) {
+      return Real(Real(body.youngs_modulus) / (2 * (1 + Real(body.poisson_ratio))));
+    };
+    const auto normal = [](const Body& body) {
+      return Real((1 - Real(body.poisson_ratio) * Real(body.poisson_ratio)) /
+                  Real(body.youngs_modulus));
+    };
+    const Real cube = Real(a) * Real(a) * Real(a);
+    ExpectWithin(kOnce, ShearModulus(body_1), shear(body_1), "shear modulus");
+    ExpectWithin(kOnce, EffectiveModulus(body_1, body_2),
+                 Real(1 / (normal(body_1) + normal(body_2))), "effective modulus");
+    ExpectWithin(kOnce, HertzContactRadius(load, radius, modulus),
+                 Real(cbrt(Real(3) / 4 * Real(load) * Real(radius) / Real(modulus))), "radius");
+    ExpectWithin(kOnce, HertzEquivalentRadius(load, a, modulus),
+                 Real(4 * Real(modulus) * cube / (3 * Real(load))), "equivalent radius");
+    ExpectWithin(kOnce, HertzNormalLoad(a, radius, modulus),
+                 Real(4 * Real(modulus) * cube / (3 * Real(radius))), "load");
+    ExpectWithin(
+        kOnce, HertzMaximumPressure(load, a),
+        Real(Real(3) / 2 * Real(load) / (boost::math::constants::pi<Real>() * Real(a) * Real(a))),
+        "pressure");
+    ExpectWithin(kOnce, HertzApproach(a, radius), Real(Real(a) * Real(a) / Real(radius)),
+                 "approach");
+    ExpectWithin(kOfRounded, TangentialCompliance(body_1, body_2),
+                 Real((2 - Real(body_1.poisson_ratio)) / shear(body_1) +
+                      (2 - Real(body_2.poisson_ratio)) / shear(body_2)),
+                 "compliance");
+    ExpectWithin(kOnce, GrossSlipForce(0.3, load), Real(Real(0.3) * Real(load)), "slip force");
+    ExpectWithin(kOnce, MindlinTangentialStiffness(a, compliance),
+                 Real(8 * Real(a) / Real(compliance)), "stiffness");
+    ExpectWithin(kOnce, GrossSlipDisplacement(MindlinContact{a, compliance, slip_force}),
+                 Real(3 * Real(slip_force) * Real(compliance) / (16 * Real(a))), "slip");
+  }
+}
+
+TEST(ContactAccuracy, RefusesWhatNoDoubleHolds) {
+  const auto refusal = [](auto call) { return MessageOf(call); };
+  const std::string rule = "must be within the range of double";
+  EXPECT_NE(refusal([] { HertzMaximumPressure(1e300, 1e-100); }).find(rule), std::string::npos);
+  EXPECT_NE(refusal([] { HertzMaximumPressure(1e-300, 1e100); }).find(rule), std::string::npos);
+  EXPECT_NE(refusal([] { HertzNormalLoad(1e200, 1.0, 1.0); }).find(rule), std::string::npos);
+  EXPECT_NE(refusal([] { GrossSlipForce(1e200, 1e200); }).find(rule), std::string::npos);
+  EXPECT_NE(refusal([] { MindlinTangentialStiffness(1e300, 1e-300); }).find(rule),
+            std::string::npos);
+  EXPECT_NE(refusal([] {
+              GrossSlipDisplacement(MindlinContact{1e300, 1e-300, 1.0});
+            }).find(rule),
+            std::string::npos);
+  // What overflows only on the way does not matter.
+  EXPECT_DOUBLE_EQ(HertzEquivalentRadius(1e300, 1e120, 1e-60), 4.0 / 3.0);
+}
+
+}  // namespace
+}  // namespace mindahl
