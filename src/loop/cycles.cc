@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -135,12 +136,21 @@ std::vector<double> CycleEnergies(const Record& record, std::span<const std::siz
     const std::size_t first = points[k];
     const std::size_t last = points[k + 2];
     // Forces relative to the first sample: an offset must not cost digits on a small loop.
-    const auto force = [&](std::size_t i) { return record.force[i] - record.force[first]; };
-    double energy = 0.5 * force(last) * (x[first] - x[last]);
+    const auto force = [&](std::size_t i) {
+      return static_cast<long double>(record.force[i]) - record.force[first];
+    };
+    const auto way = [&](std::size_t from, std::size_t to) {
+      return static_cast<long double>(x[to]) - x[from];
+    };
+    long double energy = 0.5L * force(last) * way(last, first);
     for (std::size_t i = first + 1; i <= last; ++i) {
-      energy += 0.5 * (force(i) + force(i - 1)) * (x[i] - x[i - 1]);
+      energy += 0.5L * (force(i) + force(i - 1)) * way(i - 1, i);
     }
-    energies.push_back(energy);
+    if (!(std::abs(energy) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
+      ThrowInvalid("energy of a cycle [J]", std::numeric_limits<double>::infinity(),
+                   "must be within the range of double, 1.8e308: use larger units");
+    }
+    energies.push_back(static_cast<double>(energy));
   }
   return energies;
 }

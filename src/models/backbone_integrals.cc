@@ -3,18 +3,21 @@
 #include <cmath>
 #include <limits>
 
-#include "mindahl/models/backbone.h"
-
 namespace mindahl::backbone {
 namespace {
+
+using Shape = GeneralShape<long double>;
 
 /// Both series converge as the larger of |βy|ᵏ and yᵏ/k!; to here they need fewer than kTerms
 /// terms.
 constexpr long double kSeriesLimit = 0.5L;
 constexpr int kTerms = 80;
 
-/// Below this α the two terms of the loop energy cancel by more than long double has to spare.
-constexpr long double kNearlyElastic = 1.0L / 128;
+/// Between these α the integral follows from u^{2−α}, outside them from the slip y − φ, by a
+/// formula that is singular at α = 2 only and cancels less: as 1 against α below, 1 against αy
+/// above.
+constexpr long double kNearlyElastic = 0.5L;
+constexpr long double kSoon = 4.0L;
 
 bool SeriesConverges(long double y, long double shape_exponent) {
   return y <= kSeriesLimit && std::abs((1 - shape_exponent) * y) <= kSeriesLimit;
@@ -36,40 +39,73 @@ long double BackboneSeries(long double y, long double shape_exponent, int first,
   return sum;
 }
 
+bool IsMiddling(long double shape_exponent) {
+  return shape_exponent >= kNearlyElastic && shape_exponent <= kSoon;
+}
+
 /// y − φ(y), the slip over the elastic limit, to full precision for α → 0: with 1 − y below the
 /// limit as a factor, u = (1 − y)·exp([α·log(1−y) + log(1 + αy/(1−y))]/β).
-long double Slip(long double y, long double shape_exponent) {
-  if (y >= 1) return (y - 1) + GeneralShape<long double>{shape_exponent}.Remaining(y);
-  const long double stuck = 1 - y;
+long double NearlyElasticSlip(const SplitDisplacement& y, long double shape_exponent) {
+  if (y.high >= 1) {
+    return (y.high - 1) + y.low + Shape{shape_exponent}.Remaining(Reduce(y, shape_exponent));
+  }
+  const long double stuck = (1 - y.high) - y.low;
   const long double log_ratio =
-      (shape_exponent * std::log(stuck) + std::log1p(shape_exponent * y / stuck)) /
+      (shape_exponent * std::log(stuck) + std::log1p(shape_exponent * y.high / stuck)) /
       (1 - shape_exponent);
   return stuck * std::expm1(log_ratio);
 }
 
-}  // namespace
-
-long double Work(long double y, long double shape_exponent) {
-  if (SeriesConverges(y, shape_exponent)) {
-    return BackboneSeries(y, shape_exponent, 1, [](int k) { return -1.0L / (k + 1); });
-  }
-  // (1 − u^{2−α})/(2−α) = −expm1(v)/v · log u with v = (2−α)·log u, which is smooth through α = 2.
-  const long double log_remaining = GeneralShape<long double>{shape_exponent}.LogRemaining(y);
+/// ∫φ beyond the series, α middling.
+long double MiddlingWork(const SplitDisplacement& y, long double shape_exponent) {
   const long double exponent = 2 - shape_exponent;
+  const Reduced<long double> reduced = Reduce(y, shape_exponent);
+  if (reduced.z <= 0) return y.high - 1 / exponent;
+  // (1 − u^{2−α})/(2−α) = −expm1(v)/v · log u with v = (2−α)·log u, which is smooth through α = 2.
+  const long double log_remaining = Shape{shape_exponent}.At(reduced).log_remaining;
   const long double stored =
       exponent == 0 ? -log_remaining : -std::expm1(exponent * log_remaining) / exponent;
-  return y - stored;
+  return y.high - stored;
 }
 
-long double MasingLoopEnergy(long double y, long double shape_exponent) {
-  if (SeriesConverges(y, shape_exponent)) {
-    return BackboneSeries(y, shape_exponent, 2, [](int k) { return 4 - 8.0L / (k + 1); });
+}  // namespace
+
+SplitDisplacement Normalize(double stiffness, double x, double slip_force) {
+  const long double factor = stiffness;
+  const long double reach = std::abs(x);
+  const long double divisor = slip_force;
+  const long double product = factor * reach;
+  const long double product_low = std::fma(factor, reach, -product);
+  const long double quotient = product / divisor;
+  return {quotient, (std::fma(-quotient, divisor, product) + product_low) / divisor};
+}
+
+Reduced<long double> Reduce(const SplitDisplacement& y, long double shape_exponent) {
+  Reduced<long double> reduced = Shape{shape_exponent}.Reduce(y.high);
+  reduced.z -= (1 - shape_exponent) * y.low;
+  return reduced;
+}
+
+long double Work(const SplitDisplacement& y, long double shape_exponent) {
+  if (SeriesConverges(y.high, shape_exponent)) {
+    return BackboneSeries(y.high, shape_exponent, 1, [](int k) { return -1.0L / (k + 1); });
   }
-  const long double force = GeneralShape<long double>{shape_exponent}.Force(y);
-  if (shape_exponent < kNearlyElastic) {
-    return 4 * (2 * Slip(y, shape_exponent) - shape_exponent * y * force) / (2 - shape_exponent);
+  if (IsMiddling(shape_exponent)) return MiddlingWork(y, shape_exponent);
+  const long double force = Shape{shape_exponent}.Force(Reduce(y, shape_exponent));
+  return (MasingLoopEnergy(y, shape_exponent) + 4 * y.high * force) / 8;
+}
+
+long double MasingLoopEnergy(const SplitDisplacement& y, long double shape_exponent) {
+  if (SeriesConverges(y.high, shape_exponent)) {
+    return BackboneSeries(y.high, shape_exponent, 2, [](int k) { return 4 - 8.0L / (k + 1); });
   }
-  return 8 * Work(y, shape_exponent) - 4 * y * force;
+  const long double force = Shape{shape_exponent}.Force(Reduce(y, shape_exponent));
+  if (IsMiddling(shape_exponent)) {
+    return 8 * MiddlingWork(y, shape_exponent) - 4 * y.high * force;
+  }
+  const long double slip =
+      shape_exponent < 1 ? NearlyElasticSlip(y, shape_exponent) : y.high - force;
+  return 4 * (2 * slip - shape_exponent * y.high * force) / (2 - shape_exponent);
 }
 
 }  // namespace mindahl::backbone

@@ -6,6 +6,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/backbone_integrals.h"
+#include "models/representable.h"
 
 namespace mindahl {
 
@@ -24,44 +25,57 @@ void Validate(const BranchLaw& law) {
 }
 
 double GrossSlipDisplacement(const BranchLaw& law) {
-  const double beta = 1 - law.shape_exponent;
-  if (beta <= 0) return std::numeric_limits<double>::infinity();
-  return law.slip_force / law.tangential_stiffness / beta;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const long double beta = 1 - static_cast<long double>(law.shape_exponent);
+  if (beta <= 0) return kInfinity;
+  const long double displacement = law.slip_force / (law.tangential_stiffness * beta);
+  return displacement <= static_cast<long double>(std::numeric_limits<double>::max())
+             ? static_cast<double>(displacement)
+             : kInfinity;
 }
 
 namespace {
 
 using Shape = backbone::GeneralShape<long double>;
 
-long double Normalized(const BranchLaw& law, double x) {
-  return static_cast<long double>(law.tangential_stiffness) / law.slip_force *
-         std::abs(static_cast<long double>(x));
+void RequireNumber(double x) {
+  if (std::isnan(x)) ThrowInvalid("displacement [m]", x, "must be a number");
+}
+
+/// At infinity every law has slipped.
+backbone::Reduced<long double> ReducedAt(const BranchLaw& law, double x) {
+  RequireNumber(x);
+  if (std::isinf(x)) return {.y = 1, .w = 1, .z = 0};
+  return backbone::Reduce(backbone::Normalize(law.tangential_stiffness, x, law.slip_force),
+                          law.shape_exponent);
 }
 
 }  // namespace
 
 double BackboneForce(const BranchLaw& law, double x) {
-  const long double force = Shape{law.shape_exponent}.Force(Normalized(law, x));
+  const long double force = Shape{law.shape_exponent}.Force(ReducedAt(law, x));
   return std::copysign(static_cast<double>(law.slip_force * force), x);
 }
 
 double BackboneRemaining(const BranchLaw& law, double x) {
-  return static_cast<double>(Shape{law.shape_exponent}.Remaining(Normalized(law, x)));
+  return static_cast<double>(Shape{law.shape_exponent}.Remaining(ReducedAt(law, x)));
 }
 
 double BackboneSlope(const BranchLaw& law, double x) {
   return static_cast<double>(law.tangential_stiffness *
-                             Shape{law.shape_exponent}.Slope(Normalized(law, x)));
+                             Shape{law.shape_exponent}.Slope(ReducedAt(law, x)));
 }
 
 double BackboneWork(const BranchLaw& law, double x) {
+  RequireFinite("displacement [m]", x);
   const auto slip_force = static_cast<long double>(law.slip_force);
-  return static_cast<double>(slip_force * slip_force / law.tangential_stiffness *
-                             backbone::Work(Normalized(law, x), law.shape_exponent));
+  const auto y = backbone::Normalize(law.tangential_stiffness, x, law.slip_force);
+  return Representable("work [J]", slip_force * slip_force / law.tangential_stiffness *
+                                       backbone::Work(y, law.shape_exponent));
 }
 
 BackboneGradient DifferentiateBackbone(const BranchLaw& law, double x) {
-  const auto phi = backbone::Differentiate<long double>(Normalized(law, x), law.shape_exponent);
+  const auto phi = backbone::Differentiate<long double>(ReducedAt(law, x), law.shape_exponent);
   const long double scale = std::copysign(law.slip_force, x);
   return {static_cast<double>(scale * phi.elastic),
           static_cast<double>(scale * phi.shape_derivative),

@@ -28,10 +28,22 @@ void Validate(const ExcitationOptions& options) {
     ThrowInvalid("samples per cycle [-]", static_cast<double>(options.samples_per_cycle),
                  "must be >= 4");
   }
+  constexpr double kLargestAmplitude = 1e307;  // [m], as of a loading path
+  if (options.amplitude > kLargestAmplitude) {
+    ThrowInvalid("amplitude [m]", options.amplitude, "must be <= 1e307");
+  }
   constexpr double kMostSamples = 1e9;
-  if (options.cycles * static_cast<double>(options.samples_per_cycle) > kMostSamples) {
-    ThrowInvalid("cycles times samples per cycle [-]",
-                 options.cycles * static_cast<double>(options.samples_per_cycle), "must be <= 1e9");
+  if (options.cycles > kMostSamples) {
+    ThrowInvalid("cycles [-]", options.cycles, "must be <= 1e9");
+  }
+  const double samples = options.cycles * static_cast<double>(options.samples_per_cycle);
+  if (samples < 0.5 || samples > kMostSamples) {
+    ThrowInvalid("cycles times samples per cycle [-]", samples, "must be >= 1/2 and <= 1e9");
+  }
+  constexpr double kLongest = 1e300;  // [s]
+  if (options.frequency < options.cycles / kLongest) {
+    ThrowInvalid("frequency [Hz]", options.frequency,
+                 "is too low: cycles over frequency must be <= 1e300 s");
   }
 }
 

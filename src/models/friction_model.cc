@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "mindahl/models/backbone.h"
 
@@ -37,6 +38,24 @@ SteadyPeak MasingPeak(double y, double shape_exponent) {
   return {phi.force, phi.elastic, phi.shape_derivative};
 }
 
+/// log cosh x without overflow.
+double LogCosh(double x) {
+  const double magnitude = std::abs(x);
+  if (magnitude < 1) {
+    const double half = std::sinh(magnitude / 2);
+    return std::log1p(2 * half * half);
+  }
+  return magnitude + (std::log1p(std::exp(-2 * magnitude)) - std::numbers::ln2);
+}
+
+/// log(sinh x / x) without overflow.
+double LogSinhRatio(double x) {
+  constexpr double kOneExponential = 20.0;  // exp(−2x) < ε/8
+  const double magnitude = std::abs(x);
+  if (magnitude < kOneExponential) return x == 0 ? 0.0 : std::log(std::sinh(x) / x);
+  return magnitude - std::log(2 * magnitude);
+}
+
 /// Dahl's own steady loop: v grows from 1 − t* to 1 + t* over 2X. With t* = tanh θ that is
 ///   y(θ) = sinh(βθ)/(β·coshᵝθ),  dy/dθ = cosh(αθ)/cosh^{1+β}θ,  β = 1 − α,
 /// free of cancellation; t* = tanh y for α = 1, t* = 1 from y = 2^{β−1}/β on for α < 1.
@@ -44,22 +63,25 @@ struct DahlLoop {
   double shape_exponent;
 
   [[nodiscard]] double Beta() const { return 1 - shape_exponent; }
-  [[nodiscard]] double Amplitude(double theta) const {
-    const double x = Beta() * theta;
-    return theta * (x == 0 ? 1.0 : std::sinh(x) / x) / std::pow(std::cosh(theta), Beta());
+
+  /// log(y(θ)/y)
+  [[nodiscard]] double LogRatio(double theta, double y) const {
+    return std::log(theta / y) + LogSinhRatio(Beta() * theta) - Beta() * LogCosh(theta);
   }
-  [[nodiscard]] double Slope(double theta) const {
-    return std::cosh(shape_exponent * theta) / std::pow(std::cosh(theta), 1 + Beta());
+  /// d log y/dθ
+  [[nodiscard]] double LogSlope(double theta) const {
+    return std::exp(LogCosh(shape_exponent * theta) - LogCosh(theta) -
+                    LogSinhRatio(Beta() * theta)) /
+           theta;
   }
-  [[nodiscard]] double PerBeta(double theta) const {
+  /// ∂ log y/∂β
+  [[nodiscard]] double LogPerBeta(double theta) const {
     const double x = Beta() * theta;
-    // (x·cosh x − sinh x)/x², by its series where these cancel: x⁹/3991680 < 1e-16 of x/3.
-    const double bend = std::abs(x) < 0.05
-                            ? x / 3 * (1 + x * x / 10 * (1 + x * x / 28 * (1 + x * x / 54)))
-                            : (x * std::cosh(x) - std::sinh(x)) / (x * x);
-    const double half = std::sinh(theta / 2);
-    const double log_cosh = std::log1p(2 * half * half);
-    return theta * theta * bend / std::pow(std::cosh(theta), Beta()) - Amplitude(theta) * log_cosh;
+    // coth x − 1/x, by its series where these cancel: 2x⁹/93555 < ε/8 of x/3.
+    const double langevin =
+        std::abs(x) < 0.05 ? x / 3 * (1 - x * x / 15 * (1 - x * x * (2.0 / 21) * (1 - x * x / 10)))
+                           : 1 / std::tanh(x) - 1 / x;
+    return theta * langevin - LogCosh(theta);
   }
 };
 
@@ -71,10 +93,9 @@ double SolveAmplitude(const DahlLoop& loop, double y, double highest) {
   double lowest = 0.0;
   double theta = std::min(y, highest / 2);
   for (int i = 0; i < kIterations; ++i) {
-    const double amplitude = loop.Amplitude(theta);
-    const double log_ratio = std::log(amplitude / y);
+    const double log_ratio = loop.LogRatio(theta, y);
     (log_ratio > 0 ? highest : lowest) = theta;
-    double next = theta - log_ratio * amplitude / loop.Slope(theta);
+    double next = theta - log_ratio / loop.LogSlope(theta);
     if (!(next > lowest && next < highest)) next = lowest + (highest - lowest) / 2;
     if (std::abs(next - theta) <= kTolerance * theta) return next;
     theta = next;
@@ -84,14 +105,14 @@ double SolveAmplitude(const DahlLoop& loop, double y, double highest) {
 
 SteadyPeak DahlPeak(double y, double shape_exponent) {
   constexpr double kSaturated = 20.0;  // tanh 20 rounds to 1
-  y = std::min(y, backbone::kLargestDisplacement<double>);
-  if (y == 0) return {};
+  constexpr double kLinear = 1e-120;   // t* = y to rounding for every α, and 1/y is finite above
+  if (y < kLinear) return {.force = y, .per_log_stiffness = y};
   const DahlLoop loop{shape_exponent};
-  if (loop.Amplitude(kSaturated) <= y) return {.force = 1.0};
+  if (loop.LogRatio(kSaturated, y) <= 0) return {.force = 1.0};
   const double theta = SolveAmplitude(loop, y, kSaturated);
   const double cosh = std::cosh(theta);
-  const double force_per_amplitude = 1 / (cosh * cosh * loop.Slope(theta));
-  return {std::tanh(theta), y * force_per_amplitude, loop.PerBeta(theta) * force_per_amplitude};
+  const double per_log_amplitude = 1 / (cosh * cosh * loop.LogSlope(theta));
+  return {std::tanh(theta), per_log_amplitude, loop.LogPerBeta(theta) * per_log_amplitude};
 }
 
 constexpr std::array kModels = {

@@ -5,29 +5,41 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "mindahl/core/error.h"
 
 namespace mindahl {
 namespace {
 
+void RequireWithinReach(std::string_view quantity, double value) {
+  if (!(std::abs(value) <= kLargestPathDisplacement)) {
+    ThrowInvalid(quantity, value, "must be finite and within +-1e307 m");
+  }
+}
+
 void RequireDisplacements(std::span<const double> displacement) {
   if (displacement.empty()) {
     throw InvalidArgument("the displacement history is empty: must have samples");
   }
+  // Branches are numbered in 32 bits, and a sample opens at most one.
+  constexpr std::size_t kMostSamples = 2'147'483'640;
+  if (displacement.size() > kMostSamples) {
+    ThrowInvalid("samples of the displacement history [-]",
+                 static_cast<double>(displacement.size()), "must be <= 2147483640");
+  }
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    if (!std::isfinite(displacement[i])) {
-      ThrowInvalid(fmt::format("displacement [m] of sample {}", i), displacement[i],
-                   "must be finite");
+    if (!(std::abs(displacement[i]) <= kLargestPathDisplacement)) {
+      RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
     }
   }
 }
 
-double SignOf(double value) { return value < 0 ? -1.0 : 1.0; }
+std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int8_t{1}; }
 
 /// Direction in which the record sets out.
-double FirstDirection(std::span<const double> displacement,
-                      std::span<const std::size_t> reversals) {
+std::int8_t FirstDirection(std::span<const double> displacement,
+                           std::span<const std::size_t> reversals) {
   const double first_extreme =
       reversals.empty() ? displacement.back() : displacement[reversals.front()];
   const double next = reversals.size() > 1    ? displacement[reversals[1]]
@@ -52,7 +64,9 @@ class OpenBranches {
   /// Starts the branch back from `extreme` on the present one.
   void Reverse(double extreme) {
     const Branch& present = path_.branches[static_cast<std::size_t>(open_.back())];
-    Open({.origin = extreme, .direction = -direction_, .amplitude = present.amplitude});
+    Open({.origin = extreme,
+          .amplitude = present.amplitude,
+          .direction = static_cast<std::int8_t>(-direction_)});
   }
 
   /// Moves on to `displacement` in the present direction; closes what it passes.
@@ -85,27 +99,28 @@ class OpenBranches {
   LoadingPath& path_;
   Memory memory_;
   std::vector<std::int32_t> open_;
-  double direction_ = 1.0;  // of the motion; the virgin curve is run both ways
+  std::int8_t direction_ = 1;  // of the motion; the virgin curve is run both ways
 };
 
 void AppendToRuns(std::vector<BranchRun>& runs, std::size_t sample, std::int32_t branch) {
   if (!runs.empty() && runs.back().branch == branch) {
-    runs.back().end = sample + 1;
+    runs.back().end = static_cast<std::uint32_t>(sample + 1);
   } else {
-    runs.push_back({sample, sample + 1, branch});
+    runs.push_back(
+        {static_cast<std::uint32_t>(sample), static_cast<std::uint32_t>(sample + 1), branch});
   }
 }
 
 /// Opens what is open before the first sample.
-void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement, double direction,
-                         Memory memory, const InitialContact& initial) {
+void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement,
+                         std::int8_t direction, Memory memory, const InitialContact& initial) {
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   if (initial.state == InitialState::kVirgin) {
     const double origin = initial.unloaded_displacement;
     const double amplitude = std::max(highest - origin, origin - lowest);
     const double first_step = displacement.front() - origin;
-    const double first_direction = first_step == 0 ? direction : SignOf(first_step);
-    open.Open({origin, first_direction, amplitude, -1, BranchStart::kUnloaded});
+    const std::int8_t first_direction = first_step == 0 ? direction : SignOf(first_step);
+    open.Open({origin, amplitude, -1, BranchStart::kUnloaded, first_direction});
     if (first_direction != direction) open.Reverse(displacement.front());
     return;
   }
@@ -113,11 +128,11 @@ void OpenInitialBranches(OpenBranches& open, std::span<const double> displacemen
   const double amplitude = (highest - lowest) / 2;
   const double near_extreme = direction > 0 ? lowest : highest;
   if (memory == Memory::kNone) {
-    open.Open({near_extreme, direction, amplitude, -1, BranchStart::kSteadyExtreme});
+    open.Open({near_extreme, amplitude, -1, BranchStart::kSteadyExtreme, direction});
     return;
   }
   // One turn of the loop from the unloaded contact: a Masing law is steady after it.
-  open.Open({centre, direction, amplitude, -1, BranchStart::kSteadyCentre});
+  open.Open({centre, amplitude, -1, BranchStart::kSteadyCentre, direction});
   open.Reverse(direction > 0 ? highest : lowest);
   open.Reverse(near_extreme);
 }
@@ -128,8 +143,10 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial) {
   RequireDisplacements(displacement);
-  RequireFinite("unloaded displacement [m]", initial.unloaded_displacement);
+  RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
   LoadingPath path;
+  constexpr std::size_t kInitialBranches = 3;
+  path.branches.reserve(reversals.size() + kInitialBranches);
   OpenBranches open(path, memory);
   OpenInitialBranches(open, displacement, FirstDirection(displacement, reversals), memory, initial);
 
@@ -149,17 +166,18 @@ LoadingPath MakeEnvelopePath(std::span<const double> displacement,
                              std::span<const double> amplitude, double unloaded_displacement) {
   RequireDisplacements(displacement);
   RequireSameSize("displacement", displacement.size(), "amplitude", amplitude.size());
+  RequireWithinReach("unloaded displacement [m]", unloaded_displacement);
   LoadingPath path;
   double origin = unloaded_displacement;
-  double direction = 1.0;
+  std::int8_t direction = 1;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     RequireNonNegative(fmt::format("amplitude [m] of sample {}", i), amplitude[i]);
     const double step = displacement[i] - origin;
     if (step != 0) direction = SignOf(step);
     const auto id = static_cast<std::int32_t>(i);
-    path.branches.push_back({origin, direction, amplitude[i], id - 1,
-                             i == 0 ? BranchStart::kUnloaded : BranchStart::kReversal});
-    path.runs.push_back({i, i + 1, id});
+    path.branches.push_back({origin, amplitude[i], id - 1,
+                             i == 0 ? BranchStart::kUnloaded : BranchStart::kReversal, direction});
+    path.runs.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i + 1), id});
     origin = displacement[i];
   }
   return path;

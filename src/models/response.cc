@@ -1,9 +1,13 @@
 #include "mindahl/models/response.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -19,12 +23,22 @@ constexpr std::size_t kShape = 1;
 constexpr std::size_t kUnloaded = 2;
 
 /// A branch ready for evaluation: t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin.
+template <typename Real>
 struct ScaledBranch {
-  double origin = 0.0;
-  double force = 0.0;   // t₀
-  double height = 1.0;  // span·v
-  double rate = 0.0;    // k [1/m]
+  Real origin = 0;
+  Real force = 0;   // t₀
+  Real height = 1;  // span·v
+  Real rate = 0;    // k [1/m]
+
+  /// rate·|e|, from which φ does not overflow.
+  [[nodiscard]] Real Normalize(Real e) const {
+    return rate * std::min(std::abs(e), backbone::Reach(rate));
+  }
 };
+
+/// Branches are prepared in double for every type of sample: along a history their roundings add
+/// up.
+using Branches = std::vector<ScaledBranch<double>>;
 
 struct BranchGradient {
   Gradient force{};
@@ -42,8 +56,8 @@ class Evaluation {
         shape_exponent_(law.shape_exponent) {}
 
   template <typename Shape>
-  std::vector<ScaledBranch> Scale(const LoadingPath& path, const Shape& shape) const {
-    std::vector<ScaledBranch> scaled;
+  Branches Scale(const LoadingPath& path, const Shape& shape) const {
+    Branches scaled;
     scaled.reserve(path.branches.size());
     for (const Branch& branch : path.branches) {
       scaled.push_back(Start(branch, OriginForce(branch, scaled, shape)));
@@ -52,8 +66,7 @@ class Evaluation {
   }
 
   /// Derivatives of every branch of `scaled`, which Scale made.
-  std::vector<BranchGradient> Differentiate(const LoadingPath& path,
-                                            std::span<const ScaledBranch> scaled) const {
+  std::vector<BranchGradient> Differentiate(const LoadingPath& path, const Branches& scaled) const {
     std::vector<BranchGradient> gradients;
     gradients.reserve(path.branches.size());
     for (std::size_t i = 0; i < path.branches.size(); ++i) {
@@ -64,11 +77,10 @@ class Evaluation {
   }
 
   /// ∂t/∂(ln rate, α, δ₀) at `displacement`, and t itself.
-  Gradient DifferentiateSample(const ScaledBranch& branch, const BranchGradient& gradient,
+  Gradient DifferentiateSample(const ScaledBranch<double>& branch, const BranchGradient& gradient,
                                double displacement, double& force) const {
     const double e = displacement - branch.origin;
-    const double y = branch.rate * std::abs(e);
-    const auto phi = backbone::Differentiate(y, shape_exponent_);
+    const auto phi = backbone::Differentiate(branch.Normalize(e), shape_exponent_);
     const double sign = std::copysign(1.0, e);
     force = branch.force + branch.height * sign * phi.force;
     Gradient result;
@@ -83,7 +95,8 @@ class Evaluation {
 
  private:
   [[nodiscard]] SteadyPeak Peak(const Branch& branch) const {
-    return model_.steady_peak(rate_ * branch.amplitude, shape_exponent_);
+    const double y = rate_ * std::min(branch.amplitude, backbone::Reach(rate_));
+    return model_.steady_peak(y, shape_exponent_);
   }
 
   /// Most models do not look at the peak; sparing it keeps a branch as cheap as a sample.
@@ -92,7 +105,7 @@ class Evaluation {
   }
 
   template <typename Shape>
-  [[nodiscard]] double OriginForce(const Branch& branch, std::span<const ScaledBranch> scaled,
+  [[nodiscard]] double OriginForce(const Branch& branch, const Branches& scaled,
                                    const Shape& shape) const {
     switch (branch.start) {
       case BranchStart::kUnloaded:
@@ -103,9 +116,9 @@ class Evaluation {
       case BranchStart::kReversal:
         break;
     }
-    const ScaledBranch& parent = scaled[static_cast<std::size_t>(branch.parent)];
+    const ScaledBranch<double>& parent = scaled[static_cast<std::size_t>(branch.parent)];
     const double e = branch.origin - parent.origin;
-    return parent.force + std::copysign(parent.height * shape.Force(parent.rate * std::abs(e)), e);
+    return parent.force + std::copysign(parent.height * shape.Force(parent.Normalize(e)), e);
   }
 
   [[nodiscard]] BranchScale ScaleOf(const Branch& branch, double origin_force,
@@ -113,18 +126,24 @@ class Evaluation {
     return model_.scale(branch.direction * origin_force, peak.force, IsVirgin(branch.start));
   }
 
-  [[nodiscard]] ScaledBranch Start(const Branch& branch, double origin_force) const {
-    const BranchScale scale = ScaleOf(branch, origin_force, PeakThatScales(branch));
-    const double slowing =
-        scale.remaining == 1.0 ? 1.0 : std::pow(scale.remaining, shape_exponent_ - 1);
-    // Finite, lest it meet a zero displacement: α in the thousands overflows the power.
-    const double rate = scale.remaining > 0 ? std::min(rate_ * slowing / scale.span,
-                                                       std::numeric_limits<double>::max())
-                                            : 0.0;
-    return {branch.origin, origin_force, scale.span * scale.remaining, rate};
+  /// k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
+  [[nodiscard]] double RateOf(const BranchScale& scale) const {
+    constexpr double kSteepest = 1e300;  // [1/m], kept from overflow in products with forces
+    if (scale.remaining <= 0) return 0.0;
+    const double virgin_rate = rate_ / scale.span;
+    if (scale.remaining == 1.0) return virgin_rate;
+    const double exponent = shape_exponent_ - 1;
+    const bool too_steep =
+        std::log(virgin_rate) + exponent * std::log(scale.remaining) >= std::log(kSteepest);
+    return too_steep ? kSteepest : virgin_rate * std::pow(scale.remaining, exponent);
   }
 
-  [[nodiscard]] Gradient OriginGradient(const Branch& branch, std::span<const ScaledBranch> scaled,
+  [[nodiscard]] ScaledBranch<double> Start(const Branch& branch, double origin_force) const {
+    const BranchScale scale = ScaleOf(branch, origin_force, PeakThatScales(branch));
+    return {branch.origin, origin_force, scale.span * scale.remaining, RateOf(scale)};
+  }
+
+  [[nodiscard]] Gradient OriginGradient(const Branch& branch, const Branches& scaled,
                                         std::span<const BranchGradient> gradients) const {
     switch (branch.start) {
       case BranchStart::kUnloaded:
@@ -167,58 +186,128 @@ class Evaluation {
   double shape_exponent_;
 };
 
+/// To single precision or none. What does not fit it is out of reach: a force that never comes, a
+/// branch that is vertical.
+template <typename Real>
+Real Narrow(double value) {
+  constexpr double kLargest = static_cast<double>(std::numeric_limits<Real>::max());
+  return static_cast<Real>(std::clamp(value, -kLargest, kLargest));
+}
+
+template <typename Real>
+ScaledBranch<Real> Narrow(const ScaledBranch<double>& branch) {
+  return {Narrow<Real>(branch.origin), Narrow<Real>(branch.force), Narrow<Real>(branch.height),
+          Narrow<Real>(branch.rate)};
+}
+
 /// Forces of one run; the loop has no branch and no call, so that it vectorises where φ does.
-template <typename Shape>
-void EvaluateRun(const ScaledBranch& branch, const Shape& shape, double slip_force, double limit,
-                 std::span<const double> displacement, std::span<double> force) {
+template <typename Real, typename Shape>
+void EvaluateRun(const ScaledBranch<Real>& branch, const Shape& shape, Real slip_force, Real limit,
+                 std::span<const Real> displacement, std::span<Real> force) {
+  const Real reach = backbone::Reach(branch.rate);
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    const double e = displacement[i] - branch.origin;
-    const double t =
-        branch.force + std::copysign(branch.height * shape.Force(branch.rate * std::abs(e)), e);
+    const Real e = displacement[i] - branch.origin;
+    const Real phi = shape.Force(branch.rate * std::min(std::abs(e), reach));
+    const Real t = branch.force + std::copysign(branch.height * phi, e);
     force[i] = slip_force * std::clamp(t, -limit, limit);
   }
 }
 
 /// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
-double Limit(const FrictionModel& model) {
-  return model.bounded ? 1.0 : std::numeric_limits<double>::max();
-}
+double Limit(const FrictionModel& model) { return model.bounded ? 1.0 : 2.0; }
 
-void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
-                  std::span<double> force) {
+template <typename Real>
+void RequireSizes(const LoadingPath& path, std::span<const Real> displacement,
+                  std::span<Real> force) {
   RequireSameSize("displacement", displacement.size(), "force", force.size());
   RequireSameSize("displacement", displacement.size(), "loading path",
                   path.runs.empty() ? 0 : path.runs.back().end);
+}
+
+/// What Validate does not ask for: that the type of the samples holds the law too.
+template <typename Real>
+void RequireRange(const BranchLaw& law) {
+  Validate(law);
+  if constexpr (std::is_same_v<Real, float>) {
+    const auto require = [](std::string_view quantity, double value) {
+      if (!std::isnormal(Narrow<float>(value)) || value > std::numeric_limits<float>::max()) {
+        ThrowInvalid(quantity, value, "must be a normal float, about 2e-38 to 3e38");
+      }
+    };
+    require("slip force [N]", law.slip_force);
+    require("tangential stiffness over slip force [1/m]",
+            law.tangential_stiffness / law.slip_force);
+    if (law.shape_exponent > backbone::kLargestShapeExponent<float>) {
+      ThrowInvalid("shape exponent [-]", law.shape_exponent, "must be <= 1e10 in single precision");
+    }
+  }
+}
+
+/// For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
+template <typename Real>
+void RequireReach(const BranchLaw& law, const Branches& branches,
+                  std::span<const Real> displacement) {
+  if (law.shape_exponent <= 1) return;
+  double farthest = 0.0;
+  for (const Real at : displacement)
+    farthest = std::max(farthest, std::abs(static_cast<double>(at)));
+  double steepest = 0.0;
+  double farthest_origin = 0.0;
+  for (const ScaledBranch<double>& branch : branches) {
+    steepest = std::max(steepest, branch.rate);
+    farthest_origin = std::max(farthest_origin, std::abs(branch.origin));
+  }
+  farthest += farthest_origin;
+  if (farthest > static_cast<double>(backbone::Reach(Narrow<Real>(steepest)))) {
+    ThrowInvalid("displacement [m]", farthest,
+                 fmt::format("must be <= {:.3g} times the elastic limit of the steepest branch, "
+                             "{:.3g} m, for shape exponents > 1",
+                             backbone::kLargestDisplacement<Real>, 1 / steepest));
+  }
+}
+
+template <typename Real>
+void Evaluate(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
+              std::span<const Real> displacement, std::span<Real> force) {
+  RequireRange<Real>(law);
+  RequireSizes(path, displacement, force);
+  const Evaluation evaluation(model, law);
+  const Branches branches = backbone::WithShape(
+      law.shape_exponent, [&](const auto& shape) { return evaluation.Scale(path, shape); });
+  RequireReach(law, branches, displacement);
+  backbone::WithShape(Narrow<Real>(law.shape_exponent), [&](const auto& shape) {
+    for (const BranchRun& run : path.runs) {
+      const std::size_t count = run.end - run.begin;
+      EvaluateRun(Narrow<Real>(branches[static_cast<std::size_t>(run.branch)]), shape,
+                  static_cast<Real>(law.slip_force), static_cast<Real>(Limit(model)),
+                  displacement.subspan(run.begin, count), force.subspan(run.begin, count));
+    }
+  });
 }
 
 }  // namespace
 
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                    std::span<const double> displacement, std::span<double> force) {
-  Validate(law);
-  RequireSizes(path, displacement, force);
-  const Evaluation evaluation(model, law);
-  backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
-    const std::vector<ScaledBranch> branches = evaluation.Scale(path, shape);
-    for (const BranchRun& run : path.runs) {
-      const std::size_t count = run.end - run.begin;
-      EvaluateRun(branches[static_cast<std::size_t>(run.branch)], shape, law.slip_force,
-                  Limit(model), displacement.subspan(run.begin, count),
-                  force.subspan(run.begin, count));
-    }
-  });
+  Evaluate(model, law, path, displacement, force);
+}
+
+void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
+                   std::span<const float> displacement, std::span<float> force) {
+  Evaluate(model, law, path, displacement, force);
 }
 
 void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
                               const LoadingPath& path, std::span<const double> displacement,
                               std::span<double> force, std::span<double> gradient) {
-  Validate(law);
+  RequireRange<double>(law);
   RequireSizes(path, displacement, force);
   RequireSameSize("gradient", gradient.size(), "displacement times gradient columns",
                   displacement.size() * kGradientColumns);
   const Evaluation evaluation(model, law);
-  const std::vector<ScaledBranch> branches =
+  const Branches branches =
       evaluation.Scale(path, backbone::GeneralShape<double>{law.shape_exponent});
+  RequireReach(law, branches, displacement);
   const std::vector<BranchGradient> branch_gradients = evaluation.Differentiate(path, branches);
   const double limit = Limit(model);
   for (const BranchRun& run : path.runs) {

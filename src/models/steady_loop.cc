@@ -1,9 +1,11 @@
 #include "mindahl/models/steady_loop.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone_integrals.h"
+#include "models/representable.h"
 
 namespace mindahl {
 namespace {
@@ -13,27 +15,38 @@ void Require(const BranchLaw& law, double amplitude) {
   RequireNonNegative("amplitude [m]", amplitude);
 }
 
+/// t* at the amplitude.
+double Peak(const FrictionModel& model, const BranchLaw& law, double amplitude) {
+  const double rate = law.tangential_stiffness / law.slip_force;
+  const double y = rate * std::min(amplitude, backbone::Reach(rate));
+  return model.steady_peak(y, law.shape_exponent).force;
+}
+
 }  // namespace
 
 double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double amplitude) {
   Require(law, amplitude);
-  const double y = law.tangential_stiffness / law.slip_force * amplitude;
-  return law.slip_force * model.steady_peak(y, law.shape_exponent).force;
+  return law.slip_force * Peak(model, law, amplitude);
 }
 
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude) {
   Require(law, amplitude);
-  const double y = law.tangential_stiffness / law.slip_force * amplitude;
-  const double peak = model.steady_peak(y, law.shape_exponent).force;
+  const auto y = backbone::Normalize(law.tangential_stiffness, amplitude, law.slip_force);
+  const long double unit =
+      static_cast<long double>(law.slip_force) * law.slip_force / law.tangential_stiffness;
+  const double peak = Peak(model, law, amplitude);
   const BranchScale scale = model.scale(-peak, peak, /*virgin=*/false);
   // A branch runs from −t* to t* = −t* + h·φ(2ky), so W = 2[∫ branch − 2y·t*] is a Masing loop's
   // energy in other units, (h/4k)·[8∫₀^{2ky} φ − 4·(2ky)·φ(2ky)]: one form, free of cancellation.
-  const double rate = std::pow(scale.remaining, law.shape_exponent - 1) / scale.span;
-  const double height = scale.span * scale.remaining;
-  const long double unit =
-      static_cast<long double>(law.slip_force) * law.slip_force / law.tangential_stiffness;
-  return static_cast<double>(unit * height / (4 * rate) *
-                             backbone::MasingLoopEnergy(2 * rate * y, law.shape_exponent));
+  const long double height = static_cast<long double>(scale.span) * scale.remaining;
+  const long double rate = std::pow(static_cast<long double>(scale.remaining),
+                                    static_cast<long double>(law.shape_exponent) - 1) /
+                           scale.span;
+  const long double stretch = 2 * rate;  // 1 for a Masing law
+  return Representable(
+      "energy per cycle [J]",
+      unit * height / (2 * stretch) *
+          backbone::MasingLoopEnergy({stretch * y.high, stretch * y.low}, law.shape_exponent));
 }
 
 double GrossSlipEnergyRatio(double shape_exponent) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -270,6 +271,47 @@ TEST(ForceSense, SurvivesNoiseOnManyRecords) {
     for (double& force : record.force) force = sign * force + testing::Normal(generator);
     ASSERT_EQ(ForceSense(record, Reversals(record)), sign > 0 ? 1 : -1);
   }
+}
+
+TEST(CycleEnergies, AreRoundedOnceWhateverTheOffsetAndTheNumberOfSamples) {
+  // cycles.h: 1 ε of the result and n·2⁻⁶² of the terms' sizes; the trapezoidal sum at 50 digits.
+  using Real = boost::multiprecision::cpp_bin_float_50;
+  Generator generator(9);
+  for (int i = 0; i < 40; ++i) {
+    const Record record = MakeRecord({.lag = testing::LogUniform(generator, 1e-9, 1.0),
+                                      .centre = testing::Uniform(generator, -1e-5, 1e-5),
+                                      .offset = testing::Uniform(generator, -1e3, 1e3)});
+    const std::vector<std::size_t> reversals = FindReversals(record.displacement, 0.0);
+    const std::vector<double> energies = CycleEnergies(record, reversals);
+    ASSERT_GE(energies.size(), 2U);
+    // From the first reversal to the next but one, unless the record's start is the first extreme.
+    const std::size_t first = reversals[0];
+    const std::size_t last = reversals[2];
+    const auto force = [&](std::size_t k) {
+      return Real(Real(record.force[k]) - Real(record.force[first]));
+    };
+    const auto way = [&](std::size_t from, std::size_t to) {
+      return Real(Real(record.displacement[to]) - Real(record.displacement[from]));
+    };
+    Real energy = force(last) * way(last, first) / 2;
+    Real size = abs(energy);
+    for (std::size_t k = first + 1; k <= last; ++k) {
+      const Real term = (force(k) + force(k - 1)) * way(k - 1, k) / 2;
+      energy += term;
+      size += abs(term);
+    }
+    const Real bound = std::numeric_limits<double>::epsilon() * abs(energy) +
+                       ldexp(Real(last - first), -62) * size;
+    EXPECT_LE(abs(Real(energies[0]) - energy), bound) << i;
+  }
+}
+
+TEST(CycleEnergies, RefuseAnEnergyThatNoDoubleHolds) {
+  const Record record{.displacement = {0, 1e200, -1e200, 1e200, -1e200},
+                      .force = {0, 1e200, -2e200, 3e200, 0},
+                      .time = {},
+                      .normal_load = {}};
+  EXPECT_THROW(CycleEnergies(record, FindReversals(record.displacement, 0.0)), InvalidArgument);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/math/constants/constants.hpp>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -87,6 +89,33 @@ TEST(Excitation, RejectsValuesOutOfRange) {
   EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .samples_per_cycle = 3}), InvalidArgument);
   EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .frequency = -1.0}), InvalidArgument);
   EXPECT_THROW(MakeExcitation({.amplitude = 1.0, .growth = 0.5}), InvalidArgument);
+}
+
+TEST(Excitation, IsWithinItsBoundOfTheExactWave) {
+  using Real = boost::multiprecision::cpp_bin_float_50;
+  constexpr double kBound = 4 * std::numeric_limits<double>::epsilon();  // excitation.h
+  constexpr double kGrowth = 37.0;
+  const double grown = 1 + std::log(kGrowth);
+  for (const std::size_t per_cycle : {4U, 7U, 200U, 1001U}) {
+    const ExcitationOptions options{.waveform = Waveform::kGrowingSine,
+                                    .amplitude = 1.7e-7,
+                                    .cycles = 3,
+                                    .samples_per_cycle = per_cycle,
+                                    .growth = kGrowth};
+    ExcitationOptions steady = options;
+    steady.waveform = Waveform::kSine;
+    const Excitation growing = MakeExcitation(options);
+    const Excitation sine = MakeExcitation(steady);
+    const std::size_t steps = 3 * per_cycle;
+    for (std::size_t i = 0; i <= steps; ++i) {
+      const Real wave =
+          Real(1.7e-7) * sin(2 * boost::math::constants::pi<Real>() * Real(i) / Real(per_cycle));
+      const Real envelope = pow(Real(kGrowth), Real(Real(i) / Real(steps) - 1));
+      EXPECT_NEAR(static_cast<double>(Real(sine.displacement[i]) - wave), 0.0, kBound * 1.7e-7);
+      EXPECT_NEAR(static_cast<double>(Real(growing.displacement[i]) - wave * envelope), 0.0,
+                  kBound * grown * 1.7e-7);
+    }
+  }
 }
 
 }  // namespace

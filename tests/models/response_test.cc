@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "../../tools/reference/exact_history.h"
@@ -266,6 +268,77 @@ TEST(MasingMemory, KeepsItsDigitsOverAMillionNestedReversals) {
   for (const double alpha : {1.0 / 3.0, 1.0, 3.0}) {
     const auto force = Respond(Model("mindlin-dahl"), {1.0, alpha, 1.0}, history);
     EXPECT_NEAR(force.back(), 0.0, kDemagnetised + kRounding);
+  }
+}
+
+TEST(MasingMemory, AddsUpAMillionNestedReversalsAsARandomWalkOfRoundings) {
+  // T = f(e₀) + Σ 2·sgn·f(|eₖ₊₁ − eₖ|/2), summed in long double.
+  constexpr std::size_t kReversals = 1'000'000;
+  constexpr double kBound = 2e-13;  // response.h, 1e-13, and the test's own arguments
+  const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
+  History history(kReversals);
+  for (std::size_t i = 0; i < kReversals; ++i) {
+    const double size = 3.0 * static_cast<double>(kReversals - i) / kReversals;
+    history[i] = i % 2 == 0 ? size : -size;
+  }
+  const std::vector<double> force = Respond(Model("mindlin-dahl"), law, history);
+  long double sum = 0;
+  double from = 0.0;
+  for (std::size_t i = 0; i < kReversals; ++i) {
+    const double step = history[i] - from;
+    const double span = i == 0 ? 1.0 : 2.0;
+    sum += static_cast<long double>(span) * BackboneForce(law, step / span);
+    from = history[i];
+    if (i % 1000 == 0 || i + 1 == kReversals) {
+      ASSERT_NEAR(force[i], static_cast<double>(sum), kBound) << i;
+    }
+  }
+}
+
+TEST(MasingMemory, RepeatsALoopBitForBitAfterTenMillionReversals) {
+  constexpr std::size_t kReversals = 10'000'000;
+  const History once = {1.3, 0.2, 0.9, -0.7, 0.4, -0.1, 0.1, -0.4};
+  History history(kReversals);
+  for (std::size_t i = 0; i < kReversals; ++i) history[i] = once[i % once.size()];
+  for (const auto& [name, alpha] : {std::pair{"mindlin", 1.0 / 3.0}, {"mindlin-dahl", 0.8}}) {
+    const std::vector<double> force = Respond(Model(name), {1.0, alpha, 1.0}, history);
+    const auto period = static_cast<std::ptrdiff_t>(once.size());
+    // The first turn has the virgin loading in it; from its second extreme on, all are alike.
+    const std::vector<double> first(force.begin() + period, force.begin() + 2 * period);
+    const std::vector<double> last(force.end() - period, force.end());
+    EXPECT_EQ(first, last) << name;
+    EXPECT_EQ(force[1], last[1]) << name;
+  }
+}
+
+TEST(SinglePrecision, StaysWithinItsBoundHoweverManyReversals) {
+  // response.h: 16·2⁻²³ of Tc, against double on the same displacements.
+  constexpr double kBound = 16 * static_cast<double>(std::numeric_limits<float>::epsilon());
+  constexpr double kUseful = kBound / 40;  // a bound that nothing comes near would prove little
+  Generator generator(34);
+  for (const FrictionModel& model : FrictionModels()) {
+    double worst = 0.0;
+    for (int i = 0; i < 400; ++i) {
+      const std::size_t samples = i == 0 ? 100'000 : 50;
+      const History drawn = i % 2 == 0 ? testing::RandomWalk(generator, samples, 0.5)
+                                       : testing::WhiteSequence(generator, samples, 2.0);
+      const std::vector<float> history(drawn.begin(), drawn.end());
+      const History widened(history.begin(), history.end());
+      const BranchLaw law{1.3, model.shape_exponent.value_or(Uniform(generator, 0.0, 2.0)), 0.7};
+      const LoadingPath path = PathOf(model, widened);
+      std::vector<float> force(history.size());
+      std::vector<double> expected(history.size());
+      EvaluateForce(model, law, path, std::span<const float>(history), force);
+      EvaluateForce(model, law, path, widened, expected);
+      for (std::size_t k = 0; k < force.size(); ++k) {
+        worst = std::max(worst, std::abs(static_cast<double>(force[k]) - expected[k]));
+        if (model.bounded) {
+          ASSERT_LE(force[k], static_cast<float>(law.slip_force));
+        }
+      }
+    }
+    EXPECT_LE(worst, kBound * 0.7) << model.name;
+    EXPECT_GE(worst, kUseful * 0.7) << model.name;
   }
 }
 

@@ -3,7 +3,6 @@
 // Plain closed forms at so many digits that no cancellation matters; nothing of the library is
 // used.
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -13,10 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "exact_branch_law.h"
+
 namespace {
 
-// α = 1e-300 costs the loop energy 300 digits and y = 1e-18 another 54.
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<500>>;
+using Real = reference::Digits500;
 
 constexpr const char* kHeader =
     R"(# The branch law in units of Tc and Tc/sigma; written by tools/reference/make_branch_law_table.
@@ -27,36 +27,6 @@ constexpr const char* kHeader =
 # Precision: Boost.Multiprecision cpp_bin_float, 500 digits; alpha and y are exact doubles (17 digits), the rest has 25.
 # alpha,y,f,u,slope,work,per_log_stiffness,per_shape,per_log_slip_force,loop_energy
 )";
-
-struct Row {
-  Real force, remaining, slope, work, per_log_stiffness, per_shape, per_log_slip_force, loop_energy;
-};
-
-Row Evaluate(double exponent, double displacement) {
-  const Real alpha(exponent);
-  const Real y(displacement);
-  const Real beta = 1 - alpha;
-  const Real z = std::max(Real(1 - beta * y), Real(0));
-  Row row;
-  if (z == 0) {
-    row.remaining = row.slope = row.per_shape = 0;
-  } else {
-    const Real log_remaining = beta == 0 ? Real(-y) : Real(log(z) / beta);
-    row.remaining = exp(log_remaining);
-    row.slope = row.remaining / z;
-    row.per_shape = beta == 0 ? Real(-row.remaining * y * y / 2)
-                              : Real(-row.remaining * (y / z + log_remaining) / beta);
-  }
-  row.force = 1 - row.remaining;
-  const Real exponent_left = 2 - alpha;
-  // u^{2−α} = u·z
-  row.work =
-      exponent_left == 0 ? Real(y - log(1 + y)) : Real(y - (1 - row.remaining * z) / exponent_left);
-  row.per_log_stiffness = y * row.slope;
-  row.per_log_slip_force = row.force - row.per_log_stiffness;
-  row.loop_energy = 8 * row.work - 4 * y * row.force;
-  return row;
-}
 
 std::vector<double> Displacements(double alpha) {
   // λ = y(1−α) below α = 1, where gross slip is at λ = 1; y itself from there on.
@@ -101,7 +71,7 @@ int main(int argc, char** argv) {
   for (const double alpha : {0.0, 1e-300, 1e-16, 1e-8, 0.1, 1.0 / 3.0, 0.5, 1 - 1e-8, 1 - 1e-15,
                              1.0, 1 + 1e-15, 1 + 1e-8, 2.0, 10.0, 100.0}) {
     for (const double y : Displacements(alpha)) {
-      const Row row = Evaluate(alpha, y);
+      const auto row = reference::EvaluateNormalized(Real(alpha), Real(y));
       out << text(alpha) << ',' << text(y) << ',' << digits(row.force) << ','
           << digits(row.remaining) << ',' << digits(row.slope) << ',' << digits(row.work) << ','
           << digits(row.per_log_stiffness) << ',' << digits(row.per_shape) << ','

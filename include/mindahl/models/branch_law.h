@@ -17,13 +17,16 @@ struct BranchLaw {
 /// @throws InvalidArgument naming the parameter, its value and the rule
 void Validate(const BranchLaw& law);
 
-/// Displacement at gross slip [m]: δc = Tc/(σ(1−α)) for α < 1, infinite for α >= 1, which only
-/// approaches Tc. Johnson (1985) 7.42 at the limit, for α = 1/3.
+/// Displacement at gross slip [m]: δc = Tc/(σ(1−α)) for α < 1. Infinite for α >= 1, which only
+/// approaches Tc, and where it exceeds the largest double, which no x reaches. Johnson (1985) 7.42
+/// at the limit, for α = 1/3. Relative error < 1 ε = 2.2e-16.
 double GrossSlipDisplacement(const BranchLaw& law);
 
-// The functions below throw nothing; the law must be valid. They work in long double and round
-// once: where it has 64 bits or more their relative error is below 4 ulp of double, of the gradient
-// 16 ulp of its scale (tests/reference). With a 53-bit long double the error grows near slip.
+// The functions below take a valid law and any x but NaN, which they refuse by InvalidArgument.
+// They work in long double, with y = σx/Tc in two parts, and round once. Where long double has 64
+// bits or more their relative error is below 1 ε = 2.2e-16 for every α and x, also next to slip;
+// what underflows is right to half the smallest denormal. With a 53-bit long double the errors of f
+// stay below 4 ε, those near slip and of the work grow (docs/accuracy.md).
 
 /// f(x) [N], odd in x [m]; ±Tc at and beyond gross slip.
 double BackboneForce(const BranchLaw& law, double x);
@@ -37,9 +40,11 @@ double BackboneRemaining(const BranchLaw& law, double x);
 double BackboneSlope(const BranchLaw& law, double x);
 
 /// ∫₀^|x| f dx [J] = Tc·x − Tc²·(1 − u^{2−α})/(σ(2−α)), by its series where these cancel.
+/// @throws InvalidArgument also for an infinite x and where the work exceeds the largest double
 double BackboneWork(const BranchLaw& law, double x);
 
-/// ∂f/∂ln σ, ∂f/∂α, ∂f/∂ln Tc at x, all in [N].
+/// ∂f/∂ln σ, ∂f/∂α, ∂f/∂ln Tc at x, all in [N]. The last is the difference f − xf', second order in
+/// x: its error is below 1 ε of f.
 struct BackboneGradient {
   double log_stiffness = 0.0;
   double shape_exponent = 0.0;

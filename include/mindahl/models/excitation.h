@@ -14,7 +14,7 @@ std::optional<Waveform> FindWaveform(std::string_view name);
 
 struct ExcitationOptions {
   Waveform waveform = Waveform::kSine;
-  double amplitude = 0.0;  ///< [m], finite, > 0; of a growing sine the last cycle's end
+  double amplitude = 0.0;  ///< [m], > 0, <= 1e307; of a growing sine the last cycle's end
   double cycles = 1.0;     ///< finite, > 0, multiples of 1/samples_per_cycle
   std::size_t samples_per_cycle = 200;  ///< >= 4; a multiple of 4 puts samples on the extremes
   double frequency = 1.0;               ///< [Hz], finite, > 0
@@ -31,7 +31,8 @@ struct Excitation {
 /// sine: A·sin(2πft), triangle: the same extremes and zeros joined by straight lines, growing sine:
 /// A·g^{t/t_end − 1}·sin(2πft). The sine is exact at its zeros and extremes and repeats bit for
 /// bit.
-/// @throws InvalidArgument for values out of range
+/// @throws InvalidArgument for values out of range, more than 1e9 samples or longer than 1e300 s
+/// Error below 4 ε = 9e-16 of the amplitude, of a growing sine 4 ε·(1 + ln g).
 Excitation MakeExcitation(const ExcitationOptions& options);
 
 }  // namespace mindahl

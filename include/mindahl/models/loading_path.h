@@ -31,16 +31,19 @@ enum class BranchStart : std::uint8_t {
 /// One branch of the response: T(δ) = T₀ + s·(branch law of |δ − origin|).
 struct Branch {
   double origin = 0.0;       ///< [m]
-  double direction = 1.0;    ///< s = ±1; on the virgin curve, which is run both ways, the first
   double amplitude = 0.0;    ///< X [m] of the excitation, for models that refer to its steady loop
   std::int32_t parent = -1;  ///< branch on which the origin lies; −1 unless start is kReversal
   BranchStart start = BranchStart::kReversal;
+  std::int8_t direction = 1;  ///< s = ±1; on the virgin curve, which is run both ways, the first
 };
+
+/// Largest |displacement| [m] of a path: differences and mirror images of such are still doubles.
+inline constexpr double kLargestPathDisplacement = 1e307;
 
 /// Successive samples on one branch: [begin, end).
 struct BranchRun {
-  std::size_t begin = 0;
-  std::size_t end = 0;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
   std::int32_t branch = 0;
 };
 
@@ -72,8 +75,10 @@ struct InitialContact {
 /// @param displacement  [m], finite
 /// @param reversals     as from FindReversals on the same displacements; between them samples may
 ///                      step back within the gate
-/// @throws InvalidArgument when a value is not finite or the record is empty
-/// Cost: linear in the samples, however deep the nesting.
+/// @throws InvalidArgument when a displacement is not finite or beyond ±1e307 m, when the record is
+///   empty or has more than 2147483640 samples
+/// Cost: linear in the samples, however deep the nesting; 36 bytes a reversal, and 4 more an
+/// extremum that is remembered.
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial);

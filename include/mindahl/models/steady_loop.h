@@ -7,18 +7,23 @@ namespace mindahl {
 
 /// T* [N]: force at the extremes of the steady loop between ±amplitude [m].
 /// @throws InvalidArgument for an invalid law or amplitude
+/// Relative error below 6 ε = 1.3e-15 for a Masing law, 16 ε for Dahl's.
 double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double amplitude);
 
 /// W [J] lost per cycle in the steady loop between ±amplitude [m].
 /// For a Masing law 8∫₀^X f dx − 4X·f(X) (Johnson 7.57 for α = 1/3), without the cancellation of
 /// the two terms at small X; for the laws without memory the same integral over their own branches.
-/// Relative error below 1e-14 for every X.
-/// @throws InvalidArgument for an invalid law or amplitude
+/// @throws InvalidArgument for an invalid law or amplitude, and where the energy exceeds the
+/// largest
+///   double
+/// Relative error below 1 ε = 2.2e-16 for every X of a Masing law, where long double has 64 bits.
+/// For Dahl's own law below (16 + α) ε, for α < 0.05 and X within 10 % of the elastic limit, where
+/// W is a difference of nearly equal numbers, of 4XT*.
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude);
 
 /// Energy ratio A = W/(4·X·T*) at the onset of gross slip of a Masing law: α/(2−α), 0.2 for
 /// Mindlin, the fretting community's limit between partial and gross slip (Fouvry). NaN-free: 1 for
-/// α >= 1, where slip is only approached.
+/// α >= 1, where slip is only approached. Relative error below 1 ε.
 double GrossSlipEnergyRatio(double shape_exponent);
 
 }  // namespace mindahl

@@ -1,0 +1,275 @@
+// Inputs at the ends of the number range: a right answer or a refusal that names the limit.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../support/histories.h"
+#include "mindahl/core/error.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/excitation.h"
+#include "mindahl/models/response.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::History;
+using testing::Model;
+using testing::PathOf;
+using testing::Respond;
+
+constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
+constexpr double kSmallest = std::numeric_limits<double>::min();
+constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The message of the refusal; empty when there is none.
+template <typename Call>
+std::string Refusal(Call call) {
+  try {
+    call();
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Edges, AZeroLengthStepChangesNothing) {
+  for (const FrictionModel& model : FrictionModels()) {
+    const BranchLaw law{1.0, model.shape_exponent.value_or(0.7), 1.0};
+    const std::vector<double> force =
+        Respond(model, law, {{0.0, 0.0, 0.4, 0.4, 0.4, -0.2, -0.2, 0.1}});
+    EXPECT_EQ(force[0], 0.0);
+    EXPECT_EQ(force[1], 0.0);
+    EXPECT_EQ(force[2], force[3]);
+    EXPECT_EQ(force[3], force[4]);
+    EXPECT_EQ(force[5], force[6]);
+  }
+}
+
+TEST(Edges, ARecordThatNeverMovesHasNoForce) {
+  for (const FrictionModel& model : FrictionModels()) {
+    const BranchLaw law{1.0, model.shape_exponent.value_or(0.7), 1.0};
+    EXPECT_EQ(Respond(model, law, {{0.0, 0.0, 0.0}}), (std::vector<double>{0.0, 0.0, 0.0}));
+    EXPECT_EQ(Respond(model, law, {{5.0, 5.0}}, {.unloaded_displacement = 5.0}),
+              (std::vector<double>{0.0, 0.0}));
+  }
+}
+
+TEST(Edges, ADenormalDisplacementIsElastic) {
+  // f = σx to far below rounding, for every law.
+  for (const FrictionModel& model : FrictionModels()) {
+    for (const double alpha : {0.0, 1.0 / 3.0, 1.0, 100.0}) {
+      if (model.scaled_by_peak) continue;  // starts on the steady branch, less stiff
+      const BranchLaw law{1e10, alpha, 1.0};
+      for (const double x : {kDenormal, 3 * kDenormal, 1e-310, kSmallest}) {
+        EXPECT_EQ(Respond(model, law, {{x}}).front(), 1e10 * x);
+        EXPECT_EQ(BackboneForce(law, x), 1e10 * x);
+        EXPECT_EQ(SteadyPeakForce(Model("mindlin-dahl"), law, x), 1e10 * x);
+      }
+    }
+  }
+}
+
+TEST(Edges, ADisplacementWhoseElasticForceOverflowsHasSlipped) {
+  // σx = 1e315 N: no double, and no matter.
+  const BranchLaw law{1e15, 1.0 / 3.0, 30.0};
+  EXPECT_EQ(BackboneForce(law, 1e300), 30.0);
+  EXPECT_EQ(BackboneSlope(law, 1e300), 0.0);
+  for (const FrictionModel& model : FrictionModels()) {
+    if (!model.bounded) continue;
+    const double alpha = model.shape_exponent.value_or(0.6);
+    const std::vector<double> force =
+        Respond(model, {1e15, alpha, 30.0}, {{1e300, -1e300, 1e306, -1e306}});
+    EXPECT_EQ(force, (std::vector<double>{30.0, -30.0, 30.0, -30.0})) << model.name;
+  }
+}
+
+TEST(Edges, AForceThatStillGrowsThereIsRefusedOutOfReach) {
+  // α > 1 approaches Tc as a power of y: beyond 1e200 elastic limits double cannot say how far.
+  const BranchLaw law{1.0, 2.0, 1.0};
+  EXPECT_EQ(Respond(Model("mindlin-dahl"), law, {{1e199}}).front(), 1.0);
+  EXPECT_THAT(Refusal([&] { Respond(Model("mindlin-dahl"), law, {{1e201}}); }),
+              HasSubstr("must be <= 1.8e+200 times the elastic limit"));
+  // The scalar functions go on: u = 1/(1 + y) for α = 2.
+  EXPECT_EQ(BackboneRemaining(law, 1e250), 1e-250);
+  EXPECT_NEAR(BackboneRemaining({1.0, 100.0, 1.0}, 1e300), std::pow(99e300, -1.0 / 99),
+              1e-13);  // a power of a rounded base: 99e300 to an ulp, and pow
+}
+
+TEST(Edges, ADisplacementThatHasNoMirrorImageIsRefused) {
+  for (const double at : {2e307, -1e308, kLargest, kInfinity, -kInfinity, kNan}) {
+    EXPECT_THAT(Refusal([&] {
+                  Respond(Model("mindlin"), {1.0, 1.0 / 3.0, 1.0}, {{0.0, at}});
+                }),
+                HasSubstr("must be finite and within +-1e307 m"))
+        << at;
+    EXPECT_THAT(Refusal([&] {
+                  Respond(Model("mindlin"), {1.0, 1.0 / 3.0, 1.0}, {{0.0, 1.0}},
+                          {.unloaded_displacement = at});
+                }),
+                HasSubstr("unloaded displacement [m]"))
+        << at;
+    EXPECT_NE(Refusal([&] { MakeEnvelopePath(History{0.0, 1.0}, History{1.0, 1.0}, at); }), "");
+  }
+}
+
+TEST(Edges, ADenormalSlipForceIsRightToItsLastBit) {
+  // σ/Tc = 1 and all numbers multiples of the smallest one.
+  const double slip_force = 1000 * kDenormal;
+  const BranchLaw law{slip_force, 0.0, slip_force};
+  EXPECT_EQ(BackboneForce(law, 0.25), 250 * kDenormal);
+  EXPECT_EQ(BackboneForce(law, 3.0), slip_force);
+  EXPECT_EQ(Respond(Model("jenkins"), law, {{0.25, 2.0, 1.5}}),
+            (std::vector<double>{250 * kDenormal, slip_force, 500 * kDenormal}));
+  // Exponential: 1000(1 − e^{−1}) = 632.12…
+  EXPECT_EQ(BackboneForce({slip_force, 1.0, slip_force}, 1.0), 632 * kDenormal);
+  // Its elastic limit is 1e-310 m with σ = 1 N/m: no double has its inverse.
+  EXPECT_THAT(Refusal([] {
+                Validate({1.0, 0.5, 1e-310});
+              }),
+              HasSubstr("must be a normal double, about 2e-308 to 2e308"));
+}
+
+TEST(Edges, AnExponentThatIsNearlyZeroIsJenkinsButKeepsItsOwnEnergy) {
+  const BranchLaw law{1.0, 1e-300, 1.0};
+  EXPECT_EQ(BackboneForce(law, 0.5), 0.5);
+  EXPECT_EQ(BackboneForce(law, 2.0), 1.0);
+  EXPECT_EQ(Respond(Model("mindlin-dahl"), law, {{0.5, 2.0, 0.5, -3.0}}),
+            (std::vector<double>{0.5, 1.0, -0.5, -1.0}));
+  // (2/3)αX³ to first order in X.
+  constexpr double kSecondOrder = 2e-3;  // relative: of order X
+  const double energy = SteadyLoopEnergy(Model("mindlin-dahl"), law, 1e-3);
+  EXPECT_NEAR(energy / (2.0 / 3.0 * 1e-309), 1.0, kSecondOrder);
+}
+
+TEST(Edges, AHugeExponentSoftensAtOnce) {
+  // u = (1 + (α−1)y)^{−1/(α−1)} → 1 − log(1 + αy)/α.
+  constexpr double kRounding = 1e-15;
+  for (const double alpha : {1e4, 1e10, 1e50, 1e100}) {
+    for (const double y : {1e-12, 1.0, 1e12}) {
+      const double expected = -std::expm1(-std::log1p((alpha - 1) * y) / (alpha - 1));
+      EXPECT_NEAR(BackboneForce({1.0, alpha, 1.0}, y), expected, 4 * kRounding * expected);
+      EXPECT_NEAR(Respond(Model("mindlin-dahl"), {1.0, alpha, 1.0}, {{y}}).front(), expected,
+                  4 * kRounding * expected);
+    }
+  }
+  EXPECT_THAT(Refusal([] { Validate({1.0, 1.1e100, 1.0}); }), HasSubstr("must be <= 1e100"));
+  EXPECT_THAT(Refusal([] { Validate({1.0, kInfinity, 1.0}); }), HasSubstr("shape exponent [-]"));
+}
+
+TEST(Edges, MixedExtremesAreRight) {
+  // Atomic slip force, tectonic stiffness: λ = 1e45 and slipped; and the reverse: elastic.
+  EXPECT_EQ(BackboneForce({1e15, 0.5, 1e-15}, 1e15), 1e-15);
+  const BranchLaw soft{1e-9, 0.5, 1e12};
+  EXPECT_EQ(BackboneForce(soft, 1e-18), 1e-9 * 1e-18);
+  EXPECT_EQ(GrossSlipDisplacement(soft), 2e21);
+  EXPECT_EQ(BackboneForce(soft, 2e21), 1e12);
+}
+
+TEST(Edges, AnAnswerBeyondTheRangeOfDoubleIsRefused) {
+  const BranchLaw law{1e200, 0.5, 1e200};
+  EXPECT_THAT(Refusal([&] { BackboneWork(law, 1e200); }),
+              HasSubstr("work [J] = inf is invalid: must be within the range of double"));
+  EXPECT_THAT(Refusal([&] { SteadyLoopEnergy(Model("mindlin"), law, 1e200); }),
+              HasSubstr("energy per cycle [J]"));
+  EXPECT_THAT(Refusal([&] { BackboneWork(law, kInfinity); }), HasSubstr("must be finite"));
+  // Gross slip beyond the largest double is out of reach of every x: infinite, as for α >= 1.
+  EXPECT_EQ(GrossSlipDisplacement({1e-10, 1 - 1e-15, 1e297}), kInfinity);
+}
+
+TEST(Edges, AnInfiniteDisplacementHasSlippedForEveryLaw) {
+  for (const double alpha : {0.0, 0.5, 1.0, 3.0}) {
+    const BranchLaw law{2.0, alpha, 3.0};
+    EXPECT_EQ(BackboneForce(law, kInfinity), 3.0);
+    EXPECT_EQ(BackboneForce(law, -kInfinity), -3.0);
+    EXPECT_EQ(BackboneRemaining(law, kInfinity), 0.0);
+    EXPECT_EQ(BackboneSlope(law, kInfinity), 0.0);
+    EXPECT_EQ(DifferentiateBackbone(law, kInfinity).log_slip_force, 3.0);
+    EXPECT_EQ(DifferentiateBackbone(law, kInfinity).log_stiffness, 0.0);
+    EXPECT_EQ(DifferentiateBackbone(law, kInfinity).shape_exponent, 0.0);
+  }
+}
+
+TEST(Edges, ANumberThatIsNoneIsRefused) {
+  const BranchLaw law{1.0, 0.5, 1.0};
+  const std::string rule = "displacement [m] = nan is invalid: must be a number";
+  EXPECT_EQ(Refusal([&] { BackboneForce(law, kNan); }), rule);
+  EXPECT_EQ(Refusal([&] { BackboneRemaining(law, kNan); }), rule);
+  EXPECT_EQ(Refusal([&] { BackboneSlope(law, kNan); }), rule);
+  EXPECT_EQ(Refusal([&] { DifferentiateBackbone(law, kNan); }), rule);
+  EXPECT_NE(Refusal([&] { BackboneWork(law, kNan); }), "");
+  EXPECT_NE(Refusal([&] { SteadyPeakForce(Model("dahl"), law, kNan); }), "");
+  EXPECT_NE(Refusal([&] { SteadyPeakForce(Model("dahl"), law, kInfinity); }), "");
+}
+
+TEST(Edges, SteadyLoopsAreRightFromDenormalToHugeAmplitudes) {
+  for (const FrictionModel& model : FrictionModels()) {
+    for (const double alpha : {0.0, 0.5, 1.0, 3.0, 100.0}) {
+      const BranchLaw law{1.0, alpha, 1.0};
+      EXPECT_EQ(SteadyPeakForce(model, law, kDenormal), kDenormal) << model.name << ' ' << alpha;
+      EXPECT_EQ(SteadyLoopEnergy(model, law, 1e-200), 0.0);  // 1e-600 J
+      EXPECT_EQ(SteadyLoopEnergy(model, law, 0.0), 0.0);
+    }
+    // Coulomb's rectangle, 4XTc.
+    EXPECT_EQ(SteadyLoopEnergy(model, {1.0, 0.5, 1.0}, 1e300), 4e300) << model.name;
+  }
+}
+
+TEST(Edges, InSinglePrecisionTheLawMustFitToo) {
+  const std::vector<float> history = {0.0F, 1.0F, -1.0F};
+  const LoadingPath path = PathOf(Model("mindlin-dahl"), History(history.begin(), history.end()));
+  std::vector<float> force(history.size());
+  const auto refusal = [&](const BranchLaw& law) {
+    return Refusal([&] {
+      EvaluateForce(Model("mindlin-dahl"), law, path, std::span<const float>(history), force);
+    });
+  };
+  EXPECT_EQ(refusal({1.0, 0.5, 1.0}), "");
+  EXPECT_EQ(refusal({1e15, 0.5, 1e-15}), "");
+  EXPECT_EQ(refusal({1.0, 1e-300, 1.0}), "");  // Jenkins' to single precision
+  EXPECT_THAT(refusal({1e-40, 0.5, 1e-40}), HasSubstr("slip force [N] = 1e-40 is invalid"));
+  EXPECT_THAT(refusal({1e39, 0.5, 1e39}), HasSubstr("must be a normal float"));
+  EXPECT_THAT(refusal({1e30, 0.5, 1e-30}), HasSubstr("stiffness over slip force [1/m]"));
+  EXPECT_THAT(refusal({1.0, 1e11, 1.0}), HasSubstr("in single precision"));
+  // Displacements at the ends of float.
+  for (const float x :
+       {std::numeric_limits<float>::denorm_min(), std::numeric_limits<float>::max() / 4}) {
+    const std::vector<float> one = {x};
+    std::vector<float> answer(1);
+    EvaluateForce(Model("mindlin-dahl"), {1.0, 0.5, 1.0},
+                  PathOf(Model("mindlin-dahl"), History{static_cast<double>(x)}),
+                  std::span<const float>(one), answer);
+    EXPECT_EQ(answer[0], x < 1 ? x : 1.0F);
+  }
+}
+
+TEST(Edges, ExcitationsRefuseWhatNoDoubleHolds) {
+  EXPECT_THAT(Refusal([] { MakeExcitation({.amplitude = 1.0, .frequency = 1e-308}); }),
+              ::testing::AllOf(HasSubstr("cycles over frequency"), HasSubstr("1e300")));
+  EXPECT_THAT(Refusal([] { MakeExcitation({.amplitude = 2e307}); }), HasSubstr("amplitude [m]"));
+  EXPECT_THAT(Refusal([] { MakeExcitation({.amplitude = 1.0, .cycles = 1e-9}); }),
+              HasSubstr("cycles times samples per cycle"));
+  EXPECT_THAT(Refusal([] { MakeExcitation({.amplitude = 1.0, .cycles = kNan}); }),
+              HasSubstr("cycles"));
+  for (const Waveform waveform : {Waveform::kSine, Waveform::kTriangle, Waveform::kGrowingSine}) {
+    for (const double amplitude : {kDenormal, kSmallest, 1e306}) {
+      const Excitation excitation =
+          MakeExcitation({.waveform = waveform, .amplitude = amplitude, .growth = kLargest});
+      for (const double at : excitation.displacement) {
+        ASSERT_LE(std::abs(at), amplitude);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

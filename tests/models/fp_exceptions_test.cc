@@ -1,0 +1,148 @@
+// No invalid operation, overflow or division by zero inside the models, over the whole box of
+// docs/accuracy.md. Underflow and inexact are part of the answers.
+
+#include <gtest/gtest.h>
+
+#include <cfenv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "../../tools/reference/box.h"
+#include "../support/histories.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/excitation.h"
+#include "mindahl/models/response.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl {
+namespace {
+
+using testing::History;
+using testing::PathOf;
+
+constexpr int kTrapped = FE_INVALID | FE_OVERFLOW | FE_DIVBYZERO;
+
+std::string Raised() {
+  const int raised = std::fetestexcept(kTrapped);
+  std::string names;
+  if ((raised & FE_INVALID) != 0) names += " invalid";
+  if ((raised & FE_OVERFLOW) != 0) names += " overflow";
+  if ((raised & FE_DIVBYZERO) != 0) names += " division by zero";
+  return names;
+}
+
+/// The flags that `call` raises, by name; empty when none.
+template <typename Call>
+std::string RaisedBy(Call call) {
+  std::feclearexcept(kTrapped);
+  call();
+  std::string names = Raised();
+  std::feclearexcept(kTrapped);
+  return names;
+}
+
+template <typename Visit>
+void ForEveryPoint(Visit visit) {
+  for (const double alpha : reference::kBoxShapeExponents) {
+    for (const reference::Scale& scale : reference::kBoxScales) {
+      const BranchLaw law{scale.stiffness, alpha, scale.slip_force};
+      for (const double x : reference::BoxDisplacements(scale, alpha)) visit(law, x);
+    }
+  }
+}
+
+std::string Describe(const BranchLaw& law, double x) {
+  return "alpha = " + std::to_string(law.shape_exponent) +
+         ", y = " + std::to_string(law.tangential_stiffness * x / law.slip_force);
+}
+
+TEST(FloatingPointExceptions, AreSeenWhenTheyAreRaised) {
+  // The test of the test: each flag reaches the report. Raised by name: the sanitizers stop at 1/0.
+  EXPECT_EQ(RaisedBy([] { std::feraiseexcept(FE_INVALID); }), " invalid");
+  EXPECT_EQ(RaisedBy([] { std::feraiseexcept(FE_OVERFLOW); }), " overflow");
+  EXPECT_EQ(RaisedBy([] { std::feraiseexcept(FE_DIVBYZERO); }), " division by zero");
+  volatile double huge = 1e308;  // and arithmetic raises them
+  EXPECT_EQ(RaisedBy([&] { huge = huge * 10; }), " overflow");
+}
+
+TEST(FloatingPointExceptions, ComeFromNoFunctionOfTheBranchLaw) {
+  ForEveryPoint([](const BranchLaw& law, double x) {
+    EXPECT_EQ(RaisedBy([&] {
+                for (const double at : {x, -x, 0.0}) {
+                  BackboneForce(law, at);
+                  BackboneRemaining(law, at);
+                  BackboneSlope(law, at);
+                  BackboneWork(law, at);
+                  DifferentiateBackbone(law, at);
+                }
+                GrossSlipDisplacement(law);
+              }),
+              "")
+        << Describe(law, x);
+  });
+}
+
+TEST(FloatingPointExceptions, ComeFromNoSteadyLoop) {
+  for (const FrictionModel& model : FrictionModels()) {
+    ForEveryPoint([&](const BranchLaw& law, double x) {
+      EXPECT_EQ(RaisedBy([&] {
+                  SteadyPeakForce(model, law, x);
+                  SteadyLoopEnergy(model, law, x);
+                }),
+                "")
+          << model.name << ", " << Describe(law, x);
+    });
+  }
+}
+
+TEST(FloatingPointExceptions, ComeFromNoResponseInDoubleOrItsGradient) {
+  for (const FrictionModel& model : FrictionModels()) {
+    ForEveryPoint([&](const BranchLaw& law, double x) {
+      const History history = {0.0, x / 2, x, x, -x, 0.0, std::nextafter(x, 0.0), x / 3, 2 * x, -x};
+      std::vector<double> force(history.size());
+      std::vector<double> gradient(history.size() * kGradientColumns);
+      for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
+        const LoadingPath path = PathOf(model, history, {.state = state});
+        EXPECT_EQ(RaisedBy([&] { EvaluateForce(model, law, path, history, force); }), "")
+            << model.name << ", " << Describe(law, x);
+        EXPECT_EQ(
+            RaisedBy([&] { EvaluateForceAndGradient(model, law, path, history, force, gradient); }),
+            "")
+            << model.name << ", " << Describe(law, x);
+      }
+    });
+  }
+}
+
+TEST(FloatingPointExceptions, ComeFromNoResponseInFloat) {
+  constexpr double kReach = 1e37;
+  for (const FrictionModel& model : FrictionModels()) {
+    ForEveryPoint([&](const BranchLaw& law, double x) {
+      // Dahl's law is 2^α steeper after a reversal: past 10 its displacements leave float.
+      if (x > kReach || law.shape_exponent > 10) return;
+      const auto at = static_cast<float>(x);
+      const std::vector<float> history = {0.0F, at / 2, at, at, -at, 0.0F, at / 3, 2 * at, -at};
+      const History widened(history.begin(), history.end());
+      std::vector<float> force(history.size());
+      const LoadingPath path = PathOf(model, widened);
+      EXPECT_EQ(RaisedBy([&] { EvaluateForce(model, law, path, history, force); }), "")
+          << model.name << ", " << Describe(law, x);
+    });
+  }
+}
+
+TEST(FloatingPointExceptions, ComeFromNoExcitation) {
+  for (const Waveform waveform : {Waveform::kSine, Waveform::kTriangle, Waveform::kGrowingSine}) {
+    for (const double amplitude : {1e-300, 1e-18, 1.0, 1e12, 1e300}) {
+      EXPECT_EQ(RaisedBy([&] {
+                  MakeExcitation({.waveform = waveform, .amplitude = amplitude, .growth = 1e12});
+                }),
+                "");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

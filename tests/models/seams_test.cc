@@ -1,0 +1,236 @@
+// Dense sweeps across every switch between formulas: no jump, no step back, no force beyond Tc.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "../../tools/reference/box.h"
+#include "../support/histories.h"
+#include "mindahl/models/backbone.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/response.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl {
+namespace {
+
+using testing::History;
+using testing::Model;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// Twice the bounds of branch_law.h and response.h: what two neighbours may be wrong by.
+constexpr double kScalarStep = 2 * 1.0 * kEpsilon;
+constexpr double kKernelStep = 2 * 6.0 * kEpsilon;
+
+/// So many doubles to either side of a switch.
+constexpr int kDoubles = 400;
+
+/// Doubles around `centre`, ascending: neighbours first, then ever further.
+std::vector<double> Around(double centre) {
+  std::vector<double> points = {centre};
+  double below = centre;
+  double above = centre;
+  for (int i = 0; i < kDoubles; ++i) {
+    points.push_back(below = std::nextafter(below, 0.0));
+    points.push_back(above = std::nextafter(above, std::numeric_limits<double>::infinity()));
+  }
+  for (double relative = 1e-13; relative < 0.05; relative *= 1.25) {
+    points.push_back(centre * (1 - relative));
+    points.push_back(centre * (1 + relative));
+  }
+  std::ranges::sort(points);
+  return points;
+}
+
+/// y at the switches of a shape exponent: |w| = 1/4 and w = 1/2 of backbone.h, y = 2 where z is
+/// formed otherwise, y = |w| = 1/2 of backbone_integrals.cc, log u = −11/16, and slip.
+std::vector<double> Switches(double alpha) {
+  const double beta = 1 - alpha;
+  std::vector<double> switches = {0.5, 1.0, 2.0};
+  if (beta != 0) {
+    for (const double w : {0.25, 0.5}) switches.push_back(w / std::abs(beta));
+    if (beta > 0) switches.push_back(1 / beta);
+    const double base = std::exp(-0.6875 * beta);
+    switches.push_back((1 - base) / beta);
+  } else {
+    switches.push_back(0.6875);
+  }
+  return switches;
+}
+
+constexpr double kShapeExponents[] = {0.0,       1e-300, 1e-16, 1e-8,     1.0 / 128, 0.1, 1.0 / 3.0,
+                                      0.4999999, 0.5,    0.7,   1 - 1e-8, 1 - 1e-15, 1.0, 1 + 1e-15,
+                                      1 + 1e-8,  1.7,    2.0,   10.0,     100.0};
+
+struct Curve {
+  std::vector<double> x, force, slope, work, energy, kernel;
+};
+
+Curve Sample(const BranchLaw& law, const std::vector<double>& x) {
+  Curve curve{.x = x, .force = {}, .slope = {}, .work = {}, .energy = {}, .kernel = {}};
+  for (const double at : x) {
+    curve.force.push_back(BackboneForce(law, at));
+    curve.slope.push_back(BackboneSlope(law, at));
+    curve.work.push_back(BackboneWork(law, at));
+    curve.energy.push_back(SteadyLoopEnergy(Model("mindlin-dahl"), law, at));
+  }
+  curve.kernel = testing::Respond(Model("mindlin-dahl"), law, x);
+  return curve;
+}
+
+/// Rising, and by no more than `steepest`·Δx, each to `rounding` of the value.
+void ExpectNoSeam(const std::vector<double>& x, const std::vector<double>& value,
+                  const std::vector<double>& steepest, double rounding, const char* name,
+                  double alpha) {
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    const double rise = value[i] - value[i - 1];
+    const double slack = rounding * value[i];
+    EXPECT_GE(rise, -slack) << name << " falls, alpha = " << alpha << ", y = " << x[i];
+    EXPECT_LE(rise, steepest[i] * (x[i] - x[i - 1]) * (1 + 1e-9) + slack)
+        << name << " jumps, alpha = " << alpha << ", y = " << x[i];
+  }
+}
+
+TEST(Seams, AreNotSeenAlongADisplacement) {
+  for (const double alpha : kShapeExponents) {
+    const BranchLaw law{1.0, alpha, 1.0};
+    for (const double centre : Switches(alpha)) {
+      const Curve curve = Sample(law, Around(centre));
+      // Concave: the slope at the nearer end is the steepest. A work rises by its force at the
+      // farther end, and a loop's energy by at most 8f − 4f.
+      std::vector<double> slope = {0.0};
+      std::vector<double> energy_slope = {0.0};
+      for (std::size_t i = 1; i < curve.x.size(); ++i) {
+        slope.push_back(curve.slope[i - 1]);
+        energy_slope.push_back(4 * curve.force[i]);
+      }
+      ExpectNoSeam(curve.x, curve.force, slope, kScalarStep, "force", alpha);
+      ExpectNoSeam(curve.x, curve.kernel, slope, kKernelStep, "kernel", alpha);
+      ExpectNoSeam(curve.x, curve.work, curve.force, kScalarStep, "work", alpha);
+      ExpectNoSeam(curve.x, curve.energy, energy_slope, kScalarStep, "energy", alpha);
+      for (std::size_t i = 0; i < curve.x.size(); ++i) {
+        EXPECT_LE(curve.force[i], 1.0);
+        EXPECT_LE(curve.kernel[i], 1.0);
+        EXPECT_GE(curve.slope[i], 0.0);
+        EXPECT_LE(curve.slope[i], 1.0);
+        if (i > 0) {
+          EXPECT_LE(curve.slope[i], curve.slope[i - 1] * (1 + kScalarStep)) << alpha;
+        }
+      }
+    }
+  }
+}
+
+TEST(Seams, AreNotSeenWhereTheDisplacementVanishes) {
+  // f = σx(1 − αy/2 − α(1−2α)y²/6 + …): the ratio to σx runs to 1 from below.
+  for (const double alpha : kShapeExponents) {
+    const BranchLaw law{1.0, alpha, 1.0};
+    double before = 1.0;
+    for (double y = 1e-320; y < 1e-3 / std::max(alpha, 1.0); y *= 1.7) {
+      const double ratio = BackboneForce(law, y) / y;
+      EXPECT_LE(ratio, before * (1 + kScalarStep)) << alpha << ' ' << y;
+      EXPECT_GE(ratio, 1 - alpha * y / 2 - alpha * y * y / 5 - kScalarStep) << alpha << ' ' << y;
+      before = ratio;
+    }
+  }
+}
+
+/// Shape exponents around `centre`, ascending.
+std::vector<double> ExponentsAround(double centre) {
+  if (centre > 0) return Around(centre);
+  std::vector<double> exponents = {0.0};
+  for (double alpha = 5e-324; alpha < 1e-3; alpha *= 3.0) exponents.push_back(alpha);
+  return exponents;
+}
+
+TEST(Seams, AreNotSeenAcrossAShapeExponent) {
+  // Across α = 0 and 1/3, which have kernels of their own, 1, 2 and the limits of the integrals.
+  // f falls with α: |∂f/∂α| <= Tc, and by no more than that a step.
+  for (const double centre : {0.0, 1.0 / 3.0, 0.5, 1.0, 2.0}) {
+    for (const double y :
+         {1e-9, 0.1, 0.3, 0.49, 0.5, 0.51, 0.9, 1.0, 1.2, 1.49, 1.5, 1.51, 3.0, 40.0}) {
+      double before_alpha = -1.0;
+      double force = 0.0, kernel = 0.0, work = 0.0, energy = 0.0;
+      for (const double alpha : ExponentsAround(centre)) {
+        const BranchLaw law{1.0, alpha, 1.0};
+        const double next_force = BackboneForce(law, y);
+        const double next_kernel = testing::Respond(Model("mindlin-dahl"), law, {{y}}).front();
+        const double next_work = BackboneWork(law, y);
+        const double next_energy = SteadyLoopEnergy(Model("mindlin-dahl"), law, y);
+        if (before_alpha >= 0) {
+          const double step = alpha - before_alpha;
+          EXPECT_LE(next_force, force * (1 + kScalarStep)) << alpha << ' ' << y;
+          EXPECT_LE(next_kernel, kernel * (1 + kKernelStep)) << alpha << ' ' << y;
+          EXPECT_NEAR(next_force, force, step + kScalarStep * force) << alpha << ' ' << y;
+          EXPECT_NEAR(next_kernel, kernel, step + kKernelStep * force) << alpha << ' ' << y;
+          // ∂/∂α of ∫f is at most y; of the loop's energy at most 8y + 4y.
+          EXPECT_NEAR(next_work, work, y * step + kScalarStep * work) << alpha << ' ' << y;
+          EXPECT_NEAR(next_energy, energy, 12 * y * step + kScalarStep * energy)
+              << alpha << ' ' << y;
+        }
+        before_alpha = alpha;
+        force = next_force;
+        kernel = next_kernel;
+        work = next_work;
+        energy = next_energy;
+      }
+    }
+  }
+}
+
+TEST(Seams, AreNotSeenWhereThePeakForceReachesTheSlipForce) {
+  // Loops whose extreme is δc to the ulp, on every scale: the peak within rounding of Tc, never
+  // above it, the branch back from it to −T* exactly or within rounding.
+  for (const reference::Scale& scale : reference::kBoxScales) {
+    for (const double alpha : {0.0, 1e-8, 0.1, 1.0 / 3.0, 0.5, 0.9}) {
+      const BranchLaw law{scale.stiffness, alpha, scale.slip_force};
+      const double slip = GrossSlipDisplacement(law);
+      double at = slip;
+      for (int i = 0; i < 3; ++i) at = std::nextafter(at, 0.0);
+      for (int i = -3; i <= 3; ++i) {
+        for (const char* name : {"mindlin-dahl", "dahl"}) {
+          const std::vector<double> force =
+              testing::Respond(Model(name), law, {{at, 0.5 * at, -at, 0.0, at}});
+          for (const double value : force) {
+            ASSERT_LE(std::abs(value), scale.slip_force) << name << ' ' << alpha;
+          }
+          EXPECT_NEAR(force[0], scale.slip_force, kKernelStep * scale.slip_force);
+          EXPECT_NEAR(force[4], force[0], 2 * kKernelStep * scale.slip_force)
+              << name << ' ' << alpha;
+        }
+        at = std::nextafter(at, std::numeric_limits<double>::infinity());
+      }
+    }
+  }
+}
+
+TEST(Seams, AreNotSeenBySinglePrecision) {
+  constexpr float kStep = 2 * 8 * std::numeric_limits<float>::epsilon();
+  for (const double alpha : kShapeExponents) {
+    const auto narrow = static_cast<float>(alpha);
+    backbone::WithShape(narrow, [&](const auto& shape) {
+      for (const double centre : Switches(alpha)) {
+        auto y = static_cast<float>(centre);
+        if (!(y < backbone::kLargestDisplacement<float>)) continue;
+        for (int i = 0; i < kDoubles; ++i) y = std::nextafter(y, 0.0F);
+        float before = shape.Force(y);
+        for (int i = -kDoubles; i < kDoubles; ++i) {
+          y = std::nextafter(y, std::numeric_limits<float>::infinity());
+          const float force = shape.Force(y);
+          EXPECT_GE(force, before * (1 - kStep)) << alpha << ' ' << y;
+          EXPECT_LE(force, before * (1 + kStep) + (y - std::nextafter(y, 0.0F))) << alpha;
+          EXPECT_LE(force, 1.0F + kStep);
+          before = force;
+        }
+      }
+    });
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,114 @@
+// Every public function of the models within the bound that its docstring states, over the whole
+// box of docs/accuracy.md, against the closed forms at 150 or 500 digits.
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "../../tools/accuracy/measurements.h"
+#include "../support/histories.h"
+#include "../support/worst.h"
+#include "mindahl/models/branch_law.h"
+
+namespace mindahl {
+namespace {
+
+using testing::Model;
+using testing::Worst;
+
+std::string Describe(const BranchLaw& law, double x) {
+  return fmt::format("alpha = {}, sigma = {}, Tc = {}, x = {}", law.shape_exponent,
+                     law.tangential_stiffness, law.slip_force, x);
+}
+
+TEST(AccuracyBounds, HoldOverTheWholeBox) {
+  const auto measurements = accuracy::Measurements();
+  std::map<std::string, Worst> worst;
+  std::size_t points = 0;
+  accuracy::ForEveryPoint([&](const BranchLaw& law, double x) {
+    const accuracy::Exact exact = accuracy::EvaluateExactly(law, x);
+    for (const auto& measurement : measurements) {
+      worst[measurement.function].Add(measurement.error(law, x, exact),
+                                      [&] { return Describe(law, x); });
+    }
+    ++points;
+  });
+  EXPECT_GT(points, 10'000U);
+  for (const auto& measurement : measurements) {
+    const Worst& error = worst[measurement.function];
+    EXPECT_LE(error.value, measurement.bound) << measurement.function << " at " << error.where;
+    // A bound that nothing comes near would prove little.
+    EXPECT_GE(error.value, measurement.bound / 20) << measurement.function;
+  }
+}
+
+TEST(AccuracyBounds, GrossSlipDisplacementIsRoundedOnce) {
+  constexpr double kBound = 1.0;  // [ε]
+  for (const double shape_exponent : reference::kBoxShapeExponents) {
+    if (shape_exponent >= 1) continue;
+    for (const reference::Scale& scale : reference::kBoxScales) {
+      using Real = reference::Digits500;
+      const BranchLaw law{scale.stiffness, shape_exponent, scale.slip_force};
+      const Real exact =
+          Real(law.slip_force) / (Real(law.tangential_stiffness) * (1 - Real(law.shape_exponent)));
+      EXPECT_LE(
+          accuracy::RelativeError(GrossSlipDisplacement(law), static_cast<long double>(exact)),
+          kBound)
+          << Describe(law, 0);
+    }
+  }
+}
+
+TEST(AccuracyBounds, DahlsSteadyLoopHoldsItsOwn) {
+  // steady_loop.h: T* within 16 ε; W within (16 + α) ε of itself, and of 4XT* near slip where
+  // α < 0.05 makes W a difference of nearly equal numbers.
+  constexpr double kPeak = 16.0;
+  constexpr double kEnergy = 16.0;
+  constexpr std::size_t kEvery = 5;  // of the displacements: the reference is solved for
+  std::size_t count = 0;
+  for (const double shape_exponent : reference::kBoxShapeExponents) {
+    for (const reference::Scale& scale : {reference::kBoxScales[1], reference::kBoxScales[6]}) {
+      const BranchLaw law{scale.stiffness, shape_exponent, scale.slip_force};
+      for (const double x : reference::BoxDisplacements(scale, shape_exponent)) {
+        if (count++ % kEvery != 0) continue;
+        const accuracy::ExactDahlLoop exact = accuracy::EvaluateDahlExactly(law, x);
+        EXPECT_LE(accuracy::RelativeError(SteadyPeakForce(Model("dahl"), law, x), exact.peak),
+                  kPeak)
+            << Describe(law, x);
+        const double y = law.tangential_stiffness * x / law.slip_force;
+        const bool onset = shape_exponent < 0.05 && std::abs(y - 1) < 0.1;
+        EXPECT_LE(accuracy::ErrorInEpsilons(SteadyLoopEnergy(Model("dahl"), law, x), exact.energy,
+                                            onset ? 4 * x * exact.peak : exact.energy),
+                  kEnergy + shape_exponent)
+            << Describe(law, x);
+      }
+    }
+  }
+}
+
+TEST(AccuracyBounds, SinglePrecisionHoldsOverTheBoxWhereFloatReaches) {
+  // response.h: 16 ε of Tc; on the virgin curve, where nothing adds up, half of it and relative.
+  constexpr double kBound = 8.0;
+  constexpr double kLargest = 1e37;
+  constexpr double kSmallest = 1e-37;
+  std::size_t points = 0;
+  accuracy::ForEveryPoint([&](const BranchLaw& law, double x) {
+    if (x > kLargest || x < kSmallest) return;
+    const auto narrow = static_cast<float>(x);
+    const accuracy::Exact exact = accuracy::EvaluateExactly(law, static_cast<double>(narrow));
+    if (exact.force < static_cast<long double>(kSmallest)) return;
+    EXPECT_LE(accuracy::RelativeError(accuracy::VirginForce(law, narrow), exact.force), kBound)
+        << Describe(law, x);
+    ++points;
+  });
+  EXPECT_GT(points, 8'000U);
+}
+
+}  // namespace
+}  // namespace mindahl
