@@ -193,7 +193,7 @@ const std::vector<BadUsage> kBadUsage = {
     {"ContactBeyondDoubles",
      {"contact", "--friction", "0.3", "--normal-load", "1e300", "--contact-radius", "1e-200",
       "--compliance", "4e-300", "--json", "#"},
-     "maximum_pressure"},
+     "maximum pressure [Pa] = inf"},
 };
 
 INSTANTIATE_TEST_SUITE_P(CommandLine, BadUsageIsRefused, ::testing::ValuesIn(kBadUsage),

@@ -233,7 +233,10 @@ TEST(FitOptions, NumberOfStartsIsKeptAndEachSaysWhatItReached) {
       EXPECT_LE(start.final_rms, start.initial_rms);
       best = std::min(best, start.final_rms);
     }
-    EXPECT_EQ(best, fit.residuals.rms > best ? best : fit.residuals.rms);
+    // The result's residuals are taken in newtons, the starts' in units of the data: rounding
+    // apart.
+    constexpr double kRounding = 1e-14;  // of Tc, some tens of ε
+    EXPECT_LE(fit.residuals.rms, best + kRounding * kLaw.slip_force);
   }
 }
 
