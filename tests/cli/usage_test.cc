@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,8 @@ struct BadUsage {
   const char* name;
   Words words;  // "@" is the sample record, "#" a file that must not be written
   const char* message;
+
+  friend void PrintTo(const BadUsage& usage, std::ostream* out) { *out << usage.name; }
 };
 
 class BadUsageIsRefused : public ::testing::TestWithParam<BadUsage> {
