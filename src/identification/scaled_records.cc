@@ -37,6 +37,18 @@ std::size_t ScaledRecords::samples() const {
   return count;
 }
 
+std::vector<std::vector<double>> SplitByRecord(const ScaledRecords& data,
+                                               std::span<const double> values) {
+  std::vector<std::vector<double>> parts;
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    const auto part = values.subspan(begin, record.force.size());
+    parts.emplace_back(part.begin(), part.end());
+    begin += part.size();
+  }
+  return parts;
+}
+
 ScaledRecords Scale(std::span<const Record> records,
                     std::span<const std::vector<std::size_t>> reversals, int sense) {
   ScaledRecords scaled;

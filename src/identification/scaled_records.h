@@ -18,6 +18,10 @@ struct ScaledRecord {
   double half_duration = 1.0;           // [s], or samples where the record has no time
 };
 
+/// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller
+/// differences between fits mean nothing.
+inline constexpr double kRoundingRms = 1e-13;
+
 /// All records in common units: what makes a fit independent of the units of its files.
 struct ScaledRecords {
   std::vector<ScaledRecord> records;
@@ -27,6 +31,10 @@ struct ScaledRecords {
 
   [[nodiscard]] std::size_t samples() const;
 };
+
+/// One series a record from all records' values one after the other.
+std::vector<std::vector<double>> SplitByRecord(const ScaledRecords& data,
+                                               std::span<const double> values);
 
 /// @param reversals  of each record
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+
+#include "identification/candidate.h"
+#include "identification/uncertainty.h"
+
+namespace mindahl {
+
+/// Values, standard errors, intervals and correlations of one fit, from the likelihood's parabola
+/// at its maximum.
+class Estimator {
+ public:
+  /// @param candidate  must outlive this
+  /// @param variance   of a residual, in units of the data
+  Estimator(const Candidate& candidate, double variance, const ResidualStatistics& statistics);
+
+  /// @param index  position in theta
+  [[nodiscard]] ParameterEstimate Estimate(std::size_t index) const;
+
+  /// NaN where either parameter is fixed, at a bound or undetermined.
+  [[nodiscard]] double Correlation(std::size_t row, std::size_t column) const;
+
+  /// Directions in θ that leave the response as it is.
+  [[nodiscard]] const LocalUncertainty& local() const { return full_; }
+  /// Half width of a 95 % interval in standard errors.
+  [[nodiscard]] double quantile() const { return quantile_; }
+
+ private:
+  [[nodiscard]] double ScaleSign(std::size_t index) const;
+
+  const Candidate& candidate_;
+  double quantile_;
+  double variance_;
+  LocalUncertainty conditional_;  // of the parameters inside their bounds, the others held there
+  LocalUncertainty full_;         // of all free parameters
+};
+
+}  // namespace mindahl
