@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -35,10 +34,7 @@ std::optional<StartingPoint> StartWithFreeShape(InitialState state, const Scaled
   if (starts.empty()) return {};
   Solution solution = Solve(residual, layout, starts.front().theta, relaxed);
   solution.theta[kShapeExponent] = held.parameters()[kShapeExponent].theta;
-  std::vector<double> values(residual.size());
-  residual.Evaluate(solution.theta, values);
-  return StartingPoint{solution.theta,
-                       std::inner_product(values.begin(), values.end(), values.begin(), 0.0)};
+  return StartingPoint{solution.theta, residual.SumOfSquares(solution.theta)};
 }
 
 Candidate FitFrom(InitialState state, const ScaledRecords& data, const FitOptions& options) {

@@ -45,8 +45,11 @@ Estimator::Estimator(const Candidate& candidate, double variance,
   }
   // Autocorrelated residuals carry the information of effective_samples independent ones.
   variance_ = variance * static_cast<double>(statistics.samples) / statistics.effective_samples;
+  const bool none_at_a_bound = inside.size() == candidate.layout.free().size();
   conditional_ = AnalyseJacobian(candidate.residual, candidate.solution.theta, std::move(inside));
-  full_ = AnalyseJacobian(candidate.residual, candidate.solution.theta, candidate.layout.free());
+  full_ = none_at_a_bound ? conditional_
+                          : AnalyseJacobian(candidate.residual, candidate.solution.theta,
+                                            candidate.layout.free());
 }
 
 ParameterEstimate Estimator::Estimate(std::size_t index) const {

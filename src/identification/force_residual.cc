@@ -1,6 +1,7 @@
 #include "identification/force_residual.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "identification/parameter_layout.h"
 #include "mindahl/models/response.h"
@@ -118,6 +119,12 @@ void ForceResidual::Evaluate(const std::vector<double>& theta, std::span<double>
     }
     begin += part.size();
   }
+}
+
+double ForceResidual::SumOfSquares(const std::vector<double>& theta) const {
+  std::vector<double> residual(size());
+  Evaluate(theta, residual);
+  return std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
 }
 
 void ForceResidual::Differentiate(const std::vector<double>& theta,

@@ -23,6 +23,9 @@ class ForceResidual {
   /// @param residual  written, size() values
   void Evaluate(const std::vector<double>& theta, std::span<double> residual) const;
 
+  /// Σ of the squared residuals.
+  [[nodiscard]] double SumOfSquares(const std::vector<double>& theta) const;
+
   /// @param free      positions in theta of the columns wanted
   /// @param jacobian  written, row-major, size() × free.size()
   void Differentiate(const std::vector<double>& theta, std::span<const std::size_t> free,

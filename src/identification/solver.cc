@@ -62,14 +62,6 @@ class NoMoreLikelihood : public ceres::IterationCallback {
   std::vector<double> costs_;
 };
 
-double SumOfSquares(const ForceResidual& residual, const std::vector<double>& theta) {
-  std::vector<double> values(residual.size());
-  residual.Evaluate(theta, values);
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return sum;
-}
-
 }  // namespace
 
 Solution Solve(const ForceResidual& residual, const ParameterLayout& layout,
@@ -89,7 +81,7 @@ Solution Solve(const ForceResidual& residual, const ParameterLayout& layout,
   Solution solution;
   solution.theta = std::move(start);
   if (free.empty()) {
-    solution.sum_of_squares = SumOfSquares(residual, solution.theta);
+    solution.sum_of_squares = residual.SumOfSquares(solution.theta);
     solution.converged = true;
     solution.termination = "every parameter is fixed";
     return solution;
@@ -120,7 +112,7 @@ Solution Solve(const ForceResidual& residual, const ParameterLayout& layout,
   ceres::Solve(solver_options, &problem, &summary);
 
   for (std::size_t i = 0; i < free.size(); ++i) solution.theta[free[i]] = free_theta[i];
-  solution.sum_of_squares = SumOfSquares(residual, solution.theta);
+  solution.sum_of_squares = residual.SumOfSquares(solution.theta);
   solution.converged = (summary.termination_type == ceres::CONVERGENCE ||
                         summary.termination_type == ceres::USER_SUCCESS) &&
                        std::isfinite(solution.sum_of_squares);

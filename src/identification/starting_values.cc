@@ -113,10 +113,7 @@ class StartingGrid {
     for (const std::size_t i : layout_.free()) {
       point.theta[i] = std::clamp(point.theta[i], parameters[i].lower, parameters[i].upper);
     }
-    std::vector<double> residual(residual_.size());
-    residual_.Evaluate(point.theta, residual);
-    point.sum_of_squares = 0.0;
-    for (const double value : residual) point.sum_of_squares += value * value;
+    point.sum_of_squares = residual_.SumOfSquares(point.theta);
     return point;
   }
 

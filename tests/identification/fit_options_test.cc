@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "identification/sample_loop.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
@@ -19,20 +20,15 @@ using testing::Cycling;
 using testing::FitOne;
 using ::testing::HasSubstr;
 using testing::History;
+using testing::kLaw;
 using testing::kNoiseFree;
+using testing::kReach;
+using testing::Loop;
 using testing::MakeRecord;
 using testing::Model;
 using testing::Recovers;
 using testing::Respond;
 using testing::Wave;
-
-constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
-constexpr double kReach = 2.5e-6;  // 1.25 of gross slip
-
-Record Loop() {
-  const History displacement = Cycling(Wave::kSine, kReach, 2.0, 120);
-  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-}
 
 std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
   try {

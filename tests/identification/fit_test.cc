@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "identification/sample_loop.h"
 #include "recovery/recovered.h"
 
 // What a fit reports beside the parameters: state, drift, correlation, residuals, verdicts.
@@ -20,20 +21,15 @@ using testing::From;
 using testing::Generator;
 using ::testing::HasSubstr;
 using testing::History;
+using testing::kLaw;
 using testing::kNoiseFree;
+using testing::kReach;
+using testing::Loop;
 using testing::MakeRecord;
 using testing::Model;
 using testing::Recovers;
 using testing::Respond;
 using testing::Wave;
-
-constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
-constexpr double kReach = 2.5e-6;  // 1.25 of gross slip
-
-Record Loop(double cycles = 2.0) {
-  const History displacement = Cycling(Wave::kSine, kReach, cycles, 120);
-  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
-}
 
 TEST(Fit, TellsAVirginRecordFromASteadyOneWithAndWithoutNoise) {
   Generator generator(1);
