@@ -1,0 +1,129 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "mindahl/models/backbone.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+
+namespace mindahl {
+
+/// A branch ready for evaluation: t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin.
+template <typename Real>
+struct ScaledBranch {
+  Real origin = 0;
+  Real force = 0;   // t₀
+  Real height = 1;  // span·v
+  Real rate = 0;    // k [1/m]
+
+  /// rate·|e|, from which φ does not overflow.
+  [[nodiscard]] Real Normalize(Real e) const {
+    return rate * std::min(std::abs(e), backbone::Reach(rate));
+  }
+};
+
+/// Branches are prepared in double for every type of sample: along a history their roundings add
+/// up.
+using ScaledBranches = std::vector<ScaledBranch<double>>;
+
+/// A model's rules for how branches start, at σ/Tc and α of a law.
+class BranchScaling {
+ public:
+  /// @param model  must outlive the object
+  BranchScaling(const FrictionModel& model, const BranchLaw& law)
+      : model_(model),
+        rate_(law.tangential_stiffness / law.slip_force),
+        shape_exponent_(law.shape_exponent) {}
+
+  [[nodiscard]] SteadyPeak Peak(const Branch& branch) const {
+    const double y = rate_ * std::min(branch.amplitude, backbone::Reach(rate_));
+    return model_.steady_peak(y, shape_exponent_);
+  }
+
+  /// Most models do not look at the peak; sparing it keeps a branch as cheap as a sample.
+  [[nodiscard]] SteadyPeak PeakThatScales(const Branch& branch) const {
+    return model_.scaled_by_peak ? Peak(branch) : SteadyPeak{};
+  }
+
+  [[nodiscard]] BranchScale ScaleOf(const Branch& branch, double origin_force,
+                                    const SteadyPeak& peak) const {
+    return model_.scale(branch.direction * origin_force, peak.force, IsVirgin(branch.start));
+  }
+
+  [[nodiscard]] ScaledBranch<double> Start(const Branch& branch, double origin_force) const {
+    const BranchScale scale = ScaleOf(branch, origin_force, PeakThatScales(branch));
+    return {branch.origin, origin_force, scale.span * scale.remaining, RateOf(scale)};
+  }
+
+  /// Force over Tc at the branch's origin, `force_of_parent` giving that of the parent there.
+  template <typename ForceOfParent>
+  [[nodiscard]] double OriginForce(const Branch& branch, ForceOfParent&& force_of_parent) const {
+    switch (branch.start) {
+      case BranchStart::kUnloaded:
+      case BranchStart::kSteadyCentre:
+        return 0.0;
+      case BranchStart::kSteadyExtreme:
+        return -branch.direction * Peak(branch).force;
+      case BranchStart::kReversal:
+        break;
+    }
+    return force_of_parent(static_cast<std::size_t>(branch.parent));
+  }
+
+ private:
+  /// k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
+  [[nodiscard]] double RateOf(const BranchScale& scale) const {
+    constexpr double kSteepest = 1e300;  // [1/m], kept from overflow in products with forces
+    if (scale.remaining <= 0) return 0.0;
+    const double virgin_rate = rate_ / scale.span;
+    if (scale.remaining == 1.0) return virgin_rate;
+    const double exponent = shape_exponent_ - 1;
+    const bool too_steep =
+        std::log(virgin_rate) + exponent * std::log(scale.remaining) >= std::log(kSteepest);
+    return too_steep ? kSteepest : virgin_rate * std::pow(scale.remaining, exponent);
+  }
+
+  const FrictionModel& model_;
+  double rate_;
+  double shape_exponent_;
+};
+
+/// @param shape  φ, as in backbone.h: has Force(y)
+template <typename Shape>
+ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
+                             const Shape& shape) {
+  ScaledBranches scaled;
+  scaled.reserve(path.branches.size());
+  for (const Branch& branch : path.branches) {
+    const double origin_force = scaling.OriginForce(branch, [&](std::size_t parent_index) {
+      const ScaledBranch<double>& parent = scaled[parent_index];
+      const double e = branch.origin - parent.origin;
+      return parent.force + std::copysign(parent.height * shape.Force(parent.Normalize(e)), e);
+    });
+    scaled.push_back(scaling.Start(branch, origin_force));
+  }
+  return scaled;
+}
+
+/// Forces of one run; the loop has no branch and no call, so that it vectorises where φ does.
+template <typename Real, typename Shape>
+void EvaluateRun(const ScaledBranch<Real>& branch, const Shape& shape, Real slip_force, Real limit,
+                 std::span<const Real> displacement, std::span<Real> force) {
+  const Real reach = backbone::Reach(branch.rate);
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    const Real e = displacement[i] - branch.origin;
+    const Real phi = shape.Force(branch.rate * std::min(std::abs(e), reach));
+    const Real t = branch.force + std::copysign(branch.height * phi, e);
+    force[i] = slip_force * std::clamp(t, -limit, limit);
+  }
+}
+
+/// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
+inline double ForceLimit(const FrictionModel& model) { return model.bounded ? 1.0 : 2.0; }
+
+}  // namespace mindahl
