@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <iterator>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -23,6 +25,14 @@ constexpr std::size_t kExtremesPerRun = 4;  // least and greatest x and y
 constexpr std::array<std::string_view, 6> kColours = {"#4878a8", "#d1495b", "#3a9d6e",
                                                       "#8d6bb1", "#e09f3e", "#5f6b76"};
 
+// gnuplot's point types, one a colour: filled at first, then open and on another colour than
+// before.
+constexpr std::array<int, 12> kMarkerShapes = {7, 5, 9, 13, 11, 15, 8, 12, 6, 4, 14, 10};
+// For the first six lines, the next six and so on.
+constexpr std::array<std::string_view, 3> kDashes = {"", " dt (10,5)", " dt (3,4)"};
+constexpr int kDot = 7;
+constexpr int kCross = 2;
+
 // Margins [px]
 constexpr double kLeft = 95;
 constexpr double kRight = 25;
@@ -31,10 +41,24 @@ constexpr double kLegend = 30;  // above each panel
 constexpr double kBelow = 58;   // tics and x label under each panel
 constexpr double kEdge = 8;
 
+// A legend entry [px]: its sample, and a character of its text, as wide as most fonts draw it.
+constexpr double kSample = 60;
+constexpr double kCharacter = 8;
+constexpr std::size_t kMostAbove = 4;
+constexpr double kLargestLegendShare = 0.4;  // of a column's width
+
+void RequireDrawable(const std::string& name, const std::vector<double>& values, bool logarithmic) {
+  for (const double value : values) {
+    RequireFinite(name, value);
+    if (logarithmic && value <= 0) ThrowInvalid(name, value, "must be > 0 on a logarithmic axis");
+  }
+}
+
 void Validate(const Plot& plot) {
   if (plot.panels.empty()) throw InvalidArgument("number of panels = 0 is invalid: must be >= 1");
   RequirePositive("plot width [px]", plot.width);
   RequirePositive("plot height [px]", plot.height);
+  RequirePositive("number of plot columns", plot.columns);
   for (std::size_t panel = 0; panel < plot.panels.size(); ++panel) {
     const std::string where = fmt::format("panel {}", panel + 1);
     RequirePositive("height of " + where, plot.panels[panel].height);
@@ -45,8 +69,8 @@ void Validate(const Plot& plot) {
       const std::string name = fmt::format("'{}' of {}", series.label, where);
       RequireSameSize("x of " + name, series.x.size(), "y of " + name, series.y.size());
       if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
-      for (const double x : series.x) RequireFinite("x of " + name, x);
-      for (const double y : series.y) RequireFinite("y of " + name, y);
+      RequireDrawable("x of " + name, series.x, plot.panels[panel].log_x);
+      RequireDrawable("y of " + name, series.y, plot.panels[panel].log_y);
     }
   }
 }
@@ -89,29 +113,112 @@ std::vector<std::size_t> Thinned(const PlotSeries& series) {
   return kept;
 }
 
-std::string_view StyleCommand(PlotStyle style) {
+/// How a series is drawn. Beyond the first six, colours repeat with dashes, crosses or other
+/// markers.
+/// @param series     its place in the panel
+/// @param in_legend  there the dots of a dense series would be too small to tell
+std::string StyleCommand(PlotStyle style, std::size_t series, bool in_legend) {
+  const std::size_t round = series / kColours.size();
+  const std::string dashes(kDashes[round % kDashes.size()]);
+  const int marker = kMarkerShapes[series % kMarkerShapes.size()];
+  std::string command;
   switch (style) {
-    case PlotStyle::kPoints:
-      return "points pt 7 ps 0.35";
-    case PlotStyle::kLineAndPoints:
-      return "linespoints lw 1.5 pt 7 ps 0.35";
     case PlotStyle::kLine:
+      command = "lines lw 2" + dashes;
+      break;
+    case PlotStyle::kPoints:
+      command =
+          fmt::format("points pt {} ps {}", round % 2 == 0 ? kDot : kCross, in_legend ? 0.9 : 0.35);
+      break;
+    case PlotStyle::kMarkers:
+      command = fmt::format("points pt {} ps 0.9", marker);
+      break;
+    case PlotStyle::kLineAndPoints:
+      command = fmt::format("linespoints lw 1.5 pt {} ps 0.9{}", marker, dashes);
       break;
   }
-  return "lines lw 2";
+  return command + fmt::format(" lc rgb '{}'", kColours[series % kColours.size()]);
 }
 
-std::string_view LegendStyleCommand(PlotStyle style) {
-  switch (style) {
-    case PlotStyle::kPoints:
-      return "points pt 7 ps 0.9";
-    case PlotStyle::kLineAndPoints:
-      return "linespoints lw 1.5 pt 7 ps 0.7";
-    case PlotStyle::kLine:
-      break;
+/// 10ⁿ in plain text, of which labels are made.
+std::string PowerOfTen(int exponent) {
+  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
+                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = "10";
+  for (const char character : std::to_string(exponent)) {
+    text += character == '-' ? "⁻" : kDigits[static_cast<std::size_t>(character - '0')];
   }
-  return "lines lw 2";
+  return text;
 }
+
+/// Powers of ten between two labels of a logarithmic axis.
+int LabelStep(int powers) {
+  constexpr int kMostLabels = 7;
+  for (const int step : {1, 2, 3, 5, 10, 20, 50}) {
+    if (powers <= kMostLabels * step) return step;
+  }
+  return 100;
+}
+
+/// Tics of a logarithmic axis, for `set xtics`. Labels are at powers of ten; where there are not
+/// two of them, at other multiples too.
+std::string LogTics(double from, double to) {
+  const int first = static_cast<int>(std::floor(std::log10(from)));
+  const int last = static_cast<int>(std::ceil(std::log10(to)));
+  const int step = LabelStep(last - first);
+  const bool has_powers = std::floor(std::log10(to)) - std::ceil(std::log10(from)) >= 1;
+  const bool is_short = !has_powers && from >= 1e-3 && to <= 1e4;  // 0.02 rather than 2·10⁻²
+  std::vector<std::string> tics;
+  for (int exponent = first; exponent <= last; ++exponent) {
+    for (int multiple = 1; multiple <= (step == 1 ? 9 : 1); ++multiple) {
+      const double at = multiple * std::pow(10.0, exponent);
+      if (at < from || at > to) continue;
+      const bool is_whole = multiple == 1 || multiple == 2 || multiple == 3 || multiple == 5;
+      const bool is_labelled = has_powers ? multiple == 1 && exponent % step == 0 : is_whole;
+      if (is_labelled) {
+        std::string label = PowerOfTen(exponent);
+        if (multiple > 1) label = fmt::format("{}·{}", multiple, label);
+        if (is_short) label = fmt::format("{:.9g}", at);
+        tics.push_back(fmt::format("'{}' {:.9g} 0", label, at));
+      } else if (step < 10) {
+        tics.push_back(fmt::format("'' {:.9g} 1", at));
+      }
+    }
+  }
+  return fmt::format("({})", fmt::join(tics, ", "));
+}
+
+/// Legend entries of a panel.
+struct Legend {
+  std::size_t entries = 0;
+  double longest = 0.0;  ///< [px]
+};
+
+/// About how wide a text is [px].
+double TextWidth(std::string_view text) {
+  const auto characters = std::ranges::count_if(text, [](char byte) {
+    return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: not a continuation
+  });
+  return kCharacter * static_cast<double>(characters);
+}
+
+Legend LegendOf(const PlotPanel& panel) {
+  Legend legend;
+  for (const PlotSeries& series : panel.series) {
+    if (series.label.empty()) continue;
+    ++legend.entries;
+    legend.longest = std::max(legend.longest, kSample + TextWidth(series.label));
+  }
+  return legend;
+}
+
+/// Where the axes of a panel are, from the top left of the page [px].
+struct Frame {
+  double left;
+  double right;
+  double top;
+  double bottom;
+};
 
 class Script {
  public:
@@ -122,8 +229,6 @@ class Script {
     Add("set border 3 lc rgb '#444444'\nset tics nomirror scale 0.6\n");
     Add("set grid back lc rgb '#e4e4e4' lw 1 lt 1\n");
     Add("set xlabel offset 0,0.3\n");
-    Add("set xrange [*:*] noextend\nset yrange [*:*] noextend\n");
-    Add("set offsets graph 0.02, graph 0.02, graph 0.05, graph 0.05\n");
     AddData();
     Add("set multiplot\n");
     AddPanels();
@@ -151,48 +256,148 @@ class Script {
     }
   }
 
+  std::size_t Columns() const { return static_cast<std::size_t>(plot_.columns); }
+
+  bool IsLegendBeside(const PlotPanel& panel) const {
+    const Legend legend = LegendOf(panel);
+    const double room = plot_.width / static_cast<double>(plot_.columns) - kLeft - kRight;
+    // Entries in a row are all as wide as the longest.
+    const double row =
+        TextWidth(panel.title) + static_cast<double>(legend.entries) * legend.longest;
+    return legend.entries > kMostAbove || row > room;
+  }
+
+  /// Room for the legends on the right of each column [px]. One that stands where a panel is
+  /// missing from the last row needs none.
+  std::vector<double> LegendWidths() const {
+    std::vector<double> widths(Columns(), 0.0);
+    const double largest = kLargestLegendShare * plot_.width / plot_.columns;
+    for (std::size_t panel = 0; panel < plot_.panels.size(); ++panel) {
+      const std::size_t column = panel % Columns();
+      const bool is_room_free = panel + 1 == plot_.panels.size() && column + 1 < Columns();
+      if (is_room_free || !IsLegendBeside(plot_.panels[panel])) continue;
+      widths[column] =
+          std::max(widths[column], std::min(LegendOf(plot_.panels[panel]).longest, largest));
+    }
+    return widths;
+  }
+
+  /// Left and right ends of the axes in each column [px]; all are equally wide.
+  std::vector<std::pair<double, double>> ColumnFrames() const {
+    const std::vector<double> legends = LegendWidths();
+    double around = (kLeft + kRight) * plot_.columns;
+    for (const double legend : legends) around += legend;
+    const double axes = std::max((plot_.width - around) / plot_.columns, 1.0);
+    std::vector<std::pair<double, double>> frames;
+    double left = 0.0;
+    for (const double legend : legends) {
+      frames.emplace_back(left + kLeft, left + kLeft + axes);
+      left += kLeft + axes + kRight + legend;
+    }
+    return frames;
+  }
+
   void AddPanels() {
+    std::vector<double> rows((plot_.panels.size() + Columns() - 1) / Columns(), 0.0);
+    for (std::size_t panel = 0; panel < plot_.panels.size(); ++panel) {
+      double& row = rows[panel / Columns()];
+      row = std::max(row, plot_.panels[panel].height);
+    }
     double shares = 0.0;
-    for (const PlotPanel& panel : plot_.panels) shares += panel.height;
+    for (const double row : rows) shares += row;
     const double title = plot_.title.empty() ? kEdge : kTitle;
-    const double around = (kLegend + kBelow) * static_cast<double>(plot_.panels.size());
+    const double around = (kLegend + kBelow) * static_cast<double>(rows.size());
     // A page too small for its margins still gets axes one pixel high.
     const double drawable = std::max(plot_.height - title - around - kEdge, shares);
     if (!plot_.title.empty()) {
       Add("set label 1 {} at screen 0.5, screen {:.6f} center font ',15'\n", Quoted(plot_.title),
-          1.0 - kTitle / 2 / plot_.height);
+          FromBottom(kTitle / 2));
     }
+    const std::vector<std::pair<double, double>> columns = ColumnFrames();
     double top = title;
-    for (std::size_t panel = 0; panel < plot_.panels.size(); ++panel) {
+    for (std::size_t row = 0; row < rows.size(); ++row) {
       top += kLegend;
-      const double bottom = top + drawable * plot_.panels[panel].height / shares;
-      AddPanel(panel, top, bottom);
+      const double bottom = top + drawable * rows[row] / shares;
+      for (std::size_t column = 0; column < Columns(); ++column) {
+        const std::size_t panel = row * Columns() + column;
+        if (panel >= plot_.panels.size()) break;
+        AddPanel(panel, {columns[column].first, columns[column].second, top, bottom});
+      }
       top = bottom + kBelow;
     }
   }
 
-  /// @param top, bottom  of its axes, from the top of the page [px]
-  void AddPanel(std::size_t index, double top, double bottom) {
+  double FromLeft(double pixels) const { return pixels / plot_.width; }
+  double FromBottom(double pixels_from_top) const { return 1.0 - pixels_from_top / plot_.height; }
+
+  /// Range and tics of one axis.
+  /// @param name    "x" or "y"
+  /// @param values  which of a series it shows
+  /// @param margin  on either side of the data, a share of the axis
+  void AddAxis(const PlotPanel& panel, char name, bool logarithmic,
+               std::vector<double> PlotSeries::*values, double margin) {
+    if (!logarithmic) {
+      Add("unset logscale {0}\nset {0}range [*:*] noextend\nset {0}tics autofreq\n", name);
+      return;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = 0.0;
+    for (const PlotSeries& series : panel.series) {
+      const auto [low, high] = std::ranges::minmax(series.*values);
+      least = std::min(least, low);
+      greatest = std::max(greatest, high);
+    }
+    // Half a decade at least, so that there are tics to read.
+    constexpr double kLeastSpan = 0.5;
+    const double span = std::log10(greatest) - std::log10(least);
+    const double around = std::pow(10.0, std::max(margin * span, (kLeastSpan - span) / 2));
+    const double from = std::max(least / around, std::numeric_limits<double>::min());
+    const double to = std::min(greatest * around, std::numeric_limits<double>::max());
+    Add("set logscale {0}\nset {0}range [{1:.9g}:{2:.9g}]\nset {0}tics {3}\n", name, from, to,
+        LogTics(from, to));
+  }
+
+  /// Above the axes in a row that ends with them, or beside them in a column.
+  void AddKey(const PlotPanel& panel, const Frame& frame) {
+    if (IsLegendBeside(panel)) {
+      Add("set key at screen {:.6f}, screen {:.6f} left top vertical Left reverse samplen 3\n",
+          FromLeft(frame.right + kRight / 2), FromBottom(frame.top));
+    } else {
+      Add("set key at graph 1, screen {:.6f} right center horizontal Right noreverse samplen 2\n",
+          FromBottom(frame.top - kLegend / 2));
+    }
+  }
+
+  void AddPanel(std::size_t index, const Frame& frame) {
     const PlotPanel& panel = plot_.panels[index];
-    Add("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n", kLeft / plot_.width,
-        1.0 - kRight / plot_.width);
-    Add("set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n", 1.0 - top / plot_.height,
-        1.0 - bottom / plot_.height);
+    Add("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n", FromLeft(frame.left),
+        FromLeft(frame.right));
+    Add("set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n", FromBottom(frame.top),
+        FromBottom(frame.bottom));
     Add("set xlabel {}\nset ylabel {}\n", Quoted(panel.x_label), Quoted(panel.y_label));
-    Add("set key at graph 1, screen {:.6f} right center horizontal samplen 2\n",
-        1.0 - (top - kLegend / 2) / plot_.height);
+    constexpr double kMarginX = 0.02;
+    constexpr double kMarginY = 0.05;
+    AddAxis(panel, 'x', panel.log_x, &PlotSeries::x, kMarginX);
+    AddAxis(panel, 'y', panel.log_y, &PlotSeries::y, kMarginY);
+    // Of a linear axis gnuplot adds the margin itself.
+    const double x = panel.log_x ? 0.0 : kMarginX;
+    const double y = panel.log_y ? 0.0 : kMarginY;
+    Add("set offsets graph {0}, graph {0}, graph {1}, graph {1}\n", x, y);
+    if (!panel.title.empty()) {
+      Add("set label 2 {} at graph 0, screen {:.6f} left\n", Quoted(panel.title),
+          FromBottom(frame.top - kLegend / 2));
+    }
+    AddKey(panel, frame);
     Add("plot ");
     for (std::size_t series = 0; series < panel.series.size(); ++series) {
       const PlotSeries& curve = panel.series[series];
-      const std::string_view colour = kColours[series % kColours.size()];
-      Add("{}$data_{}_{} using 1:2 with {} lc rgb '{}' notitle", series == 0 ? "" : ", ", index,
-          series, StyleCommand(curve.style), colour);
+      Add("{}$data_{}_{} using 1:2 with {} notitle", series == 0 ? "" : ", ", index, series,
+          StyleCommand(curve.style, series, false));
       if (curve.label.empty()) continue;
-      // An entry of its own: the dots of a dense series are too small to tell in a legend.
-      Add(", keyentry with {} lc rgb '{}' title {}", LegendStyleCommand(curve.style), colour,
+      Add(", keyentry with {} title {}", StyleCommand(curve.style, series, true),
           Quoted(curve.label));
     }
-    Add("\nunset label 1\n");
+    Add("\nunset label\n");
   }
 
   const Plot& plot_;

@@ -110,6 +110,110 @@ TEST(Plot, DrawsPointsOnlyForThatStyle) {
   EXPECT_EQ(Count(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kLine})), kDot), 0u);
 }
 
+TEST(Plot, LabelsLogarithmicAxesWithPowersOfTen) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"", {1e-6, 1e-3}, {2e-19, 5e-11}});
+  plot.panels.front().log_x = true;
+  plot.panels.front().log_y = true;
+  const std::string svg = Svg(plot);
+  for (const char* label : {">10⁻⁶<", ">10⁻⁵<", ">10⁻⁴<", ">10⁻³<", ">10⁻¹⁸<", ">10⁻¹²<"}) {
+    EXPECT_EQ(Count(svg, label), 1u) << label;
+  }
+}
+
+TEST(Plot, LabelsAtLeastTwoTicsOfAShortLogarithmicAxis) {
+  REQUIRE_GNUPLOT();
+  const auto svg = [](std::vector<double> y) {
+    Plot plot = OnePanel({"", std::vector<double>(y.size(), 0.0), y});
+    plot.panels.front().log_y = true;
+    return Svg(plot);
+  };
+  const std::string within_a_decade = svg({0.21, 0.59});
+  EXPECT_EQ(Count(within_a_decade, ">0.3<"), 1u);
+  EXPECT_EQ(Count(within_a_decade, ">0.5<"), 1u);
+  const std::string single = svg({7e-9});
+  EXPECT_EQ(Count(single, ">5·10⁻⁹<"), 1u);
+  EXPECT_EQ(Count(single, ">10⁻⁸<"), 1u);
+}
+
+TEST(Plot, DrawsLogarithmicAxesOfManyDecades) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"", {1e-305, 1.0, 1e305}, {1, 2, 3}, PlotStyle::kPoints});
+  plot.panels.front().log_x = true;
+  const std::string svg = Svg(plot);
+  EXPECT_EQ(Count(svg, kDot), 3u);
+  EXPECT_EQ(Count(svg, ">10³⁰⁰<"), 1u);
+}
+
+TEST(Plot, GoesBackToLinearAxesInTheNextPanel) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"", {1, 2}, {1e-6, 1}});
+  plot.panels.front().log_y = true;
+  plot.panels.push_back({"", "", {{"", {-1, 1}, {-100, 100}, PlotStyle::kPoints}}});
+  const std::string svg = Svg(plot);
+  EXPECT_EQ(Count(svg, kDot), 2u);
+  EXPECT_EQ(Count(svg, ">-100<"), 1u);
+}
+
+TEST(Plot, TellsTwelveSeriesApart) {
+  REQUIRE_GNUPLOT();
+  Plot plot;
+  plot.panels.push_back({"", "", {}});
+  for (int series = 0; series < 12; ++series) {
+    plot.panels.front().series.push_back(
+        {"", {0, 1}, {0.0, 1.0 * series}, PlotStyle::kLineAndPoints});
+  }
+  const std::string svg = Svg(plot);
+  for (int shape = 3; shape < 15; ++shape) {
+    EXPECT_EQ(Count(svg, "xlink:href='#gpPt" + std::to_string(shape) + "' transform='translate"),
+              2u)
+        << shape;
+  }
+}
+
+/// Where a text stands in an SVG file, from the left and the top [px].
+std::pair<double, double> PlaceOf(const std::string& svg, const std::string& text) {
+  const std::string translate = "translate(";
+  const std::size_t at = svg.rfind(translate, svg.find(">" + text + "<"));
+  EXPECT_NE(at, std::string::npos) << text;
+  const std::size_t comma = svg.find(',', at);
+  return {std::stod(svg.substr(at + translate.size())), std::stod(svg.substr(comma + 1))};
+}
+
+TEST(Plot, PutsPanelsInColumnsRowByRow) {
+  REQUIRE_GNUPLOT();
+  Plot plot;
+  plot.columns = 2;
+  for (const char* title : {"first", "second", "third"}) {
+    plot.panels.push_back({"", "", {{"", {0, 1}, {0, 1}}}});
+    plot.panels.back().title = title;
+  }
+  const std::string svg = Svg(plot);
+  const auto [first_x, first_y] = PlaceOf(svg, "first");
+  const auto [second_x, second_y] = PlaceOf(svg, "second");
+  const auto [third_x, third_y] = PlaceOf(svg, "third");
+  EXPECT_EQ(second_x - first_x, plot.width / 2.0);
+  EXPECT_EQ(second_y, first_y);
+  EXPECT_EQ(third_x, first_x);
+  EXPECT_GT(third_y, plot.height / 2.0);
+}
+
+TEST(Plot, PutsALongLegendBesideItsPanel) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"curve 1", {0, 1}, {0, 1}});
+  const auto place = [&](const std::string& label) { return PlaceOf(Svg(plot), label); };
+  for (const char* label : {"curve 2", "curve 3", "curve 4"}) {
+    plot.panels.front().series.push_back({label, {0, 1}, {0, 1}});
+  }
+  EXPECT_EQ(place("curve 1").second, place("curve 4").second);
+  plot.panels.front().series.push_back({"curve 5", {0, 1}, {0, 1}});
+  EXPECT_EQ(place("curve 1").first, place("curve 5").first);
+  EXPECT_LT(place("curve 1").second, place("curve 5").second);
+  // Where a panel is missing from the last row, the legend takes its place.
+  plot.columns = 2;
+  EXPECT_GT(place("curve 1").first, plot.width / 2.0);
+}
+
 TEST(Plot, DrawsSinglePoint) {
   REQUIRE_GNUPLOT();
   EXPECT_EQ(Count(Svg(OnePanel({"", {3}, {3}, PlotStyle::kPoints})), kDot), 1u);
@@ -186,6 +290,17 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
   EXPECT_EQ(refusal(OnePanel({"fit", {}, {}})), "'fit' of panel 1 has no points: must have one");
   EXPECT_EQ(refusal(OnePanel({"fit", {0}, {std::nan("")}})),
             "y of 'fit' of panel 1 = nan is invalid: must be finite");
+  Plot logarithmic = OnePanel({"fit", {0, 1}, {1, 1}});
+  logarithmic.panels.front().log_y = true;
+  logarithmic.panels.front().log_x = true;
+  EXPECT_EQ(refusal(logarithmic),
+            "x of 'fit' of panel 1 = 0 is invalid: must be > 0 on a logarithmic axis");
+  logarithmic.panels.front().series.front() = {"fit", {1, 1}, {1, -2}};
+  EXPECT_EQ(refusal(logarithmic),
+            "y of 'fit' of panel 1 = -2 is invalid: must be > 0 on a logarithmic axis");
+  Plot no_columns = OnePanel({"fit", {0}, {0}});
+  no_columns.columns = 0;
+  EXPECT_EQ(refusal(no_columns), "number of plot columns = 0 is invalid: must be finite and > 0");
   Plot empty = OnePanel({"fit", {0}, {0}});
   empty.panels.front().series.clear();
   EXPECT_EQ(refusal(empty), "panel 1 has no series: must have one");

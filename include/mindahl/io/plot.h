@@ -6,30 +6,37 @@
 
 namespace mindahl {
 
-enum class PlotStyle { kLine, kPoints, kLineAndPoints };
+/// Points are small dots for dense records. Markers are large, and of another shape in each series;
+/// they show few values one by one, alone or joined by a line.
+enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints };
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
 struct PlotSeries {
   std::string label;      ///< for the legend; "" = no entry
-  std::vector<double> x;  ///< finite, at least one
-  std::vector<double> y;  ///< finite, as many as x
+  std::vector<double> x;  ///< finite, at least one; > 0 on a logarithmic axis
+  std::vector<double> y;  ///< finite, as many as x; > 0 on a logarithmic axis
   PlotStyle style = PlotStyle::kLine;
 };
 
-/// One pair of axes.
+/// One pair of axes. The legend stands above them, on the right of them when it has more than four
+/// entries or is too long.
 struct PlotPanel {
   std::string x_label;  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
   std::string y_label;
-  std::vector<PlotSeries> series;
-  double height = 1.0;  ///< share of the page, relative to the other panels, > 0
+  std::vector<PlotSeries> series;  ///< the first twelve are told apart in colour and in grey
+  double height = 1.0;             ///< share of the page, relative to the other panels, > 0
+  bool log_x = false;
+  bool log_y = false;
+  std::string title = {};  ///< above the axes; "" = none
 };
 
-/// Panels one above another.
+/// Panels row by row; a row is as high as its highest panel.
 struct Plot {
   std::string title;  ///< "" = none
   std::vector<PlotPanel> panels;
   int width = 900;   ///< [px]
   int height = 700;  ///< [px]
+  int columns = 1;   ///< >= 1
 };
 
 /// Draws a plot with gnuplot into an SVG or PNG file, by the extension of its name, atomically.
@@ -40,8 +47,8 @@ struct Plot {
 /// moves by less than one run.
 /// @throws InputError when the extension is another, gnuplot is not installed or the file cannot be
 ///   written
-/// @throws InvalidArgument naming the panel and series when a value is not finite, x and y differ
-///   in length, or there is nothing to draw
+/// @throws InvalidArgument naming the panel and series when a value is not finite, or not > 0 on a
+///   logarithmic axis, x and y differ in length, or there is nothing to draw
 /// @throws std::runtime_error with gnuplot's own words when it fails
 void WritePlot(const Plot& plot, const std::filesystem::path& path);
 
