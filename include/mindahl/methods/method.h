@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string_view>
+
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+
+namespace mindahl {
+
+/// An imposed displacement [m]; the contact is unloaded at 0.
+struct Drive {
+  std::span<const double> displacement;
+  /// Amplitude [m] at each sample where it changes along the way, else empty. Only a model that
+  /// refers to its steady loop looks at it.
+  std::span<const double> envelope = {};
+};
+
+/// The loading path of a drive under a model's memory, every change of direction a reversal.
+/// @throws InvalidArgument as MakeLoadingPath and MakeEnvelopePath
+LoadingPath MakeDrivePath(const FrictionModel& model, const Drive& drive);
+
+/// How finely a method resolves.
+struct Resolution {
+  /// Substeps a sample, elements or nodes: what the method says. >= 1
+  std::size_t steps = 1;
+  /// Of an adaptive method: largest local error of T/Tc a step. > 0
+  double tolerance = 1e-6;
+};
+
+/// Force [N] along a drive, from displacement to force: reversals and branches are found within.
+/// The spans must have one length.
+using Evaluator = std::function<void(const Drive& drive, std::span<double> force)>;
+
+/// A way to evaluate a friction model along a drive.
+///
+/// Each is told of reversals and of the loops that close (the rules are the model's, and so is the
+/// memory); what differs is how a branch is followed. The order below is that of the largest force
+/// error in 1/steps while the contact does not slip grossly. At gross slip du/dy = −u^α is not
+/// Lipschitz for α < 1: u reaches 0 as the power 1/(1−α) of the distance, which no step sees
+/// coming, so that next to slip higher orders fall to 1/(1−α), 1.5 for Mindlin. A step later the
+/// contact slips, exactly so, and what follows has the full order again. Every method is kept from
+/// |T| > Tc by clamping u to [0, 1]; the elements of Iwan add up to Tc, to rounding.
+struct Method {
+  std::string_view name;   ///< on the command line
+  std::string_view title;  ///< in reports
+  /// What Resolution::steps counts, a plural in -s first, as "substeps a sample"; "" when nothing.
+  std::string_view steps = {};
+  std::size_t default_steps = 1;
+  bool adaptive = false;     ///< uses Resolution::tolerance
+  bool masing_only = false;  ///< serves only models whose memory is kReturnPoint
+  /// Order of the error in 1/steps before gross slip; 0 when no step makes one.
+  double order = 0.0;
+  Evaluator (*prepare)(const FrictionModel& model, const BranchLaw& law,
+                       const Resolution& resolution) = nullptr;
+};
+
+/// - exact, exact-float: the closed form (models/response.h), in double and in single precision,
+///   which rounds the displacement as well: that moves T by up to 1.2e-7·σ·max|δ| more
+/// - euler, rk4: explicit, fixed steps of the displacement; orders 1 and 4
+/// - dopri5: Dormand–Prince 5(4), error-controlled, `steps` its least number a sample; order 5 in
+///   these where they are what limits it
+/// - backward-euler: implicit, order 1, never oversteps Tc
+/// - exponential: Rosenbrock–Euler with the local Jacobian, order 2; exact for α = 1
+/// - iwan, iwan-optimal: `steps` Jenkins elements (methods/iwan.h); orders 1 and 2
+/// - table: the branch law between `steps` equal intervals of y/(1+y), linear; order 2 while u > 0
+///   at a fixed distance, min(2, 1/|1−α|) for any 0 < α: for α < 1/2 slip is a corner inside the
+///   last interval's chord, for α > 3/2 the way to infinity is one. Exact for α = 2
+std::span<const Method> Methods();
+
+/// nullptr when there is no such method.
+const Method* FindMethod(std::string_view name);
+
+/// A method made ready for a law: what a simulator does once.
+/// @param model  must outlive the evaluator
+/// @throws InvalidArgument for an invalid law or resolution, or a model that the method does not
+///   serve, naming both
+Evaluator Prepare(const Method& method, const FrictionModel& model, const BranchLaw& law,
+                  const Resolution& resolution);
+
+}  // namespace mindahl

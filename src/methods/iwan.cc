@@ -1,0 +1,102 @@
+#include "mindahl/methods/iwan.h"
+
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <cstdint>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl {
+namespace {
+
+/// A tangent of the virgin curve, in long double: differences between neighbours are what the
+/// elements are made of.
+struct Tangent {
+  long double slope;      // φ' = u^α
+  long double intercept;  // F = φ − yφ' = 1 − u − (u^α − u)/(1 − α)
+};
+
+/// The tangent where the larger of u and u^α is `larger`: of the smaller, for α far from 1, nothing
+/// would be left.
+Tangent TangentAt(long double larger, long double shape_exponent) {
+  const long double beta = 1 - shape_exponent;
+  if (larger <= 0) return {0, 1};
+  const long double log_larger = std::log(larger);
+  if (beta == 0) return {larger, 1 - larger + larger * log_larger};
+  const long double log_ratio =
+      log_larger * (beta > 0 ? beta / shape_exponent : -beta);  // of the smaller to the larger
+  const long double less = -larger * std::expm1(log_ratio);     // |u^α − u|
+  return {beta > 0 ? larger : larger - less,
+          1 - larger + (beta > 0 ? less : 0) - less / std::abs(beta)};
+}
+
+/// The larger of u and u^α at tangent i of n.
+long double PointOfTangent(std::size_t i, std::size_t n, IwanSpacing spacing,
+                           long double shape_exponent) {
+  if (i == 0) return 1;
+  if (i == n) return 0;
+  const long double share = static_cast<long double>(i) / static_cast<long double>(n);
+  if (spacing == IwanSpacing::kOptimal) {
+    return std::pow(1 - share, 2 * std::min(shape_exponent, 1.0L));
+  }
+  // F falls from 1 at u = 0 to 0 at u = 1.
+  constexpr int kBits = 50;
+  std::uintmax_t iterations = 200;
+  const auto [low, high] = boost::math::tools::toms748_solve(
+      [&](long double at) { return TangentAt(at, shape_exponent).intercept - share; }, 0.0L, 1.0L,
+      1 - share, -share, boost::math::tools::eps_tolerance<long double>(kBits), iterations);
+  return low + (high - low) / 2;
+}
+
+}  // namespace
+
+IwanElements MakeIwanElements(const BranchLaw& law, std::size_t elements, IwanSpacing spacing) {
+  Validate(law);
+  if (elements == 0) ThrowInvalid("number of Iwan elements [-]", 0.0, "must be >= 1");
+  if (law.shape_exponent == 0) return {{law.tangential_stiffness}, {law.slip_force}};
+  IwanElements result;
+  Tangent last = TangentAt(1, law.shape_exponent);
+  for (std::size_t i = 1; i <= elements; ++i) {
+    const Tangent next =
+        TangentAt(PointOfTangent(i, elements, spacing, law.shape_exponent), law.shape_exponent);
+    result.stiffness.push_back(
+        static_cast<double>(law.tangential_stiffness * (last.slope - next.slope)));
+    result.slip_force.push_back(
+        static_cast<double>(law.slip_force * (next.intercept - last.intercept)));
+    last = next;
+  }
+  return result;
+}
+
+void EvaluateIwanForce(const IwanElements& elements, std::span<const double> displacement,
+                       std::span<double> force) {
+  RequireSameSize("displacement", displacement.size(), "force", force.size());
+  RequireSameSize("stiffness", elements.stiffness.size(), "slip force", elements.slip_force.size());
+  for (const double at : displacement) RequireFinite("displacement [m]", at);
+  // Partial sums in lanes, for the sum to vectorise without reassociating it.
+  constexpr std::size_t kLanes = 4;
+  const std::size_t padded = (elements.size() + kLanes - 1) / kLanes * kLanes;
+  std::vector<double> stiffness = elements.stiffness;
+  std::vector<double> limit = elements.slip_force;
+  stiffness.resize(padded);
+  limit.resize(padded);
+  std::vector<double> element_force(padded);
+  double last = 0.0;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    const double step = displacement[i] - last;
+    last = displacement[i];
+    double sum[kLanes] = {};
+    for (std::size_t j = 0; j < padded; j += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const double trial = element_force[j + lane] + stiffness[j + lane] * step;
+        const double bounded = std::min(std::max(trial, -limit[j + lane]), limit[j + lane]);
+        element_force[j + lane] = bounded;
+        sum[lane] += bounded;
+      }
+    }
+    force[i] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+  }
+}
+
+}  // namespace mindahl

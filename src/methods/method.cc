@@ -1,0 +1,134 @@
+#include "mindahl/methods/method.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "methods/tabulated.h"
+#include "methods/time_stepping.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+#include "mindahl/methods/iwan.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl {
+namespace {
+
+Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const Resolution&) {
+  return [&model, law](const Drive& drive, std::span<double> force) {
+    EvaluateForce(model, law, MakeDrivePath(model, drive), drive.displacement, force);
+  };
+}
+
+/// The displacement is in single precision too: what a simulator in float has.
+Evaluator PrepareExactFloat(const FrictionModel& model, const BranchLaw& law, const Resolution&) {
+  return [&model, law](const Drive& drive, std::span<double> force) {
+    const std::vector<float> narrow(drive.displacement.begin(), drive.displacement.end());
+    const std::vector<double> widened(narrow.begin(), narrow.end());
+    const LoadingPath path =
+        MakeDrivePath(model, {.displacement = widened, .envelope = drive.envelope});
+    std::vector<float> narrow_force(narrow.size());
+    EvaluateForce(model, law, path, std::span<const float>(narrow), std::span<float>(narrow_force));
+    std::ranges::copy(narrow_force, force.begin());
+  };
+}
+
+template <IwanSpacing spacing>
+Evaluator PrepareIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution) {
+  return [elements = MakeIwanElements(law, resolution.steps, spacing)](const Drive& drive,
+                                                                       std::span<double> force) {
+    EvaluateIwanForce(elements, drive.displacement, force);
+  };
+}
+
+constexpr std::array kMethods{
+    Method{.name = "exact", .title = "closed form", .prepare = PrepareExact},
+    Method{.name = "exact-float",
+           .title = "closed form in single precision",
+           .prepare = PrepareExactFloat},
+    Method{.name = "euler",
+           .title = "explicit Euler",
+           .steps = "substeps a sample",
+           .order = 1,
+           .prepare = PrepareEuler},
+    Method{.name = "rk4",
+           .title = "Runge-Kutta of order 4",
+           .steps = "substeps a sample",
+           .order = 4,
+           .prepare = PrepareRk4},
+    Method{.name = "dopri5",
+           .title = "Dormand-Prince 5(4), adaptive",
+           .steps = "substeps a sample at least",
+           .adaptive = true,
+           .order = 5,
+           .prepare = PrepareDopri5},
+    Method{.name = "backward-euler",
+           .title = "implicit Euler",
+           .steps = "substeps a sample",
+           .order = 1,
+           .prepare = PrepareBackwardEuler},
+    Method{.name = "exponential",
+           .title = "exponential Rosenbrock-Euler",
+           .steps = "substeps a sample",
+           .order = 2,
+           .prepare = PrepareExponential},
+    Method{.name = "iwan",
+           .title = "Iwan, equal slip forces",
+           .steps = "elements",
+           .default_steps = 32,
+           .masing_only = true,
+           .order = 1,
+           .prepare = PrepareIwan<IwanSpacing::kEqualForce>},
+    Method{.name = "iwan-optimal",
+           .title = "Iwan, optimal spacing",
+           .steps = "elements",
+           .default_steps = 32,
+           .masing_only = true,
+           .order = 2,
+           .prepare = PrepareIwan<IwanSpacing::kOptimal>},
+    Method{.name = "table",
+           .title = "tabulated branch law",
+           .steps = "intervals",
+           .default_steps = 256,
+           .order = 2,
+           .prepare = PrepareTable},
+};
+
+}  // namespace
+
+LoadingPath MakeDrivePath(const FrictionModel& model, const Drive& drive) {
+  if (!drive.envelope.empty() && model.scaled_by_peak) {
+    return MakeEnvelopePath(drive.displacement, drive.envelope, 0.0);
+  }
+  return MakeLoadingPath(drive.displacement, FindReversals(drive.displacement, 0.0), model.memory,
+                         {.state = InitialState::kVirgin});
+}
+
+std::span<const Method> Methods() { return kMethods; }
+
+const Method* FindMethod(std::string_view name) {
+  const auto method = std::ranges::find(kMethods, name, &Method::name);
+  return method == kMethods.end() ? nullptr : &*method;
+}
+
+Evaluator Prepare(const Method& method, const FrictionModel& model, const BranchLaw& law,
+                  const Resolution& resolution) {
+  Validate(law);
+  if (resolution.steps == 0) ThrowInvalid("steps [-]", 0.0, "must be >= 1");
+  RequirePositive("tolerance [-]", resolution.tolerance);
+  if (method.masing_only && model.memory != Memory::kReturnPoint) {
+    throw InvalidArgument(fmt::format(
+        "method {} does not serve model {}: its elements remember every reversal, the model does "
+        "not",
+        method.name, model.name));
+  }
+  return [evaluate = method.prepare(model, law, resolution)](const Drive& drive,
+                                                             std::span<double> force) {
+    RequireSameSize("displacement", drive.displacement.size(), "force", force.size());
+    evaluate(drive, force);
+  };
+}
+
+}  // namespace mindahl

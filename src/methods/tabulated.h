@@ -1,0 +1,11 @@
+#pragma once
+
+#include "mindahl/methods/method.h"
+
+namespace mindahl {
+
+/// φ between equal intervals of r = y/(1+y), which takes every y to [0, 1), linearly.
+Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
+                       const Resolution& resolution);
+
+}  // namespace mindahl

@@ -1,0 +1,199 @@
+#include "methods/time_stepping.h"
+
+#include <algorithm>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "models/scaled_branches.h"
+
+namespace mindahl {
+namespace {
+
+/// u₊^α, 0 from slip on also for α = 0 and 1 before the branch: what a trial step asks for.
+class Rate {
+ public:
+  explicit Rate(double shape_exponent) : shape_exponent_(shape_exponent) {}
+
+  double operator()(double remaining) const {
+    if (remaining <= 0) return 0.0;
+    if (remaining >= 1) return 1.0;
+    if (shape_exponent_ == 1.0 / 3.0) return std::cbrt(remaining);
+    if (shape_exponent_ == 1) return remaining;
+    return std::pow(remaining, shape_exponent_);
+  }
+
+  [[nodiscard]] double shape_exponent() const { return shape_exponent_; }
+
+ private:
+  double shape_exponent_;
+};
+
+/// A branch as far as it has been followed.
+struct FollowedBranch {
+  ScaledBranch<double> scaled;
+  double y = 0.0;          // distance followed, in the branch's scale
+  double remaining = 1.0;  // u there
+
+  [[nodiscard]] double Force(double displacement) const {
+    return scaled.force +
+           std::copysign(scaled.height * (1 - remaining), displacement - scaled.origin);
+  }
+};
+
+/// Follows every branch of a path by `advance(u, Δy)`, which returns the next u.
+template <typename Advance>
+class BranchFollower {
+ public:
+  BranchFollower(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
+                 const Advance& advance)
+      : scaling_(model, law), path_(path), advance_(advance) {
+    followed_.reserve(path.branches.size());
+  }
+
+  /// Force over Tc.
+  double MoveTo(std::size_t branch, double displacement) {
+    while (followed_.size() <= branch) Open(path_.branches[followed_.size()]);
+    FollowedBranch& on = followed_[branch];
+    const double y = on.scaled.Normalize(displacement - on.scaled.origin);
+    if (y > on.y) {
+      on.remaining = std::clamp(advance_(on.remaining, y - on.y), 0.0, 1.0);
+      on.y = y;
+    }
+    return on.Force(displacement);
+  }
+
+ private:
+  void Open(const Branch& branch) {
+    const double origin_force = scaling_.OriginForce(
+        branch, [&](std::size_t parent) { return MoveTo(parent, branch.origin); });
+    followed_.push_back({scaling_.Start(branch, origin_force)});
+  }
+
+  BranchScaling scaling_;
+  const LoadingPath& path_;
+  const Advance& advance_;
+  std::vector<FollowedBranch> followed_;
+};
+
+template <typename Advance>
+Evaluator Follow(const FrictionModel& model, const BranchLaw& law, Advance advance) {
+  return [&model, law, advance = std::move(advance)](const Drive& drive, std::span<double> force) {
+    const LoadingPath path = MakeDrivePath(model, drive);
+    BranchFollower follower(model, law, path, advance);
+    const double limit = ForceLimit(model);
+    for (const BranchRun& run : path.runs) {
+      const auto branch = static_cast<std::size_t>(run.branch);
+      for (std::size_t i = run.begin; i < run.end; ++i) {
+        const double t = follower.MoveTo(branch, drive.displacement[i]);
+        force[i] = law.slip_force * std::clamp(t, -limit, limit);
+      }
+    }
+  };
+}
+
+/// Equal steps by `step(u, h)`.
+template <typename Step>
+Evaluator FollowInSteps(const FrictionModel& model, const BranchLaw& law, std::size_t steps,
+                        Step step) {
+  return Follow(model, law, [steps, step = std::move(step)](double remaining, double distance) {
+    const double h = distance / static_cast<double>(steps);
+    for (std::size_t i = 0; i < steps && remaining > 0; ++i) remaining = step(remaining, h);
+    return remaining;
+  });
+}
+
+/// u' with u' + h·u'^α = u. In x = u'^α for α < 1, else in u' itself, that is
+///   a·x + b·x^q = u,  q = max(α, 1/α) >= 1,
+/// convex: Newton's rule falls to the root from either term's own, in 2 to 4 steps on average and
+/// at most 7 for α from 0.2 to 5.
+double SolveBackwardStep(const Rate& rate, double remaining, double h) {
+  constexpr int kMostSteps = 100;  // α or 1/α in the thousands takes its logarithm
+  const double alpha = rate.shape_exponent();
+  if (alpha == 0) return remaining - h;
+  if (alpha == 1) return remaining / (1 + h);
+  const bool in_rate = alpha < 1;
+  const double linear = in_rate ? h : 1.0;
+  const double factor = in_rate ? 1.0 : h;
+  const double exponent = in_rate ? 1 / alpha : alpha;
+  double x = std::min(remaining / linear, std::pow(remaining / factor, 1 / exponent));
+  for (int i = 0; i < kMostSteps; ++i) {
+    const double power = factor * (exponent == 3 ? x * x * x : std::pow(x, exponent));
+    const double excess = linear * x + power - remaining;
+    const double change = excess / (linear + exponent * power / x);
+    if (!(change > std::numeric_limits<double>::epsilon() * x)) break;
+    x -= change;
+  }
+  return in_rate ? remaining - h * x : x;
+}
+
+}  // namespace
+
+Evaluator PrepareEuler(const FrictionModel& model, const BranchLaw& law,
+                       const Resolution& resolution) {
+  return FollowInSteps(
+      model, law, resolution.steps,
+      [rate = Rate(law.shape_exponent)](double u, double h) { return u - h * rate(u); });
+}
+
+Evaluator PrepareRk4(const FrictionModel& model, const BranchLaw& law,
+                     const Resolution& resolution) {
+  return FollowInSteps(model, law, resolution.steps,
+                       [rate = Rate(law.shape_exponent)](double u, double h) {
+                         const double k1 = rate(u);
+                         const double k2 = rate(u - h / 2 * k1);
+                         const double k3 = rate(u - h / 2 * k2);
+                         const double k4 = rate(u - h * k3);
+                         return u - h / 6 * (k1 + 2 * (k2 + k3) + k4);
+                       });
+}
+
+Evaluator PrepareBackwardEuler(const FrictionModel& model, const BranchLaw& law,
+                               const Resolution& resolution) {
+  return FollowInSteps(model, law, resolution.steps,
+                       [rate = Rate(law.shape_exponent)](double u, double h) {
+                         return SolveBackwardStep(rate, u, h);
+                       });
+}
+
+/// u' = u − h·u^α·φ₁(−αh·u^{α−1}), φ₁(q) = (e^q − 1)/q.
+Evaluator PrepareExponential(const FrictionModel& model, const BranchLaw& law,
+                             const Resolution& resolution) {
+  return FollowInSteps(model, law, resolution.steps,
+                       [rate = Rate(law.shape_exponent)](double u, double h) {
+                         const double slope = rate(u);
+                         const double q = rate.shape_exponent() * h * slope / u;
+                         const double mean = q == 0 ? 1.0 : -std::expm1(-q) / q;
+                         return u - h * slope * mean;
+                       });
+}
+
+Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
+                        const Resolution& resolution) {
+  namespace odeint = boost::numeric::odeint;
+  const auto follow = [rate = Rate(law.shape_exponent), steps = resolution.steps,
+                       tolerance = resolution.tolerance](double remaining, double distance) {
+    auto stepper = odeint::make_controlled<odeint::runge_kutta_dopri5<double>>(tolerance, 0.0);
+    const auto system = [&rate](double u, double& derivative, double /*y*/) {
+      derivative = -rate(u);
+    };
+    const double longest = distance / static_cast<double>(steps);
+    double y = 0.0;
+    double h = longest;
+    while (remaining > 0 && y < distance) {
+      h = std::min({h, longest, distance - y});
+      if (y + h <= y) return remaining;
+      // Ends also in the corner at slip: rates are within [0, 1], so that no step h <= tolerance
+      // is rejected.
+      stepper.try_step(system, remaining, y, h);
+    }
+    return remaining;
+  };
+  return Follow(model, law, follow);
+}
+
+}  // namespace mindahl
