@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "mindahl/methods/method.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/tradeoff/work_precision.h"
+
+namespace mindahl {
+
+struct RecommendOptions {
+  double tolerance = 0.01;  ///< largest error by the criterion [–], > 0
+  Criterion criterion = Criterion::kMaxForce;
+  /// Largest cost [ns/sample], > 0: then the most precise within it is sought, and the tolerance
+  /// is not looked at.
+  std::optional<double> largest_cost = std::nullopt;
+  std::size_t transient_cycles = 0;  ///< at the start, which do not count
+};
+
+/// An approximation with its evidence.
+struct Candidate {
+  WorkPrecision point;
+  bool meets =
+      false;  ///< its error by the criterion is within the tolerance, its cost in the limit
+  /// Whole cycles after which |ΔT| stays within the tolerance of the peak force; empty when it
+  /// never does for the drive's last cycle.
+  std::optional<std::size_t> settles_after;
+};
+
+struct Recommendation {
+  std::vector<Candidate> candidates;  ///< models simplest first, then methods
+  std::optional<std::size_t> choice;  ///< empty when none meets what is asked
+  /// The exact closed form, with which costs are compared.
+  std::size_t exact = 0;
+  /// A model simpler than the choice (or than the exact one, when there is none), which would do
+  /// once its transient is over. Looked for under a tolerance only.
+  std::optional<std::size_t> after_transient;
+  CostFloor floor;
+  double peak_force = 0.0;  ///< [N], of the exact response
+  double cycles = 0.0;      ///< of the drive
+};
+
+/// The cheapest model and method that meet a tolerance along this drive, found by running every
+/// one and comparing it with the exact response of the Masing law (MakeReferenceResponse). Costs
+/// within a tenth of each other count as equal, and the simpler model is then preferred: clocks are
+/// no finer.
+/// @throws InvalidArgument for options out of range, an invalid law or drive, or a transient that
+///   leaves no sample
+Recommendation Recommend(const BranchLaw& law, const Drive& drive, const RecommendOptions& options);
+
+}  // namespace mindahl

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mindahl/methods/method.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/tradeoff/approximation.h"
+
+namespace mindahl {
+
+/// What a contact does along a drive, by another road than the library's kernels: at every sample
+/// the sum over the surviving extrema, T = sgn(e₀)f(|e₀|) + Σ 2·sgn(eₖ₊₁−eₖ)f(|eₖ₊₁−eₖ|/2), kept by
+/// their displacements, in long double (docs/theory.md §5).
+struct ReferenceResponse {
+  std::vector<double> force;  ///< [N]
+  double peak_force = 0.0;    ///< largest |T| [N]
+};
+
+/// @throws InvalidArgument for an invalid law, an empty drive or a displacement that is not finite
+ReferenceResponse MakeReferenceResponse(const BranchLaw& law, const Drive& drive);
+
+/// Errors of a response, relative [–].
+struct Precision {
+  double max_force = 0.0;  ///< largest |ΔT| over the peak force
+  double rms_force = 0.0;  ///< root mean square of ΔT over the peak force
+  /// |ΔW/W| of the work ∫T dδ, trapezoidal; empty where the exact one is 0
+  std::optional<double> energy = std::nullopt;
+};
+
+/// @param first  sample from which errors count
+/// @throws InvalidArgument when sizes differ or `first` is not a sample
+Precision Compare(const ReferenceResponse& reference, const Drive& drive,
+                  std::span<const double> force, std::size_t first = 0);
+
+/// What errors are judged by.
+enum class Criterion { kMaxForce, kRmsForce, kEnergy };
+
+/// The error that a criterion looks at; infinite where it is not known.
+double ErrorBy(Criterion criterion, const Precision& precision);
+
+/// One point of a work–precision diagram.
+struct WorkPrecision {
+  Approximation approximation = {};
+  Precision precision = {};
+  double cost = 0.0;  ///< [ns/sample], from displacement to force, the least of several runs
+};
+
+/// Cost [ns/sample] that no evaluation along a drive goes below, measured as the others are.
+struct CostFloor {
+  double memory = 0.0;      ///< reading a displacement and writing a force
+  double arithmetic = 0.0;  ///< the same with one square root and one division between
+};
+CostFloor MeasureCostFloor(const Drive& drive);
+
+/// Runs and times every approximation along the drive, one after the other in one process.
+/// @throws InvalidArgument as Prepare() and MakeReferenceResponse()
+/// Takes about 10 ms an approximation, or three runs where that is longer.
+std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Drive& drive,
+                                                std::span<const Approximation> approximations);
+
+/// Which points no other beats both in cost and in error, of equals the first.
+std::vector<bool> ParetoFront(std::span<const WorkPrecision> points, Criterion criterion);
+
+}  // namespace mindahl

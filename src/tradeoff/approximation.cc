@@ -1,0 +1,138 @@
+#include "mindahl/tradeoff/approximation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "mindahl/core/error.h"
+#include "mindahl/models/limit_law.h"
+
+namespace mindahl {
+namespace {
+
+constexpr double kMindlinExponent = 1.0 / 3;
+
+constexpr std::array kSubsteps = {1, 2, 4, 8, 16, 32, 64};
+constexpr std::array kFewSubsteps = {1, 2, 4, 8, 16};
+constexpr std::array kElements = {4, 16, 64, 256};
+constexpr std::array kIntervals = {16, 64, 256, 1024, 4096};
+constexpr std::array kTolerances = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
+
+/// The resolutions at which a method is tried.
+std::vector<Resolution> Resolutions(const Method& method) {
+  std::vector<Resolution> resolutions;
+  const auto add_steps = [&](const auto& steps) {
+    for (const int count : steps) {
+      resolutions.push_back({.steps = static_cast<std::size_t>(count)});
+    }
+  };
+  if (method.adaptive) {
+    for (const double tolerance : kTolerances) resolutions.push_back({.tolerance = tolerance});
+  } else if (method.steps.empty()) {
+    resolutions.push_back({});
+  } else if (method.masing_only) {
+    add_steps(kElements);
+  } else if (method.default_steps > 1) {
+    add_steps(kIntervals);
+  } else if (method.order > 2) {
+    add_steps(kFewSubsteps);
+  } else {
+    add_steps(kSubsteps);
+  }
+  return resolutions;
+}
+
+const FrictionModel& RequireModel(std::string_view name) {
+  const FrictionModel* model = FindFrictionModel(name);
+  if (model == nullptr) throw InvalidArgument(fmt::format("there is no model '{}'", name));
+  return *model;
+}
+
+const Method& RequireMethod(std::string_view name) {
+  const Method* method = FindMethod(name);
+  if (method == nullptr) throw InvalidArgument(fmt::format("there is no method '{}'", name));
+  return *method;
+}
+
+/// What `count` steps are called; the noun of a method's plural is its first word, as "elements".
+std::string CountedNoun(const Method& method, std::size_t count) {
+  std::string noun(method.steps);
+  if (count == 1) noun.erase(std::min(noun.find(' '), noun.size()) - 1, 1);
+  return noun;
+}
+
+}  // namespace
+
+std::string Describe(const Approximation& approximation) {
+  if (approximation.method.empty()) return approximation.model;
+  const Method& method = RequireMethod(approximation.method);
+  std::string text = fmt::format("{} by {}", approximation.model, approximation.method);
+  if (method.adaptive) {
+    text += fmt::format(", tolerance {:g}", approximation.resolution.tolerance);
+    if (approximation.resolution.steps == 1) return text;  // as many as it likes
+  }
+  if (!method.steps.empty()) {
+    text += fmt::format(", {} {}", approximation.resolution.steps,
+                        CountedNoun(method, approximation.resolution.steps));
+  }
+  return text;
+}
+
+BranchLaw LawOf(const Approximation& approximation, const BranchLaw& law) {
+  BranchLaw result = law;
+  const FrictionModel* model = FindFrictionModel(approximation.model);
+  if (model != nullptr && model->shape_exponent) result.shape_exponent = *model->shape_exponent;
+  return result;
+}
+
+Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
+  if (const LimitLaw* limit = FindLimitLaw(approximation.model)) {
+    Validate(law);
+    return [limit, law](const Drive& drive, std::span<double> force) {
+      limit->evaluate_force(law, drive.displacement, force);
+    };
+  }
+  return Prepare(RequireMethod(approximation.method), RequireModel(approximation.model),
+                 LawOf(approximation, law), approximation.resolution);
+}
+
+std::string ExactModel(const BranchLaw& law) {
+  if (law.shape_exponent == kMindlinExponent) return "mindlin";
+  if (law.shape_exponent == 0) return "jenkins";
+  return "mindlin-dahl";
+}
+
+std::vector<Approximation> ModelLadder(const BranchLaw& law) {
+  std::vector<Approximation> ladder;
+  for (const LimitLaw& limit : LimitLaws()) ladder.push_back({std::string(limit.name), ""});
+  for (const std::string_view model : {"jenkins", "simplified-dahl", "dahl", "mindlin"}) {
+    ladder.push_back({std::string(model), "exact"});
+  }
+  const std::string exact = ExactModel(law);
+  if (std::ranges::find(ladder, exact, &Approximation::model) == ladder.end()) {
+    ladder.push_back({exact, "exact"});
+  }
+  return ladder;
+}
+
+std::vector<Approximation> MethodLadder(const BranchLaw& law) {
+  std::vector<Approximation> ladder;
+  for (const Method& method : Methods()) {
+    for (const Resolution& resolution : Resolutions(method)) {
+      ladder.push_back({ExactModel(law), std::string(method.name), resolution});
+    }
+  }
+  return ladder;
+}
+
+std::vector<Approximation> AllApproximations(const BranchLaw& law) {
+  std::vector<Approximation> all = ModelLadder(law);
+  for (const Approximation& approximation : MethodLadder(law)) {
+    if (approximation.method != "exact") all.push_back(approximation);
+  }
+  return all;
+}
+
+}  // namespace mindahl

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace mindahl {
+
+/// Cycles passed at each sample of a drive from the unloaded contact: a quarter to the first
+/// reversal, half a cycle from one to the next, in proportion to the displacement between.
+std::vector<double> CyclesPassed(std::span<const double> displacement);
+
+}  // namespace mindahl

@@ -1,0 +1,220 @@
+#include "mindahl/tradeoff/work_precision.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "mindahl/core/error.h"
+#include "mindahl/models/backbone.h"
+#include "mindahl/models/backbone_integrals.h"
+
+namespace mindahl {
+namespace {
+
+/// The extrema that a Masing contact remembers, each with the force there.
+class RememberedExtrema {
+ public:
+  explicit RememberedExtrema(const BranchLaw& law) : law_(law) {}
+
+  /// Force over Tc at `displacement`.
+  long double MoveTo(double displacement) {
+    Forget(displacement);
+    const long double force = ForceAt(displacement);
+    last_ = displacement;
+    last_force_ = force;
+    return force;
+  }
+
+  void Reverse() { extrema_.push_back({last_, last_force_}); }
+
+ private:
+  struct Extremum {
+    double displacement;
+    long double force;
+  };
+
+  /// A swing as long as the one that it answers closes the loop between them; the first extremum
+  /// answers the unloaded contact, and is passed on either side.
+  void Forget(double displacement) {
+    while (!extrema_.empty()) {
+      if (extrema_.size() == 1) {
+        if (std::abs(displacement) < std::abs(extrema_[0].displacement)) return;
+        extrema_.clear();
+        return;
+      }
+      const double newest = extrema_.back().displacement;
+      const double answered = extrema_[extrema_.size() - 2].displacement;
+      if (std::abs(displacement - newest) < std::abs(answered - newest)) return;
+      extrema_.resize(extrema_.size() - 2);
+    }
+  }
+
+  [[nodiscard]] long double ForceAt(double displacement) const {
+    if (extrema_.empty()) return Backbone(displacement, 1);
+    return extrema_.back().force + 2 * Backbone(displacement - extrema_.back().displacement, 0.5L);
+  }
+
+  /// φ of a share of x, with its sign.
+  [[nodiscard]] long double Backbone(double x, long double share) const {
+    const auto y = backbone::Normalize(law_.tangential_stiffness, std::abs(x), law_.slip_force);
+    const auto at = backbone::Reduce({y.high * share, y.low * share},
+                                     static_cast<long double>(law_.shape_exponent));
+    const long double force = backbone::GeneralShape<long double>{law_.shape_exponent}.Force(at);
+    return x < 0 ? -force : force;
+  }
+
+  const BranchLaw& law_;
+  std::vector<Extremum> extrema_;
+  double last_ = 0.0;
+  long double last_force_ = 0.0L;
+};
+
+/// ∫T dδ [J], trapezoidal.
+double Work(std::span<const double> displacement, std::span<const double> force,
+            std::size_t first) {
+  long double work = 0.0L;
+  for (std::size_t i = first + 1; i < displacement.size(); ++i) {
+    work += (static_cast<long double>(force[i]) + force[i - 1]) / 2 *
+            (static_cast<long double>(displacement[i]) - displacement[i - 1]);
+  }
+  return static_cast<double>(work);
+}
+
+/// ns a sample; `run` once before, so that memory is warm.
+template <typename Run>
+double MeasureCost(std::size_t samples, Run&& run) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kBudget = 1e7;  // [ns]
+  constexpr int kLeastRuns = 3;
+  run();
+  double least = std::numeric_limits<double>::infinity();
+  double spent = 0.0;
+  for (int runs = 0; runs < kLeastRuns || spent < kBudget; ++runs) {
+    const auto begin = Clock::now();
+    run();
+    const double elapsed = std::chrono::duration<double, std::nano>(Clock::now() - begin).count();
+    least = std::min(least, elapsed);
+    spent += elapsed;
+  }
+  return least / static_cast<double>(samples);
+}
+
+/// Tells the compiler that memory is read.
+void Keep(std::span<const double> values) { asm volatile("" : : "g"(values.data()) : "memory"); }
+
+}  // namespace
+
+ReferenceResponse MakeReferenceResponse(const BranchLaw& law, const Drive& drive) {
+  Validate(law);
+  if (drive.displacement.empty()) throw InvalidArgument("the drive is empty: must have samples");
+  for (const double displacement : drive.displacement) {
+    RequireFinite("displacement [m] of the drive", displacement);
+  }
+  ReferenceResponse reference;
+  RememberedExtrema remembered(law);
+  double direction = 0.0;
+  double last = 0.0;
+  for (const double displacement : drive.displacement) {
+    const double step = displacement - last;
+    if (step != 0) {
+      if (direction * step < 0) remembered.Reverse();
+      direction = step;
+    }
+    last = displacement;
+    const double force = static_cast<double>(law.slip_force * remembered.MoveTo(displacement));
+    reference.force.push_back(force);
+    reference.peak_force = std::max(reference.peak_force, std::abs(force));
+  }
+  return reference;
+}
+
+Precision Compare(const ReferenceResponse& reference, const Drive& drive,
+                  std::span<const double> force, std::size_t first) {
+  RequireSameSize("displacement", drive.displacement.size(), "force", force.size());
+  RequireSameSize("reference", reference.force.size(), "force", force.size());
+  if (first >= force.size()) {
+    ThrowInvalid("first sample that counts [-]", static_cast<double>(first),
+                 "must be a sample of the drive");
+  }
+  Precision precision;
+  const double scale = reference.peak_force > 0 ? reference.peak_force : 1.0;
+  long double squares = 0.0L;
+  for (std::size_t i = first; i < force.size(); ++i) {
+    const double error = (force[i] - reference.force[i]) / scale;
+    // A force that is not a number is infinitely wrong; std::max would pass it over.
+    precision.max_force =
+        std::max(precision.max_force,
+                 std::isnan(error) ? std::numeric_limits<double>::infinity() : std::abs(error));
+    squares += static_cast<long double>(error) * error;
+  }
+  precision.rms_force =
+      static_cast<double>(std::sqrt(squares / static_cast<long double>(force.size() - first)));
+  const double exact = Work(drive.displacement, reference.force, first);
+  if (exact != 0) {
+    precision.energy = std::abs(Work(drive.displacement, force, first) / exact - 1);
+  }
+  return precision;
+}
+
+double ErrorBy(Criterion criterion, const Precision& precision) {
+  switch (criterion) {
+    case Criterion::kMaxForce:
+      return precision.max_force;
+    case Criterion::kRmsForce:
+      return precision.rms_force;
+    case Criterion::kEnergy:
+      break;
+  }
+  return precision.energy.value_or(std::numeric_limits<double>::infinity());
+}
+
+CostFloor MeasureCostFloor(const Drive& drive) {
+  const std::span<const double> displacement = drive.displacement;
+  std::vector<double> force(displacement.size());
+  CostFloor floor;
+  floor.memory = MeasureCost(force.size(), [&] {
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] = 2 * displacement[i];
+    Keep(force);
+  });
+  floor.arithmetic = MeasureCost(force.size(), [&] {
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      force[i] = displacement[i] / (1 + std::sqrt(std::abs(displacement[i])));
+    }
+    Keep(force);
+  });
+  return floor;
+}
+
+std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Drive& drive,
+                                                std::span<const Approximation> approximations) {
+  const ReferenceResponse reference = MakeReferenceResponse(law, drive);
+  std::vector<WorkPrecision> points;
+  std::vector<double> force(drive.displacement.size());
+  for (const Approximation& approximation : approximations) {
+    const Evaluator evaluate = Prepare(approximation, law);
+    const double cost = MeasureCost(force.size(), [&] {
+      evaluate(drive, force);
+      Keep(force);
+    });
+    points.push_back({approximation, Compare(reference, drive, force), cost});
+  }
+  return points;
+}
+
+std::vector<bool> ParetoFront(std::span<const WorkPrecision> points, Criterion criterion) {
+  std::vector<bool> on_front(points.size(), true);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double error = ErrorBy(criterion, points[i].precision);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      if (i == j) continue;
+      const double other = ErrorBy(criterion, points[j].precision);
+      const bool no_worse = other <= error && points[j].cost <= points[i].cost;
+      const bool better = other < error || points[j].cost < points[i].cost || j < i;
+      if (no_worse && better) on_front[i] = false;
+    }
+  }
+  return on_front;
+}
+
+}  // namespace mindahl
