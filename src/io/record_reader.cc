@@ -345,6 +345,24 @@ std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const
   return "";
 }
 
+/// One column of a path: that chosen, or the first; or, where the first is a time, the one that is
+/// recognised. Taking SI for granted is the documented default here.
+std::vector<double> ReadPathColumn(const CsvTable& table, const Role& role,
+                                   const ColumnChoice& choice) {
+  const ColumnFinder finder(table);
+  std::size_t column = 0;
+  if (!choice.column.empty()) {
+    column = finder.Chosen(choice.column, role);
+  } else {
+    const std::vector<bool> none_taken(table.columns(), false);
+    const bool first_is_time = finder.Recognized(kTime, none_taken) == std::size_t{0};
+    if (first_is_time) column = finder.Recognized(role, none_taken).value_or(0);
+  }
+  std::vector<std::string> notes;
+  ColumnReader reader(table, finder, notes);
+  return reader.Read(role, column, reader.FindUnit(role, column, choice.unit));
+}
+
 }  // namespace
 
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
@@ -392,13 +410,14 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
                                          const ColumnChoice& displacement) {
   const CsvTable table = ReadCsvTable(path);
-  const ColumnFinder finder(table);
-  const std::size_t column =
-      displacement.column.empty() ? 0 : finder.Chosen(displacement.column, kDisplacement);
-  std::vector<std::string> notes;  // taking m for granted is the documented default here
-  ColumnReader reader(table, finder, notes);
-  return reader.Read(kDisplacement, column,
-                     reader.FindUnit(kDisplacement, column, displacement.unit));
+  return ReadPathColumn(table, kDisplacement, displacement);
+}
+
+LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
+                          const ColumnChoice& normal_load) {
+  const CsvTable table = ReadCsvTable(path);
+  return {ReadPathColumn(table, kDisplacement, displacement),
+          ReadPathColumn(table, kNormalLoad, normal_load)};
 }
 
 }  // namespace mindahl

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -142,6 +143,32 @@ TEST(Simulate, NoiseIsThatOfItsSeed) {
   // 10001 samples: the standard deviation is known to 1/√20000 = 0.7 %; five times that.
   EXPECT_NEAR(std::sqrt(sum / static_cast<double>(clean.force.size())), 0.1, 0.035 * 0.1);
   EXPECT_EQ(noisy.displacement, clean.displacement);
+}
+
+TEST(Simulate, RandomWaveformIsThatOfItsSeed) {
+  const auto with_seed = [](const char* seed) {
+    return Simulate({"--sigma", "1", "--slip-force", "1", "--amplitude", "2", "--waveform",
+                     "random", "--cycles", "9", "--seed", seed})
+        .displacement;
+  };
+  const std::vector<double> drawn = with_seed("5");
+  EXPECT_EQ(drawn, with_seed("5"));
+  EXPECT_NE(drawn, with_seed("6"));
+  const auto [least, greatest] = std::ranges::minmax(drawn);
+  EXPECT_EQ(std::max(-least, greatest), 2.0);
+}
+
+TEST(Simulate, NestedWaveformComesBackToTheBranchOfItsFirstExtreme) {
+  // Once all inner loops are closed, the way back runs on the branch down from the first extreme.
+  const Columns nested = Simulate({"--sigma", "1", "--slip-force", "1", "--amplitude", "1",
+                                   "--waveform", "nested", "--cycles", "6"});
+  constexpr std::size_t kLastExtreme = 1150;  // of 200 samples a cycle
+  const double extreme = nested.displacement.at(kLastExtreme);
+  EXPECT_NEAR(extreme, -21.0 / 23, kRounding);
+  // Masing: f(1) − 2·f((1 − δ)/2) with f(x) = 1 − (1 − x/δc)^{3/2} and δc = 3/2.
+  const auto backbone = [](double x) { return 1 - std::pow(1 - x / 1.5, 1.5); };
+  EXPECT_NEAR(nested.force.at(kLastExtreme), backbone(1) - 2 * backbone((1 - extreme) / 2),
+              kRounding);
 }
 
 TEST(Simulate, ContactGivesTheSameLoopAsItsParameters) {

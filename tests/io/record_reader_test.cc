@@ -310,7 +310,22 @@ TEST(DisplacementPath, ConvertsChosenColumnAndUnit) {
 }
 
 TEST(DisplacementPath, RefusesFirstColumnThatIsNoLength) {
-  EXPECT_THROW(ReadPath("time [s],x [m]\n1,2\n"), InputError);
+  EXPECT_THROW(ReadPath("force [N],x [m]\n1,2\n"), InputError);
+  EXPECT_THROW(ReadPath("time [s],y [m]\n1,2\n"), InputError);
+}
+
+TEST(DisplacementPath, PassesOverATimeToADisplacementOfARecognisedName) {
+  EXPECT_EQ(ReadPath("time [s],displacement [mm],force [N]\n1,2,3\n2,4,5\n"),
+            (Numbers{2e-3, 4e-3}));
+}
+
+TEST(LoadedPath, HasTheLoadBesideTheDisplacementInTheirUnits) {
+  const TemporaryDirectory directory;
+  const LoadedPath path =
+      ReadLoadedPath(directory.Write("loop.csv", "x [um],normal [kN]\n1,2\n3,4\n"), {},
+                     {.column = "normal", .unit = ""});
+  EXPECT_EQ(path.displacement, (Numbers{1e-6, 3e-6}));
+  EXPECT_EQ(path.normal_load, (Numbers{2e3, 4e3}));
 }
 
 // --- Measured records, read in place -------------------------------------------------------------

@@ -68,9 +68,22 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 
 /// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
 /// file.
-/// @param displacement  column, by default the first whatever its name; unit as for ReadRecord()
+/// @param displacement  column, by default the first, or, where that is a time, the one of a
+///   recognised name; unit as for ReadRecord()
 /// @throws InputError as ReadRecord()
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
                                          const ColumnChoice& displacement = {});
+
+/// A path with the normal load at each of its rows.
+struct LoadedPath {
+  std::vector<double> displacement;  ///< [m]
+  std::vector<double> normal_load;   ///< [N]
+};
+
+/// ReadDisplacementPath() with a normal load beside it.
+/// @param normal_load  column by name or number; unit as for ReadRecord(), without one N
+/// @throws InputError as ReadRecord()
+LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
+                          const ColumnChoice& normal_load);
 
 }  // namespace mindahl

@@ -1,0 +1,130 @@
+#include "cli/drive_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "cli/contact_options.h"
+#include "cli/whole_number.h"
+#include "mindahl/core/error.h"
+#include "mindahl/io/record_reader.h"
+
+namespace mindahl::cli {
+namespace {
+
+ImposedMotion MotionFromFile(const DriveOptions& options) {
+  ImposedMotion motion;
+  const ColumnChoice displacement{.column = "", .unit = options.path_unit};
+  if (options.load_column.empty()) {
+    motion.displacement = ReadDisplacementPath(options.path, displacement);
+  } else {
+    LoadedPath loaded = ReadLoadedPath(options.path, displacement,
+                                       {.column = options.load_column, .unit = options.load_unit});
+    motion.displacement = std::move(loaded.displacement);
+    motion.normal_load = std::move(loaded.normal_load);
+  }
+  for (std::size_t i = 0; i < motion.displacement.size(); ++i) {
+    motion.time.push_back(static_cast<double>(i));
+  }
+  return motion;
+}
+
+ImposedMotion MotionFromWaveform(const DriveOptions& options, const BranchLaw& law) {
+  ExcitationOptions excitation = options.excitation;
+  excitation.waveform = *FindWaveform(options.waveform);
+  excitation.seed = options.seed;
+  if (options.lambda.has_value() == options.amplitude.has_value()) {
+    throw InputError("--lambda or --amplitude, one of the two, must be given (or --path)");
+  }
+  if (options.lambda) {
+    RequirePositive("--lambda [-]", *options.lambda);
+    const double gross_slip = GrossSlipDisplacement(law);
+    if (!std::isfinite(gross_slip)) {
+      throw InputError(fmt::format(
+          "--lambda needs a finite gross-slip displacement, which alpha = {} >= 1 has not: give "
+          "--amplitude",
+          law.shape_exponent));
+    }
+    excitation.amplitude = *options.lambda * gross_slip;
+  } else {
+    RequirePositive("--amplitude [m]", *options.amplitude);
+    excitation.amplitude = *options.amplitude;
+  }
+  Excitation made = MakeExcitation(excitation);
+  ImposedMotion motion{std::move(made.time), std::move(made.displacement), {}, {}};
+  if (excitation.waveform == Waveform::kGrowingSine) motion.envelope = std::move(made.envelope);
+  return motion;
+}
+
+std::vector<std::string> Waveforms() { return {WaveformNames().begin(), WaveformNames().end()}; }
+
+}  // namespace
+
+void AddDriveOptions(CLI::App& command, DriveOptions& options) {
+  const std::string group = "Excitation";
+  command.add_option("--waveform", options.waveform, "imposed displacement")
+      ->capture_default_str()
+      ->check(CLI::IsMember(Waveforms()))
+      ->group(group);
+  AddOptional(command, "--lambda", options.lambda, "amplitude over the gross-slip displacement [-]",
+              "L")
+      ->group(group);
+  AddOptional(command, "--amplitude", options.amplitude, "amplitude [m]", "M")->group(group);
+  command.add_option("--cycles", options.excitation.cycles, "cycles [-]")
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--samples-per-cycle", options.excitation.samples_per_cycle,
+                  "samples in a cycle; multiples of 4 put samples on the extremes")
+      ->capture_default_str()
+      ->check(WholeNumber(4, 1'000'000'000))
+      ->group(group);
+  command.add_option("--frequency", options.excitation.frequency, "frequency [Hz]")
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--growth", options.excitation.growth,
+                  "growing sine: last amplitude over the first [-]")
+      ->capture_default_str()
+      ->group(group);
+  CLI::Option* path =
+      command
+          .add_option("--path", options.path,
+                      "CSV file whose first column is the displacement [m], any sequence; one "
+                      "output row for each, time counting rows")
+          ->type_name("FILE")
+          ->group(group);
+  command.add_option("--path-unit", options.path_unit, "unit of that column, default the header's")
+      ->type_name("UNIT")
+      ->needs(path)
+      ->group(group);
+  for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
+                           "--samples-per-cycle", "--frequency", "--growth"}) {
+    path->excludes(command.get_option(name));
+  }
+}
+
+void AddLoadColumnOptions(CLI::App& command, DriveOptions& options) {
+  CLI::Option* path = command.get_option("--path");
+  CLI::Option* column =
+      command
+          .add_option("--normal-load-column", options.load_column,
+                      "column of the file with the normal load N [N], which then varies: Tc = mu N")
+          ->type_name("COL")
+          ->needs(path)
+          ->group("Excitation");
+  command
+      .add_option("--normal-load-unit", options.load_unit,
+                  "unit of that column, default the header's")
+      ->type_name("UNIT")
+      ->needs(column)
+      ->group("Excitation");
+}
+
+ImposedMotion MakeMotion(const DriveOptions& options, const BranchLaw& law) {
+  return options.path.empty() ? MotionFromWaveform(options, law) : MotionFromFile(options);
+}
+
+}  // namespace mindahl::cli

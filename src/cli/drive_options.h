@@ -1,0 +1,50 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/methods/method.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/excitation.h"
+
+namespace mindahl::cli {
+
+/// What drives a contact, on the command line: a waveform, or a file.
+struct DriveOptions {
+  std::string waveform = "sine";
+  std::optional<double> lambda;
+  std::optional<double> amplitude;
+  ExcitationOptions excitation{.cycles = 1.0};
+  std::string path;
+  std::string path_unit;
+  std::string load_column;  ///< of that file; "" = the load is constant
+  std::string load_unit;
+  std::uint64_t seed = 1;
+};
+
+/// One entry a row of output.
+struct ImposedMotion {
+  std::vector<double> time;          ///< [s]
+  std::vector<double> displacement;  ///< [m]
+  std::vector<double> envelope;      ///< [m]; empty unless the amplitude changes along the way
+  std::vector<double> normal_load;   ///< [N]; empty unless a file gives it
+
+  /// Valid as long as this.
+  [[nodiscard]] Drive drive() const { return {displacement, envelope}; }
+};
+
+/// Adds --waveform … --growth, --path and --path-unit; --seed is the command's.
+/// @param options  must outlive the application
+void AddDriveOptions(CLI::App& command, DriveOptions& options);
+
+/// Adds --normal-load-column and --normal-load-unit, of the file that --path names.
+void AddLoadColumnOptions(CLI::App& command, DriveOptions& options);
+
+/// @param law  to which --lambda refers
+/// @throws InputError or InvalidArgument naming the option, or the place in the file
+ImposedMotion MakeMotion(const DriveOptions& options, const BranchLaw& law);
+
+}  // namespace mindahl::cli
