@@ -55,26 +55,30 @@ void FloorSquareRoot(benchmark::State& state) {
   ReportPerSample(state, x.size());
 }
 
-void Force(benchmark::State& state, const FrictionModel& model, double shape_exponent) {
+/// As stiff as the contact: neither gives way alone.
+constexpr SeriesSpring kRig{.stiffness = kLaw.tangential_stiffness};
+
+void Force(benchmark::State& state, const FrictionModel& model, double shape_exponent,
+           const SeriesSpring& rig) {
   const std::vector<double> x = Displacements(50);
   const LoadingPath path = MakeLoadingPath(x, FindReversals(x, 0.0), model.memory, {});
   BranchLaw law = kLaw;
   law.shape_exponent = shape_exponent;
   std::vector<double> force(x.size());
   for (auto _ : state) {
-    EvaluateForce(model, law, path, x, force);
+    EvaluateForce(model, law, path, x, force, rig);
     benchmark::DoNotOptimize(force.data());
   }
   ReportPerSample(state, x.size());
 }
 
-void Gradient(benchmark::State& state, const FrictionModel& model) {
+void Gradient(benchmark::State& state, const FrictionModel& model, const SeriesSpring& rig) {
   const std::vector<double> x = Displacements(50);
   const LoadingPath path = MakeLoadingPath(x, FindReversals(x, 0.0), model.memory, {});
   std::vector<double> force(x.size());
   std::vector<double> gradient(x.size() * kGradientColumns);
   for (auto _ : state) {
-    EvaluateForceAndGradient(model, kLaw, path, x, force, gradient);
+    EvaluateForceAndGradient(model, kLaw, path, x, force, gradient, rig);
     benchmark::DoNotOptimize(gradient.data());
   }
   ReportPerSample(state, x.size());
@@ -95,11 +99,17 @@ void Path(benchmark::State& state) {
   benchmark::RegisterBenchmark("path/reversals_and_branches", Path);
   for (const FrictionModel& model : FrictionModels()) {
     const double shape_exponent = model.shape_exponent.value_or(0.4);
-    benchmark::RegisterBenchmark(
-        ("force/" + std::string(model.name)).c_str(),
-        [&model, shape_exponent](benchmark::State& state) { Force(state, model, shape_exponent); });
-    benchmark::RegisterBenchmark(("gradient/" + std::string(model.name)).c_str(),
-                                 [&model](benchmark::State& state) { Gradient(state, model); });
+    const auto add = [&](const std::string& suffix, const SeriesSpring& rig) {
+      benchmark::RegisterBenchmark(("force" + suffix).c_str(),
+                                   [&model, shape_exponent, rig](benchmark::State& state) {
+                                     Force(state, model, shape_exponent, rig);
+                                   });
+      benchmark::RegisterBenchmark(
+          ("gradient" + suffix).c_str(),
+          [&model, rig](benchmark::State& state) { Gradient(state, model, rig); });
+    };
+    add("/" + std::string(model.name), {});
+    if (!model.scaled_by_peak) add("_in_series/" + std::string(model.name), kRig);
   }
   return 0;
 }();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
+#include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
@@ -31,18 +33,67 @@ struct ScaledBranch {
 /// up.
 using ScaledBranches = std::vector<ScaledBranch<double>>;
 
-/// A model's rules for how branches start, at σ/Tc and α of a law.
+/// φ on a branch. A shape is the same on all of them, ...
+template <typename Shape>
+const Shape& ShapeOn(const Shape& shape, const ScaledBranch<double>& /*branch*/) {
+  return shape;
+}
+
+/// ... but behind a spring each has its own stiffness in proportion to the spring's.
+template <typename Shape>
+struct SprungShape {
+  Shape contact;
+  double spring_travel;  // c = Tc/k_r [m] of the spring at slip
+};
+
+/// κ = h·k·c of a branch: spring and contact together travel Y = y + κφ(y), in units of 1/k.
+/// @throws InvalidArgument where the branch is too stiff for the spring
+inline double SeriesComplianceOn(const ScaledBranch<double>& branch, double spring_travel) {
+  const double compliance = branch.height * branch.rate * spring_travel;
+  if (!(compliance <= backbone::kLargestSeriesCompliance<double>)) {
+    ThrowInvalid("stiffness of a branch over the series stiffness [-]", compliance,
+                 "must be <= 1e100");
+  }
+  return compliance;
+}
+
+template <typename Shape>
+backbone::InSeries<Shape> ShapeOn(const SprungShape<Shape>& shape,
+                                  const ScaledBranch<double>& branch) {
+  return {shape.contact, SeriesComplianceOn(branch, shape.spring_travel)};
+}
+
+/// A model's rules for how branches start, at σ/Tc and α of a law, behind a spring or none.
 class BranchScaling {
  public:
-  /// @param model  must outlive the object
-  BranchScaling(const FrictionModel& model, const BranchLaw& law)
+  /// @param model          must outlive the object
+  /// @param spring_travel  c = Tc/k_r [m], 0 without a spring
+  BranchScaling(const FrictionModel& model, const BranchLaw& law, double spring_travel = 0.0)
       : model_(model),
         rate_(law.tangential_stiffness / law.slip_force),
-        shape_exponent_(law.shape_exponent) {}
+        shape_exponent_(law.shape_exponent),
+        series_compliance_(rate_ * spring_travel) {}
 
   [[nodiscard]] SteadyPeak Peak(const Branch& branch) const {
     const double y = rate_ * std::min(branch.amplitude, backbone::Reach(rate_));
-    return model_.steady_peak(y, shape_exponent_);
+    return model_.steady_peak(ContactAmplitude(y), shape_exponent_);
+  }
+
+  /// Peak at the amplitude of spring and contact together, by the implicit function theorem:
+  ///   y + κ·t*(y) = Y   ⇒   dt*/dY = t*'/(1 + κt*')
+  struct PeakInSeries {
+    SteadyPeak peak;                     // ∂/∂ln σ at a given c
+    double per_log_spring_travel = 0.0;  // ∂t*/∂ln c
+  };
+  [[nodiscard]] PeakInSeries DifferentiatePeak(const Branch& branch) const {
+    const SteadyPeak contact = Peak(branch);
+    if (series_compliance_ == 0) return {contact};
+    const double y = ContactAmplitude(rate_ * std::min(branch.amplitude, backbone::Reach(rate_)));
+    const double yielding =
+        y > 0 ? series_compliance_ * (contact.per_log_stiffness / y) : series_compliance_;
+    return {{contact.force, contact.per_log_stiffness / (1 + yielding),
+             contact.per_shape / (1 + yielding)},
+            -contact.force * (yielding / (1 + yielding))};
   }
 
   /// Most models do not look at the peak; sparing it keeps a branch as cheap as a sample.
@@ -76,6 +127,22 @@ class BranchScaling {
   }
 
  private:
+  /// y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The left side
+  /// is increasing and concave, so that Newton's rule rises to the root from below.
+  [[nodiscard]] double ContactAmplitude(double total) const {
+    if (series_compliance_ == 0) return total;
+    constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of Y
+    constexpr int kIterations = 1000;  // next to slip α >> 1 has y grow by 1 + 1/(α−1) each
+    double y = std::max(total / (1 + series_compliance_), total - series_compliance_);
+    for (int i = 0; i < kIterations && y > 0; ++i) {
+      const SteadyPeak peak = model_.steady_peak(y, shape_exponent_);
+      const double residual = (total - y) - series_compliance_ * peak.force;
+      if (residual <= kRounding * total) break;
+      y += residual / (1 + series_compliance_ * (peak.per_log_stiffness / y));
+    }
+    return y;
+  }
+
   /// k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
   [[nodiscard]] double RateOf(const BranchScale& scale) const {
     constexpr double kSteepest = 1e300;  // [1/m], kept from overflow in products with forces
@@ -91,9 +158,10 @@ class BranchScaling {
   const FrictionModel& model_;
   double rate_;
   double shape_exponent_;
+  double series_compliance_;  // κ of the virgin curve
 };
 
-/// @param shape  φ, as in backbone.h: has Force(y)
+/// @param shape  φ, as in backbone.h: has Force(y); or a SprungShape of it
 template <typename Shape>
 ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
                              const Shape& shape) {
@@ -103,7 +171,8 @@ ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& pa
     const double origin_force = scaling.OriginForce(branch, [&](std::size_t parent_index) {
       const ScaledBranch<double>& parent = scaled[parent_index];
       const double e = branch.origin - parent.origin;
-      return parent.force + std::copysign(parent.height * shape.Force(parent.Normalize(e)), e);
+      const double phi = ShapeOn(shape, parent).Force(parent.Normalize(e));
+      return parent.force + std::copysign(parent.height * phi, e);
     });
     scaled.push_back(scaling.Start(branch, origin_force));
   }

@@ -221,9 +221,10 @@ TEST_P(Gradient, AgreesWithDifferencesOfTheExactLaws) {
   }
   const auto exact = ExactGradient(test.model, test.state, history, point);
   for (std::size_t column = 0; column < kGradientColumns; ++column) {
-    if (column == kPerUnloadedDisplacement && test.state == InitialState::kSteady) {
+    const bool rigid = column == kPerLogSeriesStiffness;  // rig_test.cc has the others
+    if (rigid || (column == kPerUnloadedDisplacement && test.state == InitialState::kSteady)) {
       for (std::size_t i = 0; i < history.size(); ++i) {
-        EXPECT_EQ(gradient[i * kGradientColumns + column], 0.0) << "a steady contact has none";
+        EXPECT_EQ(gradient[i * kGradientColumns + column], 0.0) << "column " << column;
       }
       continue;
     }
@@ -289,10 +290,10 @@ TEST(Gradient, ComesWithTheForceOfEvaluateForce) {
   }
 }
 
-TEST(Gradient, NeedsARowOfFourASample) {
+TEST(Gradient, NeedsARowOfAllColumnsASample) {
   const History history = {0.0, 1.0};
   std::vector<double> force(2);
-  std::vector<double> gradient(7);
+  std::vector<double> gradient(history.size() * kGradientColumns - 1);
   EXPECT_THROW(
       EvaluateForceAndGradient(Model("mindlin"), {1.0, 0.5, 1.0}, PathOf(Model("mindlin"), history),
                                history, force, gradient),

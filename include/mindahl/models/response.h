@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "mindahl/models/branch_law.h"
@@ -8,6 +9,22 @@
 #include "mindahl/models/loading_path.h"
 
 namespace mindahl {
+
+/// A spring in series with the contact: what the rig itself gives way. Displacements are then those
+/// of both, δ = x + T/k_r with x the contact's, and T(δ) follows exactly the same rules, each
+/// branch φ being composed with the spring (docs/theory.md §5).
+struct SeriesSpring {
+  /// k_r [N/m], > 0; infinite for a rigid rig
+  double stiffness = std::numeric_limits<double>::infinity();
+};
+
+/// @throws InvalidArgument unless the stiffness is > 0, or infinite
+void Validate(const SeriesSpring& rig);
+
+/// Displacement at gross slip [m] of spring and contact: δc + Tc/k_r, infinite for α >= 1.
+/// @throws InvalidArgument for an invalid law or spring
+/// Relative error < 2 ε.
+double GrossSlipDisplacement(const BranchLaw& law, const SeriesSpring& rig);
 
 /// Tangential force [N] at each sample of a loading path: exact, no time step.
 ///
@@ -18,17 +35,22 @@ namespace mindahl {
 /// @param path          as from MakeLoadingPath on the same displacements, for the model's memory
 /// @param displacement  [m]
 /// @param force         [N], written; same size
+/// @param rig           spring in series, rigid unless given
 /// @throws InvalidArgument for an invalid law, sizes that differ, or for α > 1 a displacement
 /// beyond
-///   1.8e200 elastic limits of a branch, where the force still grows
+///   1.8e200 elastic limits of a branch, where the force still grows; for a spring that is invalid
+///   or 1e100 times softer than a branch, and for any spring with a model that is scaled by the
+///   peak, whose amplitude is the contact's
 /// The law's α is used as it stands, also for a model that prescribes one.
 /// Relative error below 6 ε = 1.3e-15 on the virgin curve. After reversals the absolute error is
 /// below 5e-14·Tc to 10⁵ nested reversals, whose roundings add up as in a random walk (1e-13·Tc at
 /// 10⁶); closed loops leave nothing behind. |T| <= Tc where the model is bounded. Cost: one branch
 /// law a sample and a branch; nothing is allocated per sample, 32 bytes per branch, and runs of one
-/// branch have no data-dependent jump.
+/// branch have no data-dependent jump. With a spring the same errors, and up to 3 iterations a
+/// sample (bench/response_bench.cc); none for α = 0.
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
-                   std::span<const double> displacement, std::span<double> force);
+                   std::span<const double> displacement, std::span<double> force,
+                   const SeriesSpring& rig = {});
 
 /// The same in single precision: samples and forces are float, branches are prepared in double.
 /// @param path  as from MakeLoadingPath on the same displacements, widened to double
@@ -44,7 +66,8 @@ enum GradientColumn : std::size_t {
   kPerShapeExponent = 1,  ///< ∂T/∂α [N]
   kPerLogSlipForce = 2,   ///< ∂T/∂ln Tc [N]
   kPerUnloadedDisplacement = 3,  ///< ∂T/∂δ₀ [N/m], δ₀ the unloaded displacement of a virgin contact
-  kGradientColumns = 4,
+  kPerLogSeriesStiffness = 4,  ///< ∂T/∂ln k_r [N]; 0 for a rigid rig
+  kGradientColumns = 5,
 };
 
 /// EvaluateForce with closed-form derivatives. Where the law has a corner (α = 0 at slip) they are
@@ -54,6 +77,7 @@ enum GradientColumn : std::size_t {
 /// @param gradient  written, row-major, displacement.size() × kGradientColumns
 void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
                               const LoadingPath& path, std::span<const double> displacement,
-                              std::span<double> force, std::span<double> gradient);
+                              std::span<double> force, std::span<double> gradient,
+                              const SeriesSpring& rig = {});
 
 }  // namespace mindahl
