@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -27,17 +28,27 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
   if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
   const ContactParameters contact = ResolveContact(options.contact);
   if (!options.json_path.empty()) {
-    nlohmann::ordered_json json = {{"schema", "mindahl.contact/1"}, {"version", Version()}};
+    nlohmann::ordered_json json = {{"schema", "mindahl.contact/1"},
+                                   {"version", Version()},
+                                   {"compliance_definition", kComplianceDefinition},
+                                   {"compliance_unit", kComplianceUnit}};
     for (const ContactQuantity& quantity : contact.quantities) {
-      json[quantity.section][quantity.name] = {{"value", NumberOrNull(quantity.value)},
-                                               {"unit", quantity.unit}};
+      json[quantity.section][quantity.name] = {
+          {"value", NumberOrNull(quantity.value.value)},
+          {"standard_error", NumberOrNull(quantity.value.standard_error)},
+          {"unit", quantity.unit}};
     }
     WriteJson(json, options.json_path, console);
   }
   if (options.json_path == "-") return;
+  const bool uncertain = std::ranges::any_of(
+      contact.quantities,
+      [](const ContactQuantity& quantity) { return quantity.value.standard_error > 0; });
   for (const ContactQuantity& quantity : contact.quantities) {
-    console.out << fmt::format("{:<26} {:>24.17g} {:<5} {}\n", quantity.name, quantity.value,
-                               quantity.unit, quantity.meaning);
+    const std::string error =
+        uncertain ? fmt::format("± {:<8.2g} ", quantity.value.standard_error) : "";
+    console.out << fmt::format("{:<26} {:>24.17g} {}{:<5} {}\n", quantity.name,
+                               quantity.value.value, error, quantity.unit, quantity.meaning);
   }
 }
 

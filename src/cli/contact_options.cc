@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "mindahl/core/error.h"
 
@@ -12,34 +14,105 @@ namespace {
 
 constexpr const char* kGroup = "What is known of the contact";
 
+std::string_view Trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+/// A number as CLI11 reads it for every other option.
+std::optional<double> ReadNumber(std::string_view text) {
+  double number = 0.0;
+  if (!CLI::detail::lexical_cast(std::string(Trimmed(text)), number)) return std::nullopt;
+  return number;
+}
+
+/// Value and uncertainty, which is empty where there is no separator.
+std::pair<std::string_view, std::optional<std::string_view>> SplitUncertainty(
+    std::string_view text) {
+  constexpr std::array<std::string_view, 3> kSeparators = {"±", "+/-", "+-"};
+  for (const std::string_view separator : kSeparators) {
+    const std::size_t at = text.find(separator);
+    if (at != std::string_view::npos) {
+      return {text.substr(0, at), text.substr(at + separator.size())};
+    }
+  }
+  return {text, std::nullopt};
+}
+
+void AddKnown(CLI::App& command, const std::string& name, std::optional<UncertainValue>& target,
+              const std::string& description, const std::string& unit) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [&target, name](const std::string& text) { target = ParseUncertainValue(text, name); },
+          description)
+      ->type_name(unit + "[+-U]")
+      ->group(kGroup);
+}
+
 void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
-  AddOptional(command, fmt::format("--youngs-modulus-{}", number), body.youngs_modulus,
-              fmt::format("Young's modulus of body {} [Pa]", number), "PA")
-      ->group(kGroup);
-  AddOptional(command, fmt::format("--poisson-{}", number), body.poisson_ratio,
-              fmt::format("Poisson's ratio of body {} [-], in (-1, 0.5]", number), "NU")
-      ->group(kGroup);
-  AddOptional(command, fmt::format("--radius-{}", number), body.radius,
-              fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number),
-              "M")
-      ->group(kGroup);
+  AddKnown(command, fmt::format("--youngs-modulus-{}", number), body.youngs_modulus,
+           fmt::format("Young's modulus of body {} [Pa]", number), "PA");
+  AddKnown(command, fmt::format("--poisson-{}", number), body.poisson_ratio,
+           fmt::format("Poisson's ratio of body {} [-], in (-1, 0.5]", number), "NU");
+  AddKnown(command, fmt::format("--radius-{}", number), body.radius,
+           fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number),
+           "M");
 }
 
 void RequireBody(const KnownBody& body, int number) {
   if (body.youngs_modulus) {
-    RequirePositive(fmt::format("--youngs-modulus-{} [Pa]", number), *body.youngs_modulus);
+    RequirePositive(fmt::format("--youngs-modulus-{} [Pa]", number), body.youngs_modulus->value);
   }
-  if (body.poisson_ratio && !(*body.poisson_ratio > -1 && *body.poisson_ratio <= 0.5)) {
-    ThrowInvalid(fmt::format("--poisson-{} [-]", number), *body.poisson_ratio,
+  if (body.poisson_ratio && !(body.poisson_ratio->value > -1 && body.poisson_ratio->value <= 0.5)) {
+    ThrowInvalid(fmt::format("--poisson-{} [-]", number), body.poisson_ratio->value,
                  "must be > -1 and <= 0.5");
   }
-  if (body.radius && (std::isnan(*body.radius) || *body.radius == 0)) {
-    ThrowInvalid(fmt::format("--radius-{} [m]", number), *body.radius,
+  if (!body.radius) return;
+  const auto [radius, uncertainty] = std::pair{body.radius->value, body.radius->standard_error};
+  if (std::isnan(radius) || radius == 0) {
+    ThrowInvalid(fmt::format("--radius-{} [m]", number), radius,
                  "must be a number other than 0; inf is a plane");
+  }
+  if (std::isinf(radius) && uncertainty > 0) {
+    throw InputError(fmt::format(
+        "--radius-{}: the standard uncertainty {} of a plane is invalid: a plane is exact, write "
+        "{}",
+        number, uncertainty, radius));
   }
 }
 
 }  // namespace
+
+UncertainValue ParseUncertainValue(std::string_view text, std::string_view option) {
+  const auto [number, uncertainty] = SplitUncertainty(text);
+  const std::optional<double> value = ReadNumber(number);
+  std::optional<double> standard_error = 0.0;
+  if (uncertainty) {
+    std::string_view magnitude = Trimmed(*uncertainty);
+    const bool is_percentage = magnitude.ends_with('%');
+    if (is_percentage) magnitude.remove_suffix(1);
+    standard_error = ReadNumber(magnitude);
+    if (value && standard_error && is_percentage && std::isfinite(*value)) {
+      *standard_error *= 0.01 * std::abs(*value);
+    }
+    if (standard_error && !(std::isfinite(*standard_error) && *standard_error >= 0)) {
+      throw InputError(
+          fmt::format("{}: the standard uncertainty in '{}' is {}: must be finite and >= 0; leave "
+                      "it out where the value is exact",
+                      option, text, *standard_error));
+    }
+  }
+  if (!value || !standard_error) {
+    throw InputError(
+        fmt::format("{}: '{}' is not a number, nor a number with its standard uncertainty: write "
+                    "50, 50±0.5, 50+-0.5, 50+/-0.5 or 50±1%",
+                    option, text));
+  }
+  return {*value, *standard_error};
+}
 
 CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::optional<double>& target,
                          const std::string& description, const std::string& unit) {
@@ -47,24 +120,22 @@ CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::option
 }
 
 void AddContactOptions(CLI::App& command, ContactOptions& options) {
-  AddOptional(command, "--normal-load", options.known.normal_load, "normal load N [N]", "N")
-      ->group(kGroup);
+  AddKnown(command, "--normal-load", options.known.normal_load,
+           "normal load N [N]; as all below exact, or with one standard uncertainty: 50±0.5, "
+           "50+-0.5, 50+/-0.5, 50±1%",
+           "N");
   AddBodyOptions(command, options.known.body_1, 1);
   AddBodyOptions(command, options.known.body_2, 2);
-  AddOptional(command, "--contact-radius", options.known.contact_radius, "contact radius a [m]",
-              "M")
-      ->group(kGroup);
-  AddOptional(command, "--compliance", options.known.tangential_compliance,
-              "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance (many texts write G* for its "
-              "inverse)",
-              "1/PA")
-      ->group(kGroup);
+  AddKnown(command, "--contact-radius", options.known.contact_radius, "contact radius a [m]", "M");
+  AddKnown(command, "--compliance", options.known.tangential_compliance,
+           "G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa], a compliance (many texts write G* for its "
+           "inverse)",
+           "1/PA");
 }
 
 void AddFrictionOption(CLI::App& command, ContactOptions& options) {
-  AddOptional(command, "--friction", options.friction_coefficient, "friction coefficient mu [-]",
-              "MU")
-      ->group(kGroup);
+  AddKnown(command, "--friction", options.friction_coefficient, "friction coefficient mu [-]",
+           "MU");
 }
 
 bool IsAnythingGiven(const ContactOptions& options) {
@@ -77,8 +148,8 @@ bool IsAnythingGiven(const ContactOptions& options) {
 }
 
 void Validate(const ContactOptions& options) {
-  const auto require_positive = [](const char* option, const std::optional<double>& value) {
-    if (value) RequirePositive(option, *value);
+  const auto require_positive = [](const char* option, const std::optional<UncertainValue>& known) {
+    if (known) RequirePositive(option, known->value);
   };
   require_positive("--normal-load [N]", options.known.normal_load);
   require_positive("--contact-radius [m]", options.known.contact_radius);

@@ -2,28 +2,42 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 
 namespace mindahl::cli {
 
+/// G*, said in every report that uses it: many texts write it for the inverse.
+inline constexpr const char* kComplianceDefinition = "G* = (2-nu1)/G1 + (2-nu2)/G2";
+inline constexpr const char* kComplianceUnit = "1/Pa";
+
 /// What the user knows of the contact: the same options in every command.
 struct ContactOptions {
   KnownContact known;
-  std::optional<double> friction_coefficient;
+  std::optional<UncertainValue> friction_coefficient;
 };
 
+/// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
+/// other option and, unless it is exact, one standard uncertainty, in percent of the number's
+/// magnitude with %. Blanks around either do not count.
+/// @throws InputError naming the option, the text, the rule and the remedy
+UncertainValue ParseUncertainValue(std::string_view text, std::string_view option);
+
 /// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance.
+/// Each takes a standard uncertainty.
 /// @param options  must outlive the application
 void AddContactOptions(CLI::App& command, ContactOptions& options);
 
-/// Adds --friction.
+/// Adds --friction. As above it takes a standard uncertainty.
 void AddFrictionOption(CLI::App& command, ContactOptions& options);
 
 /// Was any of the options given?
 bool IsAnythingGiven(const ContactOptions& options);
 
-/// @throws InvalidArgument naming the option, its value and the rule
+/// @throws InvalidArgument naming the option, its value and the rule; InputError for a plane with
+/// an uncertain radius
 void Validate(const ContactOptions& options);
 
 /// A value that may be missing, read from one option.

@@ -23,10 +23,6 @@ void CollectMissing(const KnownBody& body, int number, std::vector<std::string>&
       fmt::join(missing, ", ")));
 }
 
-Body Complete(const KnownBody& body) {
-  return {*body.youngs_modulus, *body.poisson_ratio, *body.radius};
-}
-
 }  // namespace
 
 ContactParameters ResolveContact(const ContactOptions& options) {
@@ -52,41 +48,31 @@ ContactParameters ResolveContact(const ContactOptions& options) {
   }
   if (!missing.empty()) ThrowMissing(missing);
 
-  ContactParameters result;
-  const double friction = *options.friction_coefficient;
-  const double load = *known.normal_load;
-  auto& quantities = result.quantities;
-  const auto add = [&](const char* section, const char* name, double value, const char* unit,
+  const PredictedContact predicted = PredictContact(known, *options.friction_coefficient);
+  ContactParameters result{
+      .dahl = {.tangential_stiffness = predicted.tangential_stiffness.value,
+               .slip_force = predicted.slip_force.value,
+               .gross_slip_displacement = predicted.gross_slip_displacement.value},
+      .quantities = {}};
+  const auto add = [&](const char* section, const char* name,
+                       const std::optional<UncertainValue>& value, const char* unit,
                        const char* meaning) {
-    quantities.push_back({section, name, value, unit, meaning});
+    if (value) result.quantities.push_back({section, name, *value, unit, meaning});
   };
-  MindlinContact contact;
-  double maximum_pressure = 0.0;
-  add("contact", "friction_coefficient", friction, "-", "mu");
-  add("contact", "normal_load", load, "N", "N");
-  if (by_radius) {
-    contact = {*known.contact_radius, *known.tangential_compliance, GrossSlipForce(friction, load)};
-    maximum_pressure = HertzMaximumPressure(load, contact.contact_radius);
-    result.dahl = MapMindlinToDahl(contact);
-  } else {
-    const HertzMindlinContact hertz =
-        SolveHertzMindlin(Complete(known.body_1), Complete(known.body_2), load, friction);
-    contact = hertz.Mindlin();
-    maximum_pressure = hertz.maximum_pressure;
-    result.dahl = hertz.dahl;
-    add("contact", "effective_modulus", hertz.effective_modulus, "Pa", "E*");
-    add("contact", "equivalent_radius", hertz.equivalent_radius, "m", "rho");
-    add("contact", "approach", hertz.approach, "m", "normal approach a^2/rho");
-  }
-  add("contact", "compliance", contact.tangential_compliance, "1/Pa",
+  add("contact", "friction_coefficient", options.friction_coefficient, "-", "mu");
+  add("contact", "normal_load", known.normal_load, "N", "N");
+  add("contact", "effective_modulus", predicted.effective_modulus, "Pa", "E*");
+  add("contact", "equivalent_radius", predicted.equivalent_radius, "m", "rho");
+  add("contact", "approach", predicted.approach, "m", "normal approach a^2/rho");
+  add("contact", "compliance", predicted.tangential_compliance, "1/Pa",
       "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
-  add("contact", "contact_radius", contact.contact_radius, "m", "a");
-  add("contact", "maximum_pressure", maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
-  add("contact", "gross_slip_displacement", result.dahl.gross_slip_displacement, "m",
+  add("contact", "contact_radius", predicted.contact_radius, "m", "a");
+  add("contact", "maximum_pressure", predicted.maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
+  add("contact", "gross_slip_displacement", predicted.gross_slip_displacement, "m",
       "delta_c = 3 mu N G*/(16 a)");
-  add("parameters", "sigma", result.dahl.tangential_stiffness, "N/m", "8a/G*");
-  add("parameters", "alpha", result.dahl.shape_exponent, "-", "1/3, Mindlin");
-  add("parameters", "slip_force", result.dahl.slip_force, "N", "Tc = mu N");
+  add("parameters", "sigma", predicted.tangential_stiffness, "N/m", "8a/G*");
+  add("parameters", "alpha", UncertainValue(kMindlinShapeExponent), "-", "1/3, Mindlin");
+  add("parameters", "slip_force", predicted.slip_force, "N", "Tc = mu N");
   return result;
 }
 

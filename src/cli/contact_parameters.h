@@ -12,7 +12,7 @@ namespace mindahl::cli {
 struct ContactQuantity {
   std::string section;  // of the JSON
   std::string name;
-  double value = 0.0;
+  UncertainValue value;
   std::string unit;
   std::string meaning;
 };
@@ -23,7 +23,8 @@ struct ContactParameters {
 };
 
 /// Dahl's parameters of a contact described by friction and normal load with either contact radius
-/// and compliance or the materials and radii of both bodies.
+/// and compliance or the materials and radii of both bodies; uncertain inputs make uncertain
+/// quantities.
 /// @throws InputError naming the options that are missing
 ContactParameters ResolveContact(const ContactOptions& options);
 

@@ -66,6 +66,57 @@ void TestMapping(FitReport& report) {
       2 * boost::math::cdf(boost::math::complement(distribution, std::abs(*report.alpha_z)));
 }
 
+/// Of the errors of two parameters; 0 where the fit does not say.
+double Correlation(const FitResult& fit, std::string_view first, std::string_view second) {
+  const std::size_t count = fit.parameters.size();
+  const auto place = [&](std::string_view name) {
+    return static_cast<std::size_t>(fit.Find(name) - fit.parameters.data());
+  };
+  const double correlation = fit.correlation[place(first) * count + place(second)];
+  return std::isfinite(correlation) ? std::clamp(correlation, -1.0, 1.0) : 0.0;
+}
+
+/// Measured against predicted σ: 1 where the theory holds.
+struct StiffnessTest {
+  std::string_view radius;  // whence the a of 8a/G*
+  PropagatedValue ratio;
+  std::optional<Interval> interval95;
+  std::optional<double> z;        // (ratio − 1)/SE
+  std::optional<double> p_value;  // two-sided
+};
+
+StiffnessTest TestStiffness(std::string_view radius, const PropagatedValue& ratio,
+                            double degrees_of_freedom) {
+  StiffnessTest test;
+  test.radius = radius;
+  test.ratio = ratio;
+  if (!(ratio.standard_error > 0) || std::isinf(ratio.standard_error)) return test;
+  // Welch-Satterthwaite (GUM G.4.1): the inputs' uncertainties are taken as known for certain.
+  const double share = ratio.FitShare();
+  const boost::math::students_t distribution(share > 0 ? degrees_of_freedom / (share * share)
+                                                       : std::numeric_limits<double>::infinity());
+  constexpr double kUpperEnd = 0.975;
+  const double half_width = boost::math::quantile(distribution, kUpperEnd) * ratio.standard_error;
+  test.interval95 = {ratio.value - half_width, ratio.value + half_width};
+  test.z = (ratio.value - 1) / ratio.standard_error;
+  test.p_value = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(*test.z)));
+  return test;
+}
+
+/// One for each radius that is known besides the fit, where G* is known too.
+std::vector<StiffnessTest> TestStiffness(const FitReport& report) {
+  std::vector<StiffnessTest> tests;
+  const double degrees_of_freedom = report.fit.residuals.degrees_of_freedom;
+  if (report.contact.hertz) {
+    tests.push_back(
+        TestStiffness("hertz", report.contact.hertz->sigma_over_hertz_mindlin, degrees_of_freedom));
+  }
+  if (report.contact.sigma_over_mindlin) {
+    tests.push_back(TestStiffness("given", *report.contact.sigma_over_mindlin, degrees_of_freedom));
+  }
+  return tests;
+}
+
 void AddName(std::string& list, std::string_view name) {
   list += list.empty() ? "" : ", ";
   list += name;
@@ -125,8 +176,22 @@ void ExplainMissingErrors(FitReport& report) {
   explain("compliance", contact.tangential_compliance);
   explain("equivalent_radius", contact.equivalent_radius);
   explain("maximum_pressure", contact.maximum_pressure);
+  explain("mindlin_gross_slip_displacement", contact.gross_slip_displacement);
   if (contact.hertz) {
     explain("hertz_mindlin: gross_slip_displacement", contact.hertz->gross_slip_displacement);
+    explain(
+        "hertz_mindlin: measured_over_predicted: contact_radius, sigma and "
+        "gross_slip_displacement",
+        contact.hertz->sigma_over_hertz_mindlin);
+  }
+  for (const StiffnessTest& test : TestStiffness(report)) {
+    if (test.z) continue;
+    warn("stiffness_not_tested",
+         fmt::format("mapping: stiffness_tests: z, p_value and ci95 of the {} radius are null{}",
+                     test.radius,
+                     test.ratio.standard_error > 0
+                         ? " and so is standard_error: the fit leaves sigma open"
+                         : ": neither sigma nor an input is uncertain"));
   }
   if (!report.sigma_over_hertz_mindlin ||
       !std::isfinite(report.sigma_over_hertz_mindlin->standard_error)) {
@@ -267,12 +332,16 @@ nlohmann::ordered_json ResidualsJson(const ResidualStatistics& residuals) {
           {"degrees_of_freedom", number(residuals.degrees_of_freedom)}};
 }
 
-nlohmann::ordered_json UncertainJson(const std::optional<UncertainValue>& value,
-                                     std::string_view unit) {
+nlohmann::ordered_json PropagatedJson(const std::optional<PropagatedValue>& value,
+                                      std::string_view unit) {
   if (!value) return nullptr;
-  return {{"value", NumberOrNull(value->value)},
-          {"standard_error", NumberOrNull(value->standard_error)},
-          {"unit", unit}};
+  nlohmann::ordered_json json = {{"value", NumberOrNull(value->value)},
+                                 {"standard_error", NumberOrNull(value->standard_error)},
+                                 {"unit", unit},
+                                 {"from_fit", value->FitShare()},
+                                 {"from_inputs", value->InputShare()}};
+  if (!value->largest_input.empty()) json["largest_input"] = value->largest_input;
+  return json;
 }
 
 nlohmann::ordered_json SlipRegimeJson(const FitReport& report) {
@@ -280,23 +349,53 @@ nlohmann::ordered_json SlipRegimeJson(const FitReport& report) {
   return report.gross_slip ? "gross" : "partial";
 }
 
+nlohmann::ordered_json HertzJson(const HertzPrediction& hertz) {
+  nlohmann::ordered_json json;
+  // All uncertainty of these is that of inputs.
+  const auto add = [&](const std::string& name, const PropagatedValue& value) {
+    json[name] = value.value;
+    json[name + "_standard_error"] = NumberOrNull(value.standard_error);
+  };
+  add("contact_radius", hertz.contact_radius);
+  add("sigma", hertz.tangential_stiffness);
+  json["gross_slip_displacement"] = PropagatedJson(hertz.gross_slip_displacement, "m");
+  add("equivalent_radius", hertz.equivalent_radius);
+  add("maximum_pressure", hertz.maximum_pressure);
+  json["measured_over_predicted"] = {
+      {"contact_radius", PropagatedJson(hertz.sigma_over_hertz_mindlin, "-")},
+      {"sigma", PropagatedJson(hertz.sigma_over_hertz_mindlin, "-")},
+      {"gross_slip_displacement", PropagatedJson(hertz.gross_slip_displacement_ratio, "-")}};
+  return json;
+}
+
 nlohmann::ordered_json ContactJson(const FitReport& report) {
   const IdentifiedContact& contact = report.contact;
+  const bool failed = report.fit.parameters.empty();
   nlohmann::ordered_json json = {
-      {"friction_coefficient", UncertainJson(contact.friction_coefficient, "-")},
-      {"contact_radius", UncertainJson(contact.contact_radius, "m")},
-      {"compliance", UncertainJson(contact.tangential_compliance, "1/Pa")},
-      {"compliance_definition", "G* = (2-nu1)/G1 + (2-nu2)/G2"},
-      {"equivalent_radius", UncertainJson(contact.equivalent_radius, "m")},
-      {"maximum_pressure", UncertainJson(contact.maximum_pressure, "Pa")},
+      {"friction_coefficient", PropagatedJson(contact.friction_coefficient, "-")},
+      {"contact_radius", PropagatedJson(contact.contact_radius, "m")},
+      {"compliance", PropagatedJson(contact.tangential_compliance, "1/Pa")},
+      {"compliance_definition", kComplianceDefinition},
+      {"compliance_unit", kComplianceUnit},
+      {"equivalent_radius", PropagatedJson(contact.equivalent_radius, "m")},
+      {"maximum_pressure", PropagatedJson(contact.maximum_pressure, "Pa")},
+      {"mindlin_gross_slip_displacement",
+       failed ? nullptr : PropagatedJson(contact.gross_slip_displacement, "m")},
       {"normal_load", NumberOrNull(report.given_normal_load)}};
-  if (contact.hertz) {
-    json["hertz_mindlin"] = {
-        {"contact_radius", contact.hertz->contact_radius},
-        {"sigma", contact.hertz->tangential_stiffness},
-        {"gross_slip_displacement", UncertainJson(contact.hertz->gross_slip_displacement, "m")},
-        {"equivalent_radius", contact.hertz->equivalent_radius},
-        {"maximum_pressure", contact.hertz->maximum_pressure}};
+  if (contact.hertz) json["hertz_mindlin"] = HertzJson(*contact.hertz);
+  return json;
+}
+
+nlohmann::ordered_json StiffnessTestsJson(const FitReport& report) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const StiffnessTest& test : TestStiffness(report)) {
+    nlohmann::ordered_json one = {{"radius", test.radius}};
+    one.update(PropagatedJson(test.ratio, "-"));
+    one["ci95"] = {nullptr, nullptr};
+    if (test.interval95) one["ci95"] = {test.interval95->lower, test.interval95->upper};
+    one["z"] = NumberOrNull(test.z);
+    one["p_value"] = NumberOrNull(test.p_value);
+    json.push_back(std::move(one));
   }
   return json;
 }
@@ -334,23 +433,50 @@ std::string ParameterTable(const FitResult& fit) {
   return text;
 }
 
+std::string ErrorText(const UncertainValue& value) {
+  return std::isfinite(value.standard_error) ? fmt::format("± {:.2g}", value.standard_error)
+                                             : "± open";
+}
+
+/// What to measure better; nothing where the inputs are exact and the fit alone is uncertain.
+std::string SharesText(const PropagatedValue& value) {
+  if (value.largest_input.empty()) return "";
+  return fmt::format("  {:<22} variance: fit {:.0f} %, inputs {:.0f} %, mostly the {}\n", "",
+                     100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
+}
+
+std::string HertzText(const HertzPrediction& hertz) {
+  std::string text = "  Hertz and Mindlin predict from materials, radii and load:\n";
+  const auto line = [&](const char* name, const PropagatedValue& value, const char* unit,
+                        const PropagatedValue& ratio) {
+    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} measured/predicted {} {}\n", name,
+                        Significant(value.value), ErrorText(value), unit, Significant(ratio.value),
+                        ErrorText(ratio));
+  };
+  line("contact radius", hertz.contact_radius, "m", hertz.sigma_over_hertz_mindlin);
+  line("tangential stiffness", hertz.tangential_stiffness, "N/m", hertz.sigma_over_hertz_mindlin);
+  line("gross slip (α = 1/3)", hertz.gross_slip_displacement, "m",
+       hertz.gross_slip_displacement_ratio);
+  return text;
+}
+
 std::string ContactText(const IdentifiedContact& contact) {
-  std::string text;
-  const auto line = [&](const char* name, const std::optional<UncertainValue>& value,
+  std::string text =
+      "  G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a compliance: many texts write G* for its inverse\n";
+  const auto line = [&](const char* name, const std::optional<PropagatedValue>& value,
                         const char* unit, const char* formula) {
     if (!value) return;
-    const std::string error = std::isfinite(value->standard_error)
-                                  ? fmt::format("± {:.2g}", value->standard_error)
-                                  : "± open";
-    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} {}\n", name, Significant(value->value), error,
-                        unit, formula);
+    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} {}\n", name, Significant(value->value),
+                        ErrorText(*value), unit, formula);
+    text += SharesText(*value);
   };
   line("friction coefficient", contact.friction_coefficient, "", "μ = Tc/N");
   line("contact radius", contact.contact_radius, "m", "a = σG*/8");
-  line("tangential compliance", contact.tangential_compliance, "1/Pa",
-       "G* = 8a/σ, a compliance: (2−ν₁)/G₁ + (2−ν₂)/G₂");
+  line("tangential compliance", contact.tangential_compliance, "1/Pa", "G* = 8a/σ");
   line("equivalent radius", contact.equivalent_radius, "m", "ρ = 4E*a³/(3N)");
   line("maximum pressure", contact.maximum_pressure, "Pa", "p₀ = 3N/(2πa²)");
+  line("gross slip (α = 1/3)", contact.gross_slip_displacement, "m", "δc = 3Tc/(2σ)");
+  if (contact.hertz) text += HertzText(*contact.hertz);
   for (const std::string& sentence : contact.redundant) text += fmt::format("  {}\n", sentence);
   for (const std::string& sentence : contact.unidentified) {
     text += fmt::format("  not identified: {}\n", sentence);
@@ -360,18 +486,25 @@ std::string ContactText(const IdentifiedContact& contact) {
 
 std::string MappingText(const FitReport& report) {
   std::string text;
+  // Two-sided 5 %: the usual convention.
+  constexpr double kSignificance = 0.05;
   if (report.alpha_z) {
-    // Two-sided 5 %: the usual convention.
-    constexpr double kSignificance = 0.05;
     text += fmt::format(
         "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}: Mindlin's exponent is {}\n",
         *report.alpha_minus_third, *report.alpha_z, *report.alpha_p_value,
         *report.alpha_p_value < kSignificance ? "rejected" : "tenable");
   }
-  if (report.sigma_over_hertz_mindlin) {
-    text += fmt::format("  σ/(8a/G*) = {:.6g} ± {:.2g}: 1 where Hertz and Mindlin hold\n",
-                        report.sigma_over_hertz_mindlin->value,
-                        report.sigma_over_hertz_mindlin->standard_error);
+  for (const StiffnessTest& test : TestStiffness(report)) {
+    text += fmt::format("  σ/(8a/G*) = {:.6g} {}: 1 where Hertz and Mindlin hold\n",
+                        test.ratio.value, ErrorText(test.ratio));
+    if (test.z) {
+      text += fmt::format(
+          "      with a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, p = {:.3g}: {}\n",
+          test.radius == "hertz" ? "of Hertz" : "as given", test.interval95->lower,
+          test.interval95->upper, *test.z, *test.p_value,
+          *test.p_value < kSignificance ? "rejected" : "tenable");
+    }
+    text += SharesText(test.ratio);
   }
   return text.empty() ? "  not tested\n" : text;
 }
@@ -385,7 +518,7 @@ FitReport MakeFitReport(std::vector<std::string> files, std::vector<RecordFile> 
   report.inputs = std::move(inputs);
   report.fit = std::move(fit);
   report.warnings = report.fit.warnings;
-  report.given_normal_load = known.normal_load;
+  if (known.normal_load) report.given_normal_load = known.normal_load->value;
   if (report.fit.parameters.empty()) {
     report.warnings.push_back(
         {"fit_failed", fmt::format("the fit failed, so no parameter, residual, loop, contact or "
@@ -397,14 +530,14 @@ FitReport MakeFitReport(std::vector<std::string> files, std::vector<RecordFile> 
   DescribeLoop(report);
   TestMapping(report);
   const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
-  report.contact =
-      IdentifyContact(Uncertain(*report.fit.Find("sigma")), Uncertain(slip_force), known);
+  report.contact = IdentifyContact(Uncertain(*report.fit.Find("sigma")), Uncertain(slip_force),
+                                   known, Correlation(report.fit, "sigma", "slip_force"));
   if (slip_force.identifiability != Identifiability::kIdentifiable && known.normal_load) {
     report.contact.friction_coefficient.reset();
     report.contact.unidentified.push_back(fmt::format(
         "friction coefficient needs an identifiable slip force; from this loop it is at "
         "least {:.3g}",
-        slip_force.lower95.value_or(0.0) / *known.normal_load));
+        slip_force.lower95.value_or(0.0) / known.normal_load->value));
   }
   const bool compliance_is_missing = std::ranges::any_of(
       report.contact.unidentified,
@@ -482,7 +615,8 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
       {"sigma_over_hertz_mindlin_standard_error",
        report.sigma_over_hertz_mindlin
            ? NumberOrNull(report.sigma_over_hertz_mindlin->standard_error)
-           : nullptr}};
+           : nullptr},
+      {"stiffness_tests", StiffnessTestsJson(report)}};
   json["warnings"] = nlohmann::ordered_json::array();
   for (const FitWarning& warning : report.warnings) {
     json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});

@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "message_of.h"
@@ -343,6 +348,304 @@ TEST(IdentifyContact, HoldsFromAtomicToTectonicContacts) {
     ExpectEstimate(contact.equivalent_radius, truth.equivalent_radius, 0.0);
     ExpectEstimate(contact.maximum_pressure, truth.maximum_pressure, 0.0);
   }
+}
+
+// Relative standard uncertainties of inputs, unequal so that a mix-up shows, and small: the first
+// order is off by about their square.
+constexpr double kLoadError = 0.007;
+constexpr double kModulusError1 = 0.011;
+constexpr double kModulusError2 = 0.008;
+constexpr double kPoissonError1 = 0.009;  // absolute
+constexpr double kPoissonError2 = 0.006;
+constexpr double kRadiusError1 = 0.005;
+constexpr double kRadiusError2 = 0.012;
+constexpr double kFrictionError = 0.004;
+
+UncertainValue Relative(double value, double relative_error) {
+  return {value, std::abs(value) * relative_error};
+}
+
+/// A steel ball in an aluminium seat, nothing exact.
+KnownContact UncertainBodies() {
+  return {.normal_load = Relative(kNormalLoad, kLoadError),
+          .body_1 = {Relative(210e9, kModulusError1), UncertainValue(0.3, kPoissonError1),
+                     Relative(0.02, kRadiusError1)},
+          .body_2 = {Relative(70e9, kModulusError2), UncertainValue(0.33, kPoissonError2),
+                     Relative(-0.05, kRadiusError2)}};
+}
+
+class Sampler {
+ public:
+  explicit Sampler(std::uint64_t seed) : engine_(seed) {}
+
+  double Normal() { return normal_(engine_); }
+  UncertainValue Draw(const UncertainValue& known) {
+    return known.value + known.standard_error * Normal();
+  }
+  KnownContact Draw(KnownContact known) {
+    const auto draw = [&](std::optional<UncertainValue>& one) {
+      if (one) one = Draw(*one);
+    };
+    draw(known.normal_load);
+    for (KnownBody* body : {&known.body_1, &known.body_2}) {
+      draw(body->youngs_modulus);
+      draw(body->poisson_ratio);
+      draw(body->radius);
+    }
+    draw(known.contact_radius);
+    draw(known.tangential_compliance);
+    return known;
+  }
+
+ private:
+  boost::random::mt19937_64 engine_;
+  boost::random::normal_distribution<double> normal_;
+};
+
+/// Mean and standard deviation as draws come in (Welford).
+struct Scatter {
+  void Add(double value) {
+    ++count;
+    const double change = value - mean;
+    mean += change / count;
+    squares += change * (value - mean);
+  }
+  [[nodiscard]] double Deviation() const { return std::sqrt(squares / (count - 1)); }
+
+  double count = 0.0;
+  double mean = 0.0;
+  double squares = 0.0;
+};
+
+constexpr int kDraws = 20000;
+// A standard deviation of n normal draws is known to 1/√(2n); five times that, and for the second
+// order the square of the largest relative error of a result, 0.07 for ρ.
+const double kScatter = 5.0 / std::sqrt(2.0 * kDraws) + 0.07 * 0.07;
+
+/// Every quantity of a result, in an order of its own; `Contact` is identified or predicted.
+template <typename Contact>
+using Quantities =
+    std::vector<std::pair<const char*, std::function<PropagatedValue(const Contact&)>>>;
+
+template <typename Contact>
+void ExpectScatter(const Contact& stated, const Quantities<Contact>& quantities,
+                   const std::function<Contact()>& draw) {
+  std::vector<Scatter> scatter(quantities.size());
+  for (int i = 0; i < kDraws; ++i) {
+    const Contact drawn = draw();
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+      scatter[q].Add(quantities[q].second(drawn).value);
+    }
+  }
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    EXPECT_NEAR(quantities[q].second(stated).standard_error / scatter[q].Deviation(), 1.0, kScatter)
+        << quantities[q].first;
+  }
+}
+
+/// σ and Tc with errors of the given correlation.
+std::pair<UncertainValue, UncertainValue> DrawFit(Sampler& sampler, const UncertainValue& stiffness,
+                                                  const UncertainValue& force, double correlation) {
+  const double first = sampler.Normal();
+  const double second =
+      correlation * first + std::sqrt(1.0 - correlation * correlation) * sampler.Normal();
+  return {stiffness.value + stiffness.standard_error * first,
+          force.value + force.standard_error * second};
+}
+
+constexpr double kCorrelation = -0.6;
+
+TEST(UncertainInputs, ScatterAsStatedThroughMaterialsRadiiAndLoad) {
+  const KnownContact known = UncertainBodies();
+  const UncertainValue stiffness = FittedStiffness();
+  const UncertainValue force = Relative(FittedSlipForce().value, 0.013);
+  Sampler sampler(20170117);
+  using C = IdentifiedContact;
+  ExpectScatter<C>(
+      IdentifyContact(stiffness, force, known, kCorrelation),
+      {{"μ", [](const C& c) { return *c.friction_coefficient; }},
+       {"a", [](const C& c) { return *c.contact_radius; }},
+       {"ρ", [](const C& c) { return *c.equivalent_radius; }},
+       {"p₀", [](const C& c) { return *c.maximum_pressure; }},
+       {"δc", [](const C& c) { return c.gross_slip_displacement; }},
+       {"predicted E*", [](const C& c) { return c.hertz->effective_modulus; }},
+       {"predicted ρ", [](const C& c) { return c.hertz->equivalent_radius; }},
+       {"predicted a", [](const C& c) { return c.hertz->contact_radius; }},
+       {"predicted p₀", [](const C& c) { return c.hertz->maximum_pressure; }},
+       {"predicted σ", [](const C& c) { return c.hertz->tangential_stiffness; }},
+       {"predicted δc", [](const C& c) { return c.hertz->gross_slip_displacement; }},
+       {"ratio of σ", [](const C& c) { return c.hertz->sigma_over_hertz_mindlin; }},
+       {"ratio of δc", [](const C& c) { return c.hertz->gross_slip_displacement_ratio; }}},
+      [&] {
+        const auto [drawn_stiffness, drawn_force] =
+            DrawFit(sampler, stiffness, force, kCorrelation);
+        return IdentifyContact(drawn_stiffness, drawn_force, sampler.Draw(known));
+      });
+}
+
+TEST(UncertainInputs, ScatterAsStatedThroughGivenRadiusAndCompliance) {
+  const HertzMindlinContact truth = Truth();
+  KnownContact known = UncertainBodies();
+  known.contact_radius = Relative(truth.contact_radius, 0.015);
+  known.tangential_compliance = Relative(truth.tangential_compliance, 0.006);
+  Sampler sampler(20170118);
+  using C = IdentifiedContact;
+  ExpectScatter<C>(IdentifyContact(FittedStiffness(), FittedSlipForce(), known),
+                   {{"a", [](const C& c) { return *c.contact_radius; }},
+                    {"G*", [](const C& c) { return *c.tangential_compliance; }},
+                    {"ρ", [](const C& c) { return *c.equivalent_radius; }},
+                    {"p₀", [](const C& c) { return *c.maximum_pressure; }},
+                    {"σ/(8a/G*)", [](const C& c) { return *c.sigma_over_mindlin; }}},
+                   [&] {
+                     const auto [stiffness, force] =
+                         DrawFit(sampler, FittedStiffness(), FittedSlipForce(), 0.0);
+                     return IdentifyContact(stiffness, force, sampler.Draw(known));
+                   });
+}
+
+TEST(UncertainInputs, ScatterAsStatedInAPredictedContact) {
+  const KnownContact known = UncertainBodies();
+  const UncertainValue friction = Relative(kFriction, kFrictionError);
+  Sampler sampler(20170119);
+  using C = PredictedContact;
+  ExpectScatter<C>(PredictContact(known, friction),
+                   {{"E*", [](const C& c) { return *c.effective_modulus; }},
+                    {"ρ", [](const C& c) { return *c.equivalent_radius; }},
+                    {"approach", [](const C& c) { return *c.approach; }},
+                    {"G*", [](const C& c) { return c.tangential_compliance; }},
+                    {"a", [](const C& c) { return c.contact_radius; }},
+                    {"p₀", [](const C& c) { return c.maximum_pressure; }},
+                    {"σ", [](const C& c) { return c.tangential_stiffness; }},
+                    {"Tc", [](const C& c) { return c.slip_force; }},
+                    {"δc", [](const C& c) { return c.gross_slip_displacement; }}},
+                   [&] {
+                     const KnownContact drawn = sampler.Draw(known);
+                     return PredictContact(drawn, sampler.Draw(friction));
+                   });
+}
+
+TEST(UncertainInputs, SplitTheVarianceBetweenFitAndInputs) {
+  // 3² + 4² = 5²: μ = Tc/N with 0.3 % from Tc and 0.4 % from N.
+  const IdentifiedContact contact = IdentifyContact(FittedStiffness(), Relative(60.0, 0.003),
+                                                    {.normal_load = Relative(kNormalLoad, 0.004)});
+  const PropagatedValue& friction = *contact.friction_coefficient;
+  EXPECT_NEAR(friction.fit_error / friction.value, 0.003, kRounding);
+  EXPECT_NEAR(friction.input_error / friction.value, 0.004, kRounding);
+  EXPECT_NEAR(friction.standard_error / friction.value, 0.005, kRounding);
+  EXPECT_NEAR(friction.FitShare(), 0.36, kRounding);
+  EXPECT_NEAR(friction.InputShare(), 0.64, kRounding);
+  EXPECT_EQ(friction.largest_input, "normal load");
+}
+
+TEST(UncertainInputs, NameTheOneToMeasureBetter) {
+  KnownContact known = KnowBodies();
+  known.normal_load = Relative(kNormalLoad, 0.001);
+  known.body_2.radius = Relative(kAluminium.radius, 0.02);
+  const IdentifiedContact contact = IdentifyContact(FittedStiffness(), FittedSlipForce(), known);
+  EXPECT_EQ(contact.hertz->contact_radius.largest_input, "radius of body 2");
+  EXPECT_EQ(contact.equivalent_radius->largest_input, "normal load");
+  EXPECT_EQ(contact.contact_radius->largest_input, "") << "G* of exact materials";
+}
+
+TEST(UncertainInputs, CountAnInputOnceThatEntersTwice) {
+  // Like bodies: σ/(8a/G*) with Hertz's a goes as G*·∛E*, and each modulus makes half of either, so
+  // E₁ alone counts −1/2 + 1/6 = −1/3; taken for two inputs it would be √(1/4 + 1/36).
+  constexpr double kError = 0.03;
+  const KnownBody exact = {kSteel.youngs_modulus, kSteel.poisson_ratio, kSteel.radius};
+  KnownBody uncertain = exact;
+  uncertain.youngs_modulus = Relative(kSteel.youngs_modulus, kError);
+  const IdentifiedContact contact = IdentifyContact(
+      {1e8, 0.0}, {50.0, 0.0}, {.normal_load = kNormalLoad, .body_1 = uncertain, .body_2 = exact});
+  const PropagatedValue& ratio = contact.hertz->sigma_over_hertz_mindlin;
+  EXPECT_NEAR(ratio.standard_error / ratio.value, kError / 3.0, kRounding);
+}
+
+TEST(UncertainInputs, TakeTheCorrelationOfTheFitIntoAccount) {
+  const auto relative_error = [](double correlation) {
+    const PropagatedValue displacement =
+        IdentifyContact(FittedStiffness(), FittedSlipForce(), {}, correlation)
+            .gross_slip_displacement;
+    return displacement.standard_error / displacement.value;
+  };
+  // δc = 3Tc/(2σ): errors of the same sign cancel.
+  EXPECT_NEAR(relative_error(1.0), kStiffnessError - kForceError, kRounding);
+  EXPECT_NEAR(relative_error(-1.0), kStiffnessError + kForceError, kRounding);
+  EXPECT_NEAR(relative_error(0.0), std::hypot(kStiffnessError, kForceError), kRounding);
+  EXPECT_NEAR(relative_error(0.5),
+              std::sqrt(kStiffnessError * kStiffnessError + kForceError * kForceError -
+                        kStiffnessError * kForceError),
+              kRounding);
+}
+
+TEST(UncertainInputs, LeaveAnOpenFitOpenWhateverItsCorrelation) {
+  const IdentifiedContact contact =
+      IdentifyContact({1e8, kInfinity}, {50.0, kInfinity}, UncertainBodies(), 1.0);
+  EXPECT_EQ(contact.gross_slip_displacement.standard_error, kInfinity);
+  EXPECT_EQ(contact.friction_coefficient->standard_error, kInfinity);
+  EXPECT_EQ(contact.friction_coefficient->FitShare(), 1.0);
+  EXPECT_EQ(contact.friction_coefficient->InputShare(), 0.0);
+  // Tc cancels in the ratio.
+  EXPECT_TRUE(std::isfinite(IdentifyContact({1e8, 1e6}, {50.0, kInfinity}, UncertainBodies())
+                                .hertz->gross_slip_displacement_ratio.standard_error));
+}
+
+TEST(UncertainInputs, BringNothingWhereAllIsExact) {
+  const PropagatedValue radius =
+      *IdentifyContact({1e8, 0.0}, {50.0, 0.0}, KnowBodies()).contact_radius;
+  EXPECT_EQ(radius.standard_error, 0.0);
+  EXPECT_EQ(radius.FitShare(), 0.0);
+  EXPECT_EQ(radius.InputShare(), 0.0);
+}
+
+TEST(PredictContact, GivesTheValuesOfItsExactCounterparts) {
+  const HertzMindlinContact truth = Truth();
+  const PredictedContact contact = PredictContact(KnowBodies(), kFriction);
+  EXPECT_EQ(*contact.effective_modulus, truth.effective_modulus);
+  EXPECT_EQ(*contact.equivalent_radius, truth.equivalent_radius);
+  EXPECT_EQ(*contact.approach, truth.approach);
+  EXPECT_EQ(contact.tangential_compliance, truth.tangential_compliance);
+  EXPECT_EQ(contact.contact_radius, truth.contact_radius);
+  EXPECT_EQ(contact.maximum_pressure, truth.maximum_pressure);
+  EXPECT_EQ(contact.tangential_stiffness, truth.dahl.tangential_stiffness);
+  EXPECT_EQ(contact.slip_force, truth.dahl.slip_force);
+  EXPECT_EQ(contact.gross_slip_displacement, truth.dahl.gross_slip_displacement);
+  EXPECT_EQ(contact.gross_slip_displacement.standard_error, 0.0);
+}
+
+TEST(PredictContact, RefusesWhatDoesNotDescribeAContactOrDoesSoTwice) {
+  const std::string rule =
+      "contact: must be given by its normal load and either contact radius and tangential "
+      "compliance or E, ν and R of both bodies";
+  KnownContact twice = KnowBodies();
+  twice.contact_radius = 1e-3;
+  twice.tangential_compliance = 4e-11;
+  EXPECT_EQ(MessageOf([&] { PredictContact(twice, kFriction); }), rule);
+  EXPECT_EQ(MessageOf([] { PredictContact({.normal_load = 1.0}, kFriction); }), rule);
+  EXPECT_EQ(MessageOf([] {
+              PredictContact(KnowBodies(), {0.3, -0.1});
+            }),
+            "standard uncertainty of the friction coefficient [-] = -0.1 is invalid: must be "
+            "finite and >= 0");
+}
+
+TEST(IdentifyContactInput, NamesTheUncertaintyThatIsInvalid) {
+  const auto identify = [](const KnownContact& known, double correlation = 0.0) {
+    return MessageOf([&] { IdentifyContact({1.0, 0.0}, {1.0, 0.0}, known, correlation); });
+  };
+  EXPECT_EQ(identify({.normal_load = UncertainValue(1.0, -1.0)}),
+            "standard uncertainty of the normal load [N] = -1 is invalid: must be finite and >= 0");
+  EXPECT_EQ(identify({.body_2 = {.poisson_ratio = UncertainValue(0.3, kInfinity)}}),
+            "standard uncertainty of the Poisson ratio of body 2 = inf is invalid: must be finite "
+            "and >= 0");
+  EXPECT_EQ(identify({.body_1 = {.radius = UncertainValue(kInfinity, 0.1)}}),
+            "standard uncertainty of the radius of body 1 [m] = 0.1 is invalid: must be 0 for a "
+            "plane, which is exact");
+  EXPECT_EQ(identify({}, 1.5),
+            "correlation of tangential stiffness and slip force [-] = 1.5 is invalid: must be "
+            ">= -1 and <= 1");
+  EXPECT_EQ(identify({}, std::nan("")),
+            "correlation of tangential stiffness and slip force [-] = nan is invalid: must be "
+            ">= -1 and <= 1");
 }
 
 TEST(IdentifyContactInput, NamesTheEstimateThatIsInvalid) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
@@ -54,55 +55,104 @@ struct HertzMindlinContact {
 HertzMindlinContact SolveHertzMindlin(const Body& body_1, const Body& body_2, double normal_load,
                                       double friction_coefficient);
 
-/// A positive quantity with its uncertainty.
+/// A quantity with its standard uncertainty. A number alone is exact, and where a plain number is
+/// asked for the quantity reads as its value.
 struct UncertainValue {
+  UncertainValue() = default;
+  UncertainValue(double exact) : value(exact) {}
+  UncertainValue(double estimate, double error) : value(estimate), standard_error(error) {}
+  operator double() const { return value; }
+
   double value = 0.0;
-  /// Same unit, >= 0. 0 when it does not come from the fit, infinity when the fit leaves it open.
+  /// Same unit, >= 0. Finite for what is known; of a fit infinity where it leaves the value open.
   double standard_error = 0.0;
 };
 
 /// What is known of one body; any member may be missing.
 struct KnownBody {
-  std::optional<double> youngs_modulus = std::nullopt;  ///< E [Pa], finite, > 0
-  std::optional<double> poisson_ratio = std::nullopt;   ///< ν [-], in (−1, 0.5]
-  std::optional<double> radius =
-      std::nullopt;  ///< R [m], not 0, infinite for a plane, negative for a seat
+  std::optional<UncertainValue> youngs_modulus = std::nullopt;  ///< E [Pa], finite, > 0
+  std::optional<UncertainValue> poisson_ratio = std::nullopt;   ///< ν [-], in (−1, 0.5]
+  /// R [m], not 0, infinite for a plane, which is exact, negative for a seat
+  std::optional<UncertainValue> radius = std::nullopt;
 };
 
-/// What is known of the contact besides the fit. Taken as exact: the standard errors of what is
-/// identified carry the fit's uncertainty alone.
+/// What is known of the contact besides the fit. The uncertainties are independent of each other
+/// and of the fit's.
 struct KnownContact {
-  std::optional<double> normal_load = std::nullopt;  ///< N [N], finite, > 0
+  std::optional<UncertainValue> normal_load = std::nullopt;  ///< N [N], finite, > 0
   KnownBody body_1{};
   KnownBody body_2{};
-  std::optional<double> contact_radius = std::nullopt;  ///< a [m], measured otherwise, finite, > 0
-  std::optional<double> tangential_compliance = std::nullopt;  ///< G* [1/Pa], finite, > 0
+  /// a [m], measured otherwise, finite, > 0
+  std::optional<UncertainValue> contact_radius = std::nullopt;
+  std::optional<UncertainValue> tangential_compliance = std::nullopt;  ///< G* [1/Pa], finite, > 0
 };
+
+/// A result with the parts of its uncertainty: standard_error² = fit_error² + input_error².
+struct PropagatedValue : UncertainValue {
+  double fit_error = 0.0;    ///< from σ and Tc, their correlation included; same unit
+  double input_error = 0.0;  ///< from what is known besides the fit; same unit
+  /// The input that contributes most, "radius of body 1"; empty where all are exact. To be measured
+  /// better first.
+  std::string_view largest_input;
+
+  /// Share of the variance that the fit brings [-], 1 where it leaves the value open; 0 where
+  /// nothing is uncertain.
+  [[nodiscard]] double FitShare() const;
+  /// Share of the variance that the inputs bring [-]; with FitShare() it makes 1, or 0 where
+  /// nothing is uncertain.
+  [[nodiscard]] double InputShare() const;
+};
+
+/// What materials and radii, or contact radius and compliance, predict under a load.
+struct PredictedContact {
+  std::optional<PropagatedValue> effective_modulus;  ///< E* [Pa]; of materials
+  std::optional<PropagatedValue> equivalent_radius;  ///< ρ [m]; of two radii
+  std::optional<PropagatedValue> approach;           ///< a²/ρ [m]; of two radii
+  PropagatedValue tangential_compliance;             ///< G* [1/Pa]
+  PropagatedValue contact_radius;                    ///< a [m]
+  PropagatedValue maximum_pressure;                  ///< p₀ [Pa]
+  PropagatedValue tangential_stiffness;              ///< σ = 8a/G* [N/m]
+  PropagatedValue slip_force;                        ///< Tc = μN [N]
+  PropagatedValue gross_slip_displacement;           ///< δc = 3·μN·G*/(16a) [m]
+};
+
+/// Hertz, Mindlin and the mapping with the uncertainty of every input; values as SolveHertzMindlin
+/// and MapMindlinToDahl give them. All uncertainty is that of inputs: fit_error is 0.
+/// @param known  N, and either a and G* alone or E, ν and R of both bodies
+/// @param friction_coefficient  μ [-], finite, > 0
+/// @throws InvalidArgument naming what is missing, or the parameter, its value and the rule
+PredictedContact PredictContact(const KnownContact& known,
+                                const UncertainValue& friction_coefficient);
 
 /// What Hertz and Mindlin predict when materials, radii and load are all known.
 struct HertzPrediction {
-  double effective_modulus = 0.0;     ///< E* [Pa]
-  double equivalent_radius = 0.0;     ///< ρ [m] of the two radii
-  double contact_radius = 0.0;        ///< a [m] of Hertz
-  double maximum_pressure = 0.0;      ///< p₀ [Pa] of Hertz
-  double tangential_stiffness = 0.0;  ///< σ [N/m] = 8a/G*, with the G* in use
-  /// δc [m] = 3·Tc·G*/(16a) with the measured Tc, whence the standard error
-  UncertainValue gross_slip_displacement;
+  PropagatedValue effective_modulus;     ///< E* [Pa]
+  PropagatedValue equivalent_radius;     ///< ρ [m] of the two radii
+  PropagatedValue contact_radius;        ///< a [m] of Hertz
+  PropagatedValue maximum_pressure;      ///< p₀ [Pa] of Hertz
+  PropagatedValue tangential_stiffness;  ///< σ [N/m] = 8a/G*, with the G* in use
+  /// δc [m] = 3·Tc·G*/(16a) with the measured Tc
+  PropagatedValue gross_slip_displacement;
   /// Measured over predicted σ [-]; 1 when the theory holds. Also the ratio of the identified
   /// contact radius to Hertz's.
-  UncertainValue sigma_over_hertz_mindlin;
+  PropagatedValue sigma_over_hertz_mindlin;
+  /// Mindlin's δc of the measured σ and Tc over the predicted [-]: the inverse of the ratio of σ,
+  /// for Tc is in both.
+  PropagatedValue gross_slip_displacement_ratio;
 };
 
 /// What the fit and the knowledge of the contact identify together; empty what they do not.
 struct IdentifiedContact {
-  std::optional<UncertainValue> friction_coefficient;  ///< μ = Tc/N [-]; needs N
-  std::optional<UncertainValue> contact_radius;        ///< a = σG*/8 [m]; needs G*
-  std::optional<UncertainValue>
-      tangential_compliance;                        ///< G* = 8a/σ [1/Pa]; needs a given radius a
-  std::optional<UncertainValue> equivalent_radius;  ///< ρ = 4E*a³/(3N) [m]; needs E*, a, N
-  std::optional<UncertainValue> maximum_pressure;   ///< p₀ = 3N/(2πa²) [Pa]; needs a, N
+  std::optional<PropagatedValue> friction_coefficient;  ///< μ = Tc/N [-]; needs N
+  std::optional<PropagatedValue> contact_radius;        ///< a = σG*/8 [m]; needs G*
+  std::optional<PropagatedValue>
+      tangential_compliance;                         ///< G* = 8a/σ [1/Pa]; needs a given radius a
+  std::optional<PropagatedValue> equivalent_radius;  ///< ρ = 4E*a³/(3N) [m]; needs E*, a, N
+  std::optional<PropagatedValue> maximum_pressure;   ///< p₀ = 3N/(2πa²) [Pa]; needs a, N
+  /// Mindlin's δc = 3Tc/(2σ) [m]; needs nothing. That of the fitted α is Tc/(σ(1 − α)).
+  PropagatedValue gross_slip_displacement;
   /// Measured σ over 8a/G* [-], for a given radius a and a known G*; 1 when the theory holds.
-  std::optional<UncertainValue> sigma_over_mindlin;
+  std::optional<PropagatedValue> sigma_over_mindlin;
   std::optional<HertzPrediction> hertz;  ///< needs E, ν and R of both bodies, and N
 
   /// A sentence for each quantity that is missing, with the inputs that would give it:
@@ -120,19 +170,25 @@ struct IdentifiedContact {
 ///  materials;
 ///  - a given and G* known: a = σG*/8 and G* = 8a/σ are both reported, each ignoring the other's
 ///  given
-///    value, and sigma_over_mindlin compares them; ρ and p₀ use the given a, with no standard
-///    error;
+///    value, and sigma_over_mindlin compares them; ρ and p₀ use the given a and nothing of the fit;
 ///  - a given and Hertz complete: Hertz's a serves the prediction alone.
 /// The first and the last are also told in `redundant`, whatever the discrepancy.
 ///
-/// Standard errors are linear: the relative error of a, G* and the ratios is that of σ, of p₀ twice
-/// and of ρ three times it; that of μ and of the predicted δc is that of Tc.
+/// Standard errors are propagated to first order (GUM, JCGM 100:2008, eq. 13) from σ and Tc with
+/// their correlation and from every input, each counted once however many ways it enters: E of a
+/// body is in G*, in E* and so in Hertz's a. A relative error of a counts twice in p₀ and three
+/// times in ρ.
 ///
 /// @param tangential_stiffness  σ [N/m], finite, > 0; standard error >= 0, may be infinite
 /// @param slip_force            Tc [N], finite, > 0; standard error >= 0, may be infinite
+/// @param known                 standard errors finite, >= 0, 0 for a plane's radius
+/// @param correlation           of the errors of σ and Tc [-], in [−1, 1]; of no account where
+///   either is infinite
 /// @throws InvalidArgument naming the parameter, its value and the rule, also for knowledge that is
 ///   invalid but not needed
+/// The first order is symmetric, the truth is not: 10 % of a is +33 % or −27 % of ρ, not ±30 %.
 IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
-                                  const UncertainValue& slip_force, const KnownContact& known);
+                                  const UncertainValue& slip_force, const KnownContact& known,
+                                  double correlation = 0.0);
 
 }  // namespace mindahl
