@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,8 +17,10 @@
 #include "cli/fit_report.h"
 #include "cli/json_output.h"
 #include "cli/output_path.h"
+#include "cli/whole_number.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/model_selection.h"
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
@@ -34,11 +37,20 @@ struct FitCommandOptions {
   std::string force_sign = "auto";
   std::string offsets = "on";
   bool drift = false;
+  bool plateau_slope = false;
+  bool follow_load = false;
+  std::string rig_stiffness;
+  std::string load_window;
+  std::size_t skip_cycles = 0;
+  std::string loss = "none";
+  std::size_t starts = FitOptions{}.starts;
+  std::uint64_t seed = FitOptions{}.seed;
   bool strict = false;
   std::vector<std::string> fix;
   std::vector<std::string> start;
   std::vector<std::string> bound;
   std::optional<double> force_noise;
+  std::optional<double> displacement_noise;
   std::optional<double> reversal_gate;
   ContactOptions contact;
   std::string json_path;
@@ -104,20 +116,60 @@ std::map<std::string, Interval> ParseBounds(const std::vector<std::string>& text
   return bounds;
 }
 
+/// "fit", or a stiffness that is known.
+void ApplyRigStiffness(const std::string& text, FitOptions& fit) {
+  if (text.empty()) return;
+  if (text == "fit") {
+    if (fit.fixed.contains("rig_stiffness")) {
+      throw InputError("--rig-stiffness fit contradicts --fix rig_stiffness: give one of the two");
+    }
+    fit.fit_rig_stiffness = true;
+    return;
+  }
+  const double stiffness = ParseNumber(text, "--rig-stiffness", "a stiffness in N/m, or fit");
+  RequirePositive("--rig-stiffness [N/m]", stiffness);
+  if (!fit.fixed.emplace("rig_stiffness", stiffness).second) {
+    throw InputError("--rig-stiffness and --fix rig_stiffness say the same: give one of the two");
+  }
+}
+
+Loss FindLoss(std::string_view name) {
+  if (name == "huber") return Loss::kHuber;
+  if (name == "cauchy") return Loss::kCauchy;
+  if (name == "tukey") return Loss::kTukey;
+  return Loss::kNone;
+}
+
+constexpr std::string_view kAutomatic = "auto";
+
 FitOptions MakeFitOptions(const FitCommandOptions& options) {
   FitOptions fit;
-  fit.model = FindFrictionModel(options.model);
+  if (options.model != kAutomatic) fit.model = FindFrictionModel(options.model);
   if (options.initial_state == "virgin") fit.initial_state = InitialState::kVirgin;
   if (options.initial_state == "steady") fit.initial_state = InitialState::kSteady;
   if (options.force_sign == "same") fit.force_sense = 1;
   if (options.force_sign == "opposite") fit.force_sense = -1;
   fit.offsets = options.offsets == "on";
   fit.drift = options.drift;
+  fit.plateau_slope = options.plateau_slope;
+  fit.follow_load = options.follow_load;
+  if (!options.load_window.empty()) {
+    fit.load_window = ParseInterval(options.load_window, "--load-window", "LO:HI in newtons");
+  }
+  fit.skip_cycles = options.skip_cycles;
+  fit.loss = FindLoss(options.loss);
+  fit.starts = options.starts;
+  fit.seed = options.seed;
+  if (options.displacement_noise) {
+    RequireNonNegative("--displacement-noise [m]", *options.displacement_noise);
+  }
+  fit.displacement_noise = options.displacement_noise;
   if (options.force_noise) RequirePositive("--force-noise [N]", *options.force_noise);
   fit.force_noise = options.force_noise;
   if (options.reversal_gate) RequireNonNegative("--reversal-gate [m]", *options.reversal_gate);
   fit.reversal_gate = options.reversal_gate;
   fit.fixed = ParseAssignments(options.fix, "--fix");
+  ApplyRigStiffness(options.rig_stiffness, fit);
   fit.start = ParseAssignments(options.start, "--start");
   fit.bounds = ParseBounds(options.bound);
   return fit;
@@ -167,17 +219,35 @@ std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& co
   return inputs;
 }
 
+/// What needs a load column must have one, before the fit says so in its own words.
+void RequireLoads(const FitCommandOptions& options, const std::vector<RecordFile>& inputs) {
+  const char* option = !options.load_window.empty() ? "--load-window"
+                       : options.follow_load        ? "--follow-load"
+                                                    : nullptr;
+  if (option == nullptr) return;
+  for (std::size_t r = 0; r < inputs.size(); ++r) {
+    if (!inputs[r].record.normal_load.empty()) continue;
+    throw InputError(
+        fmt::format("{}: {} needs a normal load: name its column with "
+                    "--normal-load-column",
+                    options.files[r], option));
+  }
+}
+
 /// The measured normal load where it was not given: its mean, which a steady test keeps to.
 void UseMeasuredNormalLoad(ContactOptions& contact, const std::vector<RecordFile>& inputs,
-                           Console& console) {
+                           const std::optional<Interval>& window, Console& console) {
   if (contact.known.normal_load) return;
   double sum = 0.0;
   double count = 0.0;
   for (const RecordFile& input : inputs) {
     const std::vector<double>& load = input.record.normal_load;
     if (load.empty()) return;
-    sum += std::accumulate(load.begin(), load.end(), 0.0);
-    count += static_cast<double>(load.size());
+    for (const double value : load) {
+      if (window && (value < window->lower || value > window->upper)) continue;
+      sum += value;
+      ++count;
+    }
   }
   const double mean = sum / count;
   if (!(mean > 0)) {
@@ -207,15 +277,24 @@ void RunFit(FitCommandOptions options, Console& console) {
   if (!options.plot_path.empty()) RequireOutputPath("--plot", options.plot_path);
   const FitOptions fit_options = MakeFitOptions(options);
   std::vector<RecordFile> inputs = ReadInputs(options, console);
-  UseMeasuredNormalLoad(options.contact, inputs, console);
+  RequireLoads(options, inputs);
+  UseMeasuredNormalLoad(options.contact, inputs, fit_options.load_window, console);
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
-  FitResult fit = Fit(records, fit_options);
+  std::optional<ModelSelection> selection;
+  FitResult fit;
+  if (options.model == kAutomatic) {
+    selection = SelectModel(records, fit_options);
+    fit = selection->fit;
+  } else {
+    fit = Fit(records, fit_options);
+  }
   const bool failed = fit.parameters.empty();
   console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
-  const FitReport report =
+  FitReport report =
       MakeFitReport(options.files, std::move(inputs), std::move(fit), options.contact.known);
+  report.selection = std::move(selection);
   for (const FitWarning& warning : report.fit.warnings) {
     console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
   }
@@ -255,6 +334,18 @@ void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {
   command.add_option("--time-window", options.time_window, "fit only samples from LO to HI [s]")
       ->type_name("LO:HI")
       ->group(group);
+  command
+      .add_option("--load-window", options.load_window,
+                  "fit only samples under a normal load from LO to HI [N]; the others still make "
+                  "history")
+      ->type_name("LO:HI")
+      ->group(group);
+  command
+      .add_option("--skip-cycles", options.skip_cycles,
+                  "leave out so many cycles at the start; they still make history")
+      ->capture_default_str()
+      ->check(WholeNumber(0, 1'000'000'000))
+      ->group(group);
 }
 
 void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
@@ -266,7 +357,8 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
     models.emplace_back(model.name);
     description += fmt::format(" {} ({});", model.name, model.title);
   }
-  description.back() = '.';
+  models.emplace_back(kAutomatic);
+  description += " auto (chosen by AICc and held-out cycles, each with and without a rig).";
   command.add_option("--model", options.model, description)
       ->capture_default_str()
       ->check(CLI::IsMember(models))
@@ -293,11 +385,25 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
   command.add_flag("--drift", options.drift, "fit a force drift linear in time [N/s]")
       ->group(group);
   command
+      .add_option("--rig-stiffness", options.rig_stiffness,
+                  "stiffness of the rig in series with the contact [N/m], or fit; default rigid")
+      ->type_name("K|fit")
+      ->group(group);
+  command
+      .add_flag("--plateau-slope", options.plateau_slope,
+                "fit a force that grows with the displacement beside the contact's [N/m]")
+      ->group(group);
+  command
+      .add_flag("--follow-load", options.follow_load,
+                "the force follows the measured normal load, T N/mean N: a load that varies by "
+                "some per cent")
+      ->group(group);
+  command
       .add_option(
           "--fix", options.fix,
-          "hold a parameter: sigma [N/m], alpha [-], slip_force [N], force_offset [N], "
-          "displacement_offset [m], force_drift [N/s]; with several files the last three are "
-          "numbered, force_offset_2")
+          "hold a parameter: sigma [N/m], alpha [-], slip_force [N], rig_stiffness [N/m], "
+          "plateau_slope [N/m], force_offset [N], displacement_offset [m], force_drift [N/s]; with "
+          "several files the last three are numbered, force_offset_2")
       ->type_name("NAME=VALUE")
       ->group(group);
   command.add_option("--start", options.start, "start from a value instead of the data's")
@@ -308,6 +414,29 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
       ->group(group);
   AddOptional(command, "--force-noise", options.force_noise,
               "known standard deviation of the force [N]; default from the residuals", "N")
+      ->group(group);
+  AddOptional(command, "--displacement-noise", options.displacement_noise,
+              "known standard deviation of the displacement [m]; default from the data where "
+              "they show any",
+              "M")
+      ->group(group);
+  command
+      .add_option("--loss", options.loss,
+                  "what large residuals count; the scale is the data's: huber and cauchy less, "
+                  "tukey in the end nothing")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"none", "huber", "cauchy", "tukey"}))
+      ->group(group);
+  command
+      .add_option("--starts", options.starts,
+                  "starting points that are refined, the best of a grid and beyond four drawn at "
+                  "random")
+      ->capture_default_str()
+      ->check(WholeNumber(1, 1000))
+      ->group(group);
+  command.add_option("--seed", options.seed, "of starting points drawn at random")
+      ->capture_default_str()
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
       ->group(group);
   AddOptional(command, "--reversal-gate", options.reversal_gate,
               "excursions up to this [m] are noise, not reversals; default from the data", "M")

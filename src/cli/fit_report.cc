@@ -24,20 +24,36 @@ UncertainValue Uncertain(const ParameterEstimate& estimate) {
           estimate.standard_error.value_or(known ? 0.0 : std::numeric_limits<double>::infinity())};
 }
 
+/// The contact's part of an amplitude that the rig shares in: X_c = X − T*(X_c)/k_r, the right side
+/// falling in X_c.
+double ContactAmplitude(const FitResult& fit, double amplitude) {
+  if (std::isinf(fit.rig.stiffness)) return amplitude;
+  double low = 0.0;
+  double high = amplitude;
+  constexpr int kBisections = 200;
+  for (int i = 0; i < kBisections && high - low > 1e-15 * amplitude; ++i) {
+    const double middle = low + (high - low) / 2;
+    const double whole = middle + SteadyPeakForce(*fit.model, fit.law, middle) / fit.rig.stiffness;
+    (whole < amplitude ? low : high) = middle;
+  }
+  return low + (high - low) / 2;
+}
+
 void DescribeLoop(FitReport& report) {
   const BranchLaw& law = report.fit.law;
   const LoopMeasures& measures = report.fit.WidestRecord().measures;
-  report.model_energy = SteadyLoopEnergy(*report.fit.model, law, measures.amplitude);
+  const double contact_amplitude = ContactAmplitude(report.fit, measures.amplitude);
+  report.model_energy = SteadyLoopEnergy(*report.fit.model, law, contact_amplitude);
   const double energy = measures.energy_per_cycle.value_or(*report.model_energy);
   if (measures.amplitude > 0 && measures.peak_force > 0) {
     report.energy_ratio = energy / (4 * measures.amplitude * measures.peak_force);
   }
   const double gross_slip = GrossSlipDisplacement(law);
   if (std::isfinite(gross_slip)) report.gross_slip_displacement = gross_slip;
-  const double peak = SteadyPeakForce(*report.fit.model, law, measures.amplitude);
+  const double peak = SteadyPeakForce(*report.fit.model, law, contact_amplitude);
   // A law with α >= 1 never slips as a whole; within 1 % of Tc no record tells the difference.
   constexpr double kAsGoodAsSlip = 0.99;
-  report.gross_slip = std::isfinite(gross_slip) ? measures.amplitude >= gross_slip
+  report.gross_slip = std::isfinite(gross_slip) ? contact_amplitude >= gross_slip
                                                 : peak >= kAsGoodAsSlip * law.slip_force;
   report.stick_radius_ratio =
       report.gross_slip ? 0.0 : StickRadiusRatio(std::min(peak, law.slip_force), law.slip_force);
@@ -281,7 +297,8 @@ nlohmann::ordered_json LawJson(const BranchLaw& law) {
 nlohmann::ordered_json SolverJson(const FitResult& fit) {
   nlohmann::ordered_json starts = nlohmann::ordered_json::array();
   for (const StartReport& start : fit.starts) {
-    starts.push_back({{"start", LawJson(start.start)},
+    starts.push_back({{"from", start.drawn ? "seed" : "grid"},
+                      {"start", LawJson(start.start)},
                       {"initial_rms", NumberOrNull(start.initial_rms)},
                       {"reached", LawJson(start.reached)},
                       {"final_rms", NumberOrNull(start.final_rms)},
@@ -297,12 +314,16 @@ nlohmann::ordered_json InputJson(const FitReport& report) {
   std::size_t samples = 0;
   std::size_t cycles = 0;
   std::size_t reversals = 0;
+  std::size_t left_out = 0;
   nlohmann::ordered_json gates = nlohmann::ordered_json::array();
+  nlohmann::ordered_json noises = nlohmann::ordered_json::array();
   for (const RecordFile& input : report.inputs) samples += input.record.size();
   for (const RecordFit& record : report.fit.records) {
     cycles += record.measures.cycles;
     reversals += record.reversals.size();
+    left_out += record.left_out;
     gates.push_back(record.reversal_gate);
+    noises.push_back(record.displacement_noise);
   }
   const RecordFile& first = report.inputs.front();
   nlohmann::ordered_json units = {{"displacement", first.displacement.unit},
@@ -314,8 +335,69 @@ nlohmann::ordered_json InputJson(const FitReport& report) {
           {"cycles", cycles},
           {"reversals", reversals},
           {"units", std::move(units)},
+          {"left_out", left_out},
           {"reversal_gate", std::move(gates)},
+          {"displacement_noise", std::move(noises)},
           {"force_sign", report.fit.force_sense > 0 ? "same" : "opposite"}};
+}
+
+nlohmann::ordered_json StructureJson(const FitResult& fit) {
+  nlohmann::ordered_json records = nlohmann::ordered_json::array();
+  for (const RecordFit& record : fit.records) {
+    nlohmann::ordered_json directions = nlohmann::ordered_json::array();
+    for (const StrokeResiduals& direction : record.structure.directions) {
+      nlohmann::ordered_json bins = nlohmann::ordered_json::array();
+      for (const StrokeBin& bin : direction.bins) {
+        bins.push_back({{"position", bin.position},
+                        {"mean", NumberOrNull(bin.mean)},
+                        {"standard_error", NumberOrNull(bin.standard_error)}});
+      }
+      directions.push_back({{"direction", direction.direction > 0 ? "up" : "down"},
+                            {"strokes", direction.strokes},
+                            {"mean", NumberOrNull(direction.mean)},
+                            {"rms", NumberOrNull(direction.rms)},
+                            {"along_stroke", std::move(bins)}});
+    }
+    records.push_back({{"repeatable_share", record.structure.repeatable_share},
+                       {"directions", std::move(directions)}});
+  }
+  return records;
+}
+
+nlohmann::ordered_json SelectionJson(const ModelSelection& selection) {
+  nlohmann::ordered_json scores = nlohmann::ordered_json::array();
+  for (const ModelScore& score : selection.scores) {
+    scores.push_back({{"model", score.model->name},
+                      {"rig", score.rig},
+                      {"free_parameters", score.free_parameters},
+                      {"rms", NumberOrNull(score.rms)},
+                      {"aicc", NumberOrNull(score.aicc)},
+                      {"delta_aicc", NumberOrNull(score.delta_aicc)},
+                      {"akaike_weight", NumberOrNull(score.akaike_weight)},
+                      {"held_out_rms", NumberOrNull(score.held_out_rms)},
+                      {"held_out_standard_error", NumberOrNull(score.held_out_standard_error)},
+                      {"converged", score.converged},
+                      {"at_bound", score.at_bound},
+                      {"redundant", score.redundant},
+                      {"remark", score.remark}});
+  }
+  return {{"chosen", selection.chosen},
+          {"indistinguishable", selection.indistinguishable},
+          {"effective_samples", NumberOrNull(selection.effective_samples)},
+          {"held_out_cycles", selection.held_out_cycles},
+          {"verdict", selection.verdict},
+          {"models", std::move(scores)}};
+}
+
+nlohmann::ordered_json BranchShapesJson(const FitResult& fit) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const BranchShape& shape : fit.branch_shapes) {
+    json.push_back({{"branch", shape.branch},
+                    {"samples", shape.samples},
+                    {"alpha", NumberOrNull(shape.shape_exponent)},
+                    {"standard_error", NumberOrNull(shape.standard_error)}});
+  }
+  return json;
 }
 
 nlohmann::ordered_json ResidualsJson(const ResidualStatistics& residuals) {
@@ -406,6 +488,33 @@ std::string Bound(const std::optional<double>& value) {
   return value ? fmt::format("{:.5g}", *value) : "open";
 }
 
+/// Breaks a sentence between words at 100 columns; lines after the first are indented.
+std::string Wrapped(std::string_view text, std::size_t indent) {
+  constexpr std::size_t kColumns = 100;
+  const auto width = [](std::string_view part) {
+    return static_cast<std::size_t>(std::ranges::count_if(part, [](char byte) {
+      return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: not a continuation
+    }));
+  };
+  std::string wrapped;
+  std::size_t column = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    // A word takes the blanks before it along.
+    const std::size_t letter = std::min(text.find_first_not_of(' ', begin), text.size());
+    const std::size_t end = std::min(text.find(' ', letter), text.size());
+    const std::string_view word = text.substr(begin, end - begin);
+    if (column > indent && column + width(word) > kColumns) {
+      wrapped += '\n' + std::string(indent, ' ') + std::string(text.substr(letter, end - letter));
+      column = indent + width(text.substr(letter, end - letter));
+    } else {
+      wrapped += word;
+      column += width(word);
+    }
+    begin = end;
+  }
+  return wrapped + '\n';
+}
+
 std::string Words(Identifiability identifiability) {
   std::string words(Name(identifiability));
   std::ranges::replace(words, '_', ' ');
@@ -413,22 +522,24 @@ std::string Words(Identifiability identifiability) {
 }
 
 std::string ParameterTable(const FitResult& fit) {
-  std::string text = fmt::format("{:<22} {:<5} {:>14} {:>12}   {:<27} {}\n", "parameter", "unit",
-                                 "value", "std. error", "95 % interval", "verdict");
+  std::string text;
+  const auto row = [&](std::string_view name, std::string_view unit, std::string_view value,
+                       std::string_view error, std::string_view interval,
+                       std::string_view verdict) {
+    text += fmt::format("{:<19} {:<4} {:>12} {:>10} {:<24} {}\n", name, unit, value, error,
+                        interval, verdict);
+  };
+  row("parameter", "unit", "value", "std. error", " 95 % interval", "verdict");
   for (const ParameterEstimate& estimate : fit.parameters) {
     if (estimate.status == ParameterStatus::kFixed) {
-      text += fmt::format("{:<22} {:<5} {:>14} {:>12}   {:<27} {}\n", estimate.name, estimate.unit,
-                          Significant(estimate.value), "-", "-", "fixed");
+      row(estimate.name, estimate.unit, Significant(estimate.value), "-", " -", "fixed");
       continue;
     }
     std::string verdict = Words(estimate.identifiability);
-    if (estimate.status == ParameterStatus::kAtLowerBound) verdict += ", at its lower bound";
-    if (estimate.status == ParameterStatus::kAtUpperBound) verdict += ", at its upper bound";
-    text += fmt::format(
-        "{:<22} {:<5} {:>14} {:>12}   {:<27} {}\n", estimate.name, estimate.unit,
-        Significant(estimate.value),
+    if (estimate.status != ParameterStatus::kFree) verdict += ", at bound";
+    row(estimate.name, estimate.unit, Significant(estimate.value),
         estimate.standard_error ? fmt::format("{:.2g}", *estimate.standard_error) : "-",
-        fmt::format("{} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
+        fmt::format(" {} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
   }
   return text;
 }
@@ -477,32 +588,101 @@ std::string ContactText(const IdentifiedContact& contact) {
   line("maximum pressure", contact.maximum_pressure, "Pa", "p₀ = 3N/(2πa²)");
   line("gross slip (α = 1/3)", contact.gross_slip_displacement, "m", "δc = 3Tc/(2σ)");
   if (contact.hertz) text += HertzText(*contact.hertz);
-  for (const std::string& sentence : contact.redundant) text += fmt::format("  {}\n", sentence);
+  for (const std::string& sentence : contact.redundant) {
+    text += Wrapped(fmt::format("  {}", sentence), 4);
+  }
   for (const std::string& sentence : contact.unidentified) {
-    text += fmt::format("  not identified: {}\n", sentence);
+    text += Wrapped(fmt::format("  not identified: {}", sentence), 18);
   }
   return text;
+}
+
+std::string BranchShapesText(const FitResult& fit) {
+  std::string text;
+  for (const BranchShape& shape : fit.branch_shapes) {
+    text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "  α branch by branch: " : ", ",
+                        shape.branch, shape.shape_exponent, shape.standard_error);
+  }
+  return text.empty() ? text : Wrapped(text, 4);
+}
+
+std::string SelectionText(const ModelSelection& selection) {
+  std::string text =
+      fmt::format("models compared on {:.0f} effective samples", selection.effective_samples);
+  text += selection.held_out_cycles > 0
+              ? fmt::format(", and by predicting {} held-out cycles:\n", selection.held_out_cycles)
+              : "; too few cycles to hold any out:\n";
+  text += fmt::format("  {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}\n", "model", "free", "rms [N]",
+                      "dAICc", "weight", "held-out rms [N]");
+  for (std::size_t i = 0; i < selection.scores.size(); ++i) {
+    const ModelScore& score = selection.scores[i];
+    const bool listed =
+        std::ranges::find(selection.indistinguishable, i) != selection.indistinguishable.end();
+    const std::string name = fmt::format("{}{}", score.model->name, score.rig ? " + rig" : "");
+    text +=
+        fmt::format("{} {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}{}\n",
+                    i == selection.chosen ? "*"
+                    : listed              ? "="
+                                          : " ",
+                    name, score.free_parameters, fmt::format("{:.4g}", score.rms),
+                    std::isfinite(score.delta_aicc) ? fmt::format("{:.1f}", score.delta_aicc) : "-",
+                    fmt::format("{:.3f}", score.akaike_weight),
+                    score.held_out_rms ? fmt::format("{:.4g} ± {:.2g}", *score.held_out_rms,
+                                                     score.held_out_standard_error.value_or(0.0))
+                                       : "-",
+                    score.remark.empty() ? "" : "\n      " + score.remark);
+  }
+  return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
+}
+
+std::string SlipText(const FitReport& report) {
+  if (report.gross_slip_displacement) {
+    return fmt::format("{} slip (gross-slip displacement {:.5g} m)",
+                       report.gross_slip ? "gross" : "partial", *report.gross_slip_displacement);
+  }
+  const double peak =
+      SteadyPeakForce(*report.fit.model, report.fit.law,
+                      ContactAmplitude(report.fit, report.fit.WidestRecord().measures.amplitude));
+  return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
+                     100 * peak / report.fit.law.slip_force);
 }
 
 std::string MappingText(const FitReport& report) {
   std::string text;
   // Two-sided 5 %: the usual convention.
   constexpr double kSignificance = 0.05;
+  const auto verdict = [](double p_value) {
+    return p_value < kSignificance ? "rejected" : "tenable";
+  };
+  const auto& test = report.fit.mindlin_test;
+  // Of the two tests the likelihood ratio has the say: it needs no parabola.
   if (report.alpha_z) {
     text += fmt::format(
-        "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}: Mindlin's exponent is {}\n",
-        *report.alpha_minus_third, *report.alpha_z, *report.alpha_p_value,
-        *report.alpha_p_value < kSignificance ? "rejected" : "tenable");
+        "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}{}\n", *report.alpha_minus_third,
+        *report.alpha_z, *report.alpha_p_value,
+        test ? "" : fmt::format(": Mindlin's exponent is {}", verdict(*report.alpha_p_value)));
   }
+  if (test) {
+    text +=
+        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}",
+                    test->likelihood_ratio, test->p_value, verdict(test->p_value));
+    text += test->rig_stiffness
+                ? fmt::format(
+                      " for a rigid rig,\n      but tenable with a rig of {:.4g} N/m in "
+                      "series: the record does not tell which\n",
+                      *test->rig_stiffness)
+                : "\n";
+  }
+  text += BranchShapesText(report.fit);
   for (const StiffnessTest& test : TestStiffness(report)) {
     text += fmt::format("  σ/(8a/G*) = {:.6g} {}: 1 where Hertz and Mindlin hold\n",
                         test.ratio.value, ErrorText(test.ratio));
     if (test.z) {
       text += fmt::format(
-          "      with a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, p = {:.3g}: {}\n",
-          test.radius == "hertz" ? "of Hertz" : "as given", test.interval95->lower,
-          test.interval95->upper, *test.z, *test.p_value,
-          *test.p_value < kSignificance ? "rejected" : "tenable");
+          "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, p = {:.3g}: "
+          "{}\n",
+          test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
+          test.interval95->upper, *test.z, *test.p_value, verdict(*test.p_value));
     }
     text += SharesText(test.ratio);
   }
@@ -593,6 +773,10 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
                                  {"parameters", ParametersJson(fit)},
                                  {"correlation", CorrelationJson(fit)}};
   json["residuals"] = ResidualsJson(fit.residuals);
+  json["residuals"]["force_noise"] = NumberOrNull(fit.force_noise);
+  json["residuals"]["outliers"] = fit.outliers;
+  json["residual_structure"] = StructureJson(fit);
+  if (report.selection) json["model_selection"] = SelectionJson(*report.selection);
   json["solver"] = SolverJson(fit);
   const LoopMeasures& measures = fit.WidestRecord().measures;
   json["loop"] = {{"amplitude", measures.amplitude},
@@ -609,6 +793,13 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
       {"alpha_minus_third", NumberOrNull(report.alpha_minus_third)},
       {"z", NumberOrNull(report.alpha_z)},
       {"p_value", NumberOrNull(report.alpha_p_value)},
+      {"likelihood_ratio",
+       fit.mindlin_test ? NumberOrNull(fit.mindlin_test->likelihood_ratio) : nullptr},
+      {"likelihood_ratio_p_value",
+       fit.mindlin_test ? NumberOrNull(fit.mindlin_test->p_value) : nullptr},
+      {"tenable_with_rig_stiffness",
+       fit.mindlin_test ? NumberOrNull(fit.mindlin_test->rig_stiffness) : nullptr},
+      {"alpha_by_branch", BranchShapesJson(fit)},
       {"sigma_over_hertz_mindlin", report.sigma_over_hertz_mindlin
                                        ? NumberOrNull(report.sigma_over_hertz_mindlin->value)
                                        : nullptr},
@@ -630,37 +821,60 @@ std::string ToText(const FitReport& report) {
   std::size_t samples = 0;
   std::size_t reversals = 0;
   std::size_t cycles = 0;
+  std::size_t left_out = 0;
   for (const RecordFit& record : fit.records) {
     samples += record.residual.size();
     reversals += record.reversals.size();
     cycles += record.measures.cycles;
+    left_out += record.left_out;
   }
-  std::string text = fmt::format(
-      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} m), {} cycles; force has "
-      "the "
-      "{} sense as displacement\n\n",
-      fit.model->title, Name(fit.initial_state),
-      fit.converged ? "converged" : "NOT CONVERGED: " + fit.termination, samples, reversals,
-      widest.reversal_gate, cycles, fit.force_sense > 0 ? "same" : "opposite");
-  text += ParameterTable(fit);
+  std::string text = report.selection ? SelectionText(*report.selection) : std::string();
+  text += fmt::format(
+      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} m), {} cycles; force {} the "
+      "displacement's sense\n",
+      fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
+      samples, reversals, widest.reversal_gate, cycles, fit.force_sense > 0 ? "in" : "against");
+  if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
+  if (left_out > 0) text += fmt::format("{} samples left out of the fit\n", left_out);
+  text += "\n" + ParameterTable(fit);
+  for (const FitWarning& warning : fit.warnings) {
+    if (warning.code == "no_model_fits") text += "\n" + Wrapped(warning.message, 2);
+  }
   const ResidualStatistics& residuals = fit.residuals;
   text += fmt::format(
       "\nresiduals: rms {:.4g} N ({:.3g} % of Tc), largest {:.4g} N, R² {:.6f}, Durbin-Watson "
       "{:.2f},\n           {:.0f} effective samples of {}\n",
       residuals.rms, 100 * residuals.normalized_rms, residuals.max_abs, residuals.r_squared,
-      residuals.durbin_watson, residuals.effective_samples, samples);
+      residuals.durbin_watson, residuals.effective_samples, samples - left_out);
+  double repeatable = 0.0;
+  for (const RecordFit& record : fit.records) {
+    repeatable = std::max(repeatable, record.structure.repeatable_share);
+  }
+  if (repeatable > 0) {
+    text += fmt::format("           {:.0f} % of their variance comes back in every stroke\n",
+                        100 * repeatable);
+  }
+  if (widest.displacement_noise > 0) {
+    text += fmt::format("           noise of the displacement {:.3g} m, weighed in\n",
+                        widest.displacement_noise);
+  }
+  if (fit.outliers > 0) {
+    text += fmt::format("           {} outliers count less than half\n", fit.outliers);
+  }
   const LoopMeasures& measures = widest.measures;
+  text += fmt::format("\nloop: X = {:.5g} m, T* = {:.5g} N, {}\n", measures.amplitude,
+                      measures.peak_force, SlipText(report));
   text += fmt::format(
-      "\nloop: X = {:.5g} m, T* = {:.5g} N, {} slip{}\n      energy per cycle {} J measured, "
-      "{:.5g} J "
-      "model; energy ratio {:.4g}, gross slip from {:.4g}\n",
-      measures.amplitude, measures.peak_force, report.gross_slip ? "gross" : "partial",
-      report.gross_slip_displacement
-          ? fmt::format(" (gross-slip displacement {:.5g} m)", *report.gross_slip_displacement)
-          : "",
+      "      energy per cycle {} J measured, {:.5g} J model\n",
       measures.energy_per_cycle ? fmt::format("{:.5g}", *measures.energy_per_cycle) : "not",
-      *report.model_energy, report.energy_ratio.value_or(0.0),
-      GrossSlipEnergyRatio(fit.law.shape_exponent));
+      *report.model_energy);
+  if (report.energy_ratio) {
+    text += fmt::format(
+        "      energy ratio {:.4g}{}\n", *report.energy_ratio,
+        report.gross_slip_displacement
+            ? fmt::format(", gross slip from {:.4g}", GrossSlipEnergyRatio(fit.law.shape_exponent))
+            : "");
+  }
   text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report.contact);
   text += "\nis it Mindlin's contact?\n" + MappingText(report);
   return text;

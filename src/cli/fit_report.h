@@ -8,6 +8,7 @@
 #include "cli/contact_options.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/model_selection.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
 
@@ -30,7 +31,8 @@ struct FitReport {
   std::optional<double> alpha_z;        ///< (α − 1/3)/SE
   std::optional<double> alpha_p_value;  ///< two-sided
   std::optional<UncertainValue> sigma_over_hertz_mindlin;
-  std::vector<FitWarning> warnings;  ///< the fit's and those of the translation
+  std::vector<FitWarning> warnings;         ///< the fit's and those of the translation
+  std::optional<ModelSelection> selection;  ///< where the model was chosen
 };
 
 /// Loop, contact and mapping from a fit.

@@ -15,7 +15,7 @@ namespace mindahl {
 namespace {
 
 double Rms(double sum_of_squares, const ScaledRecords& data) {
-  return data.force * std::sqrt(sum_of_squares / static_cast<double>(data.samples()));
+  return data.force * std::sqrt(sum_of_squares / static_cast<double>(data.weighted_samples()));
 }
 
 /// Where α is held the likelihood may have kinks (a Jenkins loop just past slip has a false minimum
@@ -28,25 +28,28 @@ std::optional<StartingPoint> StartWithFreeShape(InitialState state, const Scaled
   FitOptions relaxed = options;
   relaxed.model = &model;
   relaxed.fixed.erase("alpha");
+  relaxed.starts = 1;
   const ParameterLayout layout(data, relaxed, state);
-  const ForceResidual residual(data, model, state);
+  const ForceResidual residual(data, model, state, layout);
   const std::vector<StartingPoint> starts = FindStartingPoints(data, layout, relaxed, state);
   if (starts.empty()) return {};
   Solution solution = Solve(residual, layout, starts.front().theta, relaxed);
   solution.theta[kShapeExponent] = held.parameters()[kShapeExponent].theta;
-  return StartingPoint{solution.theta, residual.SumOfSquares(solution.theta)};
+  return StartingPoint{.theta = solution.theta,
+                       .sum_of_squares = residual.SumOfSquares(solution.theta)};
 }
 
 Candidate FitFrom(InitialState state, const ScaledRecords& data, const FitOptions& options) {
-  Candidate candidate{.state = state,
-                      .layout = ParameterLayout(data, options, state),
-                      .residual = ForceResidual(data, *options.model, state),
-                      .solution = {},
-                      .starts = {}};
-  if (data.samples() < candidate.layout.free().size()) {
+  Candidate candidate{
+      .state = state,
+      .layout = ParameterLayout(data, options, state),
+      .residual = ForceResidual(data, *options.model, state, ParameterLayout(data, options, state)),
+      .solution = {},
+      .starts = {}};
+  if (data.weighted_samples() < candidate.layout.free().size()) {
     throw InvalidArgument(
         fmt::format("{} samples are too few for {} free parameters: record more or fix some",
-                    data.samples(), candidate.layout.free().size()));
+                    data.weighted_samples(), candidate.layout.free().size()));
   }
   candidate.solution.sum_of_squares = std::numeric_limits<double>::infinity();
   candidate.solution.termination = "no starting point has the force's sense";
@@ -57,7 +60,8 @@ Candidate FitFrom(InitialState state, const ScaledRecords& data, const FitOption
   }
   for (const StartingPoint& start : starts) {
     Solution solution = Solve(candidate.residual, candidate.layout, start.theta, options);
-    candidate.starts.push_back({.start = candidate.layout.Law(start.theta),
+    candidate.starts.push_back({.drawn = start.drawn,
+                                .start = candidate.layout.Law(start.theta),
                                 .initial_rms = Rms(start.sum_of_squares, data),
                                 .reached = candidate.layout.Law(solution.theta),
                                 .final_rms = Rms(solution.sum_of_squares, data),
@@ -87,12 +91,12 @@ ResidualStatistics DescribeScaled(const ScaledRecords& data, const Candidate& ca
 /// small-sample term would outweigh any difference between two fits.
 double CorrectedAkaike(const Candidate& candidate, double samples, const ScaledRecords& data) {
   const double mean_square =
-      std::max(candidate.solution.sum_of_squares / static_cast<double>(data.samples()),
+      std::max(candidate.solution.sum_of_squares / static_cast<double>(data.weighted_samples()),
                kRoundingRms * kRoundingRms);
   const auto parameters = static_cast<double>(candidate.layout.free().size() + 1);
   return samples * std::log(mean_square) + 2 * parameters +
          2 * parameters * (parameters + 1) /
-             std::max(static_cast<double>(data.samples()) - parameters - 1, 1.0);
+             std::max(static_cast<double>(data.weighted_samples()) - parameters - 1, 1.0);
 }
 
 }  // namespace

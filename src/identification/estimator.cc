@@ -33,9 +33,10 @@ ParameterStatus StatusOf(const ScaledParameter& parameter, double theta) {
 
 }  // namespace
 
-Estimator::Estimator(const Candidate& candidate, double variance,
-                     const ResidualStatistics& statistics)
-    : candidate_(candidate), quantile_(TwoSidedQuantile(statistics.degrees_of_freedom)) {
+Estimator::Estimator(const Candidate& candidate, double variance, const NoiseModel& noise,
+                     std::span<const std::size_t> rows, double degrees_of_freedom,
+                     const DisplacementEffect& displacement, std::size_t samples)
+    : candidate_(candidate), quantile_(TwoSidedQuantile(degrees_of_freedom)), variance_(variance) {
   const auto& parameters = candidate.layout.parameters();
   std::vector<std::size_t> inside;
   for (const std::size_t i : candidate.layout.free()) {
@@ -43,13 +44,21 @@ Estimator::Estimator(const Candidate& candidate, double variance,
       inside.push_back(i);
     }
   }
-  // Autocorrelated residuals carry the information of effective_samples independent ones.
-  variance_ = variance * static_cast<double>(statistics.samples) / statistics.effective_samples;
   const bool none_at_a_bound = inside.size() == candidate.layout.free().size();
-  conditional_ = AnalyseJacobian(candidate.residual, candidate.solution.theta, std::move(inside));
+  const std::vector<double>& theta = candidate.solution.theta;
+  conditional_ =
+      AnalyseJacobian(candidate.residual, theta, std::move(inside), noise, rows, displacement);
   full_ = none_at_a_bound ? conditional_
-                          : AnalyseJacobian(candidate.residual, candidate.solution.theta,
-                                            candidate.layout.free());
+                          : AnalyseJacobian(candidate.residual, theta, candidate.layout.free(),
+                                            noise, rows, displacement);
+  // Of correlated residuals a fit takes up more than its parameters' number, and leaves less than
+  // the noise's variance; where it takes up most, that is all that can be said.
+  constexpr double kMostAbsorbed = 0.5;
+  if (samples == 0 || displacement.residuals.size() > 0) return;
+  const auto count = static_cast<double>(samples);
+  const auto parameters_free = static_cast<double>(full_.columns.size());
+  const double absorbed = std::min(full_.absorbed, kMostAbsorbed * count);
+  if (absorbed > parameters_free) variance_ *= (count - parameters_free) / (count - absorbed);
 }
 
 ParameterEstimate Estimator::Estimate(std::size_t index) const {
@@ -104,6 +113,13 @@ double Estimator::Correlation(std::size_t row, std::size_t column) const {
   const double sign = ScaleSign(row) * ScaleSign(column);
   return sign * conditional_.Factor(i, j) /
          std::sqrt(conditional_.Factor(i, i) * conditional_.Factor(j, j));
+}
+
+double Estimator::WhiteShare(std::size_t index, double white_variance) const {
+  const auto found = std::ranges::find(full_.columns, index);
+  const auto j = static_cast<std::size_t>(found - full_.columns.begin());
+  if (found == full_.columns.end() || !full_.determined[j]) return 1.0;
+  return white_variance * full_.white_factor[j] / (variance_ * full_.Factor(j, j));
 }
 
 double Estimator::ScaleSign(std::size_t index) const {

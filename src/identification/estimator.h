@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "identification/candidate.h"
 #include "identification/uncertainty.h"
@@ -12,8 +13,12 @@ namespace mindahl {
 class Estimator {
  public:
   /// @param candidate  must outlive this
-  /// @param variance   of a residual, in units of the data
-  Estimator(const Candidate& candidate, double variance, const ResidualStatistics& statistics);
+  /// @param variance   of a residual, in units of the data, inflated for what repeats every stroke
+  /// @param rows       samples of each record
+  /// @param samples    that count, of which the variance was estimated; 0 when it is known
+  Estimator(const Candidate& candidate, double variance, const NoiseModel& noise,
+            std::span<const std::size_t> rows, double degrees_of_freedom,
+            const DisplacementEffect& displacement, std::size_t samples);
 
   /// @param index  position in theta
   [[nodiscard]] ParameterEstimate Estimate(std::size_t index) const;
@@ -23,6 +28,9 @@ class Estimator {
 
   /// Directions in θ that leave the response as it is.
   [[nodiscard]] const LocalUncertainty& local() const { return full_; }
+  /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
+  /// this share a likelihood ratio counts. 1 where it is not determined.
+  [[nodiscard]] double WhiteShare(std::size_t index, double white_variance) const;
   /// Half width of a 95 % interval in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
 

@@ -1,10 +1,8 @@
 #include "identification/force_residual.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-
-#include "identification/parameter_layout.h"
-#include "mindahl/models/response.h"
 
 namespace mindahl {
 namespace {
@@ -53,50 +51,51 @@ LoadingPath MakePath(const FrictionModel& model, InitialState state, std::size_t
 }  // namespace
 
 ForceResidual::ForceResidual(const ScaledRecords& data, const FrictionModel& model,
-                             InitialState state)
-    : data_(data), model_(model), state_(state) {
-  std::size_t position = ParameterLayout::OfRecord(data_.records.size(), 0);
-  for (const ScaledRecord& record : data_.records) {
+                             InitialState state, const ParameterLayout& layout)
+    : data_(&data), model_(&model), state_(state), has_rig_(layout.has_rig()) {
+  std::size_t position = ParameterLayout::OfRecord(data_->records.size(), 0);
+  for (const ScaledRecord& record : data_->records) {
     first_overshoot_.push_back(position);
     position += record.reversals.size();
     if (state_ == InitialState::kVirgin) continue;
-    steady_paths_.push_back(MakeLoadingPath(record.displacement, record.reversals, model_.memory,
+    steady_paths_.push_back(MakeLoadingPath(record.displacement, record.reversals, model_->memory,
                                             {.state = InitialState::kSteady}));
   }
 }
 
 LoadingPath ForceResidual::PathOf(std::size_t record, const std::vector<double>& theta) const {
   if (state_ == InitialState::kSteady) return steady_paths_[record];
-  const ScaledRecord& scaled = data_.records[record];
-  return MakePath(model_, state_, record, scaled.displacement, scaled.reversals, theta);
+  const ScaledRecord& scaled = data_->records[record];
+  return MakePath(*model_, state_, record, scaled.displacement, scaled.reversals, theta);
 }
 
 void ForceResidual::Respond(std::size_t r, const std::vector<double>& theta,
                             std::span<double> force, std::vector<double>* gradient) const {
   const BranchLaw law = ParameterLayout::ScaledLaw(theta);
-  const ScaledRecord& record = data_.records[r];
+  const SeriesSpring rig = RigOf(theta);
+  const ScaledRecord& record = data_->records[r];
   if (theta.size() <= first_overshoot_.front()) {
     if (gradient == nullptr) {
-      EvaluateForce(model_, law, PathOf(r, theta), record.displacement, force);
+      EvaluateForce(*model_, law, PathOf(r, theta), record.displacement, force, rig);
     } else {
       gradient->resize(force.size() * kGradientColumns);
-      EvaluateForceAndGradient(model_, law, PathOf(r, theta), record.displacement, force,
-                               *gradient);
+      EvaluateForceAndGradient(*model_, law, PathOf(r, theta), record.displacement, force,
+                               *gradient, rig);
     }
     return;
   }
   const TurnedHistory turned = PutInTurningPoints(
       record, std::span(theta).subspan(first_overshoot_[r], record.reversals.size()));
   const LoadingPath path =
-      MakePath(model_, state_, r, turned.displacement, turned.reversals, theta);
+      MakePath(*model_, state_, r, turned.displacement, turned.reversals, theta);
   std::vector<double> all_force(turned.displacement.size());
   std::vector<double> all_gradient;
   if (gradient == nullptr) {
-    EvaluateForce(model_, law, path, turned.displacement, all_force);
+    EvaluateForce(*model_, law, path, turned.displacement, all_force, rig);
   } else {
     all_gradient.resize(all_force.size() * kGradientColumns);
     gradient->resize(force.size() * kGradientColumns);
-    EvaluateForceAndGradient(model_, law, path, turned.displacement, all_force, all_gradient);
+    EvaluateForceAndGradient(*model_, law, path, turned.displacement, all_force, all_gradient, rig);
   }
   for (std::size_t i = 0; i < force.size(); ++i) {
     force[i] = all_force[turned.samples[i]];
@@ -106,18 +105,41 @@ void ForceResidual::Respond(std::size_t r, const std::vector<double>& theta,
   }
 }
 
-void ForceResidual::Evaluate(const std::vector<double>& theta, std::span<double> residual) const {
+SeriesSpring ForceResidual::RigOf(const std::vector<double>& theta) const {
+  if (!has_rig_) return {};
+  return {.stiffness = std::exp(theta[kLogRigStiffness])};
+}
+
+void ForceResidual::Complete(std::size_t r, const std::vector<double>& theta,
+                             std::span<double> force) const {
+  const ScaledRecord& record = data_->records[r];
+  const double offset = theta[ParameterLayout::OfRecord(r, kForceOffset)];
+  const double drift = theta[ParameterLayout::OfRecord(r, kForceDrift)];
+  const double slope = theta[kPlateauSlope];
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (!record.load_ratio.empty()) force[i] *= record.load_ratio[i];
+    force[i] += offset + drift * record.time[i] + slope * record.displacement[i];
+  }
+}
+
+void ForceResidual::Predict(const std::vector<double>& theta, std::span<double> force) const {
   std::size_t begin = 0;
-  for (std::size_t r = 0; r < data_.records.size(); ++r) {
-    const ScaledRecord& record = data_.records[r];
-    const std::span<double> part = residual.subspan(begin, record.force.size());
+  for (std::size_t r = 0; r < data_->records.size(); ++r) {
+    const std::span<double> part = force.subspan(begin, data_->records[r].force.size());
     Respond(r, theta, part, nullptr);
-    const double offset = theta[ParameterLayout::OfRecord(r, kForceOffset)];
-    const double drift = theta[ParameterLayout::OfRecord(r, kForceDrift)];
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      part[i] += offset + drift * record.time[i] - record.force[i];
-    }
+    Complete(r, theta, part);
     begin += part.size();
+  }
+}
+
+void ForceResidual::Evaluate(const std::vector<double>& theta, std::span<double> residual) const {
+  Predict(theta, residual);
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data_->records) {
+    for (std::size_t i = 0; i < record.force.size(); ++i) {
+      residual[begin + i] = record.root_weight[i] * (residual[begin + i] - record.force[i]);
+    }
+    begin += record.force.size();
   }
 }
 
@@ -134,19 +156,22 @@ void ForceResidual::Differentiate(const std::vector<double>& theta,
   std::vector<double> gradient;
   std::vector<double> shifted(theta);
   std::size_t begin = 0;
-  for (std::size_t r = 0; r < data_.records.size(); ++r) {
-    const ScaledRecord& record = data_.records[r];
+  for (std::size_t r = 0; r < data_->records.size(); ++r) {
+    const ScaledRecord& record = data_->records[r];
     const std::size_t count = record.force.size();
     const std::span<double> part = residual.subspan(begin, count);
     Respond(r, theta, part, &gradient);
     const auto fill = [&](std::size_t column, auto value_of_sample) {
       for (std::size_t i = 0; i < count; ++i) {
-        jacobian[(begin + i) * free.size() + column] = value_of_sample(i);
+        jacobian[(begin + i) * free.size() + column] = record.root_weight[i] * value_of_sample(i);
       }
     };
+    const auto load_ratio = [&record](std::size_t i) {
+      return record.load_ratio.empty() ? 1.0 : record.load_ratio[i];
+    };
     const auto from_model = [&](GradientColumn model_column) {
-      return [&gradient, model_column](std::size_t i) {
-        return gradient[i * kGradientColumns + model_column];
+      return [&gradient, &load_ratio, model_column](std::size_t i) {
+        return load_ratio(i) * gradient[i * kGradientColumns + model_column];
       };
     };
     const std::size_t last_overshoot = first_overshoot_[r] + record.reversals.size();
@@ -158,6 +183,10 @@ void ForceResidual::Differentiate(const std::vector<double>& theta,
         fill(column, from_model(kPerShapeExponent));
       } else if (parameter == kLogSlipForce) {
         fill(column, from_model(kPerLogSlipForce));
+      } else if (parameter == kLogRigStiffness) {
+        fill(column, from_model(kPerLogSeriesStiffness));
+      } else if (parameter == kPlateauSlope) {
+        fill(column, [&](std::size_t i) { return record.displacement[i]; });
       } else if (parameter == ParameterLayout::OfRecord(r, kForceOffset)) {
         fill(column, [](std::size_t) { return 1.0; });
       } else if (parameter == ParameterLayout::OfRecord(r, kUnloadedDisplacement)) {
@@ -175,13 +204,13 @@ void ForceResidual::Differentiate(const std::vector<double>& theta,
         shifted[parameter] = theta[parameter] - kStep;
         Respond(r, shifted, below, nullptr);
         shifted[parameter] = theta[parameter];
-        fill(column, [&](std::size_t i) { return (above[i] - below[i]) / (2 * kStep); });
+        fill(column,
+             [&](std::size_t i) { return load_ratio(i) * (above[i] - below[i]) / (2 * kStep); });
       }
     }
-    const double offset = theta[ParameterLayout::OfRecord(r, kForceOffset)];
-    const double drift = theta[ParameterLayout::OfRecord(r, kForceDrift)];
+    Complete(r, theta, part);
     for (std::size_t i = 0; i < count; ++i) {
-      part[i] += offset + drift * record.time[i] - record.force[i];
+      part[i] = record.root_weight[i] * (part[i] - record.force[i]);
     }
     begin += count;
   }

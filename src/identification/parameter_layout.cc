@@ -88,6 +88,15 @@ ParameterLayout::ParameterLayout(const ScaledRecords& data, const FitOptions& op
     Hold(parameters_[kShapeExponent], *options.model->shape_exponent);
   }
 
+  ScaledParameter rig = Logarithmic("rig_stiffness", "N/m", data.force / data.length,
+                                    kLowestStiffness, kHighestStiffness);
+  rig.fixed = rig.absent = !options.fit_rig_stiffness;
+  parameters_.push_back(rig);
+  ScaledParameter plateau =
+      Linear("plateau_slope", "N/m", 0.0, data.force / data.length, -kWidestOffset, kWidestOffset);
+  plateau.fixed = plateau.absent = !options.plateau_slope;
+  parameters_.push_back(plateau);
+
   const std::size_t count = data.records.size();
   for (std::size_t r = 0; r < count; ++r) {
     const ScaledRecord& record = data.records[r];
@@ -175,6 +184,7 @@ void ParameterLayout::ApplyOptions(const FitOptions& options) {
                       name));
     }
     Hold(parameter, value);
+    parameter.absent = false;
   }
   for (const auto& [name, value] : options.start) {
     const ScaledParameter& parameter = find(name);
@@ -202,6 +212,24 @@ ParameterLayout ParameterLayout::WithFixed(std::size_t index, double theta) cons
   copy.parameters_[index].fixed = true;
   copy.CollectFree();
   return copy;
+}
+
+SeriesSpring ParameterLayout::ScaledRig(const std::vector<double>& theta) const {
+  if (!has_rig()) return {};
+  return {.stiffness = std::exp(theta[kLogRigStiffness])};
+}
+
+SeriesSpring ParameterLayout::Rig(const std::vector<double>& theta) const {
+  if (!has_rig()) return {};
+  return {.stiffness = parameters_[kLogRigStiffness].ToValue(theta[kLogRigStiffness])};
+}
+
+std::vector<std::size_t> ParameterLayout::Reported() const {
+  std::vector<std::size_t> positions;
+  for (std::size_t i = 0; i < reported_; ++i) {
+    if (!parameters_[i].absent) positions.push_back(i);
+  }
+  return positions;
 }
 
 BranchLaw ParameterLayout::ScaledLaw(const std::vector<double>& theta) {

@@ -8,6 +8,7 @@
 #include "identification/scaled_records.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/branch_law.h"
+#include "mindahl/models/response.h"
 
 namespace mindahl {
 
@@ -24,17 +25,20 @@ struct ScaledParameter {
   double upper = 0.0;
   bool fixed = false;
   bool estimated_elsewhere = false;  // fixed by the data, not by the user
+  bool absent = false;               // a term that was not asked for: not reported
 
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;
 };
 
-/// Positions in the vector of parameters: three shared, then three a record.
+/// Positions in the vector of parameters: five shared, then three a record.
 enum ParameterIndex : std::size_t {
   kLogStiffness = 0,
   kShapeExponent = 1,
   kLogSlipForce = 2,
-  kSharedParameters = 3,
+  kLogRigStiffness = 3,
+  kPlateauSlope = 4,
+  kSharedParameters = 5,
   kForceOffset = 0,  // within a record
   kUnloadedDisplacement = 1,
   kForceDrift = 2,
@@ -66,6 +70,13 @@ class ParameterLayout {
 
   /// σ, α, Tc in the units of the data.
   static BranchLaw ScaledLaw(const std::vector<double>& theta);
+  /// The spring in series with the contact, in the units of the data; rigid where it is absent.
+  [[nodiscard]] SeriesSpring ScaledRig(const std::vector<double>& theta) const;
+  /// In SI.
+  [[nodiscard]] SeriesSpring Rig(const std::vector<double>& theta) const;
+  [[nodiscard]] bool has_rig() const { return !parameters_[kLogRigStiffness].absent; }
+  /// Positions of the parameters that a result reports.
+  [[nodiscard]] std::vector<std::size_t> Reported() const;
   /// σ, α, Tc in SI.
   [[nodiscard]] BranchLaw Law(const std::vector<double>& theta) const;
 

@@ -37,6 +37,15 @@ std::size_t ScaledRecords::samples() const {
   return count;
 }
 
+std::size_t ScaledRecords::weighted_samples() const {
+  std::size_t count = 0;
+  for (const ScaledRecord& record : records) {
+    count += static_cast<std::size_t>(
+        std::ranges::count_if(record.root_weight, [](double weight) { return weight > 0; }));
+  }
+  return count;
+}
+
 std::vector<std::vector<double>> SplitByRecord(const ScaledRecords& data,
                                                std::span<const double> values) {
   std::vector<std::vector<double>> parts;
@@ -74,6 +83,7 @@ ScaledRecords Scale(std::span<const Record> records,
     target.displacement_reference = RangeOf(record.displacement).middle;
     target.force_reference = sense * RangeOf(record.force).middle;
     const std::size_t size = record.size();
+    target.root_weight.assign(size, 1.0);
     const double first = record.time.empty() ? 0.0 : record.time.front();
     const double last = record.time.empty() ? static_cast<double>(size - 1) : record.time.back();
     target.half_duration = last > first ? (last - first) / 2 : 1.0;

@@ -12,6 +12,8 @@ struct ScaledRecord {
   std::vector<double> displacement;    // (δ − displacement_reference)/length
   std::vector<double> force;           // (sense·T − force_reference)/force unit
   std::vector<double> time;            // −1 … 1 over the record; by sample where it has no time
+  std::vector<double> load_ratio;      // N over its mean; empty where the load is taken as constant
+  std::vector<double> root_weight;     // of each residual; 0 where the sample does not count
   std::vector<std::size_t> reversals;  // samples
   double displacement_reference = 0.0;  // [m]
   double force_reference = 0.0;         // [N], in the displacement's sense
@@ -30,12 +32,15 @@ struct ScaledRecords {
   int sense = 1;
 
   [[nodiscard]] std::size_t samples() const;
+  /// Samples that count.
+  [[nodiscard]] std::size_t weighted_samples() const;
 };
 
 /// One series a record from all records' values one after the other.
 std::vector<std::vector<double>> SplitByRecord(const ScaledRecords& data,
                                                std::span<const double> values);
 
+/// Every sample counts alike, and the load as constant.
 /// @param reversals  of each record
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
 /// more

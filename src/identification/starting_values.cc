@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "identification/force_residual.h"
 #include "mindahl/models/response.h"
@@ -14,10 +15,15 @@ namespace {
 constexpr std::array kReaches = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0,  // σX/Tc
                                  1.5,  2.5,  4.0, 7.0, 15., 40., 150.};
 constexpr std::array kShapeExponents = {0.0, 1.0 / 3.0, 1.0, 2.5};
+constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k_r
 constexpr int kSubdivisions = 5;
 constexpr int kRefinements = 3;
 
-/// Sums for the regression of force on normalised response, one record: force = Tc·t + F₀.
+constexpr double kHighestDrawnShape = 3.0;
+constexpr std::size_t kDrawsPerStart = 20;  // the regression refuses some of them
+
+/// Weighted sums for the regression of force on normalised response, one record:
+/// force = Tc·t + F₀.
 struct Regression {
   double count = 0.0;
   double t = 0.0;
@@ -26,14 +32,16 @@ struct Regression {
   double t_force = 0.0;
 };
 
-Regression Accumulate(std::span<const double> t, std::span<const double> force) {
+Regression Accumulate(std::span<const double> response, const ScaledRecord& record) {
   Regression sums;
-  sums.count = static_cast<double>(t.size());
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    sums.t += t[i];
-    sums.tt += t[i] * t[i];
-    sums.force += force[i];
-    sums.t_force += t[i] * force[i];
+  for (std::size_t i = 0; i < response.size(); ++i) {
+    const double weight = record.root_weight[i] * record.root_weight[i];
+    const double t = record.load_ratio.empty() ? response[i] : response[i] * record.load_ratio[i];
+    sums.count += weight;
+    sums.t += weight * t;
+    sums.tt += weight * t * t;
+    sums.force += weight * record.force[i];
+    sums.t_force += weight * t * record.force[i];
   }
   return sums;
 }
@@ -64,7 +72,7 @@ class StartingGrid {
         layout_(layout),
         model_(*options.model),
         state_(state),
-        residual_(data, *options.model, state) {}
+        residual_(data, *options.model, state, layout) {}
 
   /// Paths for one guess of where the contact was unloaded, in the units of each record.
   void SetUnloaded(const std::vector<double>& unloaded) {
@@ -77,31 +85,46 @@ class StartingGrid {
     }
   }
 
-  [[nodiscard]] StartingPoint At(double reach, double shape_exponent) const {
+  /// @param reach       σX/Tc of contact and rig together, as the loop shows it
+  /// @param rig_ratio   σ/k_r, looked at where there is a rig of unknown stiffness
+  [[nodiscard]] StartingPoint At(double reach, double shape_exponent, double rig_ratio) const {
     const std::vector<ScaledParameter>& parameters = layout_.parameters();
     StartingPoint point;
     point.theta.resize(parameters.size());
     for (std::size_t i = 0; i < parameters.size(); ++i) point.theta[i] = parameters[i].theta;
     point.sum_of_squares = std::numeric_limits<double>::infinity();
 
+    const ScaledParameter& rig_stiffness = parameters[kLogRigStiffness];
+    SeriesSpring rig;  // in units of Tc, which is about 1
+    double contact_reach = reach;
+    if (layout_.has_rig()) {
+      rig.stiffness =
+          rig_stiffness.fixed ? std::exp(rig_stiffness.theta) : reach * (1 + rig_ratio) / rig_ratio;
+      const double softer = 1 / reach - 1 / rig.stiffness;  // 1/σ_app = 1/σ + 1/k_r
+      contact_reach = rig_stiffness.fixed && softer <= 0 ? 10 * reach : 1 / softer;
+    }
     std::vector<Regression> sums;
     std::vector<double> t;
     for (std::size_t r = 0; r < data_.records.size(); ++r) {
       const ScaledRecord& record = data_.records[r];
       t.resize(record.force.size());
-      EvaluateForce(model_, {reach, shape_exponent, 1.0}, paths_[r], record.displacement, t);
-      sums.push_back(Accumulate(t, record.force));
+      EvaluateForce(model_, {contact_reach, shape_exponent, 1.0}, paths_[r], record.displacement, t,
+                    rig);
+      sums.push_back(Accumulate(t, record));
     }
     const ScaledParameter& stiffness = parameters[kLogStiffness];
     const ScaledParameter& slip = parameters[kLogSlipForce];
     double slip_force = slip.fixed        ? std::exp(slip.theta)
-                        : stiffness.fixed ? std::exp(stiffness.theta) / reach
+                        : stiffness.fixed ? std::exp(stiffness.theta) / contact_reach
                                           : RegressSlipForce(sums, layout_);
     if (!(slip_force > 0)) return point;
 
     point.theta[kShapeExponent] = shape_exponent;
     if (!slip.fixed) point.theta[kLogSlipForce] = std::log(slip_force);
-    if (!stiffness.fixed) point.theta[kLogStiffness] = std::log(reach * slip_force);
+    if (!stiffness.fixed) point.theta[kLogStiffness] = std::log(contact_reach * slip_force);
+    if (layout_.has_rig() && !rig_stiffness.fixed) {
+      point.theta[kLogRigStiffness] = std::log(rig.stiffness * slip_force);
+    }
     for (std::size_t r = 0; r < data_.records.size(); ++r) {
       const std::size_t offset = ParameterLayout::OfRecord(r, kForceOffset);
       if (!parameters[offset].fixed) {
@@ -158,16 +181,17 @@ struct GridPoint {
   std::vector<double> unloaded;
   double reach = 0.0;
   double shape_exponent = 0.0;
+  double rig_ratio = 0.0;
 };
 
 void KeepBetter(GridPoint& best, const StartingGrid& grid, const std::vector<double>& unloaded,
-                double reach, double shape_exponent) {
+                double reach, double shape_exponent, double rig_ratio) {
   // Where no slip is reached nothing depends on the reach: of equals the last, nearest to slip.
   constexpr double kEqual = 1 + 1e-9;
-  StartingPoint point = grid.At(reach, shape_exponent);
+  StartingPoint point = grid.At(reach, shape_exponent, rig_ratio);
   if (std::isfinite(point.sum_of_squares) &&
       point.sum_of_squares <= kEqual * best.point.sum_of_squares) {
-    best = {std::move(point), unloaded, reach, shape_exponent};
+    best = {std::move(point), unloaded, reach, shape_exponent, rig_ratio};
   }
 }
 
@@ -180,9 +204,37 @@ void Refine(GridPoint& best, const StartingGrid& grid) {
     for (int i = -kSubdivisions + 1; i < kSubdivisions; ++i) {
       if (i == 0) continue;
       const double reach = middle * std::exp(step * i / kSubdivisions);
-      KeepBetter(best, grid, best.unloaded, reach, best.shape_exponent);
+      KeepBetter(best, grid, best.unloaded, reach, best.shape_exponent, best.rig_ratio);
     }
     step /= kSubdivisions;
+  }
+}
+
+/// The same on every platform, unlike std::uniform_real_distribution.
+double Uniform(std::mt19937_64& generator, double low, double high) {
+  return low + (high - low) * static_cast<double>(generator() >> 11) * 0x1p-53;
+}
+
+double LogUniform(std::mt19937_64& generator, double low, double high) {
+  return std::exp(Uniform(generator, std::log(low), std::log(high)));
+}
+
+/// Adds points drawn over the grid's range until there are as many as the options ask for.
+void DrawStarts(std::vector<StartingPoint>& starts, StartingGrid& grid,
+                std::span<const std::vector<double>> guesses, const ParameterLayout& layout,
+                const FitOptions& options) {
+  const ScaledParameter& shape = layout.parameters()[kShapeExponent];
+  std::mt19937_64 generator(options.seed);
+  for (std::size_t left = kDrawsPerStart * options.starts;
+       left > 0 && starts.size() < options.starts; --left) {
+    const double reach = LogUniform(generator, kReaches.front(), kReaches.back());
+    const double alpha = Uniform(generator, 0.0, kHighestDrawnShape);
+    const double rig_ratio = LogUniform(generator, kRigRatios.front(), kRigRatios.back());
+    grid.SetUnloaded(guesses[generator() % guesses.size()]);
+    StartingPoint point = grid.At(reach, shape.fixed ? shape.theta : alpha, rig_ratio);
+    if (!std::isfinite(point.sum_of_squares)) continue;
+    point.drawn = true;
+    starts.push_back(std::move(point));
   }
 }
 
@@ -196,16 +248,25 @@ std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
   std::vector<double> shape_exponents(kShapeExponents.begin(), kShapeExponents.end());
   if (shape.fixed) shape_exponents = {shape.theta};
 
+  const ScaledParameter& rig = layout.parameters()[kLogRigStiffness];
+  const bool rig_is_open = layout.has_rig() && !rig.fixed;
+  const std::vector<double> rig_ratios =
+      rig_is_open ? std::vector<double>(kRigRatios.begin(), kRigRatios.end())
+                  : std::vector<double>{1.0};
+
   // Points that compete: those of one α, or where α is held those of one third of the reaches.
   constexpr std::size_t kThirds = 3;
   const bool by_shape = shape_exponents.size() > 1;
   std::vector<GridPoint> best_of_group(by_shape ? shape_exponents.size() : kThirds);
-  for (const std::vector<double>& unloaded : UnloadedGuesses(data, layout, state)) {
+  const std::vector<std::vector<double>> guesses = UnloadedGuesses(data, layout, state);
+  for (const std::vector<double>& unloaded : guesses) {
     grid.SetUnloaded(unloaded);
     for (std::size_t k = 0; k < shape_exponents.size(); ++k) {
       for (std::size_t i = 0; i < kReaches.size(); ++i) {
         GridPoint& best = best_of_group[by_shape ? k : i * kThirds / kReaches.size()];
-        KeepBetter(best, grid, unloaded, kReaches[i], shape_exponents[k]);
+        for (const double rig_ratio : rig_ratios) {
+          KeepBetter(best, grid, unloaded, kReaches[i], shape_exponents[k], rig_ratio);
+        }
       }
     }
   }
@@ -221,6 +282,8 @@ std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
     Refine(best, grid);
     starts.push_back(std::move(best.point));
   }
+  // Where the whole grid has the wrong sense, so have all draws.
+  if (!starts.empty()) DrawStarts(starts, grid, guesses, layout, options);
   for (StartingPoint& point : starts) {
     for (std::size_t i = 0; i < point.theta.size(); ++i) {
       const ScaledParameter& parameter = layout.parameters()[i];

@@ -11,6 +11,7 @@ namespace mindahl {
 struct StartingPoint {
   std::vector<double> theta;  // all parameters
   double sum_of_squares = 0.0;
+  bool drawn = false;  // at random, not from the grid
 };
 
 /// Starting points from the data, best first.
@@ -20,7 +21,9 @@ struct StartingPoint {
 /// slopes nor plateaus read off noisy data. A virgin contact is tried unloaded at the first sample,
 /// at the centre of the record and at displacement zero. Points on the same α compete, or, where α
 /// is held, of the same third of the grid; the best of each α go on, after a closer look round
-/// each.
+/// each. Where options ask for more starts than that, the others are drawn at random over the same
+/// range, seeded, and follow in the order of drawing; draws with the wrong sense of force are
+/// dropped.
 std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
                                               const ParameterLayout& layout,
                                               const FitOptions& options, InitialState state);

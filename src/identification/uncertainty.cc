@@ -17,11 +17,14 @@ constexpr double kNullComponent = 1e-3;
 }  // namespace
 
 LocalUncertainty AnalyseJacobian(const ForceResidual& residual, const std::vector<double>& theta,
-                                 std::vector<std::size_t> columns) {
+                                 std::vector<std::size_t> columns, const NoiseModel& noise,
+                                 std::span<const std::size_t> record_rows,
+                                 const DisplacementEffect& displacement) {
   LocalUncertainty result;
   result.columns = std::move(columns);
   const std::size_t count = result.columns.size();
   result.factor.assign(count * count, 0.0);
+  result.white_factor.assign(count, 0.0);
   result.determined.assign(count, true);
   if (count == 0) return result;
 
@@ -59,9 +62,28 @@ LocalUncertainty AnalyseJacobian(const ForceResidual& residual, const std::vecto
       }
     }
   }
+  Eigen::MatrixXd correlated = Eigen::MatrixXd::Zero(size, size);
+  if (displacement.residuals.size() > 0) {
+    const Eigen::MatrixXd drawn = jacobian.transpose() * displacement.residuals;
+    correlated =
+        drawn * drawn.transpose() / (static_cast<double>(drawn.cols()) * displacement.variance);
+    jacobian.array().colwise() *=
+        Eigen::Map<const Eigen::ArrayXd>(displacement.force_share.data(), rows);
+  }
+  Eigen::Index begin = 0;
+  for (const std::size_t samples : record_rows) {
+    const auto part = static_cast<Eigen::Index>(samples);
+    correlated += noise.Quadratic(jacobian.middleRows(begin, part));
+    begin += part;
+  }
+  result.absorbed = (factor * correlated).trace();
+  const Eigen::MatrixXd product = factor * correlated * factor;
+  const Eigen::MatrixXd sandwich = (product + product.transpose()) / 2;  // to the last bit
   for (Eigen::Index i = 0; i < size; ++i) {
+    result.white_factor[static_cast<std::size_t>(i)] = factor(i, i) / (norms[i] * norms[i]);
     for (Eigen::Index j = 0; j < size; ++j) {
-      result.factor[static_cast<std::size_t>(i * size + j)] = factor(i, j) / (norms[i] * norms[j]);
+      result.factor[static_cast<std::size_t>(i * size + j)] =
+          sandwich(i, j) / (norms[i] * norms[j]);
     }
   }
   return result;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mindahl/core/error.h"
+#include "mindahl/loop/displacement_noise.h"
 
 namespace mindahl {
 namespace {
@@ -34,26 +35,6 @@ std::vector<InnerLoop> ClosedInnerLoops(std::span<const double> displacement,
     }
   }
   return loops;
-}
-
-double Median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-/// Standard deviation of white noise on a smooth signal, from its third differences, whose variance
-/// is (1 + 9 + 9 + 1) times the noise's.
-double NoiseFromThirdDifferences(std::span<const double> displacement) {
-  constexpr double kStandardDeviationPerMedian = 1.4826;  // of a normal variate's absolute value
-  if (displacement.size() < 4) return 0.0;
-  std::vector<double> differences;
-  differences.reserve(displacement.size() - 3);
-  for (std::size_t i = 3; i < displacement.size(); ++i) {
-    differences.push_back(std::abs(displacement[i] - 3 * displacement[i - 1] +
-                                   3 * displacement[i - 2] - displacement[i - 3]));
-  }
-  return kStandardDeviationPerMedian * Median(differences) / std::sqrt(20.0);
 }
 
 double SmallestStep(std::span<const double> displacement) {
@@ -105,7 +86,7 @@ double EstimateReversalGate(std::span<const double> displacement) {
   if (extremes.size() < 4) return 0.0;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const double full_range = highest - lowest;
-  const double noise = NoiseFromThirdDifferences(displacement);
+  const double noise = EstimateDisplacementNoise(displacement);
   if (noise > kRough * full_range) return 0.0;
   // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
   const double reach = std::sqrt(2 * std::log(static_cast<double>(displacement.size())));

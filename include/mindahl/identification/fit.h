@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -8,11 +9,13 @@
 #include <vector>
 
 #include "mindahl/identification/residual_statistics.h"
+#include "mindahl/identification/residual_structure.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
 
 namespace mindahl {
 
@@ -21,10 +24,13 @@ struct Interval {
   double upper = 0.0;
 };
 
+/// What large residuals count: as they are, or less (sample_weights.h has the constants).
+enum class Loss { kNone, kHuber, kCauchy, kTukey };
+
 /// What to fit and how. Parameter names are those of the command line: sigma [N/m], alpha [-],
-/// slip_force [N], force_offset [N], displacement_offset [m], force_drift [N/s, or N a sample where
-/// the record has no time]. With several records the last three belong to a record each and are
-/// numbered from 1: force_offset_2.
+/// slip_force [N], rig_stiffness [N/m], plateau_slope [N/m], force_offset [N], displacement_offset
+/// [m], force_drift [N/s, or N a sample where the record has no time]. With several records the
+/// last three belong to a record each and are numbered from 1: force_offset_2.
 struct FitOptions {
   /// One of FrictionModels() that is not scaled_by_peak.
   const FrictionModel* model = FindFrictionModel("mindlin-dahl");
@@ -38,15 +44,50 @@ struct FitOptions {
   /// A force drift linear in time is a free parameter; otherwise 0.
   bool drift = false;
 
+  /// A spring in series with the contact, the rig's own, is a free parameter: the displacement is
+  /// then that of contact and rig, δ = x + T/k_r. Fixing rig_stiffness gives a known one; else the
+  /// rig is rigid.
+  bool fit_rig_stiffness = false;
+
+  /// A force that grows with the displacement beside the contact's, T + slope·δ, is a free
+  /// parameter: a sloped plateau. Otherwise 0.
+  bool plateau_slope = false;
+
+  /// The force follows the measured normal load, T·N/mean N: σ, α and Tc are those at the mean
+  /// load. The displacement at which the contact slips is taken not to change: for loads that vary
+  /// by some per cent. Needs the load of every record.
+  bool follow_load = false;
+
+  /// Samples under another load [N] do not count; they still make history.
+  std::optional<Interval> load_window;
+
+  /// Cycles at the start of each record that do not count; they still make history.
+  std::size_t skip_cycles = 0;
+
+  /// Samples that do not count, one vector a record, each empty or one entry a sample; they still
+  /// make history.
+  std::vector<std::vector<bool>> held_out;
+
   /// +1: force and displacement have the same sense, −1: opposite (a load cell on the other body).
   /// Empty: decided by the sign of the loop's energy.
   std::optional<int> force_sense;
 
-  /// Excursions up to this [m] are noise and make no reversal. Empty: EstimateReversalGate.
+  /// Excursions up to this [m] are noise and make no reversal. Empty: EstimateReversalGate, and at
+  /// least what a known displacement noise reaches, 2√(2 ln n) standard deviations.
   std::optional<double> reversal_gate;
 
   /// Known standard deviation of the force noise [N]; empty: from the residuals.
   std::optional<double> force_noise;
+
+  /// Known standard deviation of the displacement noise [m], white. Empty: estimated where the
+  /// record shows it by its gate or by an encoder's steps of 1e-3 of its half range, else 0. A
+  /// noisy displacement is smoothed (DisplacementSmoother), since noise in the argument of a curved
+  /// law is a bias; what errors are left are drawn again and again to weigh the samples and for the
+  /// standard errors. docs/coverage.md says how well that does.
+  std::optional<double> displacement_noise;
+
+  /// Its scale comes from the residuals, or is the known noise.
+  Loss loss = Loss::kNone;
 
   std::map<std::string, double> fixed;     ///< parameter held at a value
   std::map<std::string, double> start;     ///< replaces the starting value found from the data
@@ -60,8 +101,10 @@ struct FitOptions {
   /// … or it has made this many steps: then the result is not converged.
   int max_iterations = 500;
 
-  /// Starting points refined, best first.
+  /// Starting points refined, best first: from a grid over the data, of which there are up to four,
+  /// and beyond them drawn at random.
   std::size_t starts = 3;
+  std::uint64_t seed = 1;  ///< of those
 };
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
@@ -84,8 +127,28 @@ struct ParameterEstimate {
   Identifiability identifiability = Identifiability::kNotIdentifiable;
 };
 
+/// α as one kind of branch tells it, the other parameters shared: a departure from one law shows
+/// where it is. Linearised about the fit.
+struct BranchShape {
+  std::string branch;  ///< "virgin", "unloading" or "reloading"
+  std::size_t samples = 0;
+  double shape_exponent = 0.0;
+  double standard_error = 0.0;
+};
+
+/// α = 1/3 against the fitted α, the other parameters fitted again.
+struct MindlinTest {
+  double likelihood_ratio = 0.0;  ///< twice its logarithm, for residuals as they hang together
+  double p_value = 1.0;           ///< of F(1, degrees of freedom)
+  /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
+  /// ΔAICc < 4: then the record does not tell a contact of another shape from Mindlin's in a rig
+  /// that gives way. Looked for where α = 1/3 is rejected at 5 %, α is smaller and no rig is fitted.
+  std::optional<double> rig_stiffness;
+};
+
 /// A starting point and what the solver reached from it.
 struct StartReport {
+  bool drawn = false;  ///< at random, not from the grid
   BranchLaw start;
   double initial_rms = 0.0;  ///< [N]
   BranchLaw reached;
@@ -101,11 +164,14 @@ struct FitWarning {
 /// One record as the fit sees it.
 struct RecordFit {
   double reversal_gate = 0.0;          ///< [m]
-  std::vector<std::size_t> reversals;  ///< samples
+  std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
   /// record is sampled so coarsely that it had to be fitted.
   std::vector<double> overshoot;
   LoopMeasures measures;             ///< with the force in the displacement's sense
+  double displacement_noise = 0.0;   ///< [m] of the readings; 0 where they count as exact
+  std::size_t left_out = 0;          ///< samples that do not count
+  ResidualStructure structure;       ///< of the residuals, in the displacement's sense
   std::vector<double> fitted_force;  ///< [N], in the file's sense, offsets included
   std::vector<double> residual;      ///< fitted − measured [N]
 };
@@ -118,7 +184,12 @@ struct FitResult {
   const FrictionModel* model = nullptr;
   InitialState initial_state = InitialState::kVirgin;
   int force_sense = 1;
-  BranchLaw law;  ///< the fitted σ, α, Tc
+  BranchLaw law;             ///< the fitted σ, α, Tc
+  SeriesSpring rig;          ///< rigid where there is none
+  double force_noise = 0.0;  ///< [N], known or estimated
+  std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
+  std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
+  std::vector<BranchShape> branch_shapes;  ///< α of each branch on its own; empty where α is held
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

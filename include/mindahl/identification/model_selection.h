@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/record.h"
+
+namespace mindahl {
+
+/// How the choice between models is made.
+struct SelectionOptions {
+  /// Parts into which the cycles are divided for prediction; fewer where there are fewer cycles.
+  std::size_t folds = 5;
+
+  /// Models within this ΔAICc of the best are not told apart by it alone: the evidence for the best
+  /// is exp(ΔAICc/2), at 4 less than e² = 7.4 to 1. Noise makes a superfluous parameter look better
+  /// by more than 4 with a chance of P(χ²₁ > 2 + 4) = 1.4 %.
+  double largest_delta = 4.0;
+};
+
+/// A model fitted to all samples that count, and what speaks for it. Pessimistic by default.
+struct ModelScore {
+  const FrictionModel* model = nullptr;
+  bool rig = false;  ///< with a fitted spring in series
+  std::size_t free_parameters = 0;
+  double rms = 0.0;            ///< [N] of the samples that are scored
+  double aicc = 0.0;           ///< infinite where there is no fit
+  double delta_aicc = 0.0;     ///< above the least of the converged fits
+  double akaike_weight = 0.0;  ///< exp(−ΔAICc/2) over its sum; 0 where not converged
+  /// Root mean square error [N] of the prediction of cycles that were held out; empty where there
+  /// is nothing to hold out, a fit without them failed, or the candidate is redundant.
+  std::optional<double> held_out_rms;
+  std::optional<double> held_out_standard_error;  ///< [N], from the scatter between cycles
+  bool converged = false;
+  /// A free parameter ran to a bound: what the law tends to there is another one.
+  bool at_bound = false;
+  /// The same as a simpler candidate: its rig gives nothing way, or its α is 0.
+  bool redundant = false;
+  std::string remark;  ///< what else is to be known of this fit; may be empty
+};
+
+struct ModelSelection {
+  /// Each model without, then with a rig, in the order of FrictionModels()
+  std::vector<ModelScore> scores;
+  std::size_t chosen = 0;  ///< of `scores`
+  /// Of `scores`, simplest first: those that the records do not tell from the chosen one, and it
+  std::vector<std::size_t> indistinguishable;
+  double effective_samples = 0.0;   ///< n_eff of the criterion
+  std::size_t held_out_cycles = 0;  ///< each was predicted once; 0 where there are too few
+  std::size_t folds = 0;
+  FitResult fit;  ///< the chosen one
+  std::string verdict;
+};
+
+/// Fits every model that needs no amplitude (Masing–Dahl with free α, Mindlin, Jenkins, Dahl's own
+/// law) to the same records, each without and with a spring of the rig in series, and chooses one.
+///
+/// *Criterion*, for k free parameters and the variance of the noise:
+///   AICc = n_eff·ln(rms²) + 2k + 2k(k+1)/(n − k − 1),      n_eff = n·(1−ρ)/(1+ρ)
+/// Akaike (1974) and Hurvich & Tsai (1989) but for n_eff, which weighs the likelihood: residuals
+/// with lag-one autocorrelation ρ >= 0 carry less information. n_eff is that of the candidate with
+/// the least rms, for all: a poor model's residuals hang together, which
+/// must not count in its favour. Differences of rms below the rounding of the data are none.
+///
+/// *Prediction.* Whole cycles, from one reversal to the next but one, are dealt to the folds in
+/// turn; each fold is predicted by fits to the rest that start from the full fit, the samples held
+/// out still making history. Records with fewer than two closed cycles are never held out.
+///
+/// *Choice.* The least AICc among converged fits; but those within `largest_delta` of it whose mean
+/// square error of prediction is not larger by a standard error of the difference (paired over
+/// cycles) are indistinguishable from it, and the simplest of these is reported: fewest free
+/// parameters, then rigid, then the least AICc. Without held-out cycles AICc alone decides.
+/// Candidates that are redundant or at a bound are listed, but not chosen while there are others.
+///
+/// With a robust loss, samples that the best candidate puts beyond 4.685 robust standard deviations
+/// are not scored in any.
+/// @param options  of every fit; `model` and `fit_rig_stiffness` are set here. A fixed rig
+///                 stiffness belongs to all candidates; a fixed α leaves out models that prescribe
+///                 another
+/// @throws InvalidArgument as Fit does, for folds < 2, or a largest ΔAICc that is negative
+/// Deterministic. Cost: 8 fits, and 8 a fold, which have one starting point.
+ModelSelection SelectModel(std::span<const Record> records, const FitOptions& options,
+                           const SelectionOptions& selection = {});
+
+}  // namespace mindahl

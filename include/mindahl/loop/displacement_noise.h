@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace mindahl {
+
+/// Standard deviation [m] of white noise on a smooth displacement, from the median of its absolute
+/// third differences, which a smooth drive hardly enters; of an encoder that counts in steps q, at
+/// least q/√12. Samples that repeat the one before say nothing new and are passed over.
+///   σ_δ = 1.4826·median|x_i − 3x_{i−1} + 3x_{i−2} − x_{i−3}|/√20
+/// 0 for fewer than four different samples. Efficiency about 0.4: 2 % at 5000 samples.
+double EstimateDisplacementNoise(std::span<const double> displacement);
+
+/// Step [m] of the encoder that a displacement was read from: neighbours differ by whole steps or
+/// not at all. 0 where it was not.
+double EncoderStep(std::span<const double> displacement);
+
+/// What lies under a noisy displacement, as far as the motion is smooth.
+///
+/// Each sample becomes the value there of the parabola in the sample number through the 2h + 1
+/// samples about it (Savitzky & Golay 1964), h as large as the motion allows: of growing windows
+/// the intervals x̂ ± 2.5 s of the estimates must have a point in common (Goldenshluger &
+/// Nemirovski 1997), and half of the widest that do is taken: the parabola's error falls with h⁴,
+/// to a sixteenth, and the noise grows by √2 only. A corner narrows the windows that it lies in.
+/// The ends of a record stay nearly as they are.
+class DisplacementSmoother {
+ public:
+  /// @param displacement  [m], finite; decides the windows
+  /// @param noise         standard deviation [m], >= 0; at 0 nothing is smoothed
+  /// @throws InvalidArgument when the noise is negative or not finite
+  DisplacementSmoother(std::span<const double> displacement, double noise);
+
+  /// Linear in the displacement.
+  /// @throws InvalidArgument for another number of samples
+  /// Cost: at most 128 additions a sample.
+  [[nodiscard]] std::vector<double> Smooth(std::span<const double> displacement) const;
+
+  /// h of each sample.
+  [[nodiscard]] std::span<const std::size_t> reach() const { return reach_; }
+
+ private:
+  std::vector<std::size_t> reach_;
+};
+
+/// The reversals of a smoothed displacement: the outermost sample of each swing that noise has made
+/// part of two strokes. Between them no sample lies beyond either.
+/// @param smoothed   [m]
+/// @param reversals  those of the displacement as it was read
+std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
+                                       std::span<const std::size_t> reversals);
+
+}  // namespace mindahl

@@ -1,0 +1,525 @@
+#include "mindahl/identification/model_selection.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include "identification/parameter_layout.h"
+#include "identification/sample_weights.h"
+#include "identification/scaled_records.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/residual_statistics.h"
+
+namespace mindahl {
+namespace {
+
+/// Twice the log-likelihood that a candidate must gain on a simpler one to be another: ten times
+/// what the solver may leave.
+constexpr double kNoGain = 1e-2;
+
+/// Below it a shape exponent is that of Jenkins' element, if the fit is as good.
+constexpr double kNoShape = 0.01;
+
+/// Correlation at which two parameters are called known only together.
+constexpr double kTogether = 0.99;
+
+/// One vector a record, one entry a sample.
+using SampleMask = std::vector<std::vector<bool>>;
+
+struct ScoredSamples {
+  SampleMask mask;
+  std::size_t count = 0;
+  double rounding = 0.0;  // [N]: residuals below it mean nothing
+};
+
+/// A closed cycle, [begin, end).
+struct Cycle {
+  std::size_t record = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  double samples = 0.0;  // that are scored
+};
+
+struct MeanOverCycles {
+  double mean = 0.0;
+  double standard_error = 0.0;
+};
+
+bool IsFitted(const FitResult& fit) { return !fit.records.front().residual.empty(); }
+
+std::vector<std::size_t> Positions(std::size_t count) {
+  std::vector<std::size_t> positions(count);
+  for (std::size_t i = 0; i < count; ++i) positions[i] = i;
+  return positions;
+}
+
+std::string Label(const ModelScore& score) {
+  return fmt::format("{}{}", score.model->name, score.rig ? " with a rig" : "");
+}
+
+std::vector<ModelScore> ListCandidates(const FitOptions& options) {
+  const auto alpha = options.fixed.find("alpha");
+  const bool rig_is_known = options.fixed.contains("rig_stiffness");
+  std::vector<ModelScore> scores;
+  for (const FrictionModel& model : FrictionModels()) {
+    if (model.scaled_by_peak) continue;
+    if (model.shape_exponent && alpha != options.fixed.end() &&
+        *model.shape_exponent != alpha->second) {
+      continue;
+    }
+    for (const bool rig : {false, true}) {
+      if (rig && rig_is_known) continue;
+      ModelScore& score = scores.emplace_back();
+      score.model = &model;
+      score.rig = rig;
+    }
+  }
+  return scores;
+}
+
+std::size_t CountFree(const FitResult& fit) {
+  auto count = static_cast<std::size_t>(
+      std::ranges::count_if(fit.parameters, [](const ParameterEstimate& parameter) {
+        return parameter.status != ParameterStatus::kFixed;
+      }));
+  for (const RecordFit& record : fit.records) count += record.overshoot.size();
+  return count;
+}
+
+/// Records as a fit saw them, with weight 0 for what the options leave out.
+ScaledRecords ScaleAsFitted(std::span<const Record> records, const FitOptions& options,
+                            const FitResult& fit) {
+  std::vector<std::vector<std::size_t>> reversals;
+  for (const RecordFit& record : fit.records) reversals.push_back(record.reversals);
+  ScaledRecords data = Scale(records, reversals, fit.force_sense);
+  LeaveOut(data, records, reversals, options);
+  return data;
+}
+
+ScoredSamples CountedSamples(const ScaledRecords& data) {
+  ScoredSamples samples;
+  samples.rounding = kRoundingRms * data.force;
+  samples.count = data.weighted_samples();
+  for (const ScaledRecord& record : data.records) {
+    std::vector<bool>& mask = samples.mask.emplace_back();
+    for (const double weight : record.root_weight) mask.push_back(weight > 0);
+  }
+  return samples;
+}
+
+/// The residuals [N] that are scored, one series a record.
+std::vector<std::vector<double>> ScoredResiduals(const FitResult& fit, const SampleMask& mask) {
+  std::vector<std::vector<double>> residuals;
+  for (std::size_t r = 0; r < mask.size(); ++r) {
+    std::vector<double>& series = residuals.emplace_back();
+    for (std::size_t i = 0; i < mask[r].size(); ++i) {
+      if (mask[r][i]) series.push_back(fit.records[r].residual[i]);
+    }
+  }
+  return residuals;
+}
+
+double Rms(const FitResult& fit, const SampleMask& mask) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
+    for (const double residual : series) sum += residual * residual;
+    count += static_cast<double>(series.size());
+  }
+  return std::sqrt(sum / count);
+}
+
+/// Standard deviation of normal residuals by the median of their magnitudes.
+double RobustScale(const FitResult& fit, const SampleMask& mask) {
+  constexpr double kNormalDeviation = 1.482602218505602;  // 1/Φ⁻¹(3/4)
+  std::vector<double> magnitudes;
+  for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
+    for (const double residual : series) magnitudes.push_back(std::abs(residual));
+  }
+  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
+  std::ranges::nth_element(magnitudes, middle);
+  return kNormalDeviation * *middle;
+}
+
+/// The fit that a measure of its residuals is least for.
+template <typename Measure>
+const FitResult& Best(std::span<const FitResult> fits, Measure measure) {
+  return *std::ranges::min_element(fits, {}, [&](const FitResult& fit) {
+    return IsFitted(fit) ? measure(fit) : std::numeric_limits<double>::infinity();
+  });
+}
+
+void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
+  constexpr double kOutlier = 4.685;  // where Tukey's loss ends
+  const FitResult& best =
+      Best(fits, [&](const FitResult& fit) { return RobustScale(fit, samples.mask); });
+  const double limit = kOutlier * std::max(RobustScale(best, samples.mask), samples.rounding);
+  for (std::size_t r = 0; r < samples.mask.size(); ++r) {
+    for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
+      if (!samples.mask[r][i] || std::abs(best.records[r].residual[i]) <= limit) continue;
+      samples.mask[r][i] = false;
+      --samples.count;
+    }
+  }
+}
+
+double EffectiveSamples(const FitResult& fit, const SampleMask& mask) {
+  const std::vector<std::vector<double>> residuals = ScoredResiduals(fit, mask);
+  // Only the autocorrelation is asked for: forces and slip force do not enter it.
+  return DescribeResiduals(residuals, residuals, 1.0, 0).effective_samples;
+}
+
+/// n_eff·ln(rms²), rounding errors aside.
+double Deviance(double rms, double effective_samples, double rounding) {
+  return 2 * effective_samples * std::log(std::max(rms, rounding));
+}
+
+double CorrectedAkaike(const ModelScore& score, double deviance, std::size_t samples) {
+  const auto parameters = static_cast<double>(score.free_parameters + 1);
+  return deviance + 2 * parameters +
+         2 * parameters * (parameters + 1) /
+             std::max(static_cast<double>(samples) - parameters - 1, 1.0);
+}
+
+void WeighCandidates(std::vector<ModelScore>& scores) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ModelScore& score : scores) {
+    if (score.converged) least = std::min(least, score.aicc);
+  }
+  double sum = 0.0;
+  for (ModelScore& score : scores) {
+    score.delta_aicc = std::isfinite(least) ? score.aicc - least : score.aicc;
+    score.akaike_weight = score.converged ? std::exp(-score.delta_aicc / 2) : 0.0;
+    sum += score.akaike_weight;
+  }
+  for (ModelScore& score : scores) {
+    if (sum > 0) score.akaike_weight /= sum;
+  }
+}
+
+/// From one reversal to the next but one. A single cycle of a record is none: without it nothing of
+/// the kind would be left to fit.
+std::vector<Cycle> ClosedCycles(const FitResult& fit, const SampleMask& mask,
+                                std::size_t skip_cycles) {
+  std::vector<Cycle> cycles;
+  const std::size_t first = skip_cycles > 0 ? 2 * skip_cycles - 1 : 0;
+  for (std::size_t r = 0; r < mask.size(); ++r) {
+    const std::vector<std::size_t>& reversals = fit.records[r].reversals;
+    std::vector<Cycle> closed;
+    for (std::size_t j = first; j + 2 < reversals.size(); j += 2) {
+      Cycle cycle{.record = r, .begin = reversals[j], .end = reversals[j + 2]};
+      for (std::size_t i = cycle.begin; i < cycle.end; ++i) cycle.samples += mask[r][i] ? 1 : 0;
+      if (cycle.samples > 0) closed.push_back(cycle);
+    }
+    if (closed.size() >= 2) cycles.insert(cycles.end(), closed.begin(), closed.end());
+  }
+  return cycles;
+}
+
+/// Those that the options hold out, and the cycles of one fold: every so many, so that slow changes
+/// of the contact are in every fold.
+SampleMask HeldOut(std::span<const Record> records, const FitOptions& options,
+                   std::span<const Cycle> cycles, std::size_t fold, std::size_t folds) {
+  SampleMask mask = options.held_out;
+  mask.resize(records.size());
+  for (std::size_t r = 0; r < records.size(); ++r) mask[r].resize(records[r].size(), false);
+  for (std::size_t c = fold; c < cycles.size(); c += folds) {
+    std::vector<bool>& held_out = mask[cycles[c].record];
+    std::fill(held_out.begin() + static_cast<std::ptrdiff_t>(cycles[c].begin),
+              held_out.begin() + static_cast<std::ptrdiff_t>(cycles[c].end), true);
+  }
+  return mask;
+}
+
+/// Options under which the fit is found again from where it is.
+FitOptions Continued(const FitResult& fit, bool rig, FitOptions options) {
+  options.model = fit.model;
+  options.fit_rig_stiffness = rig;
+  options.initial_state = fit.initial_state;
+  options.force_sense = fit.force_sense;
+  options.starts = 1;
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    if (parameter.status == ParameterStatus::kFixed) continue;
+    // One that ran to a bound stays there.
+    (parameter.status == ParameterStatus::kFree ? options.start : options.fixed)[parameter.name] =
+        parameter.value;
+  }
+  return options;
+}
+
+/// Mean square error [N²] of each cycle's prediction; empty where a fit failed.
+std::vector<double> PredictCycles(std::span<const Record> records, const FitOptions& options,
+                                  const FitResult& full, bool rig, const ScoredSamples& samples,
+                                  std::span<const Cycle> cycles, std::size_t folds) {
+  std::vector<double> mean_square(cycles.size(), 0.0);
+  FitOptions partial = Continued(full, rig, options);
+  for (std::size_t fold = 0; fold < folds; ++fold) {
+    partial.held_out = HeldOut(records, options, cycles, fold, folds);
+    auto left = static_cast<double>(samples.count);
+    for (std::size_t c = fold; c < cycles.size(); c += folds) left -= cycles[c].samples;
+    if (left < static_cast<double>(CountFree(full))) return {};
+    const FitResult fit = Fit(records, partial);
+    if (!fit.converged) return {};
+    for (std::size_t c = fold; c < cycles.size(); c += folds) {
+      const Cycle& cycle = cycles[c];
+      for (std::size_t i = cycle.begin; i < cycle.end; ++i) {
+        if (!samples.mask[cycle.record][i]) continue;
+        const double error = fit.records[cycle.record].residual[i];
+        mean_square[c] += error * error / cycle.samples;
+      }
+    }
+  }
+  return mean_square;
+}
+
+/// Mean over samples, with its error from the scatter between cycles. The folds' fits share most of
+/// their samples, so that their predictions err together: Nadeau & Bengio (2003) add to the
+/// variance of a mean over K folds, 1/K, the ratio of predicted to fitted samples, 1/(K − 1).
+MeanOverCycles Mean(std::span<const double> values, std::span<const Cycle> cycles,
+                    std::size_t folds) {
+  double samples = 0.0;
+  double sum = 0.0;
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    samples += cycles[c].samples;
+    sum += cycles[c].samples * values[c];
+  }
+  MeanOverCycles result{.mean = sum / samples};
+  double squares = 0.0;
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    const double deviation = cycles[c].samples / samples * (values[c] - result.mean);
+    squares += deviation * deviation;
+  }
+  const auto count = static_cast<double>(values.size());
+  const auto parts = static_cast<double>(folds);
+  result.standard_error = std::sqrt(squares * count / (count - 1) * (1 + parts / (parts - 1)));
+  return result;
+}
+
+/// Does `other` predict worse than `best`, by a standard error of the difference or more?
+bool PredictsWorse(std::span<const double> other, std::span<const double> best,
+                   std::span<const Cycle> cycles, std::size_t folds, double rounding) {
+  if (other.empty() || best.empty()) return false;
+  std::vector<double> difference;
+  for (std::size_t c = 0; c < cycles.size(); ++c) difference.push_back(other[c] - best[c]);
+  const MeanOverCycles mean = Mean(difference, cycles, folds);
+  return mean.mean > mean.standard_error + rounding * rounding;
+}
+
+void AddRemark(ModelScore& score, std::string_view remark) {
+  if (!score.remark.empty()) score.remark += "; ";
+  score.remark += remark;
+}
+
+double CorrelationOf(const FitResult& fit, std::string_view first, std::string_view second) {
+  const ParameterEstimate* one = fit.Find(first);
+  const ParameterEstimate* other = fit.Find(second);
+  if (one == nullptr || other == nullptr) return 0.0;
+  const auto row = static_cast<std::size_t>(one - fit.parameters.data());
+  const auto column = static_cast<std::size_t>(other - fit.parameters.data());
+  return fit.correlation[row * fit.parameters.size() + column];
+}
+
+/// What the fit alone has to say.
+/// @param layout  of the candidate, for the bounds
+void RemarkOnFit(ModelScore& score, const FitResult& fit, const ParameterLayout& layout) {
+  constexpr double kNearBound = 1e-4;  // of the way between the bounds: the solver stops short
+  if (!fit.converged) AddRemark(score, "not converged: " + fit.termination);
+  for (const ScaledParameter& parameter : layout.parameters()) {
+    const ParameterEstimate* estimate = fit.Find(parameter.name);
+    if (parameter.fixed || estimate == nullptr) continue;
+    const double theta = parameter.ToTheta(estimate->value);
+    const double near = kNearBound * (parameter.upper - parameter.lower);
+    if (theta < parameter.lower + near || theta > parameter.upper - near) {
+      score.at_bound = true;
+      AddRemark(score, parameter.name + " at its bound");
+    }
+  }
+  if (std::abs(CorrelationOf(fit, "alpha", "rig_stiffness")) > kTogether) {
+    AddRemark(score, "alpha and rig_stiffness are known only together");
+  }
+}
+
+/// Marks candidates that are simpler ones in disguise.
+void FindRedundant(std::vector<ModelScore>& scores, std::span<const FitResult> fits,
+                   double effective_samples, double rounding) {
+  const auto gains_nothing_on = [&](const ModelScore& score, std::string_view model, bool rig) {
+    const auto simpler = std::ranges::find_if(scores, [&](const ModelScore& other) {
+      return other.model->name == model && other.rig == rig && other.converged;
+    });
+    return simpler != scores.end() && Deviance(simpler->rms, effective_samples, rounding) -
+                                              Deviance(score.rms, effective_samples, rounding) <
+                                          kNoGain;
+  };
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    ModelScore& score = scores[i];
+    if (!score.converged) continue;
+    if (score.rig && gains_nothing_on(score, score.model->name, false)) {
+      score.redundant = true;
+      AddRemark(score, "rig not needed: the fit is the same without");
+    }
+    if (score.at_bound && !score.model->shape_exponent && fits[i].law.shape_exponent < kNoShape &&
+        gains_nothing_on(score, "jenkins", score.rig)) {
+      score.redundant = true;
+      AddRemark(score, "the same as jenkins");
+    }
+  }
+}
+
+/// The converged ones, the best first; without those that may not be chosen, unless nothing else is
+/// left.
+std::vector<std::size_t> Rank(std::span<const ModelScore> scores) {
+  std::vector<std::size_t> ranking = Positions(scores.size());
+  std::erase_if(ranking, [&](std::size_t i) { return !scores[i].converged; });
+  std::ranges::sort(ranking, {}, [&](std::size_t i) { return scores[i].aicc; });
+  std::vector<std::size_t> eligible = ranking;
+  std::erase_if(eligible, [&](std::size_t i) { return scores[i].redundant || scores[i].at_bound; });
+  return eligible.empty() ? ranking : eligible;
+}
+
+std::string Judge(const ModelSelection& selection, const SelectionOptions& options,
+                  std::span<const std::size_t> ranking) {
+  const std::vector<ModelScore>& scores = selection.scores;
+  const ModelScore& chosen = scores[selection.chosen];
+  if (ranking.empty()) {
+    return fmt::format("No model converged; {} comes nearest.", Label(chosen));
+  }
+  std::string verdict;
+  if (selection.indistinguishable.size() > 1) {
+    std::vector<std::string> names;
+    for (const std::size_t i : selection.indistinguishable) names.push_back(Label(scores[i]));
+    verdict = fmt::format(
+        "The records do not tell apart {}: ΔAICc below {:g}{}. The simplest, {}, is reported.",
+        fmt::join(names, ", "), options.largest_delta,
+        selection.held_out_cycles > 0
+            ? fmt::format(", and {} cycles held out are predicted alike to a standard error",
+                          selection.held_out_cycles)
+            : "",
+        Label(chosen));
+    const auto has_rig = [&](std::size_t i) { return scores[i].rig; };
+    if (std::ranges::any_of(selection.indistinguishable, has_rig) &&
+        !std::ranges::all_of(selection.indistinguishable, has_rig)) {
+      verdict += " Whether the rig gives way is open: measure its stiffness and fix it.";
+    }
+  } else {
+    verdict = fmt::format("{} is the best", Label(chosen));
+    const auto next =
+        std::ranges::find_if(ranking, [&](std::size_t i) { return i != selection.chosen; });
+    if (next != ranking.end()) {
+      verdict += fmt::format(", by ΔAICc = {:.3g} before {}", scores[*next].aicc - chosen.aicc,
+                             Label(scores[*next]));
+      if (scores[*next].aicc - chosen.aicc < options.largest_delta) {
+        verdict += ", which predicts cycles held out worse by more than a standard error";
+      }
+    }
+    verdict += ".";
+  }
+  for (const ModelScore& score : scores) {
+    if (!score.converged || !score.at_bound || score.redundant) continue;
+    if (chosen.aicc - score.aicc < options.largest_delta) continue;
+    verdict += fmt::format(
+        " {} comes nearer by ΔAICc = {:.3g}, but with a parameter at its bound: none of the models "
+        "has the shape of the loop.",
+        Label(score), chosen.aicc - score.aicc);
+    break;
+  }
+  if (selection.held_out_cycles == 0) {
+    verdict += " Fewer than two closed cycles: nothing was held out, AICc alone decides.";
+  }
+  return verdict;
+}
+
+}  // namespace
+
+ModelSelection SelectModel(std::span<const Record> records, const FitOptions& options,
+                           const SelectionOptions& selection) {
+  if (selection.folds < 2) {
+    ThrowInvalid("folds [-]", static_cast<double>(selection.folds), "must be >= 2");
+  }
+  RequireNonNegative("largest ΔAICc [-]", selection.largest_delta);
+
+  ModelSelection result;
+  result.scores = ListCandidates(options);
+  std::vector<FitResult> fits;
+  for (ModelScore& score : result.scores) {
+    FitOptions candidate = options;
+    candidate.model = score.model;
+    candidate.fit_rig_stiffness = score.rig;
+    const FitResult& fit = fits.emplace_back(Fit(records, candidate));
+    score.converged = fit.converged;
+    score.free_parameters = CountFree(fit);
+    score.rms = score.aicc = std::numeric_limits<double>::infinity();
+    const ScaledRecords data = ScaleAsFitted(records, candidate, fit);
+    RemarkOnFit(score, fit, ParameterLayout(data, candidate, fit.initial_state));
+  }
+  if (std::ranges::none_of(fits, IsFitted)) {
+    result.fit = fits.front();
+    result.verdict = Judge(result, selection, {});
+    return result;
+  }
+
+  ScoredSamples samples = CountedSamples(ScaleAsFitted(records, options, fits.front()));
+  if (options.loss != Loss::kNone) LeaveOutOutliers(samples, fits);
+  const FitResult& best_fit =
+      Best(fits, [&](const FitResult& fit) { return Rms(fit, samples.mask); });
+  result.effective_samples = EffectiveSamples(best_fit, samples.mask);
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    ModelScore& score = result.scores[i];
+    if (!IsFitted(fits[i])) continue;
+    score.rms = Rms(fits[i], samples.mask);
+    score.aicc = CorrectedAkaike(
+        score, Deviance(score.rms, result.effective_samples, samples.rounding), samples.count);
+  }
+  WeighCandidates(result.scores);
+  FindRedundant(result.scores, fits, result.effective_samples, samples.rounding);
+
+  const std::vector<Cycle> cycles = ClosedCycles(best_fit, samples.mask, options.skip_cycles);
+  result.held_out_cycles = cycles.size();
+  result.folds = std::min(selection.folds, cycles.size());
+  std::vector<std::vector<double>> predictions(fits.size());
+  for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
+    ModelScore& score = result.scores[i];
+    if (!score.converged || score.redundant) continue;  // those predict as the simpler one does
+    predictions[i] =
+        PredictCycles(records, options, fits[i], score.rig, samples, cycles, result.folds);
+    if (predictions[i].empty()) {
+      AddRemark(score, "no fit without some of the cycles");
+      continue;
+    }
+    const MeanOverCycles mean_square = Mean(predictions[i], cycles, result.folds);
+    score.held_out_rms = std::sqrt(mean_square.mean);
+    // d√m = dm/(2√m)
+    score.held_out_standard_error =
+        mean_square.mean > 0 ? mean_square.standard_error / (2 * *score.held_out_rms) : 0.0;
+  }
+
+  const std::vector<std::size_t> ranking = Rank(result.scores);
+  if (ranking.empty()) {
+    result.chosen = static_cast<std::size_t>(
+        std::ranges::min_element(result.scores, {}, &ModelScore::rms) - result.scores.begin());
+    result.indistinguishable = {result.chosen};
+  } else {
+    const std::size_t best = ranking.front();
+    for (const std::size_t i : ranking) {
+      const bool close = result.scores[i].aicc - result.scores[best].aicc < selection.largest_delta;
+      if (i == best || (close && !PredictsWorse(predictions[i], predictions[best], cycles,
+                                                result.folds, samples.rounding))) {
+        result.indistinguishable.push_back(i);
+      }
+    }
+    std::ranges::sort(result.indistinguishable, {}, [&](std::size_t i) {
+      const ModelScore& score = result.scores[i];
+      return std::tuple(score.free_parameters, score.rig, score.aicc);
+    });
+    result.chosen = result.indistinguishable.front();
+  }
+  result.fit = std::move(fits[result.chosen]);
+  result.verdict = Judge(result, selection, ranking);
+  return result;
+}
+
+}  // namespace mindahl

@@ -1,0 +1,173 @@
+#include "mindahl/loop/displacement_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+#include "identification/sample_loop.h"
+#include "mindahl/identification/fit.h"
+#include "recovery/recovered.h"
+
+// What noise of the displacement does to a fit, and what the fit says of it.
+namespace mindahl {
+namespace {
+
+using testing::Cycling;
+using testing::FitOne;
+using testing::Generator;
+using testing::kLaw;
+using testing::kReach;
+using testing::Normal;
+using testing::Uniform;
+using testing::Wave;
+
+constexpr double kForceNoise = 0.005 * 60.0;  // [N]
+constexpr std::size_t kReversals = 6;
+
+Record Clean() {
+  const testing::History displacement = Cycling(Wave::kSine, kReach, 3.0, 200);
+  return testing::MakeRecord(displacement,
+                             testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
+}
+
+/// @param noise  [m]
+Record WithNoise(Record record, double noise, Generator& generator) {
+  for (double& force : record.force) force += kForceNoise * Normal(generator);
+  for (double& displacement : record.displacement) displacement += noise * Normal(generator);
+  return record;
+}
+
+/// @param step  [m]
+Record Counted(Record record, double step, Generator& generator) {
+  record = WithNoise(record, 0.0, generator);
+  const double phase = Uniform(generator, 0, 1);
+  for (double& displacement : record.displacement) {
+    displacement = step * (std::round(displacement / step + phase) - phase);
+  }
+  return record;
+}
+
+FitOptions Virgin() {
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  return options;
+}
+
+/// Over seeded loops: the share of 95 % intervals that hold the truth and the mean error over its
+/// scatter, of σ, α and Tc.
+struct Honesty {
+  std::array<double, 3> held{};
+  std::array<double, 3> bias{};
+};
+
+constexpr std::size_t kLoops = 40;
+// 95 % of 40 loops less three standard deviations √(0.95·0.05/40).
+constexpr double kLeastHeld = 0.95 - 3 * 0.0345;
+// A bias of half the scatter, and three standard deviations 1/√40 of its mean.
+constexpr double kMostBias = 0.5 + 3 * 0.158;
+
+template <typename MakeNoisy>
+Honesty Measure(MakeNoisy make_noisy, const FitOptions& options) {
+  const std::array<std::string, 3> names = {"sigma", "alpha", "slip_force"};
+  const std::array<double, 3> truth = {kLaw.tangential_stiffness, kLaw.shape_exponent,
+                                       kLaw.slip_force};
+  const Record clean = Clean();
+  std::array<double, 3> sum{};
+  std::array<double, 3> squares{};
+  Honesty honesty;
+  for (std::size_t i = 0; i < kLoops; ++i) {
+    Generator generator(100 + i);
+    const FitResult fit = FitOne(make_noisy(clean, generator), options);
+    EXPECT_TRUE(fit.converged) << fit.termination;
+    EXPECT_EQ(fit.records[0].reversals.size(), kReversals);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const ParameterEstimate& estimate = *fit.Find(names[k]);
+      const bool holds = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
+                         (!estimate.upper95 || truth[k] <= *estimate.upper95);
+      honesty.held[k] += holds ? 1.0 / kLoops : 0.0;
+      const double error = estimate.value - truth[k];
+      sum[k] += error / kLoops;
+      squares[k] += error * error / kLoops;
+    }
+  }
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    honesty.bias[k] = sum[k] / std::sqrt(squares[k] - sum[k] * sum[k]);
+  }
+  return honesty;
+}
+
+void ExpectHonest(const Honesty& honesty) {
+  for (std::size_t k = 0; k < honesty.held.size(); ++k) {
+    EXPECT_GE(honesty.held[k], kLeastHeld) << "parameter " << k;
+    EXPECT_LE(std::abs(honesty.bias[k]), kMostBias) << "parameter " << k;
+  }
+}
+
+TEST(DisplacementNoise, IntervalsHoldTheTruthWhereItIsKnown) {
+  constexpr double kNoise = 0.02 * kReach;
+  FitOptions options = Virgin();
+  options.displacement_noise = kNoise;
+  ExpectHonest(Measure(
+      [](const Record& clean, Generator& generator) { return WithNoise(clean, kNoise, generator); },
+      options));
+}
+
+TEST(DisplacementNoise, IntervalsHoldTheTruthWhereItIsFound) {
+  ExpectHonest(
+      Measure([](const Record& clean,
+                 Generator& generator) { return WithNoise(clean, 0.02 * kReach, generator); },
+              Virgin()));
+}
+
+TEST(DisplacementNoise, IntervalsHoldTheTruthWhereAnEncoderMakesIt) {
+  ExpectHonest(
+      Measure([](const Record& clean,
+                 Generator& generator) { return Counted(clean, 0.01 * kReach, generator); },
+              Virgin()));
+}
+
+TEST(DisplacementNoise, ThatIsKnownMakesNoReversal) {
+  Generator generator(7);
+  FitOptions options = Virgin();
+  options.displacement_noise = 0.01 * kReach;
+  const FitResult fit = FitOne(WithNoise(Clean(), 0.01 * kReach, generator), options);
+  EXPECT_EQ(fit.records[0].reversals.size(), kReversals);
+  EXPECT_EQ(fit.records[0].displacement_noise, 0.01 * kReach);
+}
+
+TEST(DisplacementNoise, OfAnEncoderIsThatOfItsRounding) {
+  Generator generator(8);
+  constexpr double kStep = 0.01 * kReach;
+  const FitResult fit = FitOne(Counted(Clean(), kStep, generator), Virgin());
+  EXPECT_GE(fit.records[0].displacement_noise, kStep / std::sqrt(12.0) * (1 - 1e-9));
+  EXPECT_LT(fit.records[0].displacement_noise, kStep);
+}
+
+TEST(DisplacementNoise, IsNoneInACleanRecord) {
+  const FitResult fit = FitOne(Clean(), Virgin());
+  EXPECT_EQ(fit.records[0].displacement_noise, 0.0);
+  EXPECT_TRUE(testing::Recovers(fit, kLaw, testing::kNoiseFree));
+}
+
+TEST(DisplacementNoise, AGateOnACleanRecordCostsNoMoreThanItsOwnNoiseEstimate) {
+  FitOptions options = Virgin();
+  options.reversal_gate = 0.05 * kReach;
+  // A sine of 200 samples has third differences of (2π/200)³ = 3e-5 of X: 1e-5 of noise at most,
+  // and the parabolas agree to 2.5 of it.
+  EXPECT_TRUE(testing::Recovers(FitOne(Clean(), options), kLaw, 1e-3));
+}
+
+TEST(DisplacementNoise, GivesTheSameResultEveryTime) {
+  Generator generator(9);
+  const Record record = WithNoise(Clean(), 0.01 * kReach, generator);
+  const FitResult one = FitOne(record, Virgin());
+  const FitResult other = FitOne(record, Virgin());
+  EXPECT_EQ(one.law.tangential_stiffness, other.law.tangential_stiffness);
+  EXPECT_EQ(one.Find("sigma")->standard_error, other.Find("sigma")->standard_error);
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,190 @@
+#include "mindahl/loop/displacement_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+#include "../support/histories.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+
+namespace mindahl {
+namespace {
+
+using testing::Generator;
+using testing::History;
+using testing::Normal;
+
+History Sine(double cycles, std::size_t samples_per_cycle) {
+  const auto per_cycle = static_cast<double>(samples_per_cycle);
+  History history(static_cast<std::size_t>(std::llround(cycles * per_cycle)) + 1);
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    history[i] = std::sin(2 * std::numbers::pi * static_cast<double>(i) / per_cycle);
+  }
+  return history;
+}
+
+History Triangle(std::size_t samples) {
+  constexpr std::size_t kQuarter = 50;
+  History history(samples);
+  for (std::size_t i = 0; i < samples; ++i) {
+    const auto turn = static_cast<double>((i + kQuarter) % (4 * kQuarter)) / (2.0 * kQuarter);
+    history[i] = 2 * (1 - std::abs(turn - 1)) - 1;
+  }
+  return history;
+}
+
+History WithNoise(Generator& generator, History history, double deviation) {
+  for (double& displacement : history) displacement += deviation * Normal(generator);
+  return history;
+}
+
+History Quantised(History history, double step) {
+  for (double& displacement : history) displacement = step * std::round(displacement / step);
+  return history;
+}
+
+History Repeated(const History& history, std::size_t times) {
+  History repeated;
+  for (const double displacement : history) repeated.insert(repeated.end(), times, displacement);
+  return repeated;
+}
+
+double RmsDifference(const History& one, const History& other) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < one.size(); ++i) sum += (one[i] - other[i]) * (one[i] - other[i]);
+  return std::sqrt(sum / static_cast<double>(one.size()));
+}
+
+constexpr double kNoise = 0.02;
+// Three standard deviations of an estimate with the efficiency 0.4 from n samples: 3/√(0.8·n).
+double NoiseTolerance(std::size_t samples) {
+  return kNoise * 3 / std::sqrt(0.8 * static_cast<double>(samples));
+}
+
+TEST(EstimateDisplacementNoise, FindsThatOfASmoothDrive) {
+  Generator generator(1);
+  const History drive = Sine(20, 300);
+  EXPECT_NEAR(EstimateDisplacementNoise(WithNoise(generator, drive, kNoise)), kNoise,
+              NoiseTolerance(drive.size()));
+}
+
+TEST(EstimateDisplacementNoise, PassesOverRepeatedReadings) {
+  Generator generator(2);
+  const History drive = Sine(20, 300);
+  EXPECT_NEAR(EstimateDisplacementNoise(Repeated(WithNoise(generator, drive, kNoise), 8)), kNoise,
+              NoiseTolerance(drive.size()));
+}
+
+TEST(EstimateDisplacementNoise, IsThatOfRoundingAtLeastForAnEncoder) {
+  constexpr double kStep = 0.01;
+  constexpr double kRounding = 1e-12;  // of readings, over their step
+  EXPECT_GE(EstimateDisplacementNoise(Quantised(Sine(3, 2000), kStep)),
+            kStep / std::sqrt(12.0) * (1 - kRounding));
+}
+
+TEST(EstimateDisplacementNoise, IsZeroForFewerThanFourDifferentSamples) {
+  EXPECT_EQ(EstimateDisplacementNoise(History{0, 0, 1, 1, 0, 0}), 0.0);
+  EXPECT_EQ(EstimateDisplacementNoise(History{}), 0.0);
+}
+
+TEST(EncoderStep, IsFoundWhereADriveOfAnyShapeIsCounted) {
+  constexpr double kStep = 0.053;
+  constexpr double kRounding = 1e-12;
+  EXPECT_NEAR(EncoderStep(Quantised(Sine(3, 200), kStep)), kStep, kRounding);
+  EXPECT_NEAR(EncoderStep(Quantised(Sine(3, 5000), kStep)), kStep, kRounding);
+  EXPECT_NEAR(EncoderStep(Quantised(Triangle(600), kStep)), kStep, kRounding);
+}
+
+TEST(EncoderStep, IsZeroForADriveThatRunsEvenlyOrFromRestToRest) {
+  History between;  // turns half way between two samples
+  for (std::size_t i = 0; i < 600; ++i) {
+    const std::size_t turn = i % 50;
+    between.push_back(static_cast<double>(turn < 25 ? turn : 49 - turn));
+  }
+  EXPECT_EQ(EncoderStep(between), 0.0);
+  EXPECT_EQ(EncoderStep(Repeated(between, 3)), 0.0);
+  EXPECT_EQ(EncoderStep(Sine(3, 200)), 0.0);
+}
+
+TEST(DisplacementSmoother, LeavesARecordWithoutNoiseAsItIs) {
+  const History drive = Sine(2, 100);
+  const DisplacementSmoother smoother(drive, 0.0);
+  EXPECT_EQ(smoother.Smooth(drive), drive);
+}
+
+TEST(DisplacementSmoother, LeavesAParabolaAsItIs) {
+  History parabola;
+  for (int i = 0; i < 200; ++i) parabola.push_back(0.3 - 0.02 * i + 1e-4 * i * i);
+  const DisplacementSmoother smoother(parabola, kNoise);
+  ASSERT_GE(std::ranges::max(smoother.reach()), 32U);
+  constexpr double kRounding = 1e-14;  // some ε of the largest value, 1
+  const History smoothed = smoother.Smooth(parabola);
+  for (std::size_t i = 0; i < parabola.size(); ++i) {
+    EXPECT_NEAR(smoothed[i], parabola[i], kRounding);
+  }
+}
+
+TEST(DisplacementSmoother, TakesMostOfTheNoiseFromASine) {
+  Generator generator(3);
+  const History drive = Sine(3, 200);
+  const History noisy = WithNoise(generator, drive, kNoise);
+  // Windows of half a radian, 2h + 1 = 33 samples, leave √(9/4·33) = 0.26; those cut short by
+  // chance and at the ends leave more.
+  EXPECT_LT(RmsDifference(DisplacementSmoother(noisy, kNoise).Smooth(noisy), drive), 0.4 * kNoise);
+}
+
+TEST(DisplacementSmoother, KeepsTheCornersOfATriangleToTheNoise) {
+  Generator generator(4);
+  const History drive = Triangle(600);
+  const History noisy = WithNoise(generator, drive, kNoise);
+  const History smoothed = DisplacementSmoother(noisy, kNoise).Smooth(noisy);
+  // A parabola through 2h + 1 samples cuts a corner by 3/16·h steps; windows whose estimates differ
+  // by the 2.5 deviations of both are found out, and half of that is left.
+  for (std::size_t i = 50; i < drive.size(); i += 100) {
+    EXPECT_NEAR(smoothed[i], drive[i], 2.5 * kNoise) << i;
+  }
+}
+
+TEST(DisplacementSmoother, RefusesANegativeNoiseAndAnotherNumberOfSamples) {
+  const History drive = Sine(1, 100);
+  EXPECT_THROW(DisplacementSmoother(drive, -1.0), InvalidArgument);
+  EXPECT_THROW((void)DisplacementSmoother(drive, kNoise).Smooth(History{0, 1}), InvalidArgument);
+}
+
+TEST(MoveReversals, PutsThemOnTheOutermostSamples) {
+  Generator generator(5);
+  const History drive = Sine(4, 400);
+  const History noisy = WithNoise(generator, drive, kNoise);
+  const std::vector<std::size_t> found = FindReversals(noisy, 10 * kNoise);
+  ASSERT_EQ(found.size(), 8U);
+  const History smoothed = DisplacementSmoother(noisy, kNoise).Smooth(noisy);
+  const std::vector<std::size_t> moved = MoveReversals(smoothed, found);
+  ASSERT_EQ(moved.size(), found.size());
+  for (std::size_t r = 0; r < moved.size(); ++r) {
+    const std::size_t begin = r == 0 ? 0 : moved[r - 1];
+    const std::size_t end = r + 1 < moved.size() ? moved[r + 1] : smoothed.size() - 1;
+    const double sense = r % 2 == 0 ? 1.0 : -1.0;
+    for (std::size_t i = begin; i <= end; ++i) {
+      EXPECT_LE(sense * smoothed[i], sense * smoothed[moved[r]]) << r << ", " << i;
+    }
+  }
+}
+
+TEST(MoveReversals, LeavesThoseOfACleanRecordWhereTheyAre) {
+  const History drive = Sine(4, 100);
+  const std::vector<std::size_t> found = FindReversals(drive, 0.0);
+  EXPECT_EQ(MoveReversals(drive, found), found);
+}
+
+TEST(MoveReversals, DropsOneThatTheRecordBeginsAt) {
+  EXPECT_EQ(MoveReversals(History{1.0, 0.9, 0.5, -1.0, 0.0}, std::vector<std::size_t>{1, 3}),
+            (std::vector<std::size_t>{3}));
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,232 @@
+#include "coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string_view>
+
+#include "mindahl/loop/reversals.h"
+#include "mindahl/models/excitation.h"
+#include "mindahl/models/response.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl::coverage {
+namespace {
+
+constexpr std::array<std::string_view, Coverage::kParameters> kNames = {"sigma", "alpha",
+                                                                        "slip_force"};
+
+/// Box and Muller: the same on every platform.
+class Normal {
+ public:
+  explicit Normal(std::uint64_t seed) : engine_(seed) {}
+  double operator()() {
+    constexpr double kTwoPi = 6.283185307179586;
+    return std::sqrt(-2 * std::log(1 - Uniform())) * std::cos(kTwoPi * Uniform());
+  }
+  double Uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// A contact of the size of a fretting test, as far as units go.
+BranchLaw LawOf(const Scenario& scenario) { return {5e7, scenario.shape_exponent, 20.0}; }
+
+/// Off centre in both channels, so that offsets are to be found.
+constexpr double kForceOffset = 3.0;
+constexpr double kDisplacementOffset = 2e-7;
+
+Record CleanRecord(const Scenario& scenario) {
+  const BranchLaw law = LawOf(scenario);
+  const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
+  Record record;
+  record.displacement = MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
+                                        .cycles = static_cast<double>(scenario.cycles),
+                                        .samples_per_cycle = scenario.samples_per_cycle})
+                            .displacement;
+  for (std::size_t i = 0; i < record.displacement.size(); ++i) {
+    record.displacement[i] = record.displacement[i - i % scenario.dwell];
+  }
+  record.force.resize(record.displacement.size());
+  const LoadingPath path = MakeLoadingPath(
+      record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
+  EvaluateForce(model, law, path, record.displacement, record.force);
+  for (double& force : record.force) force += kForceOffset;
+  for (double& displacement : record.displacement) displacement += kDisplacementOffset;
+  return record;
+}
+
+double ForceNoise(const Scenario& scenario) {
+  const BranchLaw law = LawOf(scenario);
+  return scenario.force_noise * SteadyPeakForce(*FindFrictionModel("mindlin-dahl"), law,
+                                                scenario.lambda * GrossSlipDisplacement(law));
+}
+
+Record NoisyRecord(const Scenario& scenario, const Record& clean, std::uint64_t seed) {
+  constexpr double kCorrelation = 0.9;
+  Normal normal(seed);
+  Record record = clean;
+  const double force_noise = ForceNoise(scenario);
+  const double amplitude = scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
+  const double displacement_noise = scenario.displacement_noise * amplitude;
+  double correlated = force_noise * normal();
+  double error = 0.0;                     // of the displacement
+  const double phase = normal.Uniform();  // of the encoder
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double white = force_noise * normal();
+    if (scenario.noise == Noise::kAutoregressive) {
+      record.force[i] += correlated;
+      correlated = kCorrelation * correlated + std::sqrt(1 - kCorrelation * kCorrelation) * white;
+    } else {
+      record.force[i] += white;
+    }
+    double& displacement = record.displacement[i];
+    if (scenario.noise == Noise::kDisplacement) {
+      if (i % scenario.dwell == 0) error = displacement_noise * normal();
+      displacement += error;
+    }
+    if (scenario.noise == Noise::kQuantised) {
+      displacement =
+          displacement_noise * (std::round(displacement / displacement_noise + phase) - phase);
+    }
+  }
+  return record;
+}
+
+FitOptions OptionsOf(const Scenario& scenario) {
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  if (scenario.noise == Noise::kDisplacement && scenario.noise_is_known) {
+    options.displacement_noise =
+        scenario.displacement_noise * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
+  }
+  return options;
+}
+
+}  // namespace
+
+std::vector<Scenario> Scenarios() {
+  constexpr double kWhiteLow = 0.93;
+  constexpr double kWhiteHigh = 0.97;
+  return {
+      {.name = "white 1 %, lambda 0.9",
+       .lambda = 0.9,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
+      {.name = "white 1 %, lambda 1.2",
+       .lambda = 1.2,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
+      {.name = "white 5 %, lambda 2",
+       .lambda = 2.0,
+       .force_noise = 0.05,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
+      {.name = "white 1 %, alpha 0.7, lambda 1",
+       .shape_exponent = 0.7,
+       .lambda = 1.0,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
+      {.name = "AR(1) 0.9, 1 %, 3 cycles", .noise = Noise::kAutoregressive},
+      {.name = "AR(1) 0.9, 1 %, 10 cycles", .cycles = 10, .noise = Noise::kAutoregressive},
+      {.name = "displacement noise 0.5 %",
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.005,
+       .displacement_noise = 0.005},
+      {.name = "displacement noise 2 %",
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.005,
+       .displacement_noise = 0.02},
+      {.name = "encoder, 100 steps of X",
+       .noise = Noise::kQuantised,
+       .force_noise = 0.005,
+       .displacement_noise = 0.01},
+      {.name = "encoder, 50 steps of X",
+       .noise = Noise::kQuantised,
+       .force_noise = 0.005,
+       .displacement_noise = 0.02},
+      {.name = "encoder, 200 steps of X",
+       .noise = Noise::kQuantised,
+       .force_noise = 0.005,
+       .displacement_noise = 0.005},
+      {.name = "displacement noise 2 %, lambda 0.9",
+       .lambda = 0.9,
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.005,
+       .displacement_noise = 0.02},
+      {.name = "displacement noise 2 %, not told",
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.005,
+       .displacement_noise = 0.02,
+       .noise_is_known = false},
+      {.name = "displacement noise 2 %, not told, 1000 samples a cycle: it steps back",
+       .samples_per_cycle = 1000,
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.005,
+       .displacement_noise = 0.02,
+       .noise_is_known = false},
+      {.name = "displacement noise 1 %, readings repeated 3 times",
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.005,
+       .displacement_noise = 0.01,
+       .dwell = 3},
+      {.name = "near a bound: alpha 0.01", .shape_exponent = 0.01, .lambda = 1.2},
+      {.name = "at a bound: alpha 0", .shape_exponent = 0.0, .lambda = 1.2},
+  };
+}
+
+Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t first_seed) {
+  const BranchLaw law = LawOf(scenario);
+  const std::array<double, Coverage::kParameters> truth = {law.tangential_stiffness,
+                                                           law.shape_exponent, law.slip_force};
+  const Record clean = CleanRecord(scenario);
+  const FitOptions options = OptionsOf(scenario);
+
+  // The bound of Cramér and Rao for white noise of the force: the parabola at the truth.
+  std::array<double, Coverage::kParameters> bound{};
+  FitOptions known = options;
+  known.displacement_noise.reset();
+  known.force_noise = ForceNoise(scenario);
+  const FitResult at_truth = Fit({&clean, 1}, known);
+  for (std::size_t k = 0; k < bound.size(); ++k) {
+    bound[k] = at_truth.Find(kNames[k])->standard_error.value_or(0.0);
+  }
+
+  Coverage coverage;
+  coverage.loops = loops;
+  std::array<double, Coverage::kParameters> sum{};
+  std::array<double, Coverage::kParameters> squares{};
+  std::array<double, Coverage::kParameters> stated{};
+  std::array<double, Coverage::kParameters> with_error{};
+  for (std::size_t i = 0; i < loops; ++i) {
+    const Record record = NoisyRecord(scenario, clean, first_seed + i);
+    const FitResult fit = Fit({&record, 1}, options);
+    ++coverage.judged;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const ParameterEstimate& estimate = *fit.Find(kNames[k]);
+      const bool holds = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
+                         (!estimate.upper95 || truth[k] <= *estimate.upper95);
+      if (holds) ++coverage.covered[k];
+      const double error = estimate.value - truth[k];
+      sum[k] += error;
+      squares[k] += error * error;
+      if (estimate.standard_error) {
+        stated[k] += *estimate.standard_error * *estimate.standard_error;
+        ++with_error[k];
+      }
+    }
+  }
+  const auto count = static_cast<double>(coverage.judged);
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const double mean = sum[k] / count;
+    const double scatter = std::sqrt(std::max(squares[k] / count - mean * mean, 0.0));
+    coverage.covered[k] /= count;
+    coverage.error_ratio[k] = std::sqrt(stated[k] / with_error[k]) / scatter;
+    coverage.efficiency[k] = bound[k] * bound[k] / (scatter * scatter);
+    coverage.bias[k] = mean / scatter;
+  }
+  return coverage;
+}
+
+}  // namespace mindahl::coverage

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/models/branch_law.h"
+
+/// How often 95 % intervals hold the truth, over seeded loops of known contacts.
+namespace mindahl::coverage {
+
+enum class Noise {
+  kWhite,           ///< of the force
+  kAutoregressive,  ///< of the force, AR(1) with ρ = 0.9
+  kDisplacement,    ///< of both channels
+  kQuantised,       ///< the displacement by an encoder, the force white
+};
+
+/// One row of the table: a contact, its drive and its noise.
+struct Scenario {
+  std::string name;
+  double shape_exponent = 1.0 / 3;
+  double lambda = 1.2;  ///< amplitude over the gross-slip displacement
+  std::size_t cycles = 3;
+  std::size_t samples_per_cycle = 200;
+  Noise noise = Noise::kWhite;
+  double force_noise = 0.01;        ///< of T*
+  double displacement_noise = 0.0;  ///< of the amplitude; the encoder's step where quantised
+  bool noise_is_known = true;       ///< is the fit told that of the displacement?
+  std::size_t dwell = 1;            ///< samples at which the drive rests, with one reading
+  double lowest_coverage = 0.90;    ///< what is promised, over 1000 loops
+  double highest_coverage = 1.0;
+};
+
+/// The scenarios of docs/coverage.md.
+std::vector<Scenario> Scenarios();
+
+/// Of σ, α and Tc in this order.
+struct Coverage {
+  static constexpr std::size_t kParameters = 3;
+  std::size_t loops = 0;
+  std::size_t judged = 0;  ///< of which the parameters are identifiable: the others claim no number
+  std::array<double, kParameters> covered{};  ///< share of the intervals that hold the truth
+  std::array<double, kParameters>
+      error_ratio{};                             ///< root mean square stated error over the scatter
+  std::array<double, kParameters> efficiency{};  ///< Cramér–Rao bound over the scatter, squared
+  std::array<double, kParameters> bias{};        ///< mean error over the scatter
+};
+
+/// @param loops  seeds first, first + 1, …
+Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t first_seed = 1);
+
+}  // namespace mindahl::coverage
