@@ -13,17 +13,24 @@ using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eig
 constexpr std::array kNames = {"virgin", "unloading", "reloading"};
 constexpr std::size_t kFewest = 10;
 
-/// Kind of the branch of each sample, an index of kNames. The force unloads where the displacement
-/// falls, as from the first extreme of a contact first pushed to positive displacements.
+/// Kind of the branch of each sample, an index of kNames. A contact unloads on its way back from
+/// its first push; of a steady one that is not known, and taken to have been to positive
+/// displacements.
 std::vector<std::size_t> Kinds(const Candidate& candidate, const ScaledRecords& data) {
   std::vector<std::size_t> kinds;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const LoadingPath path = candidate.residual.PathOf(r, candidate.solution.theta);
-    const bool first_up = path.branches.empty() || path.branches.front().direction > 0;
+    const Branch& first = path.branches.front();
+    const bool first_up = first.start != BranchStart::kUnloaded || first.direction > 0;
+    std::size_t kind = 2;
     for (const BranchRun& run : path.runs) {
       const Branch& branch = path.branches[static_cast<std::size_t>(run.branch)];
       const bool back = (branch.direction > 0) != first_up;
-      const std::size_t kind = IsVirgin(branch.start) ? 0 : back ? 1 : 2;
+      // A steady loop's virgin curve is not in the record: a sample on it is an extreme that came
+      // back to the last bit, and ends the stroke before.
+      if (branch.start != BranchStart::kSteadyCentre) {
+        kind = branch.start == BranchStart::kUnloaded ? 0 : back ? 1 : 2;
+      }
       kinds.insert(kinds.end(), run.end - run.begin, kind);
     }
   }
@@ -68,7 +75,7 @@ std::vector<BranchShape> FitBranchShapes(const Candidate& candidate, const Scale
 
   // α's column in parts, the first in its place, the others at the end.
   const auto kinds_present = static_cast<Eigen::Index>(present.size());
-  Eigen::MatrixXd split(rows, columns + kinds_present - 1);
+  RowMajorMatrix split(rows, columns + kinds_present - 1);
   split.leftCols(columns) = jacobian;
   std::vector<Eigen::Index> column_of = {shape_column};
   for (Eigen::Index k = 1; k < kinds_present; ++k) {
@@ -94,11 +101,17 @@ std::vector<BranchShape> FitBranchShapes(const Candidate& candidate, const Scale
   const Eigen::VectorXd step = -factor * (split.transpose() * values);
   Eigen::MatrixXd correlated = Eigen::MatrixXd::Zero(split.cols(), split.cols());
   Eigen::Index begin = 0;
-  for (const std::size_t part : record_rows) {
-    correlated += noise.Quadratic(split.middleRows(begin, static_cast<Eigen::Index>(part)));
-    begin += static_cast<Eigen::Index>(part);
+  const auto width = static_cast<std::size_t>(split.cols());
+  for (const std::size_t samples_of_record : record_rows) {
+    const std::vector<double> part =
+        noise.Quadratic({split.row(begin).data(), samples_of_record * width}, width);
+    correlated += Eigen::Map<const Eigen::MatrixXd>(part.data(), split.cols(), split.cols());
+    begin += static_cast<Eigen::Index>(samples_of_record);
   }
-  const Eigen::MatrixXd covariance = variance * factor * correlated * factor;
+  // What the departure from one law leaves in the residuals is not noise here.
+  const double left = (values + split * step).squaredNorm() / values.squaredNorm();
+  const Eigen::MatrixXd covariance =
+      variance * (left < 1 ? left : 1.0) * factor * correlated * factor;
   std::vector<BranchShape> shapes;
   for (std::size_t k = 0; k < present.size(); ++k) {
     const Eigen::Index column = column_of[k];

@@ -297,6 +297,13 @@ void TryRig(FitResult& result, const ScaledRecords& data, const Candidate& best,
   if (!sprung.solution.converged || !(loss * share_over_variance < kAlike)) return;
   const double stiffness = sprung.layout.Rig(sprung.solution.theta).stiffness;
   result.mindlin_test->rig_stiffness = stiffness;
+  // A rigid contact in a rig is Jenkins' element again: the same curve, and no other α.
+  constexpr double kRigid = 30.0;  // σ over k_r
+  const double contact = sprung.layout.Law(sprung.solution.theta).tangential_stiffness;
+  if (contact < kRigid * stiffness) {
+    const auto alpha = std::ranges::find(result.parameters, "alpha", &ParameterEstimate::name);
+    alpha->identifiability = Identifiability::kNotIdentifiable;
+  }
   Warn(result, "shape_or_rig",
        fmt::format("alpha: a rig of {:.4g} N/m in series and Mindlin's alpha = 1/3 fit as well as "
                    "alpha = {:.3g} on a rigid rig: the record does not tell which, and sigma is "

@@ -14,7 +14,7 @@ namespace {
 /// Of the variance of the residuals, where they are poor and where they fail; less is noise.
 constexpr double kRepeats = 0.3;
 constexpr double kRepeatsAtAll = 0.1;
-/// rms over Tc: from here on a curve is visibly another one,
+/// rms over Tc, or over T* if that is smaller: from here on a curve is visibly another one,
 constexpr double kPoor = 0.02;
 /// and from here on no parameter but Tc should be believed.
 constexpr double kFails = 0.1;
@@ -74,7 +74,10 @@ std::string Kind(const ResidualStructure& structure, const Peak& peak) {
 }  // namespace
 
 void JudgeMisfit(FitResult& result) {
-  const double poor = result.residuals.normalized_rms;
+  // Where the slip force is open it says nothing of how well the loop is followed.
+  const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);
+  if (!(force > 0)) return;
+  const double poor = result.residuals.rms / force;
   if (!(poor > kPoor)) return;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const ResidualStructure& structure = result.records[r].structure;
@@ -87,16 +90,23 @@ void JudgeMisfit(FitResult& result) {
         100 * structure.repeatable_share, std::abs(peak.bin.mean), 100 * peak.bin.position,
         peak.direction > 0 ? "up" : "down", Kind(structure, peak));
     if (poor > kFails) {
-      Warn(
-          result, "no_model_fits",
-          fmt::format("no parameters of {} follow this record (rms {:.3g} % of Tc): {}. Tc and the "
-                      "energy may still be of use, sigma and alpha not",
-                      result.model->name, 100 * poor, where));
+      Warn(result, "no_model_fits",
+           fmt::format(
+               "no parameters of {} follow this record (rms {:.3g} % of the force): {}. Tc and the "
+               "energy may still be of use, sigma and alpha not",
+               result.model->name, 100 * poor, where));
+      for (ParameterEstimate& estimate : result.parameters) {
+        const bool of_the_shape = estimate.name == "sigma" || estimate.name == "alpha";
+        if (of_the_shape && estimate.status != ParameterStatus::kFixed) {
+          estimate.identifiability = Identifiability::kNotIdentifiable;
+        }
+      }
     } else {
       Warn(result, "systematic_residual",
-           fmt::format("{} misses something systematic (rms {:.3g} % of Tc): {}. Intervals are "
-                       "widened for it; compare with --model auto",
-                       result.model->name, 100 * poor, where));
+           fmt::format(
+               "{} misses something systematic (rms {:.3g} % of the force): {}. Intervals are "
+               "widened for it; compare with --model auto",
+               result.model->name, 100 * poor, where));
     }
     return;
   }

@@ -1,5 +1,6 @@
 #include "identification/noise_model.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -121,13 +122,22 @@ double NoiseModel::SquaredCorrelations() const {
   return sum;
 }
 
-Eigen::MatrixXd NoiseModel::Quadratic(const Eigen::MatrixXd& jacobian) const {
-  if (coefficients.empty()) return jacobian.transpose() * jacobian;
-  const auto order = static_cast<Eigen::Index>(coefficients.size());
-  const Eigen::Index columns = jacobian.cols();
+std::vector<double> NoiseModel::Quadratic(std::span<const double> jacobian,
+                                          std::size_t columns) const {
+  using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto width = static_cast<Eigen::Index>(columns);
+  const Eigen::Map<const RowMajorMatrix> rows(
+      jacobian.data(), static_cast<Eigen::Index>(jacobian.size() / columns), width);
+  std::vector<double> result(columns * columns);
+  Eigen::Map<RowMajorMatrix> sum(result.data(), width, width);
+  if (coefficients.empty()) {
+    sum.noalias() = rows.transpose() * rows;
+    return result;
+  }
+  sum.setZero();
   // The last `order` outputs, newest first.
-  Eigen::MatrixXd recent = Eigen::MatrixXd::Zero(order, columns);
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns, columns);
+  const auto order = static_cast<Eigen::Index>(coefficients.size());
+  Eigen::MatrixXd recent = Eigen::MatrixXd::Zero(order, width);
   const Eigen::Map<const Eigen::RowVectorXd> phi(coefficients.data(), order);
   double largest = 0.0;
   const auto step = [&](const Eigen::RowVectorXd& input) {
@@ -137,13 +147,14 @@ Eigen::MatrixXd NoiseModel::Quadratic(const Eigen::MatrixXd& jacobian) const {
     sum.noalias() += output.transpose() * output;
     largest = std::max(largest, output.cwiseAbs().maxCoeff());
   };
-  for (Eigen::Index row = jacobian.rows() - 1; row >= 0; --row) step(jacobian.row(row));
-  const Eigen::RowVectorXd nothing = Eigen::RowVectorXd::Zero(columns);
+  for (Eigen::Index row = rows.rows() - 1; row >= 0; --row) step(rows.row(row));
+  const Eigen::RowVectorXd nothing = Eigen::RowVectorXd::Zero(width);
   for (std::size_t i = 0; i < kLongest; ++i) {
     if (recent.cwiseAbs().maxCoeff() < kForgotten * largest) break;
     step(nothing);
   }
-  return innovation_share * sum;
+  sum *= innovation_share;
+  return result;
 }
 
 }  // namespace mindahl

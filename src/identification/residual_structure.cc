@@ -77,8 +77,8 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
   if (displacement.empty()) return structure;
 
   std::array<std::vector<std::array<double, kBins>>, 2> means;
+  std::array<double, 2> samples{};
   double squares = 0.0;
-  double samples = 0.0;
   for (const Stroke& stroke : MainStrokes(displacement, reversals)) {
     const std::size_t side = displacement[stroke.end] > displacement[stroke.begin] ? 0 : 1;
     StrokeResiduals& direction = structure.directions[side];
@@ -91,22 +91,21 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
       sum_of_squares += residual[i] * residual[i];
       ++count;
     }
-    if (count == 0) continue;  // left out as a whole
+    if (count < 2) continue;  // left out, but for a reversal that it shares
     means[side].push_back(BinMeans(stroke, displacement, residual));
     ++direction.strokes;
-    direction.mean += sum / count;
-    direction.rms += sum_of_squares / count;
-    squares += sum_of_squares;
-    samples += count;
+    direction.mean += sum;
+    direction.rms += sum_of_squares;
+    samples[side] += count;
   }
 
   Variance variance;
   for (std::size_t side = 0; side < 2; ++side) {
     StrokeResiduals& direction = structure.directions[side];
     if (direction.strokes == 0) continue;
-    const auto strokes = static_cast<double>(direction.strokes);
-    direction.mean /= strokes;
-    direction.rms = std::sqrt(direction.rms / strokes);
+    squares += direction.rms;
+    direction.mean /= samples[side];
+    direction.rms = std::sqrt(direction.rms / samples[side]);
     structure.strokes = std::max(structure.strokes, direction.strokes);
     for (std::size_t bin = 0; bin < kBins; ++bin) {
       double sum = 0.0;
@@ -140,8 +139,8 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
   if (ratio < boost::math::quantile(boost::math::complement(distribution, kChance))) {
     return structure;
   }
-  structure.repeatable_share =
-      std::clamp(variance.systematic / variance.parts / (squares / samples), 0.0, 1.0);
+  structure.repeatable_share = std::clamp(
+      variance.systematic / variance.parts / (squares / (samples[0] + samples[1])), 0.0, 1.0);
   return structure;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "identification/solver.h"
 #include "mindahl/core/error.h"
@@ -13,7 +14,7 @@ namespace mindahl {
 namespace {
 
 constexpr int kMostRounds = 50;
-constexpr double kSettled = 1e-6;                       // largest change of θ
+constexpr double kSettled = 1e-4;  // rms change of the forces, over the noise: a valley has no end
 constexpr double kNormalDeviation = 1.482602218505602;  // σ over the median |r|, 1/Φ⁻¹(3/4)
 
 /// ψ(z)/z and ψ'(z).
@@ -252,6 +253,8 @@ WeightedNoise FitWithWeights(Candidate& candidate, ScaledRecords& data, const Fi
                              const DisplacementErrors& displacement_errors) {
   Weighting weighting(candidate, data, options, displacement_errors);
   // Tukey's loss has several minima: it starts from Huber's, which has one.
+  std::vector<double> last_force(candidate.residual.size());
+  candidate.residual.Predict(candidate.solution.theta, last_force);
   constexpr int kHuberRounds = 10;
   WeightedNoise noise;
   for (int round = 0; round < kMostRounds; ++round) {
@@ -259,11 +262,15 @@ WeightedNoise FitWithWeights(Candidate& candidate, ScaledRecords& data, const Fi
     noise = weighting.Update(first_huber ? Loss::kHuber : options.loss);
     const std::vector<double> last = candidate.solution.theta;
     candidate.solution = Solve(candidate.residual, candidate.layout, last, options);
-    double change = 0.0;
-    for (const std::size_t i : candidate.layout.free()) {
-      change = std::max(change, std::abs(candidate.solution.theta[i] - last[i]));
+    std::vector<double> force(candidate.residual.size());
+    candidate.residual.Predict(candidate.solution.theta, force);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      squares += (force[i] - last_force[i]) * (force[i] - last_force[i]);
     }
-    const bool settled = change < kSettled;
+    last_force = std::move(force);
+    const double change = std::sqrt(squares / static_cast<double>(last_force.size()));
+    const bool settled = change < kSettled * std::max(noise.force_noise, kRoundingRms);
     if (settled && (!first_huber || options.loss == Loss::kHuber)) return noise;
     if (settled && first_huber) round = kHuberRounds - 1;
   }

@@ -72,9 +72,10 @@ LocalUncertainty AnalyseJacobian(const ForceResidual& residual, const std::vecto
   }
   Eigen::Index begin = 0;
   for (const std::size_t samples : record_rows) {
-    const auto part = static_cast<Eigen::Index>(samples);
-    correlated += noise.Quadratic(jacobian.middleRows(begin, part));
-    begin += part;
+    const std::vector<double> part =
+        noise.Quadratic({jacobian.row(begin).data(), samples * count}, count);
+    correlated += Eigen::Map<const Eigen::MatrixXd>(part.data(), size, size);
+    begin += static_cast<Eigen::Index>(samples);
   }
   result.absorbed = (factor * correlated).trace();
   const Eigen::MatrixXd product = factor * correlated * factor;

@@ -17,7 +17,7 @@ struct StrokeBin {
 /// The strokes of one direction.
 struct StrokeResiduals {
   int direction = 1;        ///< +1 where the displacement grows
-  std::size_t strokes = 0;  ///< complete ones, at least three quarters as long as the longest
+  std::size_t strokes = 0;  ///< that count, at least three quarters as long as the longest
   double mean = 0.0;        ///< [N]
   double rms = 0.0;         ///< [N]
   std::vector<StrokeBin> bins;

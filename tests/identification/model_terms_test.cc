@@ -1,0 +1,287 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "identification/sample_loop.h"
+#include "mindahl/core/error.h"
+#include "recovery/recovered.h"
+
+// What a fit may add to the contact - a rig's spring, a sloped plateau, drift, a varying load - and
+// what it may leave out.
+namespace mindahl {
+namespace {
+
+using testing::Cycling;
+using testing::FitOne;
+using testing::Generator;
+using ::testing::HasSubstr;
+using testing::History;
+using testing::kLaw;
+using testing::kNoiseFree;
+using testing::kReach;
+using testing::Loop;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Recovers;
+using testing::Respond;
+using testing::Wave;
+using testing::WithForceNoise;
+
+constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
+constexpr double kGrossSlip = 1.5e-6;
+constexpr double kRig = 6e7;  // [N/m]
+
+/// Contact and rig together up to 1.5 times gross slip.
+Record SprungLoop(const BranchLaw& law, double stiffness) {
+  const double reach = 1.5 * GrossSlipDisplacement(law, {stiffness});
+  const History displacement = Cycling(Wave::kSine, reach, 2.0, 200);
+  std::vector<double> force(displacement.size());
+  const FrictionModel& model = Model("mindlin-dahl");
+  EvaluateForce(model, law, testing::PathOf(model, displacement), displacement, force, {stiffness});
+  return MakeRecord(displacement, force);
+}
+
+std::string RefusalOf(const Record& record, const FitOptions& options) {
+  try {
+    FitOne(record, options);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// Contact and rig are told apart by the law's curvature alone: the condition of the fit, 1e4 for
+/// the contact alone, is some hundred times larger.
+constexpr double kWithRig = 1e-6;
+
+TEST(ModelTerms, KnownRigStiffnessLeavesTheContactsOwnParameters) {
+  FitOptions options;
+  options.fixed["rig_stiffness"] = kRig;
+  const FitResult fit = FitOne(SprungLoop(kMindlin, kRig), options);
+  EXPECT_TRUE(Recovers(fit, kMindlin, kWithRig));
+  EXPECT_DOUBLE_EQ(fit.rig.stiffness, kRig);
+  EXPECT_EQ(fit.Find("rig_stiffness")->status, ParameterStatus::kFixed);
+}
+
+TEST(ModelTerms, RigStiffnessIsRecoveredWithAGivenShapeAndWithAFreeOne) {
+  FitOptions options;
+  options.fit_rig_stiffness = true;
+  for (const bool held : {true, false}) {
+    if (held) options.fixed["alpha"] = 1.0 / 3;
+    if (!held) options.fixed.clear();
+    const FitResult fit = FitOne(SprungLoop(kMindlin, kRig), options);
+    EXPECT_TRUE(Recovers(fit, kMindlin, kWithRig)) << held;
+    EXPECT_NEAR(fit.rig.stiffness, kRig, kWithRig * kRig) << held;
+    EXPECT_EQ(fit.Find("rig_stiffness")->value, fit.rig.stiffness);
+  }
+}
+
+TEST(ModelTerms, StiffnessOfContactAndRigTogetherIsKnownBetterThanEither) {
+  // 1/σ_app = 1/σ + 1/k_r is the slope after each reversal.
+  constexpr double kTogether = 1 / (1 / kMindlin.tangential_stiffness + 1 / kRig);
+  FitOptions options;
+  options.fit_rig_stiffness = true;
+  options.fixed["alpha"] = 1.0 / 3;
+  Generator generator(21);
+  constexpr int kLoops = 20;
+  double together = 0.0;
+  double rig = 0.0;
+  for (int loop = 0; loop < kLoops; ++loop) {
+    const FitResult fit =
+        FitOne(WithForceNoise(SprungLoop(kMindlin, kRig), 0.003 * kMindlin.slip_force, generator),
+               options);
+    ASSERT_TRUE(fit.converged);
+    const double apparent = 1 / (1 / fit.law.tangential_stiffness + 1 / fit.rig.stiffness);
+    together += std::pow(apparent / kTogether - 1, 2) / kLoops;
+    rig += std::pow(std::log(fit.rig.stiffness / kRig), 2) / kLoops;
+  }
+  EXPECT_LT(std::sqrt(together), 0.02);
+  EXPECT_GT(std::sqrt(rig), 2 * std::sqrt(together));
+}
+
+TEST(ModelTerms, JenkinsElementInARigIsAJenkinsElementOfBothInSeries) {
+  constexpr BranchLaw kJenkins{4e7, 0.0, 40.0};
+  constexpr BranchLaw kTogether{1 / (1 / 4e7 + 1 / kRig), 0.0, 40.0};
+  FitOptions options;
+  options.model = &Model("jenkins");
+  EXPECT_TRUE(Recovers(FitOne(SprungLoop(kJenkins, kRig), options), kTogether, kNoiseFree));
+}
+
+TEST(ModelTerms, PlateauSlopeIsRecovered) {
+  constexpr double kSlope = 1.5e6;  // [N/m], 3 % of σ
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] += kSlope * record.displacement[i];
+  }
+  FitOptions options;
+  options.plateau_slope = true;
+  const FitResult fit = FitOne(record, options);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  EXPECT_NEAR(fit.Find("plateau_slope")->value, kSlope, kNoiseFree * kLaw.tangential_stiffness);
+  EXPECT_FALSE(Recovers(FitOne(record), kLaw, 0.01)) << "it matters";
+}
+
+TEST(ModelTerms, DriftIsRecovered) {
+  constexpr double kDrift = -0.7;  // [N/s]
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(100 + 0.05 * static_cast<double>(i));
+    record.force[i] += 3.0 + kDrift * record.time[i];
+  }
+  FitOptions options;
+  options.drift = true;
+  const FitResult fit = FitOne(record, options);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  EXPECT_NEAR(fit.Find("force_drift")->value, kDrift, kNoiseFree * kLaw.slip_force);
+}
+
+/// A load that varies by ±5 % out of step with the motion, and the force with it.
+Record LoopUnderVaryingLoad() {
+  constexpr double kMeanLoad = 150.0;
+  Record record = Loop();
+  double sum = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.normal_load.push_back(kMeanLoad * (1 + 0.05 * std::sin(0.07 * static_cast<double>(i))));
+    sum += record.normal_load.back();
+  }
+  const double mean = sum / static_cast<double>(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] *= record.normal_load[i] / mean;
+  return record;
+}
+
+TEST(ModelTerms, FollowingTheLoadGivesTheParametersAtTheMeanLoad) {
+  const Record record = LoopUnderVaryingLoad();
+  FitOptions options;
+  options.follow_load = true;
+  const FitResult following = FitOne(record, options);
+  EXPECT_TRUE(Recovers(following, kLaw, kNoiseFree));
+  // Ignored, ±5 % leave some 5 %/√2 of a force that is near Tc for most of the loop.
+  const FitResult ignoring = FitOne(record);
+  EXPECT_GT(ignoring.residuals.normalized_rms, 0.015);
+  EXPECT_LT(ignoring.residuals.durbin_watson, 0.5) << "systematic";
+}
+
+TEST(ModelTerms, SamplesOutsideTheLoadWindowStillMakeHistory) {
+  // A wide swing under another load, whose force was spoilt, and then inner loops that start from
+  // where it ended.
+  History displacement = Cycling(Wave::kSine, kReach, 1.25, 120);
+  const std::size_t wide = displacement.size();
+  for (int i = 1; i <= 240; ++i) {
+    displacement.push_back(kReach * (0.4 + 0.6 * std::cos(2 * std::acos(-1.0) * i / 120)));
+  }
+  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const bool is_wide = i < wide;
+    record.normal_load.push_back(is_wide ? 80.0 : 100.0);
+    if (is_wide) record.force[i] *= 0.8;
+  }
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  options.fixed["displacement_offset"] = 0.0;  // the samples that showed it are left out
+  options.load_window = {99.0, 101.0};
+  const FitResult fit = FitOne(record, options);
+  EXPECT_EQ(fit.records[0].left_out, wide);
+  EXPECT_EQ(fit.residuals.samples, record.size() - wide);
+  EXPECT_TRUE(Recovers(fit, kLaw, 1e-6));  // the inner loops do not slip: a worse condition
+  options.load_window.reset();
+  EXPECT_FALSE(Recovers(FitOne(record, options), kLaw, 0.02)) << "it matters";
+}
+
+TEST(ModelTerms, CyclesThatAreSkippedMayBeCorrupted) {
+  Record record = Loop(3.0);
+  const std::size_t first_cycle = 90;  // to its second reversal, 120 samples a cycle
+  for (std::size_t i = 0; i < first_cycle; ++i)
+    record.force[i] = 50 * std::cos(0.9 * static_cast<double>(i));
+  FitOptions options;
+  options.skip_cycles = 1;
+  options.force_sense = 1;
+  const FitResult fit = FitOne(record, options);
+  EXPECT_EQ(fit.records[0].left_out, first_cycle);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  options.skip_cycles = 0;
+  EXPECT_FALSE(Recovers(FitOne(record, options), kLaw, 0.02)) << "it matters";
+}
+
+TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
+  FitOptions options;
+  options.displacement_noise = -1e-9;
+  EXPECT_EQ(RefusalOf(Loop(), options),
+            "displacement noise [m] = -1e-09 is invalid: must be finite and >= 0");
+  options = {};
+  options.load_window = {90.0, 110.0};
+  EXPECT_EQ(RefusalOf(Loop(), options), "the load window needs a normal load in every record");
+  Record loaded = Loop();
+  loaded.normal_load.assign(loaded.size(), 200.0);
+  EXPECT_THAT(RefusalOf(loaded, options), HasSubstr("nothing is left of record 1"));
+  options = {};
+  options.follow_load = true;
+  EXPECT_EQ(RefusalOf(Loop(), options), "following the load needs a normal load in every record");
+  loaded.normal_load.assign(loaded.size(), 0.0);
+  EXPECT_THAT(RefusalOf(loaded, options), HasSubstr("mean normal load [N] = 0 is invalid"));
+  options = {};
+  options.skip_cycles = 2;
+  EXPECT_THAT(RefusalOf(Loop(1.2), options), HasSubstr("nothing is left of record 1"));
+  options = {};
+  options.held_out = {{true, false}};
+  EXPECT_THAT(RefusalOf(Loop(), options), HasSubstr("held-out mask"));
+  options = {};
+  options.fixed["rig_stiffness"] = -1.0;
+  EXPECT_THAT(RefusalOf(Loop(), options), HasSubstr("rig_stiffness [N/m] = -1 is invalid"));
+}
+
+TEST(ModelTerms, LoopsFarFromSlipNeverHaveAnIdentifiableSlipForce) {
+  constexpr int kSeeds = 60;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Generator generator(static_cast<std::uint64_t>(seed));
+    const double lambda = std::vector{0.05, 0.1, 0.15}[generator() % 3];
+    const double cycles = 2.0 + static_cast<double>(generator() % 9);
+    const bool steady = generator() % 2 == 0;
+    const History displacement = Cycling(Wave::kSine, lambda * kGrossSlip, cycles + 1, 60);
+    Record record =
+        MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement));
+    // From the second extreme on the loop is closed.
+    record = testing::From(record, steady ? 45 : 0);
+    const double peak = *std::ranges::max_element(record.force);
+    const FitResult fit = FitOne(WithForceNoise(record, 0.01 * peak, generator));
+    const ParameterEstimate& slip_force = *fit.Find("slip_force");
+    EXPECT_NE(slip_force.identifiability, Identifiability::kIdentifiable)
+        << "seed " << seed << ", lambda " << lambda << ", cycles " << cycles << ", steady "
+        << steady << ": " << slip_force.value << " of " << kMindlin.slip_force;
+  }
+}
+
+TEST(ModelTerms, StartsBeyondTheGridAreDrawnAndReachTheSameResult) {
+  FitOptions options;
+  options.starts = 8;
+  options.seed = 42;
+  const FitResult fit = FitOne(Loop(), options);
+  ASSERT_EQ(fit.starts.size(), 8U);
+  for (std::size_t i = 0; i < fit.starts.size(); ++i) {
+    EXPECT_EQ(fit.starts[i].drawn, i >= 4) << "the grid has four";
+  }
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  // The seed and nothing else decides on them.
+  const FitResult again = FitOne(Loop(), options);
+  options.seed = 43;
+  const FitResult other = FitOne(Loop(), options);
+  for (std::size_t i = 0; i < fit.starts.size(); ++i) {
+    const BranchLaw& start = fit.starts[i].start;
+    EXPECT_EQ(start.slip_force, again.starts[i].start.slip_force);
+    EXPECT_EQ(start.slip_force == other.starts[i].start.slip_force, !fit.starts[i].drawn) << i;
+    EXPECT_LE(start.shape_exponent, 3.0);
+  }
+  EXPECT_TRUE(Recovers(other, kLaw, kNoiseFree));
+  options.fixed["alpha"] = kLaw.shape_exponent;
+  for (const StartReport& start : FitOne(Loop(), options).starts) {
+    EXPECT_EQ(start.start.shape_exponent, kLaw.shape_exponent);
+  }
+}
+
+}  // namespace
+}  // namespace mindahl

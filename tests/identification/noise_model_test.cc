@@ -1,0 +1,258 @@
+#include "identification/noise_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "recovery/recovered.h"
+
+// The noise of a loop as an autoregressive process, and the standard errors that follow from it.
+namespace mindahl {
+namespace {
+
+using testing::Cycling;
+using testing::FitOne;
+using testing::Generator;
+using testing::History;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Normal;
+using testing::Respond;
+using testing::Uniform;
+using testing::Wave;
+
+constexpr std::size_t kSamples = 5000;
+
+/// A series of the process, stationary from its first sample on.
+std::vector<double> Autoregressive(const std::vector<double>& coefficients, std::size_t samples,
+                                   Generator& generator) {
+  constexpr std::size_t kForgetting = 1000;  // 0.9^1000 = 1e-46
+  std::deque<double> recent(coefficients.size(), 0.0);
+  std::vector<double> series;
+  for (std::size_t i = 0; i < kForgetting + samples; ++i) {
+    double value = Normal(generator);
+    for (std::size_t k = 0; k < coefficients.size(); ++k) value += coefficients[k] * recent[k];
+    recent.push_front(value);
+    recent.pop_back();
+    if (i >= kForgetting) series.push_back(value);
+  }
+  return series;
+}
+
+/// ρ_0 … ρ_{count−1} of φ₁, φ₂: ρ₁ = φ₁/(1 − φ₂), then the recursion.
+std::vector<double> SecondOrderCorrelations(double first, double second, std::size_t count) {
+  std::vector<double> rho = {1.0, first / (1 - second)};
+  while (rho.size() < count) {
+    rho.push_back(first * rho[rho.size() - 1] + second * rho[rho.size() - 2]);
+  }
+  return rho;
+}
+
+/// Variance of the innovations over that of the process: 1 − φ₁ρ₁ − φ₂ρ₂.
+double SecondOrderShare(double first, double second) {
+  const std::vector<double> rho = SecondOrderCorrelations(first, second, 3);
+  return 1 - first * rho[1] - second * rho[2];
+}
+
+/// Normal estimates are off by this many standard deviations once in 1.7 million.
+constexpr double kSurely = 5.0;
+
+TEST(NoiseModel, FirstOrderProcessIsRecoveredWithinItsSamplingError) {
+  constexpr double kRho = 0.9;
+  // Brockwell and Davis, Time Series (1991) §8.1: Var φ̂ = (1 − ρ²)/n. The share of the innovations
+  // is 1 − ρ̂², twice ρ times as uncertain.
+  const double error = std::sqrt((1 - kRho * kRho) / kSamples);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Generator generator(seed);
+    const std::vector<std::vector<double>> series = {Autoregressive({kRho}, kSamples, generator)};
+    const NoiseModel noise = EstimateNoise(series);
+    ASSERT_EQ(noise.coefficients.size(), 1U) << seed;
+    EXPECT_NEAR(noise.coefficients[0], kRho, kSurely * error) << seed;
+    EXPECT_NEAR(noise.innovation_share, 1 - kRho * kRho, kSurely * 2 * kRho * error) << seed;
+  }
+}
+
+TEST(NoiseModel, SecondOrderProcessIsRecoveredWithinItsSamplingError) {
+  constexpr double kFirst = 1.2;
+  constexpr double kSecond = -0.5;
+  // Var φ̂₁ = Var φ̂₂ = (1 − φ₂²)/n.
+  const double error = std::sqrt((1 - kSecond * kSecond) / kSamples);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Generator generator(seed);
+    const std::vector<std::vector<double>> series = {
+        Autoregressive({kFirst, kSecond}, kSamples, generator)};
+    const NoiseModel noise = EstimateNoise(series);
+    ASSERT_EQ(noise.coefficients.size(), 2U) << seed;
+    EXPECT_NEAR(noise.coefficients[0], kFirst, kSurely * error) << seed;
+    EXPECT_NEAR(noise.coefficients[1], kSecond, kSurely * error) << seed;
+    EXPECT_NEAR(noise.innovation_share, SecondOrderShare(kFirst, kSecond), 0.03) << seed;
+  }
+}
+
+TEST(NoiseModel, WhiteNoiseHasOrderZero) {
+  // Schwarz's criterion takes one more order where χ²₁ exceeds ln n = 5.7: 1.7 % of the time, and
+  // higher ones seldom. Of 200, more than 20 come with a probability below 1e-6.
+  constexpr int kSeeds = 200;
+  int white = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Generator generator(static_cast<std::uint64_t>(seed));
+    const std::vector<std::vector<double>> series = {Autoregressive({}, 300, generator)};
+    const NoiseModel noise = EstimateNoise(series);
+    if (!noise.coefficients.empty()) continue;
+    ++white;
+    EXPECT_EQ(noise.innovation_share, 1.0);
+    EXPECT_EQ(noise.SquaredCorrelations(), 1.0);
+  }
+  EXPECT_GE(white, kSeeds * 9 / 10);
+  RecordProperty("white_of_200", white);
+}
+
+TEST(NoiseModel, SamplesThatDoNotCountLeaveTheProcessAsItIs) {
+  constexpr double kRho = 0.9;
+  Generator generator(4);
+  // In one run, and scattered: half of the samples each, so the errors grow; pairs of neighbours
+  // that both count are a quarter where they are scattered.
+  const double error = std::sqrt((1 - kRho * kRho) / kSamples);
+  constexpr double kFewerPairs = 4.0;
+  std::vector<double> in_one_run = Autoregressive({kRho}, kSamples, generator);
+  std::vector<double> scattered = in_one_run;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    if (i < kSamples / 2) in_one_run[i] = 0.0;
+    if (Uniform(generator, 0, 1) < 0.5) scattered[i] = 0.0;
+  }
+  for (const std::vector<double>& series : {in_one_run, scattered}) {
+    const std::vector<std::vector<double>> records = {series};
+    const NoiseModel noise = EstimateNoise(records);
+    ASSERT_FALSE(noise.coefficients.empty());
+    // Higher orders may come with scattered samples: what counts is the correlation they make.
+    double correlation = noise.coefficients[0];
+    if (noise.coefficients.size() > 1) {
+      NoiseModel model = noise;
+      correlation =
+          std::sqrt((model.SquaredCorrelations() - 1) / (model.SquaredCorrelations() + 1));
+    }
+    EXPECT_NEAR(correlation, kRho, kSurely * kFewerPairs * error);
+  }
+}
+
+TEST(NoiseModel, RecordsOfZerosOrOfTooFewSamplesAreWhite) {
+  const std::vector<std::vector<double>> nothing = {{}, {0.0, 0.0, 0.0}};
+  EXPECT_TRUE(EstimateNoise(nothing).coefficients.empty());
+  const std::vector<std::vector<double>> few = {{1.0, 1.0, 1.0, 1.0}};
+  EXPECT_TRUE(EstimateNoise(few).coefficients.empty());
+}
+
+TEST(NoiseModel, SquaredCorrelationsAreThoseOfTheProcess) {
+  constexpr double kForgotten = 1e-7;  // what the sum over lags leaves off, relative
+  for (const double rho : {-0.6, 0.3, 0.9, 0.99}) {
+    const NoiseModel noise{{rho}, 1 - rho * rho};
+    const double exact = (1 + rho * rho) / (1 - rho * rho);
+    EXPECT_NEAR(noise.SquaredCorrelations(), exact, kForgotten * exact) << rho;
+  }
+  double exact = 1.0;
+  const std::vector<double> rho = SecondOrderCorrelations(1.2, -0.5, 400);
+  for (std::size_t k = 1; k < rho.size(); ++k) exact += 2 * rho[k] * rho[k];
+  const NoiseModel noise{{1.2, -0.5}, SecondOrderShare(1.2, -0.5)};
+  EXPECT_NEAR(noise.SquaredCorrelations(), exact, kForgotten * exact);
+}
+
+TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
+  constexpr std::size_t kRows = 60;
+  constexpr std::size_t kColumns = 3;
+  constexpr double kForgotten = 1e-8;
+  Generator generator(9);
+  std::vector<double> jacobian;
+  for (std::size_t i = 0; i < kRows * kColumns; ++i) jacobian.push_back(Normal(generator));
+  // JᵀRJ with every R_ij = ρ_|i−j| written out.
+  const auto explicit_form = [&](const std::vector<double>& rho) {
+    std::vector<double> form(kColumns * kColumns, 0.0);
+    for (std::size_t i = 0; i < kRows; ++i) {
+      for (std::size_t j = 0; j < kRows; ++j) {
+        for (std::size_t a = 0; a < kColumns; ++a) {
+          for (std::size_t b = 0; b < kColumns; ++b) {
+            form[a * kColumns + b] += jacobian[i * kColumns + a] * rho[i > j ? i - j : j - i] *
+                                      jacobian[j * kColumns + b];
+          }
+        }
+      }
+    }
+    return form;
+  };
+  struct Case {
+    double first;
+    double second;
+  };
+  for (const auto& [first, second] : {Case{0.9, 0.0}, {1.2, -0.5}, {-0.7, 0.0}, {0.999, 0.0}}) {
+    const NoiseModel noise{{first, second}, SecondOrderShare(first, second)};
+    const std::vector<double> form = noise.Quadratic(jacobian, kColumns);
+    const std::vector<double> exact = explicit_form(SecondOrderCorrelations(first, second, kRows));
+    ASSERT_EQ(form.size(), exact.size());
+    for (std::size_t k = 0; k < exact.size(); ++k) {
+      EXPECT_NEAR(form[k], exact[k], kForgotten * (std::abs(exact[0]) + std::abs(exact[4])))
+          << first << ", " << second;
+    }
+  }
+  std::vector<double> uncorrelated(kRows, 0.0);
+  uncorrelated[0] = 1.0;
+  const std::vector<double> white = NoiseModel{}.Quadratic(jacobian, kColumns);
+  const std::vector<double> exact = explicit_form(uncorrelated);
+  for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(white[k], exact[k], 1e-12);
+}
+
+/// Root mean square of Tc's stated standard errors, and of its errors, over many loops.
+struct Tally {
+  double stated = 0.0;
+  double scatter = 0.0;
+};
+
+Tally TallyOf(const std::vector<double>& coefficients, int loops) {
+  constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+  constexpr double kNoise = 0.01;                                     // of Tc
+  const History displacement = Cycling(Wave::kSine, 3e-6, 2.0, 400);  // twice gross slip
+  const Record clean = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  const double first = coefficients.empty() ? 0.0 : coefficients[0];
+  const double unit = std::sqrt(1 - first * first);  // of the process
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  Generator generator(20250301);
+  Tally tally;
+  for (int loop = 0; loop < loops; ++loop) {
+    Record record = clean;
+    const std::vector<double> noise = Autoregressive(coefficients, record.size(), generator);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.force[i] += kNoise * kLaw.slip_force * unit * noise[i];
+    }
+    const FitResult fit = FitOne(record, options);
+    const ParameterEstimate& slip_force = *fit.Find("slip_force");
+    EXPECT_TRUE(fit.converged && slip_force.standard_error) << loop;
+    if (!slip_force.standard_error) continue;
+    tally.stated += *slip_force.standard_error * *slip_force.standard_error / loops;
+    const double error = slip_force.value - kLaw.slip_force;
+    tally.scatter += error * error / loops;
+  }
+  return {std::sqrt(tally.stated), std::sqrt(tally.scatter)};
+}
+
+TEST(NoiseModel, StandardErrorsAreTheScatterOfLoopsWithCorrelatedNoise) {
+  constexpr int kLoops = 100;
+  // A scatter over 100 loops is itself known to 1/√200 = 7 %.
+  constexpr double kCorrelated = 0.20;
+  constexpr double kWhite = 0.15;
+  const Tally correlated = TallyOf({0.9}, kLoops);
+  const Tally white = TallyOf({}, kLoops);
+  EXPECT_NEAR(correlated.stated / correlated.scatter, 1.0, kCorrelated);
+  EXPECT_NEAR(white.stated / white.scatter, 1.0, kWhite);
+  // Noise of the same size taken as white would be off by more than this.
+  EXPECT_GT(correlated.scatter / white.stated, 1.5);
+  RecordProperty("correlated", std::to_string(correlated.stated / correlated.scatter));
+  RecordProperty("white", std::to_string(white.stated / white.scatter));
+  RecordProperty("white_for_correlated", std::to_string(correlated.scatter / white.stated));
+}
+
+}  // namespace
+}  // namespace mindahl

@@ -1,0 +1,199 @@
+#include "mindahl/identification/residual_structure.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "recovery/recovered.h"
+
+// What comes back in every stroke, told from noise.
+namespace mindahl {
+namespace {
+
+using testing::Cycling;
+using testing::Generator;
+using testing::History;
+using testing::Normal;
+using testing::Wave;
+
+constexpr std::size_t kBins = 20;
+
+ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual) {
+  return DescribeStructure(displacement, FindReversals(displacement, 0.0), residual);
+}
+
+/// Residuals from displacement and direction of motion, +1 or −1, which the sample ends.
+std::vector<double> ResidualsOf(const History& displacement,
+                                const std::function<double(double, int)>& residual) {
+  std::vector<double> values;
+  int direction = 1;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    if (i > 0 && displacement[i] != displacement[i - 1]) {
+      direction = displacement[i] > displacement[i - 1] ? 1 : -1;
+    }
+    values.push_back(residual(displacement[i], direction));
+  }
+  return values;
+}
+
+TEST(ResidualStructure, NoiseRepeatsNothing) {
+  // The F test finds something in noise in 0.1 % of the records: in more than 4 of 200 with a
+  // probability of 2e-6.
+  constexpr int kSeeds = 200;
+  constexpr int kMost = 4;
+  const History displacement = Cycling(Wave::kSine, 1.0, 4.0, 200);
+  int found = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Generator generator(static_cast<std::uint64_t>(seed));
+    std::vector<double> residual;
+    for (std::size_t i = 0; i < displacement.size(); ++i) residual.push_back(Normal(generator));
+    if (StructureOf(displacement, residual).repeatable_share > 0) ++found;
+  }
+  EXPECT_LE(found, kMost);
+}
+
+TEST(ResidualStructure, ShareIsThatOfTheVarianceThatRepeats) {
+  // Triangles, so that every part of a stroke has as many samples. Bins of a twentieth flatten
+  // sin 3x by (3·0.1)²/12 = 0.8 % of its variance, and the variance of noise over 2000 samples is
+  // known to √(2/2000) = 3 %.
+  constexpr double kShareError = 0.05;
+  const History displacement = Cycling(Wave::kTriangle, 1.0, 10.0, 200);
+  for (const double noise : {0.1, 0.7, 2.0}) {
+    Generator generator(7);
+    double mean = 0.0;
+    double squares = 0.0;
+    std::vector<double> residual =
+        ResidualsOf(displacement, [](double x, int) { return std::sin(3 * x); });
+    for (double& value : residual) {
+      mean += value / static_cast<double>(residual.size());
+      squares += value * value / static_cast<double>(residual.size());
+      value += noise * Normal(generator);
+    }
+    ASSERT_NEAR(mean, 0.0, 0.01);
+    const ResidualStructure structure = StructureOf(displacement, residual);
+    EXPECT_NEAR(structure.repeatable_share, squares / (squares + noise * noise), kShareError)
+        << noise;
+    EXPECT_EQ(structure.strokes, 10U);  // down; the way in and the way out are half strokes
+  }
+}
+
+TEST(ResidualStructure, BinsHaveTheMeanAndSignOfEachDirection) {
+  // Growing: linear in the position. Falling: constant, of the other sign. Off centre.
+  constexpr double kOffset = 37.0;
+  constexpr double kHalfBin = 0.5 / kBins;
+  constexpr double kUp = 2.0;
+  constexpr double kDown = -5.0;
+  History displacement = Cycling(Wave::kTriangle, 1.0, 6.0, 400);
+  for (double& x : displacement) x += kOffset;
+  const ResidualStructure structure =
+      StructureOf(displacement, ResidualsOf(displacement, [](double x, int direction) {
+                    return direction > 0 ? kUp * (x - kOffset + 1) / 2 + 1e-3 : kDown;
+                  }));
+  const StrokeResiduals& up = structure.directions[0];
+  const StrokeResiduals& down = structure.directions[1];
+  EXPECT_EQ(up.direction, 1);
+  EXPECT_EQ(down.direction, -1);
+  EXPECT_EQ(up.strokes, 5U);
+  EXPECT_EQ(down.strokes, 6U);
+  ASSERT_EQ(up.bins.size(), kBins);
+  ASSERT_EQ(down.bins.size(), kBins);
+  // The sample on a reversal belongs to both strokes but has one residual: one of 200 of a stroke,
+  // one of 10 of its bin.
+  const double shared = (kUp - kDown) / 200;
+  EXPECT_NEAR(up.mean, kUp / 2, shared + 2e-3);
+  EXPECT_NEAR(down.mean, kDown, shared);
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    const double middle = (static_cast<double>(bin) + 0.5) / kBins;
+    const bool at_end = bin == 0 || bin + 1 == kBins;
+    const double tolerance = kUp * kHalfBin + 2e-3 + (at_end ? (kUp - kDown) / 10 : 0);
+    EXPECT_NEAR(up.bins[bin].position, middle, 1e-12);
+    EXPECT_NEAR(up.bins[bin].mean, kUp * middle, tolerance) << bin;
+    EXPECT_NEAR(down.bins[bin].mean, kDown, tolerance) << bin;
+  }
+}
+
+TEST(ResidualStructure, StandardErrorOfABinIsThatOfItsMean) {
+  // Ten samples of unit noise in a bin and 50 strokes: 1/√500. A scatter over 50 strokes is known
+  // to 1/√100 = 10 %, its mean over 40 bins to 1.6 %.
+  const History displacement = Cycling(Wave::kTriangle, 1.0, 51.0, 400);
+  Generator generator(13);
+  std::vector<double> residual;
+  for (std::size_t i = 0; i < displacement.size(); ++i) residual.push_back(Normal(generator));
+  double squares = 0.0;
+  for (const StrokeResiduals& direction : StructureOf(displacement, residual).directions) {
+    for (const StrokeBin& bin : direction.bins) {
+      squares += bin.standard_error * bin.standard_error / (2 * kBins);
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares * 505), 1.0, 0.08);
+}
+
+TEST(ResidualStructure, SingleStrokeOrNoneTellsNothing) {
+  const auto residual = [](const History& displacement) {
+    return ResidualsOf(displacement, [](double x, int) { return x * x + 0.1; });
+  };
+  History ramp;
+  for (int i = 0; i <= 100; ++i) ramp.push_back(i);
+  const ResidualStructure single = StructureOf(ramp, residual(ramp));
+  EXPECT_EQ(single.repeatable_share, 0.0);
+  EXPECT_EQ(single.strokes, 1U);
+  EXPECT_EQ(single.directions[1].strokes, 0U);
+  // The way in and out are short: one full stroke each way.
+  const History cycle = Cycling(Wave::kSine, 1.0, 1.25, 100);
+  EXPECT_EQ(StructureOf(cycle, residual(cycle)).repeatable_share, 0.0);
+  EXPECT_EQ(StructureOf({}, {}).strokes, 0U);
+  EXPECT_THROW(StructureOf(cycle, {1.0}), InvalidArgument);
+}
+
+TEST(ResidualStructure, StrokesOfUnequalLengthCountWhenTheyAreNearlyAsLongAsTheLongest) {
+  // Between 0 and tops of 10, 8.5, 4, 9: the strokes of 4 are another motion, not this one.
+  History displacement = {0.0};
+  for (const double top : {10.0, 8.5, 4.0, 9.0, 10.0}) {
+    for (int i = 1; i <= 200; ++i) displacement.push_back(top * i / 200);
+    for (int i = 199; i >= 0; --i) displacement.push_back(top * i / 200);
+  }
+  Generator generator(3);
+  constexpr double kNoise = 0.05;
+  std::vector<double> residual = ResidualsOf(
+      displacement, [](double, int direction) { return static_cast<double>(direction); });
+  for (double& value : residual) value += kNoise * Normal(generator);
+  const ResidualStructure structure = StructureOf(displacement, residual);
+  EXPECT_EQ(structure.directions[0].strokes, 4U);
+  EXPECT_EQ(structure.directions[1].strokes, 4U);
+  EXPECT_GT(structure.repeatable_share, 0.95);
+  EXPECT_NEAR(structure.directions[0].mean, 1.0, 0.02);
+  EXPECT_NEAR(structure.directions[1].mean, -1.0, 0.02);
+}
+
+TEST(ResidualStructure, SamplesThatDoNotCountChangeNothing) {
+  // The first five cycles left out, to the reversal, and every third sample of the others.
+  constexpr std::size_t kReversal = 5 * 240 + 60;
+  const History displacement = Cycling(Wave::kTriangle, 1.0, 10.0, 240);
+  Generator generator(17);
+  std::vector<double> residual = ResidualsOf(
+      displacement, [](double x, int direction) { return direction * (1 + std::sin(3 * x)); });
+  for (double& value : residual) value += 0.3 * Normal(generator);
+  const ResidualStructure all = StructureOf(displacement, residual);
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (i < kReversal || i % 3 == 1) residual[i] = 0.0;
+  }
+  const ResidualStructure rest = StructureOf(displacement, residual);
+  EXPECT_EQ(all.strokes, 10U);
+  EXPECT_EQ(rest.directions[0].strokes, 4U);  // not the one of which only the reversal counts
+  EXPECT_EQ(rest.directions[1].strokes, 5U);
+  EXPECT_NEAR(rest.repeatable_share, all.repeatable_share, 0.05);
+  for (std::size_t side = 0; side < 2; ++side) {
+    // Noise of 0.3 over 400 samples: 0.015 each.
+    EXPECT_NEAR(rest.directions[side].mean, all.directions[side].mean, 0.06);
+    EXPECT_NEAR(rest.directions[side].rms, all.directions[side].rms, 0.06);
+  }
+}
+
+}  // namespace
+}  // namespace mindahl
