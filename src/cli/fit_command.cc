@@ -133,6 +133,18 @@ void ApplyRigStiffness(const std::string& text, FitOptions& fit) {
   }
 }
 
+/// A start or a bound of a term that the fit does not have would be taken without a word.
+void RequireTerm(std::string_view option, std::string_view name, bool has_rig,
+                 const FitOptions& fit) {
+  const char* remedy = name == "rig_stiffness" && !has_rig             ? "--rig-stiffness fit"
+                       : name == "plateau_slope" && !fit.plateau_slope ? "--plateau-slope"
+                       : name.starts_with("force_drift") && !fit.drift ? "--drift"
+                                                                       : nullptr;
+  if (remedy == nullptr) return;
+  throw InputError(
+      fmt::format("{}: {} is not fitted, so this has no effect: add {}", option, name, remedy));
+}
+
 Loss FindLoss(std::string_view name) {
   if (name == "huber") return Loss::kHuber;
   if (name == "cauchy") return Loss::kCauchy;
@@ -172,6 +184,9 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
   ApplyRigStiffness(options.rig_stiffness, fit);
   fit.start = ParseAssignments(options.start, "--start");
   fit.bounds = ParseBounds(options.bound);
+  const bool has_rig = fit.fit_rig_stiffness || options.model == kAutomatic;
+  for (const auto& [name, value] : fit.start) RequireTerm("--start", name, has_rig, fit);
+  for (const auto& [name, interval] : fit.bounds) RequireTerm("--bound", name, has_rig, fit);
   return fit;
 }
 
@@ -219,18 +234,28 @@ std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& co
   return inputs;
 }
 
-/// What needs a load column must have one, before the fit says so in its own words.
-void RequireLoads(const FitCommandOptions& options, const std::vector<RecordFile>& inputs) {
-  const char* option = !options.load_window.empty() ? "--load-window"
-                       : options.follow_load        ? "--follow-load"
-                                                    : nullptr;
-  if (option == nullptr) return;
+/// What needs a load column must have one, and a window some samples, before the fit says so in its
+/// own words.
+void RequireLoads(const FitCommandOptions& options, const std::optional<Interval>& window,
+                  const std::vector<RecordFile>& inputs) {
+  if (!window && !options.follow_load) return;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
-    if (!inputs[r].record.normal_load.empty()) continue;
+    const std::vector<double>& load = inputs[r].record.normal_load;
+    if (load.empty()) {
+      throw InputError(
+          fmt::format("{}: {} needs a normal load: name its column with "
+                      "--normal-load-column",
+                      options.files[r], window ? "--load-window" : "--follow-load"));
+    }
+    const auto lies_outside = [&](double value) {
+      return value < window->lower || value > window->upper;
+    };
+    if (!window || !std::ranges::all_of(load, lies_outside)) continue;
+    const auto [least, greatest] = std::ranges::minmax(load);
     throw InputError(
-        fmt::format("{}: {} needs a normal load: name its column with "
-                    "--normal-load-column",
-                    options.files[r], option));
+        fmt::format("{}: --load-window {}:{} holds no sample: the normal load runs from {:.6g} to "
+                    "{:.6g} N",
+                    options.files[r], window->lower, window->upper, least, greatest));
   }
 }
 
@@ -277,7 +302,7 @@ void RunFit(FitCommandOptions options, Console& console) {
   if (!options.plot_path.empty()) RequireOutputPath("--plot", options.plot_path);
   const FitOptions fit_options = MakeFitOptions(options);
   std::vector<RecordFile> inputs = ReadInputs(options, console);
-  RequireLoads(options, inputs);
+  RequireLoads(options, fit_options.load_window, inputs);
   UseMeasuredNormalLoad(options.contact, inputs, fit_options.load_window, console);
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
@@ -295,6 +320,7 @@ void RunFit(FitCommandOptions options, Console& console) {
   FitReport report =
       MakeFitReport(options.files, std::move(inputs), std::move(fit), options.contact.known);
   report.selection = std::move(selection);
+  report.load_window = fit_options.load_window;
   for (const FitWarning& warning : report.fit.warnings) {
     console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
   }

@@ -180,6 +180,15 @@ void ExplainMissingErrors(FitReport& report) {
     warn("no_correlation",
          fmt::format("correlation: null with {}: at a bound or undetermined", uncorrelated));
   }
+  if (!report.fit.mindlin_test) {
+    warn("alpha_not_tested",
+         "mapping: likelihood_ratio, likelihood_ratio_p_value and tenable_with_rig_stiffness are "
+         "null: alpha is held or not determined");
+  } else if (!report.fit.mindlin_test->rig_stiffness) {
+    warn("no_rig_found",
+         "mapping: tenable_with_rig_stiffness is null: alpha = 1/3 is not rejected, alpha is the "
+         "larger one, a rig is fitted, or none helps");
+  }
   const IdentifiedContact& contact = report.contact;
   const auto explain = [&](const char* name, const std::optional<UncertainValue>& value) {
     if (!value || std::isfinite(value->standard_error)) return;
@@ -526,20 +535,20 @@ std::string ParameterTable(const FitResult& fit) {
   const auto row = [&](std::string_view name, std::string_view unit, std::string_view value,
                        std::string_view error, std::string_view interval,
                        std::string_view verdict) {
-    text += fmt::format("{:<19} {:<4} {:>12} {:>10} {:<24} {}\n", name, unit, value, error,
+    text += fmt::format("{:<19} {:<4} {:>12} {:>9}  {:<24} {}\n", name, unit, value, error,
                         interval, verdict);
   };
-  row("parameter", "unit", "value", "std. error", " 95 % interval", "verdict");
+  row("parameter", "unit", "value", "std error", "95 % interval", "verdict");
   for (const ParameterEstimate& estimate : fit.parameters) {
     if (estimate.status == ParameterStatus::kFixed) {
-      row(estimate.name, estimate.unit, Significant(estimate.value), "-", " -", "fixed");
+      row(estimate.name, estimate.unit, Significant(estimate.value), "-", "-", "fixed");
       continue;
     }
     std::string verdict = Words(estimate.identifiability);
     if (estimate.status != ParameterStatus::kFree) verdict += ", at bound";
     row(estimate.name, estimate.unit, Significant(estimate.value),
         estimate.standard_error ? fmt::format("{:.2g}", *estimate.standard_error) : "-",
-        fmt::format(" {} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
+        fmt::format("{} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
   }
   return text;
 }
@@ -654,24 +663,25 @@ std::string MappingText(const FitReport& report) {
   const auto verdict = [](double p_value) {
     return p_value < kSignificance ? "rejected" : "tenable";
   };
-  const auto& test = report.fit.mindlin_test;
+  const auto& mindlin = report.fit.mindlin_test;
   // Of the two tests the likelihood ratio has the say: it needs no parabola.
   if (report.alpha_z) {
     text += fmt::format(
         "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}{}\n", *report.alpha_minus_third,
         *report.alpha_z, *report.alpha_p_value,
-        test ? "" : fmt::format(": Mindlin's exponent is {}", verdict(*report.alpha_p_value)));
+        mindlin ? "" : fmt::format(": Mindlin's exponent is {}", verdict(*report.alpha_p_value)));
   }
-  if (test) {
-    text +=
-        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}",
-                    test->likelihood_ratio, test->p_value, verdict(test->p_value));
-    text += test->rig_stiffness
-                ? fmt::format(
-                      " for a rigid rig,\n      but tenable with a rig of {:.4g} N/m in "
-                      "series: the record does not tell which\n",
-                      *test->rig_stiffness)
-                : "\n";
+  if (mindlin) {
+    const std::string rig = mindlin->rig_stiffness
+                                ? fmt::format(
+                                      " for a rigid rig, but tenable with a rig of {:.4g} "
+                                      "N/m in series: the record does not tell which",
+                                      *mindlin->rig_stiffness)
+                                : "";
+    text += Wrapped(
+        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}{}",
+                    mindlin->likelihood_ratio, mindlin->p_value, verdict(mindlin->p_value), rig),
+        6);
   }
   text += BranchShapesText(report.fit);
   for (const StiffnessTest& test : TestStiffness(report)) {
@@ -686,7 +696,14 @@ std::string MappingText(const FitReport& report) {
     }
     text += SharesText(test.ratio);
   }
-  return text.empty() ? "  not tested\n" : text;
+  return text.empty() ? "  not tested: alpha is held, and no radius is known besides the fit\n"
+                      : text;
+}
+
+bool IsUnderLoad(const FitReport& report, const Record& record, std::size_t sample) {
+  if (!report.load_window) return true;
+  const double load = record.normal_load[sample];
+  return load >= report.load_window->lower && load <= report.load_window->upper;
 }
 
 }  // namespace
@@ -895,8 +912,9 @@ Plot ToPlot(const FitReport& report) {
                                 : extent < 1e-3 ? std::pair{"µm", 1e6}
                                 : extent < 1    ? std::pair{"mm", 1e3}
                                                 : std::pair{"m", 1.0};
-  const auto scaled = [per_unit = per_unit](std::vector<double> values) {
-    for (double& value : values) value *= per_unit;
+  const double factor = per_unit;
+  const auto scaled = [factor](std::vector<double> values) {
+    for (double& value : values) value *= factor;
     return values;
   };
   PlotPanel loop{.x_label = "", .y_label = "force [N]", .series = {}, .height = 2.5};
@@ -912,7 +930,13 @@ Plot ToPlot(const FitReport& report) {
         {"measured" + suffix, scaled(record.displacement), record.force, PlotStyle::kPoints});
     loop.series.push_back(
         {"fitted" + suffix, scaled(record.displacement), fit.fitted_force, PlotStyle::kLine});
-    residual.series.push_back({"", scaled(record.displacement), fit.residual, PlotStyle::kPoints});
+    // What the load window leaves out would squeeze the rest together.
+    PlotSeries& shown = residual.series.emplace_back(PlotSeries{"", {}, {}, PlotStyle::kPoints});
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (!IsUnderLoad(report, record, i)) continue;
+      shown.x.push_back(factor * record.displacement[i]);
+      shown.y.push_back(fit.residual[i]);
+    }
   }
   plot.panels = {std::move(loop), std::move(residual)};
   return plot;

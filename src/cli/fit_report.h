@@ -26,6 +26,7 @@ struct FitReport {
   bool gross_slip = false;
   IdentifiedContact contact;
   std::optional<double> given_normal_load;
+  std::optional<Interval> load_window;  ///< [N]
 
   std::optional<double> alpha_minus_third;
   std::optional<double> alpha_z;        ///< (α − 1/3)/SE
@@ -45,7 +46,8 @@ nlohmann::ordered_json ToJson(const FitReport& report);
 /// For people; UTF-8, at most 100 columns.
 std::string ToText(const FitReport& report);
 
-/// Measured and fitted loop, with the residual along the displacement below.
+/// Measured and fitted loop, with the residual along the displacement below: of samples in the load
+/// window where there is one.
 Plot ToPlot(const FitReport& report);
 
 /// Measured and fitted force of every sample, as CSV.

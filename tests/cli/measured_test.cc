@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -32,6 +33,10 @@ class MeasuredRecord : public ::testing::Test {
   static bool IsAbsent(const std::string& file) {
     return !std::filesystem::exists(MeasuredPath(file));
   }
+  static bool Warns(const json& fit, const char* code) {
+    return std::ranges::any_of(fit["warnings"],
+                               [&](const json& warning) { return warning["code"] == code; });
+  }
   static double Value(const json& fit, const char* parameter) {
     return fit["parameters"][parameter]["value"];
   }
@@ -56,6 +61,37 @@ TEST_F(MeasuredRecord, TribometerIsFittedAsByTheReference) {
   EXPECT_EQ(fit["loop"]["slip_regime"], "gross");
   // Residuals hang together over whole branches: the samples are far from independent.
   EXPECT_LT(fit["residuals"]["effective_samples"].get<double>(), 1000.0);
+}
+
+TEST_F(MeasuredRecord, TribometerDoesNotTellTheShapeOfTheContactFromARigThatGivesWay) {
+  constexpr const char* kFile = "tribometer/test_data_2.txt";
+  SKIP_WITHOUT(kFile);
+  constexpr double kRigStiffness = 46e3;  // [N/m], under α = 1/3
+  const json rigid = Fit(kFile, {"--time-window", "20:60"});
+  EXPECT_TRUE(Warns(rigid, "shape_or_rig"));
+  EXPECT_NEAR(rigid["mapping"]["tenable_with_rig_stiffness"].get<double>() / kRigStiffness, 1, 0.1);
+  EXPECT_LT(rigid["mapping"]["likelihood_ratio_p_value"].get<double>(), 0.05);
+
+  const json sprung =
+      Fit(kFile, {"--time-window", "20:60", "--model", "mindlin", "--rig-stiffness", "fit"});
+  EXPECT_NEAR(Value(sprung, "rig_stiffness") / kRigStiffness, 1, 0.1);
+  EXPECT_NEAR(sprung["residuals"]["normalized_rms"].get<double>(), 0.045, 0.003);
+  // All that gives way is the rig: of the contact's own stiffness there is a lower limit at best.
+  EXPECT_NE(sprung["parameters"]["sigma"]["identifiability"], "identifiable");
+}
+
+TEST_F(MeasuredRecord, TribometerUnderItsFullLoadIsFittedAsBetweenTwentyAndSixtySeconds) {
+  constexpr const char* kFile = "tribometer/test_data_2.txt";
+  SKIP_WITHOUT(kFile);
+  const json fit = Fit(kFile, {"--load-window", "4.98:5.1"});
+  // Rows of the file, counted by awk: 42579 in all, 2174 of them under another load.
+  EXPECT_EQ(fit["input"]["samples"], 42579);
+  EXPECT_EQ(fit["input"]["left_out"], 2174);
+  EXPECT_NEAR(Value(fit, "sigma"), 41.3e3, 1e3);
+  EXPECT_LT(Value(fit, "alpha"), 0.1);
+  EXPECT_NEAR(Value(fit, "slip_force"), 2.35, 0.03);
+  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), 0.47, 0.01);
+  EXPECT_TRUE(Warns(fit, "shape_or_rig"));
 }
 
 const Words kSealColumns = {"--displacement", "5", "--displacement-unit", "mm",
@@ -84,13 +120,22 @@ TEST_F(MeasuredRecord, SealsGiveTheHalfGapOfTheirForcesAndTheOffsetOfThePressure
   }
 }
 
-TEST_F(MeasuredRecord, GearboxThatNeverSlipsHasNoIdentifiableSlipForce) {
+// The whole record, the middle one of the ramps to 4 N m, and the first of those to 40 N m.
+TEST_F(MeasuredRecord, GearboxThatNeverSlipsHasNoIdentifiableSlipForceOnTheWholeOrRampByRamp) {
   constexpr const char* kFile = "cycloidal/2024-07-12__16-46-43__torqueramp__conic_4pre1.csv";
   SKIP_WITHOUT(kFile);
-  const json fit = Fit(kFile, {});
-  EXPECT_EQ(fit["parameters"]["slip_force"]["identifiability"], "bounded_below");
-  EXPECT_EQ(fit["parameters"]["alpha"]["identifiability"], "not_identifiable");
-  EXPECT_TRUE(fit["parameters"]["slip_force"]["ci95"][1].is_null());
+  for (const char* window : {"0:80.5", "8.13:12.18", "20.32:40.37"}) {
+    SCOPED_TRACE(window);
+    const Outcome outcome =
+        RunCommand({"fit", MeasuredPath(kFile), "--json", "-", "--time-window", window});
+    // It may say that it did not converge: α and Tc run away together.
+    EXPECT_THAT(outcome.status, ::testing::AnyOf(cli::kDone, cli::kNotEstablished));
+    const json fit = outcome.Json();
+    EXPECT_EQ(fit["parameters"]["slip_force"]["identifiability"], "bounded_below");
+    EXPECT_EQ(fit["parameters"]["alpha"]["identifiability"], "not_identifiable");
+    EXPECT_TRUE(fit["parameters"]["slip_force"]["ci95"][1].is_null());
+    EXPECT_TRUE(fit["contact"]["friction_coefficient"].is_null());
+  }
 }
 
 TEST_F(MeasuredRecord, BandBrakeWithBacklashLeavesTheResidualThatNoModelFollows) {
@@ -100,6 +145,7 @@ TEST_F(MeasuredRecord, BandBrakeWithBacklashLeavesTheResidualThatNoModelFollows)
   EXPECT_GT(fit["residuals"]["normalized_rms"].get<double>(), 0.14);
   EXPECT_LT(fit["residuals"]["normalized_rms"].get<double>(), 0.19);
   EXPECT_LT(fit["residuals"]["durbin_watson"].get<double>(), 0.5);
+  EXPECT_TRUE(Warns(fit, "no_model_fits"));
 }
 
 }  // namespace

@@ -1,0 +1,467 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+
+// fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
+// between models, and what the report says of each.
+namespace mindahl {
+namespace {
+
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::Outcome;
+using testing::RunCommand;
+using ::testing::SizeIs;
+using Words = std::vector<std::string>;
+
+// Mindlin's contact of every loop here: δc = 3Tc/(2σ) = 1.5 µm.
+constexpr double kSigma = 4e7;
+constexpr double kSlipForce = 40.0;
+constexpr double kAmplitude = 1.95e-6;  // 1.3 δc
+constexpr std::size_t kSamplesPerCycle = 200;
+// Noise-free loops of 17 digits: the fit promises 1e-8; the terms here are correlated with σ and α
+// by up to 0.99, which costs two digits.
+constexpr double kNoiseFree = 1e-6;
+
+struct Sample {
+  double time = 0.0;
+  double displacement = 0.0;
+  double force = 0.0;
+  double normal_load = 0.0;
+};
+
+class FitTerms : public ::testing::Test {
+ protected:
+  std::vector<Sample> Simulate(const Words& more) {
+    Words words = {"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "1.3"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = RunCommand(words);
+    EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
+    Words lines = testing::Lines(outcome.out);
+    lines.erase(lines.begin());
+    std::vector<Sample> loop;
+    for (const std::string& line : lines) {
+      const Words cells = testing::Cells(line);
+      loop.push_back({std::stod(cells[0]), std::stod(cells[1]), std::stod(cells[2]), 100.0});
+    }
+    return loop;
+  }
+
+  std::string Write(const std::vector<Sample>& loop) {
+    std::string text = "time [s],displacement [m],force [N],normal [N]\n";
+    for (const Sample& sample : loop) {
+      char line[120];
+      std::snprintf(line, sizeof line, "%.17g,%.17g,%.17g,%.17g\n", sample.time,
+                    sample.displacement, sample.force, sample.normal_load);
+      text += line;
+    }
+    return directory_.Write("loop.csv", text).string();
+  }
+
+  json Fit(const std::vector<Sample>& loop, const Words& options = {}) {
+    Words words = {"fit", Write(loop), "--json", "-"};
+    words.insert(words.end(), options.begin(), options.end());
+    const Outcome outcome = RunCommand(words);
+    EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
+    EXPECT_THAT(outcome.Errors(), IsEmpty());
+    return outcome.Json();
+  }
+
+  TemporaryDirectory directory_;
+};
+
+double Value(const json& fit, const char* parameter) {
+  return fit.at("parameters").at(parameter).at("value");
+}
+
+bool Warns(const json& fit, const std::string& code) {
+  return std::ranges::any_of(fit.at("warnings"),
+                             [&](const json& warning) { return warning.at("code") == code; });
+}
+
+void ExpectContact(const json& fit, double tolerance) {
+  EXPECT_NEAR(Value(fit, "sigma") / kSigma, 1, tolerance);
+  EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, tolerance);
+  EXPECT_NEAR(Value(fit, "slip_force") / kSlipForce, 1, tolerance);
+}
+
+/// The rig's spring in series: it gives way by T/k.
+std::vector<Sample> InRig(std::vector<Sample> loop, double stiffness) {
+  for (Sample& sample : loop) sample.displacement += sample.force / stiffness;
+  return loop;
+}
+
+TEST_F(FitTerms, KnownRigIsTakenOffTheDisplacement) {
+  const json fit = Fit(InRig(Simulate({"--cycles", "2"}), 8e7), {"--rig-stiffness", "8e7"});
+  ExpectContact(fit, kNoiseFree);
+  const json& rig = fit["parameters"]["rig_stiffness"];
+  EXPECT_EQ(rig["value"], 8e7);
+  EXPECT_EQ(rig["unit"], "N/m");
+  EXPECT_EQ(rig["status"], "fixed");
+}
+
+TEST_F(FitTerms, UnknownRigIsFoundUnderMindlinsExponent) {
+  const json fit = Fit(InRig(Simulate({"--cycles", "2"}), 8e7),
+                       {"--rig-stiffness", "fit", "--model", "mindlin"});
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_NEAR(Value(fit, "rig_stiffness") / 8e7, 1, kNoiseFree);
+  EXPECT_EQ(fit["parameters"]["rig_stiffness"]["status"], "free");
+}
+
+TEST_F(FitTerms, RigidRigIsNoParameter) {
+  EXPECT_FALSE(Fit(Simulate({"--cycles", "2"}))["parameters"].contains("rig_stiffness"));
+}
+
+TEST_F(FitTerms, ContactInARigIsNotCalledOneOfAnotherShape) {
+  const json fit = Fit(InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7));
+  const json& mapping = fit["mapping"];
+  EXPECT_GT(mapping["likelihood_ratio"].get<double>(), 0.0);
+  EXPECT_LT(mapping["likelihood_ratio_p_value"].get<double>(), 0.05);
+  // k shows in the curvature alone: a few per cent at a noise of 0.25 % of Tc.
+  EXPECT_NEAR(mapping["tenable_with_rig_stiffness"].get<double>() / 8e7, 1, 0.15);
+  EXPECT_TRUE(Warns(fit, "shape_or_rig"));
+}
+
+TEST_F(FitTerms, MindlinsContactOnARigidRigPassesTheLikelihoodRatio) {
+  const json fit = Fit(Simulate({"--cycles", "3", "--noise-force", "0.1"}));
+  EXPECT_GT(fit["mapping"]["likelihood_ratio_p_value"].get<double>(), 1e-3);
+  EXPECT_TRUE(fit["mapping"]["tenable_with_rig_stiffness"].is_null());
+  EXPECT_FALSE(Warns(fit, "shape_or_rig"));
+}
+
+TEST_F(FitTerms, EachBranchTellsItsOwnAlpha) {
+  const json fit = Fit(Simulate({"--cycles", "3", "--noise-force", "0.1"}));
+  const json& branches = fit["mapping"]["alpha_by_branch"];
+  ASSERT_THAT(branches, SizeIs(3));
+  std::size_t samples = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(branches[i]["branch"], (Words{"virgin", "unloading", "reloading"})[i]);
+    samples += branches[i]["samples"].get<std::size_t>();
+    // Once in 10⁶ for normal errors.
+    EXPECT_LT(std::abs(branches[i]["alpha"].get<double>() - 1.0 / 3),
+              5 * branches[i]["standard_error"].get<double>());
+  }
+  EXPECT_EQ(samples, fit["input"]["samples"]);
+}
+
+TEST_F(FitTerms, SlopedPlateauHasASlopeOfItsOwn) {
+  std::vector<Sample> loop = Simulate({"--cycles", "2"});
+  for (Sample& sample : loop) sample.force += 1e6 * sample.displacement;
+  const json fit = Fit(loop, {"--plateau-slope"});
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_NEAR(Value(fit, "plateau_slope") / 1e6, 1, kNoiseFree);
+  EXPECT_EQ(fit["parameters"]["plateau_slope"]["unit"], "N/m");
+}
+
+TEST_F(FitTerms, ForceFollowsALoadThatSwings) {
+  std::vector<Sample> loop = Simulate({"--cycles", "2"});
+  double sum = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    loop[i].normal_load = 100 + 3 * std::sin(0.05 * static_cast<double>(i));
+    sum += loop[i].normal_load;
+  }
+  const double mean = sum / static_cast<double>(loop.size());
+  for (Sample& sample : loop) sample.force *= sample.normal_load / mean;
+  ExpectContact(Fit(loop, {"--follow-load"}), kNoiseFree);
+  // 3 % of a sine, where the load does not count: 2 % of Tc but for what offsets take up.
+  EXPECT_GT(Fit(loop)["residuals"]["normalized_rms"].get<double>(), 0.005);
+}
+
+TEST_F(FitTerms, SamplesOutsideTheLoadWindowDoNotCount) {
+  std::vector<Sample> loop = Simulate({"--cycles", "2"});
+  std::size_t spoilt = 0;
+  for (std::size_t i = 220; i < 260; ++i, ++spoilt) {
+    loop[i].normal_load = 50.0;
+    loop[i].force *= 0.5;
+  }
+  const json fit = Fit(loop, {"--load-window", "95:105"});
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_EQ(fit["input"]["left_out"], spoilt);
+  EXPECT_EQ(fit["input"]["samples"], loop.size());
+  EXPECT_EQ(fit["contact"]["normal_load"], 100.0);
+}
+
+TEST_F(FitTerms, SkippedCyclesDoNotCount) {
+  // Reversals a quarter of a cycle after its start and then every half: the second ends the cycle.
+  constexpr std::size_t kSkipped = 3 * kSamplesPerCycle / 4;
+  std::vector<Sample> loop = Simulate({"--cycles", "3"});
+  for (std::size_t i = 0; i < kSkipped; ++i) loop[i].force *= 0.8;
+  const json fit = Fit(loop, {"--skip-cycles", "1"});
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_EQ(fit["input"]["left_out"], kSkipped);
+}
+
+TEST_F(FitTerms, NothingIsLeftOutUnasked) {
+  EXPECT_EQ(Fit(Simulate({"--cycles", "2"}))["input"]["left_out"], 0);
+}
+
+TEST_F(FitTerms, DisplacementNoiseIsTheGivenOne) {
+  const std::vector<Sample> loop =
+      Simulate({"--cycles", "3", "--noise-force", "0.1", "--noise-displacement", "1e-8"});
+  for (const auto& [option, expected] : {std::pair{"1e-8", 1e-8}, std::pair{"0", 0.0}}) {
+    const json fit = Fit(loop, {"--displacement-noise", option});
+    ASSERT_THAT(fit["input"]["displacement_noise"], SizeIs(1));
+    EXPECT_EQ(fit["input"]["displacement_noise"][0], expected);
+  }
+}
+
+TEST_F(FitTerms, ForceNoiseIsReported) {
+  const std::vector<Sample> loop = Simulate({"--cycles", "3", "--noise-force", "0.1"});
+  // Of 600 samples: a relative standard error of 1/√1200, five of them.
+  EXPECT_NEAR(Fit(loop)["residuals"]["force_noise"].get<double>() / 0.1, 1, 5 / std::sqrt(1200.0));
+  EXPECT_EQ(Fit(loop, {"--force-noise", "0.3"})["residuals"]["force_noise"], 0.3);
+}
+
+class FitWithLoss : public FitTerms, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(FitWithLoss, IsNotMovedByOutliersAndCountsThem) {
+  std::vector<Sample> loop = Simulate({"--cycles", "3", "--noise-force", "0.1"});
+  std::size_t spoilt = 0;
+  for (std::size_t i = 20; i < loop.size(); i += 40, ++spoilt) loop[i].force += 20;
+  const json fit = Fit(loop, {"--loss", GetParam()});
+  // One sample in 40 is 20 N out: the mean of the plateau moves by 0.5 N, 1.25 % of Tc, where it
+  // counts in full. With the least robust loss each pulls like 1.345 standard deviations.
+  EXPECT_NEAR(Value(fit, "slip_force") / kSlipForce, 1, 2e-3);
+  EXPECT_GE(fit["residuals"]["outliers"], spoilt);
+  // Beside them at most Huber's half weight at 2.69 standard deviations, 0.7 % of normal noise.
+  EXPECT_LE(fit["residuals"]["outliers"], spoilt + loop.size() / 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(FitTerms, FitWithLoss, ::testing::Values("huber", "cauchy", "tukey"),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST_F(FitTerms, WithoutALossNoSampleIsAnOutlier) {
+  EXPECT_EQ(Fit(Simulate({"--cycles", "2", "--noise-force", "0.1"}))["residuals"]["outliers"], 0);
+}
+
+TEST_F(FitTerms, StartsAreAsManyAsAskedAndTheSeedDrawsThoseBeyondTheGrid) {
+  const std::vector<Sample> loop = Simulate({"--cycles", "2", "--noise-force", "0.1"});
+  const auto starts = [&](const char* count, const char* seed) {
+    return Fit(
+        loop, {"--initial-state", "virgin", "--starts", count, "--seed", seed})["solver"]["starts"];
+  };
+  EXPECT_THAT(starts("1", "1"), SizeIs(1));
+  const json seven = starts("7", "1");
+  ASSERT_THAT(seven, SizeIs(7));
+  EXPECT_EQ(seven[0]["from"], "grid");
+  EXPECT_EQ(seven[6]["from"], "seed");
+  EXPECT_EQ(starts("7", "1"), seven);
+  EXPECT_NE(starts("7", "2")[6]["start"], seven[6]["start"]);
+}
+
+TEST_F(FitTerms, ResidualsOfNoiseHaveNoStructure) {
+  const json fit = Fit(Simulate({"--cycles", "4", "--noise-force", "0.1"}));
+  ASSERT_THAT(fit["residual_structure"], SizeIs(1));
+  const json& record = fit["residual_structure"][0];
+  EXPECT_EQ(record["repeatable_share"], 0.0);
+  ASSERT_THAT(record["directions"], SizeIs(2));
+  EXPECT_EQ(record["directions"][0]["direction"], "up");
+  EXPECT_EQ(record["directions"][1]["direction"], "down");
+  for (const json& direction : record["directions"]) {
+    EXPECT_GE(direction["strokes"], 3);
+    // Half of 0.1 to twice: 200 samples and more.
+    EXPECT_GT(direction["rms"].get<double>(), 0.05);
+    EXPECT_LT(direction["rms"].get<double>(), 0.2);
+    EXPECT_LT(std::abs(direction["mean"].get<double>()), 0.05);
+    EXPECT_FALSE(direction["along_stroke"].empty());
+    for (const json& bin : direction["along_stroke"]) {
+      EXPECT_GT(bin["position"], 0.0);
+      EXPECT_LT(bin["position"], 1.0);
+      EXPECT_TRUE(bin["mean"].is_number());
+      EXPECT_TRUE(bin["standard_error"].is_number());
+    }
+  }
+  EXPECT_FALSE(Warns(fit, "systematic_residual"));
+  EXPECT_FALSE(Warns(fit, "no_model_fits"));
+}
+
+/// A force of position that no law here has.
+std::vector<Sample> Rippled(std::vector<Sample> loop, double height) {
+  for (Sample& sample : loop) {
+    sample.force += height * std::sin(4 * std::numbers::pi * sample.displacement / kAmplitude);
+  }
+  return loop;
+}
+
+TEST_F(FitTerms, ForceOfPositionIsCalledSystematic) {
+  // rms 0.06/√2 = 4 % of Tc.
+  const json fit =
+      Fit(Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.06 * kSlipForce));
+  EXPECT_TRUE(Warns(fit, "systematic_residual"));
+  EXPECT_FALSE(Warns(fit, "no_model_fits"));
+  EXPECT_GT(fit["residual_structure"][0]["repeatable_share"], 0.5);
+}
+
+TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThatOnBothStreams) {
+  // rms 0.3/√2 = 21 % of Tc.
+  const std::vector<Sample> loop =
+      Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.3 * kSlipForce);
+  EXPECT_TRUE(Warns(Fit(loop), "no_model_fits"));
+  const Outcome outcome = RunCommand({"fit", Write(loop)});
+  EXPECT_THAT(outcome.err, HasSubstr("warning: no parameters of mindlin-dahl follow this record"));
+  EXPECT_THAT(outcome.out, HasSubstr("no parameters of mindlin-dahl follow this record"));
+}
+
+TEST_F(FitTerms, ModelAutoComparesAllWithAndWithoutARig) {
+  const json fit = Fit(Simulate({"--cycles", "4", "--noise-force", "0.1"}),
+                       {"--model", "auto", "--starts", "1"});
+  const json& selection = fit.at("model_selection");
+  const json& models = selection.at("models");
+  ASSERT_THAT(models, SizeIs(8));
+  Words names;
+  double weights = 0.0;
+  for (const json& model : models) {
+    names.push_back(model.at("model").get<std::string>() + (model.at("rig") ? "+rig" : ""));
+    weights += model.at("akaike_weight").get<double>();
+    EXPECT_TRUE(model.at("free_parameters").is_number_unsigned());
+    for (const char* key :
+         {"rms", "aicc", "delta_aicc", "held_out_rms", "held_out_standard_error"}) {
+      EXPECT_TRUE(model.at(key).is_number() || model.at(key).is_null()) << key;
+    }
+    for (const char* key : {"converged", "at_bound", "redundant"}) {
+      EXPECT_TRUE(model.at(key).is_boolean()) << key;
+    }
+    EXPECT_TRUE(model.at("remark").is_string());
+  }
+  for (const char* name : {"mindlin-dahl", "mindlin", "jenkins", "dahl"}) {
+    EXPECT_THAT(names, AllOf(Contains(name), Contains(std::string(name) + "+rig")));
+  }
+  constexpr double kRounding = 1e-12;
+  EXPECT_NEAR(weights, 1.0, kRounding);
+  const std::size_t chosen = selection.at("chosen");
+  EXPECT_EQ(models[chosen]["model"], fit["model"]);
+  EXPECT_THAT(selection.at("indistinguishable"), Contains(chosen));
+  EXPECT_EQ(selection.at("held_out_cycles"), 3);  // of four, the way in closes none
+  EXPECT_THAT(selection.at("verdict").get<std::string>(),
+              HasSubstr(fit["model"].get<std::string>()));
+  // Jenkins and Dahl's own law are far from a Mindlin loop of this noise.
+  EXPECT_THAT((Words{"mindlin", "mindlin-dahl"}), Contains(fit["model"].get<std::string>()));
+}
+
+TEST_F(FitTerms, OnlyModelAutoComparesModels) {
+  EXPECT_FALSE(Fit(Simulate({"--cycles", "2"})).contains("model_selection"));
+}
+
+TEST_F(FitTerms, TextKeepsToAHundredColumns) {
+  const std::string file = Write(InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7));
+  for (const Words& options :
+       {Words{}, Words{"--model", "auto", "--starts", "1"}, Words{"--skip-cycles", "1"},
+        Words{"--bound", "alpha=0.4:2"}, Words{"--rig-stiffness", "fit"},
+        Words{"--youngs-modulus-1", "210e9±1%", "--poisson-1", "0.3", "--radius-1", "0.02±1%",
+              "--youngs-modulus-2", "210e9", "--poisson-2", "0.3", "--radius-2", "inf"}}) {
+    Words words = {"fit", file};
+    words.insert(words.end(), options.begin(), options.end());
+    std::vector<std::ptrdiff_t> widths;
+    for (const std::string& line : testing::Lines(RunCommand(words).out)) {
+      widths.push_back(std::ranges::count_if(line, [](char byte) {
+        return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: no continuation
+      }));
+      EXPECT_LE(widths.back(), 100) << line;
+    }
+    EXPECT_FALSE(widths.empty());
+  }
+}
+
+struct Misuse {
+  const char* name;
+  Words options;
+  const char* message;
+
+  friend void PrintTo(const Misuse& misuse, std::ostream* out) { *out << misuse.name; }
+};
+
+class MisuseOfFit : public FitTerms, public ::testing::WithParamInterface<Misuse> {};
+
+TEST_P(MisuseOfFit, ExitsWithTwoAndOneLineThatSaysWhatToDo) {
+  Words words = {"fit", Write(Simulate({"--cycles", "2"}))};
+  words.insert(words.end(), GetParam().options.begin(), GetParam().options.end());
+  const Outcome outcome = RunCommand(words);
+  EXPECT_EQ(outcome.status, cli::kBadInput);
+  EXPECT_THAT(outcome.out, IsEmpty());
+  ASSERT_THAT(outcome.Errors(), SizeIs(1));
+  EXPECT_THAT(outcome.Errors()[0], HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    FitTerms, MisuseOfFit,
+    ::testing::Values(
+        Misuse{"RigThatIsNoNumber",
+               {"--rig-stiffness", "soft"},
+               "--rig-stiffness: 'soft' is not a number: write a stiffness in N/m, or fit"},
+        Misuse{"RigOfNoStiffness",
+               {"--rig-stiffness", "0"},
+               "--rig-stiffness [N/m] = 0 is invalid: must be finite and > 0"},
+        Misuse{"RigBothFittedAndHeld",
+               {"--rig-stiffness", "fit", "--fix", "rig_stiffness=1e8"},
+               "--rig-stiffness fit contradicts --fix rig_stiffness: give one of the two"},
+        Misuse{"RigHeldTwice",
+               {"--rig-stiffness", "1e8", "--fix", "rig_stiffness=1e8"},
+               "give one of the two"},
+        Misuse{"StartOfARigThatIsNotFitted",
+               {"--start", "rig_stiffness=1e8"},
+               "--start: rig_stiffness is not fitted, so this has no effect: add --rig-stiffness "
+               "fit"},
+        Misuse{"BoundOfASlopeThatIsNotFitted",
+               {"--bound", "plateau_slope=0:1"},
+               "--bound: plateau_slope is not fitted, so this has no effect: add --plateau-slope"},
+        Misuse{"LoadWindowOfOneNumber",
+               {"--load-window", "5"},
+               "--load-window: '5' is incomplete: write LO:HI in newtons"},
+        Misuse{"LoadWindowUpsideDown",
+               {"--load-window", "5:4"},
+               "--load-window: '5:4' is empty: the first number must be the smaller"},
+        Misuse{"LoadWindowWithoutSamples",
+               {"--load-window", "5:6"},
+               "--load-window 5:6 holds no sample: the normal load runs from 100 to 100 N"},
+        Misuse{"NegativeCycles",
+               {"--skip-cycles", "-1"},
+               "--skip-cycles: '-1' is invalid: must be a whole number from 0"},
+        Misuse{"MoreCyclesSkippedThanThereAre",
+               {"--skip-cycles", "100"},
+               "nothing is left of record 1"},
+        Misuse{"NegativeDisplacementNoise",
+               {"--displacement-noise", "-1e-9"},
+               "--displacement-noise [m] = -1e-09 is invalid: must be finite and >= 0"},
+        Misuse{"UnknownLoss",
+               {"--loss", "l1"},
+               "--loss: l1 not in {none,huber,cauchy,tukey}; see mindahl fit --help"},
+        Misuse{"NoStart",
+               {"--starts", "0"},
+               "--starts: '0' is invalid: must be a whole number from 1 to 1000"},
+        Misuse{"NegativeSeed",
+               {"--seed", "-1"},
+               "--seed: '-1' is invalid: must be a whole number from 0"},
+        Misuse{"UnknownModel",
+               {"--model", "best"},
+               "--model: best not in {mindlin-dahl,mindlin,jenkins,dahl,auto}"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(FitCommand, LoadOptionsWithoutALoadNameTheColumnOption) {
+  for (const Words& option : {Words{"--follow-load"}, Words{"--load-window", "1:2"}}) {
+    Words words = {"fit", testing::SampleRecord()};
+    words.insert(words.end(), option.begin(), option.end());
+    const Outcome outcome = RunCommand(words);
+    EXPECT_EQ(outcome.status, cli::kBadInput);
+    ASSERT_THAT(outcome.Errors(), SizeIs(1));
+    EXPECT_THAT(outcome.Errors()[0],
+                HasSubstr(option[0] + " needs a normal load: name its column with "
+                                      "--normal-load-column"));
+  }
+}
+
+}  // namespace
+}  // namespace mindahl
