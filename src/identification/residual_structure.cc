@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+#include <limits>
 
 #include "mindahl/core/error.h"
 
@@ -52,7 +53,10 @@ std::array<double, kBins> BinMeans(const Stroke& stroke, std::span<const double>
     sum[bin] += residual[i];
     ++count[bin];
   }
-  for (std::size_t bin = 0; bin < kBins; ++bin) sum[bin] /= static_cast<double>(count[bin]);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    sum[bin] = count[bin] > 0 ? sum[bin] / static_cast<double>(count[bin]) : kNone;
+  }
   return sum;
 }
 
