@@ -109,7 +109,9 @@ std::vector<BranchShape> FitBranchShapes(const Candidate& candidate, const Scale
     begin += static_cast<Eigen::Index>(samples_of_record);
   }
   // What the departure from one law leaves in the residuals is not noise here.
-  const double left = (values + split * step).squaredNorm() / values.squaredNorm();
+  const double sum_of_squares = values.squaredNorm();
+  if (!(sum_of_squares > 0)) return {};
+  const double left = (values + split * step).squaredNorm() / sum_of_squares;
   const Eigen::MatrixXd covariance =
       variance * (left < 1 ? left : 1.0) * factor * correlated * factor;
   std::vector<BranchShape> shapes;
