@@ -40,12 +40,12 @@ std::optional<StartingPoint> StartWithFreeShape(InitialState state, const Scaled
 }
 
 Candidate FitFrom(InitialState state, const ScaledRecords& data, const FitOptions& options) {
-  Candidate candidate{
-      .state = state,
-      .layout = ParameterLayout(data, options, state),
-      .residual = ForceResidual(data, *options.model, state, ParameterLayout(data, options, state)),
-      .solution = {},
-      .starts = {}};
+  const ParameterLayout layout(data, options, state);
+  Candidate candidate{.state = state,
+                      .layout = layout,
+                      .residual = ForceResidual(data, *options.model, state, layout),
+                      .solution = {},
+                      .starts = {}};
   if (data.weighted_samples() < candidate.layout.free().size()) {
     throw InvalidArgument(
         fmt::format("{} samples are too few for {} free parameters: record more or fix some",

@@ -172,12 +172,13 @@ std::vector<std::vector<std::size_t>> ReversalsOf(const FitResult& result) {
 }
 
 /// Standard deviation [m] of a displacement's noise where the record has to be treated as noisy.
-double DisplacementNoise(const Record& record, double gate, const FitOptions& options) {
+double DisplacementNoise(const Record& record, double gate, double encoder_step,
+                         const FitOptions& options) {
   // The rounding of a file, or of a fine encoder, is not worth it.
   constexpr double kCoarse = 1e-3;
   if (options.displacement_noise) return *options.displacement_noise;
   const auto [lowest, highest] = std::ranges::minmax(record.displacement);
-  const bool is_coarse = EncoderStep(record.displacement) > kCoarse * (highest / 2 - lowest / 2);
+  const bool is_coarse = encoder_step > kCoarse * (highest / 2 - lowest / 2);
   return gate > 0 || is_coarse ? EstimateDisplacementNoise(record.displacement) : 0.0;
 }
 
@@ -189,11 +190,13 @@ std::vector<Record> SettleRecords(std::span<const Record> records, const FitOpti
   for (std::size_t r = 0; r < settled.size(); ++r) {
     RecordFit& fit = result.records[r];
     std::vector<double>& displacement = settled[r].displacement;
-    fit.displacement_noise = DisplacementNoise(records[r], fit.reversal_gate, options);
+    const double encoder_step = EncoderStep(displacement);
+    fit.displacement_noise =
+        DisplacementNoise(records[r], fit.reversal_gate, encoder_step, options);
     DisplacementReading& reading = readings.emplace_back(
         DisplacementReading{DisplacementSmoother(displacement, fit.displacement_noise),
                             fit.displacement_noise,
-                            EncoderStep(displacement),
+                            encoder_step,
                             {}});
     reading.repeats.assign(displacement.size(), false);
     for (std::size_t i = 1; i < displacement.size(); ++i) {
@@ -239,8 +242,7 @@ double DescribeStructures(FitResult& result, const ScaledRecords& data,
     RecordFit& fit = result.records[r];
     std::vector<double> residual = residuals[r];
     for (double& value : residual) value *= data.force;
-    std::vector<double> displacement = data.records[r].displacement;
-    fit.structure = DescribeStructure(displacement, fit.reversals, residual);
+    fit.structure = DescribeStructure(data.records[r].displacement, fit.reversals, residual);
     const auto repeats = static_cast<double>(std::max<std::size_t>(fit.structure.strokes, 1));
     inflation = std::max(inflation, 1 + fit.structure.repeatable_share * (repeats - 1));
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "identification/parameter_layout.h"
+#include "identification/robust_scale.h"
 #include "identification/sample_weights.h"
 #include "identification/scaled_records.h"
 #include "mindahl/core/error.h"
@@ -134,16 +135,12 @@ double Rms(const FitResult& fit, const SampleMask& mask) {
   return std::sqrt(sum / count);
 }
 
-/// Standard deviation of normal residuals by the median of their magnitudes.
 double RobustScale(const FitResult& fit, const SampleMask& mask) {
-  constexpr double kNormalDeviation = 1.482602218505602;  // 1/Φ⁻¹(3/4)
-  std::vector<double> magnitudes;
+  std::vector<double> residuals;
   for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
-    for (const double residual : series) magnitudes.push_back(std::abs(residual));
+    residuals.insert(residuals.end(), series.begin(), series.end());
   }
-  const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-  std::ranges::nth_element(magnitudes, middle);
-  return kNormalDeviation * *middle;
+  return mindahl::RobustScale(std::move(residuals));
 }
 
 /// The fit that a measure of its residuals is least for.

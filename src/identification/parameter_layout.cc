@@ -214,11 +214,6 @@ ParameterLayout ParameterLayout::WithFixed(std::size_t index, double theta) cons
   return copy;
 }
 
-SeriesSpring ParameterLayout::ScaledRig(const std::vector<double>& theta) const {
-  if (!has_rig()) return {};
-  return {.stiffness = std::exp(theta[kLogRigStiffness])};
-}
-
 SeriesSpring ParameterLayout::Rig(const std::vector<double>& theta) const {
   if (!has_rig()) return {};
   return {.stiffness = parameters_[kLogRigStiffness].ToValue(theta[kLogRigStiffness])};

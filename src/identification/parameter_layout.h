@@ -70,9 +70,7 @@ class ParameterLayout {
 
   /// σ, α, Tc in the units of the data.
   static BranchLaw ScaledLaw(const std::vector<double>& theta);
-  /// The spring in series with the contact, in the units of the data; rigid where it is absent.
-  [[nodiscard]] SeriesSpring ScaledRig(const std::vector<double>& theta) const;
-  /// In SI.
+  /// The spring in series with the contact, in SI; rigid where it is absent.
   [[nodiscard]] SeriesSpring Rig(const std::vector<double>& theta) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kLogRigStiffness].absent; }
   /// Positions of the parameters that a result reports.

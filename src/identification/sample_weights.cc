@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "identification/robust_scale.h"
 #include "identification/solver.h"
 #include "mindahl/core/error.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 constexpr int kMostRounds = 50;
 constexpr double kSettled = 1e-4;  // rms change of the forces, over the noise: a valley has no end
-constexpr double kNormalDeviation = 1.482602218505602;  // σ over the median |r|, 1/Φ⁻¹(3/4)
 
 /// ψ(z)/z and ψ'(z).
 struct Influence {
@@ -47,11 +47,11 @@ Influence InfluenceOf(Loss loss, double z) {
   return {1.0, 1.0};
 }
 
-double MedianMagnitude(std::vector<double> values) {
-  for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+/// Samples that count less the free parameters, at least 1.
+double DegreesOfFreedom(const Candidate& candidate, const ScaledRecords& data) {
+  return std::max(static_cast<double>(data.weighted_samples()) -
+                      static_cast<double>(candidate.layout.free().size()),
+                  1.0);
 }
 
 /// One round of weights, from residuals without weights.
@@ -63,9 +63,7 @@ class Weighting {
     for (const ScaledRecord& record : data.records) {
       for (const double weight : record.root_weight) counts_.push_back(weight > 0);
     }
-    degrees_ = std::max(static_cast<double>(data.weighted_samples()) -
-                            static_cast<double>(candidate.layout.free().size()),
-                        1.0);
+    degrees_ = DegreesOfFreedom(candidate, data);
   }
 
   /// @returns what the new weights stand for
@@ -97,9 +95,8 @@ class Weighting {
       from_displacement[k] = unit / deviation;  // root weight by noise
       if (counts_[k]) standardised.push_back(residual[k]);
     }
-    const double scale = loss == Loss::kNone || options_.force_noise
-                             ? 1.0
-                             : kNormalDeviation * MedianMagnitude(standardised);
+    const double scale =
+        loss == Loss::kNone || options_.force_noise ? 1.0 : RobustScale(standardised);
     SetWeights(residual, from_displacement, scale, loss, unit, noise);
     if (errors_.any()) noise.force_share = from_displacement;
     return noise;
@@ -118,7 +115,7 @@ class Weighting {
           standardised.push_back(residual[i] / std::sqrt(variance + from_displacement[i]));
         }
       }
-      if (loss != Loss::kNone) return kNormalDeviation * MedianMagnitude(standardised) - 1;
+      if (loss != Loss::kNone) return RobustScale(standardised) - 1;
       double squares = 0.0;
       double precisions = 0.0;
       std::size_t k = 0;
@@ -238,9 +235,7 @@ std::vector<std::size_t> LeaveOut(ScaledRecords& data, std::span<const Record> r
 WeightedNoise PlainNoise(const Candidate& candidate, const ScaledRecords& data,
                          const FitOptions& options) {
   WeightedNoise noise;
-  const double degrees = std::max(static_cast<double>(data.weighted_samples()) -
-                                      static_cast<double>(candidate.layout.free().size()),
-                                  1.0);
+  const double degrees = DegreesOfFreedom(candidate, data);
   const double known = options.force_noise.value_or(0.0) / data.force;
   noise.variance =
       std::max(options.force_noise ? known * known : candidate.solution.sum_of_squares / degrees,
@@ -253,15 +248,15 @@ WeightedNoise FitWithWeights(Candidate& candidate, ScaledRecords& data, const Fi
                              const DisplacementErrors& displacement_errors) {
   Weighting weighting(candidate, data, options, displacement_errors);
   // Tukey's loss has several minima: it starts from Huber's, which has one.
+  constexpr int kHuberRounds = 10;
   std::vector<double> last_force(candidate.residual.size());
   candidate.residual.Predict(candidate.solution.theta, last_force);
-  constexpr int kHuberRounds = 10;
   WeightedNoise noise;
   for (int round = 0; round < kMostRounds; ++round) {
     const bool first_huber = options.loss != Loss::kNone && round < kHuberRounds;
     noise = weighting.Update(first_huber ? Loss::kHuber : options.loss);
-    const std::vector<double> last = candidate.solution.theta;
-    candidate.solution = Solve(candidate.residual, candidate.layout, last, options);
+    candidate.solution =
+        Solve(candidate.residual, candidate.layout, candidate.solution.theta, options);
     std::vector<double> force(candidate.residual.size());
     candidate.residual.Predict(candidate.solution.theta, force);
     double squares = 0.0;

@@ -6,19 +6,11 @@
 #include <iterator>
 #include <set>
 
+#include "loop/smallest_step.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl {
 namespace {
-
-double SmallestStep(std::span<const double> displacement) {
-  double smallest = 0.0;
-  for (std::size_t i = 1; i < displacement.size(); ++i) {
-    const double step = std::abs(displacement[i] - displacement[i - 1]);
-    if (step > 0 && (smallest == 0 || step < smallest)) smallest = step;
-  }
-  return smallest;
-}
 
 /// An encoder's record holds few values: most neighbours differ by whole steps or not at all. So
 /// they do where a drive runs evenly, or from rest to rest; but over an encoder's steps a drive has

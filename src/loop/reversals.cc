@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loop/smallest_step.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/displacement_noise.h"
 
@@ -35,15 +36,6 @@ std::vector<InnerLoop> ClosedInnerLoops(std::span<const double> displacement,
     }
   }
   return loops;
-}
-
-double SmallestStep(std::span<const double> displacement) {
-  double smallest = 0.0;
-  for (std::size_t i = 1; i < displacement.size(); ++i) {
-    const double step = std::abs(displacement[i] - displacement[i - 1]);
-    if (step > 0 && (smallest == 0 || step < smallest)) smallest = step;
-  }
-  return smallest;
 }
 
 }  // namespace

@@ -12,8 +12,6 @@
 namespace mindahl {
 namespace {
 
-constexpr double kMindlinExponent = 1.0 / 3;
-
 constexpr std::array kSubsteps = {1, 2, 4, 8, 16, 32, 64};
 constexpr std::array kFewSubsteps = {1, 2, 4, 8, 16};
 constexpr std::array kElements = {4, 16, 64, 256};
@@ -99,8 +97,11 @@ Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
 }
 
 std::string ExactModel(const BranchLaw& law) {
-  if (law.shape_exponent == kMindlinExponent) return "mindlin";
-  if (law.shape_exponent == 0) return "jenkins";
+  for (const FrictionModel& model : FrictionModels()) {
+    if (model.memory == Memory::kReturnPoint && model.shape_exponent == law.shape_exponent) {
+      return std::string(model.name);
+    }
+  }
   return "mindlin-dahl";
 }
 

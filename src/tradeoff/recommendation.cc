@@ -86,9 +86,9 @@ Recommendation Recommend(const BranchLaw& law, const Drive& drive,
   result.cycles = cycles.back();
   const std::vector<Approximation> ladder = AllApproximations(law);
   std::vector<double> force(drive.displacement.size());
-  for (WorkPrecision& point : MeasureWorkPrecision(law, drive, ladder)) {
-    Prepare(point.approximation, law)(drive, force);
-    if (first > 0) point.precision = Compare(reference, drive, force, first);
+  for (const Approximation& approximation : ladder) {
+    const double cost = MeasureCost(Prepare(approximation, law), drive, force);
+    const WorkPrecision point{approximation, Compare(reference, drive, force, first), cost};
     const double error = ErrorBy(options.criterion, point.precision);
     const bool meets =
         options.largest_cost ? point.cost <= *options.largest_cost : error <= options.tolerance;

@@ -186,17 +186,20 @@ CostFloor MeasureCostFloor(const Drive& drive) {
   return floor;
 }
 
+double MeasureCost(const Evaluator& evaluate, const Drive& drive, std::span<double> force) {
+  return MeasureCost(force.size(), [&] {
+    evaluate(drive, force);
+    Keep(force);
+  });
+}
+
 std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Drive& drive,
                                                 std::span<const Approximation> approximations) {
   const ReferenceResponse reference = MakeReferenceResponse(law, drive);
   std::vector<WorkPrecision> points;
   std::vector<double> force(drive.displacement.size());
   for (const Approximation& approximation : approximations) {
-    const Evaluator evaluate = Prepare(approximation, law);
-    const double cost = MeasureCost(force.size(), [&] {
-      evaluate(drive, force);
-      Keep(force);
-    });
+    const double cost = MeasureCost(Prepare(approximation, law), drive, force);
     points.push_back({approximation, Compare(reference, drive, force), cost});
   }
   return points;

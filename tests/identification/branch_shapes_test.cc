@@ -23,6 +23,7 @@ using ::testing::IsEmpty;
 using testing::MakeRecord;
 using testing::Model;
 using testing::Respond;
+using testing::SprungLoop;
 using testing::Wave;
 using testing::WithForceNoise;
 
@@ -194,19 +195,10 @@ TEST(MindlinTest, RejectsAnotherShape) {
   EXPECT_FALSE(IsWarnedOf(fit, "shape_or_rig"));
 }
 
-Record InARig(const BranchLaw& law, double stiffness) {
-  const double reach = 1.5 * GrossSlipDisplacement(law, {stiffness});
-  const History displacement = Cycling(Wave::kSine, reach, 2.0, 200);
-  std::vector<double> force(displacement.size());
-  const FrictionModel& model = Model("mindlin-dahl");
-  EvaluateForce(model, law, testing::PathOf(model, displacement), displacement, force, {stiffness});
-  return MakeRecord(displacement, force);
-}
-
 TEST(MindlinTest, FindsTheRigInWhichMindlinsContactWasMeasured) {
   constexpr double kRig = 6e7;  // [N/m]
   Generator generator(7);
-  const FitResult fit = FitOne(WithForceNoise(InARig(kMindlin, kRig), 0.1, generator));
+  const FitResult fit = FitOne(WithForceNoise(SprungLoop(kMindlin, kRig), 0.1, generator));
   EXPECT_LT(fit.law.shape_exponent, 1.0 / 3);
   ASSERT_TRUE(fit.mindlin_test);
   EXPECT_LT(fit.mindlin_test->p_value, 0.05);
@@ -221,7 +213,7 @@ TEST(MindlinTest, ContactOfASmallerExponentIsToldFromARigWhereTheNoiseAllows) {
   // rejected far beyond, which is why the warning is needed.
   constexpr BranchLaw kAngular{4e7, 0.2, 40.0};
   Generator generator(8);
-  const Record clean = InARig(kAngular, std::numeric_limits<double>::infinity());
+  const Record clean = SprungLoop(kAngular, std::numeric_limits<double>::infinity());
   for (const double noise : {1e-4, 1e-3, 3e-3, 5e-2, 8e-2}) {
     const bool is_told = noise < 1e-2;
     const FitResult fit = FitOne(WithForceNoise(clean, noise * kAngular.slip_force, generator));

@@ -30,22 +30,13 @@ using testing::MakeRecord;
 using testing::Model;
 using testing::Recovers;
 using testing::Respond;
+using testing::SprungLoop;
 using testing::Wave;
 using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;
 constexpr double kRig = 6e7;  // [N/m]
-
-/// Contact and rig together up to 1.5 times gross slip.
-Record SprungLoop(const BranchLaw& law, double stiffness) {
-  const double reach = 1.5 * GrossSlipDisplacement(law, {stiffness});
-  const History displacement = Cycling(Wave::kSine, reach, 2.0, 200);
-  std::vector<double> force(displacement.size());
-  const FrictionModel& model = Model("mindlin-dahl");
-  EvaluateForce(model, law, testing::PathOf(model, displacement), displacement, force, {stiffness});
-  return MakeRecord(displacement, force);
-}
 
 std::string RefusalOf(const Record& record, const FitOptions& options) {
   try {

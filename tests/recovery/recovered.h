@@ -83,6 +83,16 @@ inline Record WithForceNoise(Record record, double standard_deviation, Generator
   return record;
 }
 
+/// A Masing contact in series with a rig's spring [N/m], moved together to 1.5 times gross slip.
+inline Record SprungLoop(const BranchLaw& law, double stiffness) {
+  const double reach = 1.5 * GrossSlipDisplacement(law, {stiffness});
+  const History displacement = Cycling(Wave::kSine, reach, 2.0, 200);
+  std::vector<double> force(displacement.size());
+  const FrictionModel& model = Model("mindlin-dahl");
+  EvaluateForce(model, law, PathOf(model, displacement), displacement, force, {stiffness});
+  return MakeRecord(displacement, force);
+}
+
 inline FitResult FitOne(const Record& record, const FitOptions& options = {}) {
   return Fit({&record, 1}, options);
 }

@@ -55,9 +55,14 @@ struct CostFloor {
 };
 CostFloor MeasureCostFloor(const Drive& drive);
 
+/// Cost [ns/sample] of an evaluation, the least of several runs.
+/// @param force  [N], written, one a sample
+/// Takes about 10 ms, or three runs where that is longer.
+double MeasureCost(const Evaluator& evaluate, const Drive& drive, std::span<double> force);
+
 /// Runs and times every approximation along the drive, one after the other in one process.
 /// @throws InvalidArgument as Prepare() and MakeReferenceResponse()
-/// Takes about 10 ms an approximation, or three runs where that is longer.
+/// Takes as long as MeasureCost() for each.
 std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Drive& drive,
                                                 std::span<const Approximation> approximations);
 
