@@ -33,8 +33,9 @@ void ContactState::Reset() {
   suspended_.clear();
   displacement_ = unloaded_displacement_;
   force_over_slip_ = 0.0;
-  course_ = Run(Open({.origin = unloaded_displacement_, .start = BranchStart::kUnloaded}, 0.0),
-                /*direction=*/0.0, /*end=*/0.0);
+  course_ = {};
+  course_.branch = Open({.origin = unloaded_displacement_, .start = BranchStart::kUnloaded}, 0.0);
+  shape_ = ShapeOn(course_.branch);
 }
 
 ContactState::OpenBranch ContactState::Open(const Branch& branch, double origin_force) const {
@@ -43,20 +44,12 @@ ContactState::OpenBranch ContactState::Open(const Branch& branch, double origin_
   return {scaled.origin, scaled.force, scaled.height, scaled.rate, backbone::Reach(scaled.rate)};
 }
 
-ContactState::Course ContactState::Run(const OpenBranch& branch, double direction,
-                                       double end) const {
-  Course course;
-  course.branch = branch;
-  course.shape = backbone::WithShape(law_.shape_exponent, [&](const auto& contact) -> Shape {
+ContactState::Shape ContactState::ShapeOn(const OpenBranch& branch) const {
+  return backbone::WithShape(law_.shape_exponent, [&](const auto& contact) -> Shape {
     if (!sprung_) return contact;
-    return ShapeOn(SprungShape{contact, spring_travel_},
-                   {branch.origin, branch.force, branch.height, branch.rate});
+    return mindahl::ShapeOn(SprungShape{contact, spring_travel_},
+                            {branch.origin, branch.force, branch.height, branch.rate});
   });
-  course.direction = direction;
-  course.start = direction * branch.origin;
-  course.end = end;
-  course.rise = direction * branch.height;
-  return course;
 }
 
 ContactState::Entry ContactState::Enter(double displacement) const {
@@ -70,23 +63,25 @@ ContactState::Entry ContactState::Enter(double displacement) const {
     return Open({.origin = displacement_, .direction = static_cast<std::int8_t>(direction)},
                 force_over_slip_);
   };
-  std::size_t open = 1;
-  OpenBranch branch;
+  Entry entry;
+  Course& course = entry.course;
   double end = direction == 0 ? 0.0 : kLargestPathDisplacement;
   if (model_->memory == Memory::kNone) {
-    branch = reverses ? open_from_here() : course_.branch;
+    course.branch = reverses ? open_from_here() : course_.branch;
   } else {
     const auto origin_of = [&](std::size_t i) {
       return i + 1 < open_before ? suspended_[i].origin
              : i < open_before   ? course_.branch.origin
                                  : displacement_;
     };
-    open = StillOpen(open_before + (reverses ? 1 : 0), origin_of, direction, displacement);
-    branch = open > open_before    ? open_from_here()
-             : open == open_before ? course_.branch
-                                   : suspended_[open - 1];
-    if (open >= 2) end = std::min(end, direction * ClosingDisplacement(open, origin_of));
+    entry.open = StillOpen(open_before + (reverses ? 1 : 0), origin_of, direction, displacement);
+    course.branch = entry.open > open_before    ? open_from_here()
+                    : entry.open == open_before ? course_.branch
+                                                : suspended_[entry.open - 1];
+    if (entry.open >= 2)
+      end = std::min(end, direction * ClosingDisplacement(entry.open, origin_of));
   }
+  const OpenBranch& branch = course.branch;
   // For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
   if (law_.shape_exponent > 1) {
     if (std::abs(displacement - branch.origin) > branch.reach) {
@@ -98,11 +93,16 @@ ContactState::Entry ContactState::Enter(double displacement) const {
     const double farthest = std::min(branch.reach, 2 * kLargestPathDisplacement);
     end = std::min(end, direction * branch.origin + farthest);
   }
-  return {Run(branch, direction, end), open};
+  course.direction = direction;
+  course.start = direction * branch.origin;
+  course.end = end;
+  course.rise = direction * branch.height;
+  return entry;
 }
 
 void ContactState::Turn(double displacement) {
   const Entry entry = Enter(displacement);
+  if (sprung_) shape_ = ShapeOn(entry.course.branch);
   if (entry.open > suspended_.size() + 1) {
     suspended_.push_back(course_.branch);
   } else {
@@ -112,25 +112,29 @@ void ContactState::Turn(double displacement) {
 }
 
 double ContactState::PeekAcrossBranches(double displacement) const {
-  return Force(Enter(displacement).course.ForceOverSlip(displacement));
+  const Course course = Enter(displacement).course;
+  return Force(course.ForceOverSlip(sprung_ ? ShapeOn(course.branch) : shape_, displacement));
 }
 
-double ContactState::Course::TranscendentalShare(double y) const {
+double ContactState::TranscendentalShare(const Shape& shape, double y) {
   return std::visit([y](const auto& on) { return on.Force(y); }, shape);
 }
 
-double ContactState::TangentStiffnessOn(const Course& course, double displacement) const {
+double ContactState::TangentStiffnessOn(const Course& course, const Shape& shape,
+                                        double displacement) const {
   const double y = course.Reduced(displacement);
-  const double slope = std::visit([y](const auto& on) { return on.Slope(y); }, course.shape);
+  const double slope = std::visit([y](const auto& on) { return on.Slope(y); }, shape);
   return law_.slip_force * (course.branch.height * course.branch.rate * slope);
 }
 
-double ContactState::TangentStiffness() const { return TangentStiffnessOn(course_, displacement_); }
+double ContactState::TangentStiffness() const {
+  return TangentStiffnessOn(course_, shape_, displacement_);
+}
 
 double ContactState::PeekTangentStiffness(double displacement) const {
-  return course_.HoldsFrom(displacement_, displacement)
-             ? TangentStiffnessOn(course_, displacement)
-             : TangentStiffnessOn(Enter(displacement).course, displacement);
+  if (course_.HoldsTo(displacement)) return TangentStiffnessOn(course_, shape_, displacement);
+  const Course course = Enter(displacement).course;
+  return TangentStiffnessOn(course, sprung_ ? ShapeOn(course.branch) : shape_, displacement);
 }
 
 }  // namespace mindahl::models

@@ -53,18 +53,18 @@ class ContactState {
   /// 40 bytes an extreme that is remembered, none for Dahl's own law; it grows with the nesting
   /// alone, and nothing else is allocated.
   double Move(double displacement) {
-    if (!course_.HoldsFrom(displacement_, displacement)) Turn(displacement);
+    if (!course_.HoldsTo(displacement)) Turn(displacement);
     displacement_ = displacement;
-    force_over_slip_ = course_.ForceOverSlip(displacement);
+    course_.ahead = course_.direction * displacement;
+    force_over_slip_ = course_.ForceOverSlip(shape_, displacement);
     return Force();
   }
 
   /// What Move(δ) would return or throw, without moving. Cost: as of Move, but what closes n loops
   /// looks at each of them every time that it is tried.
   [[nodiscard]] double Peek(double displacement) const {
-    return course_.HoldsFrom(displacement_, displacement)
-               ? Force(course_.ForceOverSlip(displacement))
-               : PeekAcrossBranches(displacement);
+    return course_.HoldsTo(displacement) ? Force(course_.ForceOverSlip(shape_, displacement))
+                                         : PeekAcrossBranches(displacement);
   }
 
   /// T [N] at the present displacement.
@@ -115,31 +115,24 @@ class ContactState {
   /// A branch as it is run in one direction s, in which sgn(e) = s.
   struct Course {
     OpenBranch branch;
-    Shape shape;
     double direction = 0.0;  // s = ±1; 0 before any motion
     double start = 0.0;      // s·origin
+    double ahead = 0.0;      // s·δ, of the present displacement
     double end = 0.0;        // s times the displacement before which the branch holds
     double rise = 0.0;       // s·height
 
     /// Neither a reversal, nor beyond the end, nor NaN.
-    [[nodiscard]] bool HoldsFrom(double present, double displacement) const {
-      const double ahead = direction * displacement;
-      return ahead >= direction * present && ahead < end;
+    [[nodiscard]] bool HoldsTo(double displacement) const {
+      const double there = direction * displacement;
+      return there >= ahead && there < end;
     }
     /// y
     [[nodiscard]] double Reduced(double displacement) const {
       return branch.rate * std::min(direction * displacement - start, branch.reach);
     }
-    [[nodiscard]] double ForceOverSlip(double displacement) const {
-      return branch.force + rise * Share(Reduced(displacement));
+    [[nodiscard]] double ForceOverSlip(const Shape& shape, double displacement) const {
+      return branch.force + rise * Share(shape, Reduced(displacement));
     }
-    /// φ(y)
-    [[nodiscard]] double Share(double y) const {
-      if (std::holds_alternative<Jenkins>(shape)) return Jenkins{}.Force(y);
-      if (std::holds_alternative<Mindlin>(shape)) return Mindlin{}.Force(y);
-      return TranscendentalShare(y);
-    }
-    [[nodiscard]] double TranscendentalShare(double y) const;
   };
 
   /// A course that is entered, and how many branches are then open.
@@ -148,16 +141,25 @@ class ContactState {
     std::size_t open = 1;
   };
 
+  /// φ(y)
+  static double Share(const Shape& shape, double y) {
+    if (std::holds_alternative<Jenkins>(shape)) return Jenkins{}.Force(y);
+    if (std::holds_alternative<Mindlin>(shape)) return Mindlin{}.Force(y);
+    return TranscendentalShare(shape, y);
+  }
+  static double TranscendentalShare(const Shape& shape, double y);
+
   [[nodiscard]] double Force(double force_over_slip) const {
     return law_.slip_force * std::clamp(force_over_slip, -limit_, limit_);
   }
 
   [[nodiscard]] OpenBranch Open(const Branch& branch, double origin_force) const;
-  [[nodiscard]] Course Run(const OpenBranch& branch, double direction, double end) const;
+  [[nodiscard]] Shape ShapeOn(const OpenBranch& branch) const;
   [[nodiscard]] Entry Enter(double displacement) const;
   void Turn(double displacement);
   [[nodiscard]] double PeekAcrossBranches(double displacement) const;
-  [[nodiscard]] double TangentStiffnessOn(const Course& course, double displacement) const;
+  [[nodiscard]] double TangentStiffnessOn(const Course& course, const Shape& shape,
+                                          double displacement) const;
 
   const FrictionModel* model_;
   BranchLaw law_;
@@ -166,6 +168,7 @@ class ContactState {
   double spring_travel_ = 0.0;  // Tc/k_r [m]
   double limit_;                // of |T|/Tc
   Course course_;
+  Shape shape_;  // on the present branch
   double displacement_ = 0.0;
   double force_over_slip_ = 0.0;
   std::vector<OpenBranch> suspended_;  // the open branches below the present one, oldest first
