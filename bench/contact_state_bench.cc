@@ -17,17 +17,21 @@
 #include "mindahl/models/response.h"
 
 namespace mindahl::models {
+
+using models::FrictionModel;
+using models::SeriesSpring;
+
 namespace {
 
 constexpr double kSlipDisplacement = 4.7e-7;  // [m]
 
-BranchLaw LawOf(const FrictionModel& model) {
+models::BranchLaw LawOf(const FrictionModel& model) {
   return {4.8e7, model.shape_exponent.value_or(0.4), 15};
 }
 
 /// 50 cycles of 200 samples, into slip: a reversal in a hundred steps.
 std::vector<double> Sine() {
-  return MakeExcitation(
+  return models::MakeExcitation(
              {.amplitude = 1.2 * kSlipDisplacement, .cycles = 50, .samples_per_cycle = 200})
       .displacement;
 }
@@ -48,10 +52,11 @@ void ReportPerStep(benchmark::State& state, std::size_t steps) {
 
 void Kernel(benchmark::State& state, const FrictionModel& model, const std::vector<double>& x,
             const SeriesSpring& rig) {
-  const LoadingPath path = MakeLoadingPath(x, FindReversals(x, 0.0), model.memory, {});
+  const models::LoadingPath path =
+      models::MakeLoadingPath(x, loop::FindReversals(x, 0.0), model.memory, {});
   std::vector<double> force(x.size());
   for (auto _ : state) {
-    EvaluateForce(model, LawOf(model), path, x, force, rig);
+    models::EvaluateForce(model, LawOf(model), path, x, force, rig);
     benchmark::DoNotOptimize(force.data());
   }
   ReportPerStep(state, x.size());
@@ -61,8 +66,9 @@ void KernelWithPath(benchmark::State& state, const FrictionModel& model,
                     const std::vector<double>& x, const SeriesSpring& rig) {
   std::vector<double> force(x.size());
   for (auto _ : state) {
-    const LoadingPath path = MakeLoadingPath(x, FindReversals(x, 0.0), model.memory, {});
-    EvaluateForce(model, LawOf(model), path, x, force, rig);
+    const models::LoadingPath path =
+        models::MakeLoadingPath(x, loop::FindReversals(x, 0.0), model.memory, {});
+    models::EvaluateForce(model, LawOf(model), path, x, force, rig);
     benchmark::DoNotOptimize(force.data());
   }
   ReportPerStep(state, x.size());
@@ -70,7 +76,7 @@ void KernelWithPath(benchmark::State& state, const FrictionModel& model,
 
 void Move(benchmark::State& state, const FrictionModel& model, const std::vector<double>& x,
           const SeriesSpring& rig) {
-  ContactState contact(model, LawOf(model), {.rig = rig});
+  models::ContactState contact(model, LawOf(model), {.rig = rig});
   std::vector<double> force(x.size());
   for (auto _ : state) {
     contact.Reset();
@@ -83,7 +89,7 @@ void Move(benchmark::State& state, const FrictionModel& model, const std::vector
 /// A trial step before every step, with its stiffness: what an implicit integrator asks for.
 void PeekAndMove(benchmark::State& state, const FrictionModel& model, const std::vector<double>& x,
                  const SeriesSpring& rig) {
-  ContactState contact(model, LawOf(model), {.rig = rig});
+  models::ContactState contact(model, LawOf(model), {.rig = rig});
   std::vector<double> force(x.size());
   for (auto _ : state) {
     contact.Reset();
@@ -97,14 +103,14 @@ void PeekAndMove(benchmark::State& state, const FrictionModel& model, const std:
 }
 
 [[maybe_unused]] const int kRegistered = [] {
-  using Run = void (*)(benchmark::State&, const FrictionModel&, const std::vector<double>&,
-                       const SeriesSpring&);
+  using cli::Run = void (*)(benchmark::State&, const FrictionModel&, const std::vector<double>&,
+                            const SeriesSpring&);
   struct Kind {
     const char* name;
-    Run run;
+    cli::Run run;
   };
   for (const auto& [excitation, x] : {std::pair{"sine", Sine()}, std::pair{"white", White()}}) {
-    for (const FrictionModel& model : FrictionModels()) {
+    for (const FrictionModel& model : models::FrictionModels()) {
       if (model.scaled_by_peak) continue;
       for (const auto& [suffix, rig] :
            {std::pair{"", SeriesSpring{}}, std::pair{"_in_series", SeriesSpring{4.8e7}}}) {

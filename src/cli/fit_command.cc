@@ -26,11 +26,18 @@
 #include "mindahl/io/record_reader.h"
 
 namespace mindahl::cli {
+
+using identification::FitOptions;
+using identification::Interval;
+using identification::Loss;
+using io::RecordFile;
+using loop::Record;
+
 namespace {
 
 struct FitCommandOptions {
   std::vector<std::string> files;
-  RecordColumns columns;
+  io::RecordColumns columns;
   std::string time_window;
   std::string model = "mindlin-dahl";
   std::string initial_state = "auto";
@@ -156,9 +163,9 @@ constexpr std::string_view kAutomatic = "auto";
 
 FitOptions MakeFitOptions(const FitCommandOptions& options) {
   FitOptions fit;
-  if (options.model != kAutomatic) fit.model = FindFrictionModel(options.model);
-  if (options.initial_state == "virgin") fit.initial_state = InitialState::kVirgin;
-  if (options.initial_state == "steady") fit.initial_state = InitialState::kSteady;
+  if (options.model != kAutomatic) fit.model = models::FindFrictionModel(options.model);
+  if (options.initial_state == "virgin") fit.initial_state = models::InitialState::kVirgin;
+  if (options.initial_state == "steady") fit.initial_state = models::InitialState::kSteady;
   if (options.force_sign == "same") fit.force_sense = 1;
   if (options.force_sign == "opposite") fit.force_sense = -1;
   fit.offsets = options.offsets == "on";
@@ -222,7 +229,7 @@ void ApplyTimeWindow(RecordFile& input, const std::string& file, const Interval&
 std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& console) {
   std::vector<RecordFile> inputs;
   for (const std::string& file : options.files) {
-    RecordFile& input = inputs.emplace_back(ReadRecord(file, options.columns));
+    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, options.columns));
     if (!options.time_window.empty()) {
       ApplyTimeWindow(input, file,
                       ParseInterval(options.time_window, "--time-window", "LO:HI in seconds"));
@@ -286,12 +293,12 @@ void UseMeasuredNormalLoad(ContactOptions& contact, const std::vector<RecordFile
                              mean);
 }
 
-bool Established(const FitResult& fit, bool strict) {
+bool Established(const identification::FitResult& fit, bool strict) {
   if (!fit.converged) return false;
   if (!strict) return true;
-  return std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
-    return estimate.status == ParameterStatus::kFixed ||
-           estimate.identifiability == Identifiability::kIdentifiable;
+  return std::ranges::all_of(fit.parameters, [](const identification::ParameterEstimate& estimate) {
+    return estimate.status == identification::ParameterStatus::kFixed ||
+           estimate.identifiability == identification::Identifiability::kIdentifiable;
   });
 }
 
@@ -307,13 +314,13 @@ void RunFit(FitCommandOptions options, Console& console) {
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
-  std::optional<ModelSelection> selection;
-  FitResult fit;
+  std::optional<identification::ModelSelection> selection;
+  identification::FitResult fit;
   if (options.model == kAutomatic) {
-    selection = SelectModel(records, fit_options);
+    selection = identification::SelectModel(records, fit_options);
     fit = selection->fit;
   } else {
-    fit = Fit(records, fit_options);
+    fit = identification::Fit(records, fit_options);
   }
   const bool failed = fit.parameters.empty();
   console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
@@ -321,7 +328,7 @@ void RunFit(FitCommandOptions options, Console& console) {
       MakeFitReport(options.files, std::move(inputs), std::move(fit), options.contact.known);
   report.selection = std::move(selection);
   report.load_window = fit_options.load_window;
-  for (const FitWarning& warning : report.fit.warnings) {
+  for (const identification::FitWarning& warning : report.fit.warnings) {
     console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
   }
   if (failed) {  // no curve to draw, no residual to list
@@ -330,9 +337,9 @@ void RunFit(FitCommandOptions options, Console& console) {
     return;
   }
   // The plot first: it alone may still fail.
-  if (!options.plot_path.empty()) WritePlot(ToPlot(report), options.plot_path);
+  if (!options.plot_path.empty()) io::WritePlot(ToPlot(report), options.plot_path);
   if (!options.residuals_path.empty()) {
-    WriteFileAtomically(options.residuals_path, ResidualsCsv(report));
+    io::WriteFileAtomically(options.residuals_path, ResidualsCsv(report));
   }
   if (!options.json_path.empty()) WriteJson(ToJson(report), options.json_path, console);
   if (options.json_path != "-") console.out << ToText(report);
@@ -340,10 +347,10 @@ void RunFit(FitCommandOptions options, Console& console) {
 
 void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {
   const std::string group = "Columns and units";
-  const auto column = [&](const char* name, ColumnChoice& choice, const char* description) {
+  const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
     command.add_option(name, choice.column, description)->type_name("COL")->group(group);
   };
-  const auto unit = [&](const char* name, ColumnChoice& choice, const char* description) {
+  const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
     command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
   };
   column("--displacement", options.columns.displacement,
@@ -378,7 +385,7 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
   const std::string group = "Model";
   std::vector<std::string> models;
   std::string description = "friction model:";
-  for (const FrictionModel& model : FrictionModels()) {
+  for (const models::FrictionModel& model : models::FrictionModels()) {
     if (model.scaled_by_peak) continue;
     models.emplace_back(model.name);
     description += fmt::format(" {} ({});", model.name, model.title);

@@ -15,6 +15,20 @@
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::cli {
+
+using contact::IdentifiedContact;
+using contact::PropagatedValue;
+using contact::UncertainValue;
+using identification::FitResult;
+using identification::Identifiability;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+using identification::RecordFit;
+using io::PlotStyle;
+using io::RecordFile;
+using loop::LoopMeasures;
+using loop::Record;
+
 namespace {
 
 /// As the contact module takes it: infinite where the fit leaves a parameter open.
@@ -33,30 +47,32 @@ double ContactAmplitude(const FitResult& fit, double amplitude) {
   constexpr int kBisections = 200;
   for (int i = 0; i < kBisections && high - low > 1e-15 * amplitude; ++i) {
     const double middle = low + (high - low) / 2;
-    const double whole = middle + SteadyPeakForce(*fit.model, fit.law, middle) / fit.rig.stiffness;
+    const double whole =
+        middle + models::SteadyPeakForce(*fit.model, fit.law, middle) / fit.rig.stiffness;
     (whole < amplitude ? low : high) = middle;
   }
   return low + (high - low) / 2;
 }
 
 void DescribeLoop(FitReport& report) {
-  const BranchLaw& law = report.fit.law;
+  const models::BranchLaw& law = report.fit.law;
   const LoopMeasures& measures = report.fit.WidestRecord().measures;
   const double contact_amplitude = ContactAmplitude(report.fit, measures.amplitude);
-  report.model_energy = SteadyLoopEnergy(*report.fit.model, law, contact_amplitude);
+  report.model_energy = models::SteadyLoopEnergy(*report.fit.model, law, contact_amplitude);
   const double energy = measures.energy_per_cycle.value_or(*report.model_energy);
   if (measures.amplitude > 0 && measures.peak_force > 0) {
     report.energy_ratio = energy / (4 * measures.amplitude * measures.peak_force);
   }
   const double gross_slip = GrossSlipDisplacement(law);
   if (std::isfinite(gross_slip)) report.gross_slip_displacement = gross_slip;
-  const double peak = SteadyPeakForce(*report.fit.model, law, contact_amplitude);
+  const double peak = models::SteadyPeakForce(*report.fit.model, law, contact_amplitude);
   // A law with α >= 1 never slips as a whole; within 1 % of Tc no record tells the difference.
   constexpr double kAsGoodAsSlip = 0.99;
   report.gross_slip = std::isfinite(gross_slip) ? contact_amplitude >= gross_slip
                                                 : peak >= kAsGoodAsSlip * law.slip_force;
   report.stick_radius_ratio =
-      report.gross_slip ? 0.0 : StickRadiusRatio(std::min(peak, law.slip_force), law.slip_force);
+      report.gross_slip ? 0.0
+                        : contact::StickRadiusRatio(std::min(peak, law.slip_force), law.slip_force);
 }
 
 void TestMapping(FitReport& report) {
@@ -68,7 +84,7 @@ void TestMapping(FitReport& report) {
                                "mindlin-dahl without --fix alpha"});
     return;
   }
-  report.alpha_minus_third = alpha.value - kMindlinShapeExponent;
+  report.alpha_minus_third = alpha.value - contact::kMindlinShapeExponent;
   if (!alpha.standard_error || !(*alpha.standard_error > 0)) {
     report.warnings.push_back(
         {"alpha_not_tested",
@@ -96,7 +112,7 @@ double Correlation(const FitResult& fit, std::string_view first, std::string_vie
 struct StiffnessTest {
   std::string_view radius;  // whence the a of 8a/G*
   PropagatedValue ratio;
-  std::optional<Interval> interval95;
+  std::optional<identification::Interval> interval95;
   std::optional<double> z;        // (ratio − 1)/SE
   std::optional<double> p_value;  // two-sided
 };
@@ -254,8 +270,8 @@ std::string_view Name(Identifiability identifiability) {
   return "";
 }
 
-std::string_view Name(InitialState state) {
-  return state == InitialState::kVirgin ? "virgin" : "steady";
+std::string_view Name(models::InitialState state) {
+  return state == models::InitialState::kVirgin ? "virgin" : "steady";
 }
 
 nlohmann::ordered_json ParametersJson(const FitResult& fit) {
@@ -297,7 +313,7 @@ nlohmann::ordered_json CorrelationJson(const FitResult& fit) {
   return json;
 }
 
-nlohmann::ordered_json LawJson(const BranchLaw& law) {
+nlohmann::ordered_json LawJson(const models::BranchLaw& law) {
   return {{"sigma", law.tangential_stiffness},
           {"alpha", law.shape_exponent},
           {"slip_force", law.slip_force}};
@@ -305,7 +321,7 @@ nlohmann::ordered_json LawJson(const BranchLaw& law) {
 
 nlohmann::ordered_json SolverJson(const FitResult& fit) {
   nlohmann::ordered_json starts = nlohmann::ordered_json::array();
-  for (const StartReport& start : fit.starts) {
+  for (const identification::StartReport& start : fit.starts) {
     starts.push_back({{"from", start.drawn ? "seed" : "grid"},
                       {"start", LawJson(start.start)},
                       {"initial_rms", NumberOrNull(start.initial_rms)},
@@ -354,9 +370,9 @@ nlohmann::ordered_json StructureJson(const FitResult& fit) {
   nlohmann::ordered_json records = nlohmann::ordered_json::array();
   for (const RecordFit& record : fit.records) {
     nlohmann::ordered_json directions = nlohmann::ordered_json::array();
-    for (const StrokeResiduals& direction : record.structure.directions) {
+    for (const identification::StrokeResiduals& direction : record.structure.directions) {
       nlohmann::ordered_json bins = nlohmann::ordered_json::array();
-      for (const StrokeBin& bin : direction.bins) {
+      for (const identification::StrokeBin& bin : direction.bins) {
         bins.push_back({{"position", bin.position},
                         {"mean", NumberOrNull(bin.mean)},
                         {"standard_error", NumberOrNull(bin.standard_error)}});
@@ -373,9 +389,9 @@ nlohmann::ordered_json StructureJson(const FitResult& fit) {
   return records;
 }
 
-nlohmann::ordered_json SelectionJson(const ModelSelection& selection) {
+nlohmann::ordered_json SelectionJson(const identification::ModelSelection& selection) {
   nlohmann::ordered_json scores = nlohmann::ordered_json::array();
-  for (const ModelScore& score : selection.scores) {
+  for (const identification::ModelScore& score : selection.scores) {
     scores.push_back({{"model", score.model->name},
                       {"rig", score.rig},
                       {"free_parameters", score.free_parameters},
@@ -400,7 +416,7 @@ nlohmann::ordered_json SelectionJson(const ModelSelection& selection) {
 
 nlohmann::ordered_json BranchShapesJson(const FitResult& fit) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const BranchShape& shape : fit.branch_shapes) {
+  for (const identification::BranchShape& shape : fit.branch_shapes) {
     json.push_back({{"branch", shape.branch},
                     {"samples", shape.samples},
                     {"alpha", NumberOrNull(shape.shape_exponent)},
@@ -409,7 +425,7 @@ nlohmann::ordered_json BranchShapesJson(const FitResult& fit) {
   return json;
 }
 
-nlohmann::ordered_json ResidualsJson(const ResidualStatistics& residuals) {
+nlohmann::ordered_json ResidualsJson(const identification::ResidualStatistics& residuals) {
   const bool computed = residuals.samples > 0;
   const auto number = [computed](double value) -> nlohmann::ordered_json {
     return computed ? NumberOrNull(value) : nullptr;
@@ -440,7 +456,7 @@ nlohmann::ordered_json SlipRegimeJson(const FitReport& report) {
   return report.gross_slip ? "gross" : "partial";
 }
 
-nlohmann::ordered_json HertzJson(const HertzPrediction& hertz) {
+nlohmann::ordered_json HertzJson(const contact::HertzPrediction& hertz) {
   nlohmann::ordered_json json;
   // All uncertainty of these is that of inputs.
   const auto add = [&](const std::string& name, const PropagatedValue& value) {
@@ -565,7 +581,7 @@ std::string SharesText(const PropagatedValue& value) {
                      100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
 }
 
-std::string HertzText(const HertzPrediction& hertz) {
+std::string HertzText(const contact::HertzPrediction& hertz) {
   std::string text = "  Hertz and Mindlin predict from materials, radii and load:\n";
   const auto line = [&](const char* name, const PropagatedValue& value, const char* unit,
                         const PropagatedValue& ratio) {
@@ -608,14 +624,14 @@ std::string ContactText(const IdentifiedContact& contact) {
 
 std::string BranchShapesText(const FitResult& fit) {
   std::string text;
-  for (const BranchShape& shape : fit.branch_shapes) {
+  for (const identification::BranchShape& shape : fit.branch_shapes) {
     text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "  α branch by branch: " : ", ",
                         shape.branch, shape.shape_exponent, shape.standard_error);
   }
   return text.empty() ? text : Wrapped(text, 4);
 }
 
-std::string SelectionText(const ModelSelection& selection) {
+std::string SelectionText(const identification::ModelSelection& selection) {
   std::string text =
       fmt::format("models compared on {:.0f} effective samples", selection.effective_samples);
   text += selection.held_out_cycles > 0
@@ -624,7 +640,7 @@ std::string SelectionText(const ModelSelection& selection) {
   text += fmt::format("  {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}\n", "model", "free", "rms [N]",
                       "dAICc", "weight", "held-out rms [N]");
   for (std::size_t i = 0; i < selection.scores.size(); ++i) {
-    const ModelScore& score = selection.scores[i];
+    const identification::ModelScore& score = selection.scores[i];
     const bool listed =
         std::ranges::find(selection.indistinguishable, i) != selection.indistinguishable.end();
     const std::string name = fmt::format("{}{}", score.model->name, score.rig ? " + rig" : "");
@@ -649,9 +665,9 @@ std::string SlipText(const FitReport& report) {
     return fmt::format("{} slip (gross-slip displacement {:.5g} m)",
                        report.gross_slip ? "gross" : "partial", *report.gross_slip_displacement);
   }
-  const double peak =
-      SteadyPeakForce(*report.fit.model, report.fit.law,
-                      ContactAmplitude(report.fit, report.fit.WidestRecord().measures.amplitude));
+  const double peak = models::SteadyPeakForce(
+      *report.fit.model, report.fit.law,
+      ContactAmplitude(report.fit, report.fit.WidestRecord().measures.amplitude));
   return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
                      100 * peak / report.fit.law.slip_force);
 }
@@ -709,7 +725,7 @@ bool IsUnderLoad(const FitReport& report, const Record& record, std::size_t samp
 }  // namespace
 
 FitReport MakeFitReport(std::vector<std::string> files, std::vector<RecordFile> inputs,
-                        FitResult fit, const KnownContact& known) {
+                        FitResult fit, const contact::KnownContact& known) {
   FitReport report;
   report.files = std::move(files);
   report.inputs = std::move(inputs);
@@ -727,8 +743,9 @@ FitReport MakeFitReport(std::vector<std::string> files, std::vector<RecordFile> 
   DescribeLoop(report);
   TestMapping(report);
   const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
-  report.contact = IdentifyContact(Uncertain(*report.fit.Find("sigma")), Uncertain(slip_force),
-                                   known, Correlation(report.fit, "sigma", "slip_force"));
+  report.contact =
+      contact::IdentifyContact(Uncertain(*report.fit.Find("sigma")), Uncertain(slip_force), known,
+                               Correlation(report.fit, "sigma", "slip_force"));
   if (slip_force.identifiability != Identifiability::kIdentifiable && known.normal_load) {
     report.contact.friction_coefficient.reset();
     report.contact.unidentified.push_back(fmt::format(
@@ -826,7 +843,7 @@ nlohmann::ordered_json ToJson(const FitReport& report) {
            : nullptr},
       {"stiffness_tests", StiffnessTestsJson(report)}};
   json["warnings"] = nlohmann::ordered_json::array();
-  for (const FitWarning& warning : report.warnings) {
+  for (const identification::FitWarning& warning : report.warnings) {
     json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
   }
   return json;
@@ -854,10 +871,10 @@ std::string ToText(const FitReport& report) {
   if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
   if (left_out > 0) text += fmt::format("{} samples left out of the fit\n", left_out);
   text += "\n" + ParameterTable(fit);
-  for (const FitWarning& warning : fit.warnings) {
+  for (const identification::FitWarning& warning : fit.warnings) {
     if (warning.code == "no_model_fits") text += "\n" + Wrapped(warning.message, 2);
   }
-  const ResidualStatistics& residuals = fit.residuals;
+  const identification::ResidualStatistics& residuals = fit.residuals;
   text += fmt::format(
       "\nresiduals: rms {:.4g} N ({:.3g} % of Tc), largest {:.4g} N, R² {:.6f}, Durbin-Watson "
       "{:.2f},\n           {:.0f} effective samples of {}\n",
@@ -886,19 +903,19 @@ std::string ToText(const FitReport& report) {
       measures.energy_per_cycle ? fmt::format("{:.5g}", *measures.energy_per_cycle) : "not",
       *report.model_energy);
   if (report.energy_ratio) {
-    text += fmt::format(
-        "      energy ratio {:.4g}{}\n", *report.energy_ratio,
-        report.gross_slip_displacement
-            ? fmt::format(", gross slip from {:.4g}", GrossSlipEnergyRatio(fit.law.shape_exponent))
-            : "");
+    text += fmt::format("      energy ratio {:.4g}{}\n", *report.energy_ratio,
+                        report.gross_slip_displacement
+                            ? fmt::format(", gross slip from {:.4g}",
+                                          models::GrossSlipEnergyRatio(fit.law.shape_exponent))
+                            : "");
   }
   text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report.contact);
   text += "\nis it Mindlin's contact?\n" + MappingText(report);
   return text;
 }
 
-Plot ToPlot(const FitReport& report) {
-  Plot plot;
+io::Plot ToPlot(const FitReport& report) {
+  io::Plot plot;
   const ParameterEstimate& sigma = *report.fit.Find("sigma");
   const ParameterEstimate& alpha = *report.fit.Find("alpha");
   const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
@@ -917,10 +934,10 @@ Plot ToPlot(const FitReport& report) {
     for (double& value : values) value *= factor;
     return values;
   };
-  PlotPanel loop{.x_label = "", .y_label = "force [N]", .series = {}, .height = 2.5};
-  PlotPanel residual{.x_label = fmt::format("displacement [{}]", unit),
-                     .y_label = "fitted − measured [N]",
-                     .series = {}};
+  io::PlotPanel loop{.x_label = "", .y_label = "force [N]", .series = {}, .height = 2.5};
+  io::PlotPanel residual{.x_label = fmt::format("displacement [{}]", unit),
+                         .y_label = "fitted − measured [N]",
+                         .series = {}};
   for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
     const RecordFit& fit = report.fit.records[r];
     const Record& record = report.inputs[r].record;
@@ -931,7 +948,8 @@ Plot ToPlot(const FitReport& report) {
     loop.series.push_back(
         {"fitted" + suffix, scaled(record.displacement), fit.fitted_force, PlotStyle::kLine});
     // What the load window leaves out would squeeze the rest together.
-    PlotSeries& shown = residual.series.emplace_back(PlotSeries{"", {}, {}, PlotStyle::kPoints});
+    io::PlotSeries& shown =
+        residual.series.emplace_back(io::PlotSeries{"", {}, {}, PlotStyle::kPoints});
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (!IsUnderLoad(report, record, i)) continue;
       shown.x.push_back(factor * record.displacement[i]);
@@ -963,14 +981,14 @@ std::string ResidualsCsv(const FitReport& report) {
     append(fitted, report.fit.records[r].fitted_force);
     append(residual, report.fit.records[r].residual);
   }
-  std::vector<CsvColumn> columns;
+  std::vector<io::CsvColumn> columns;
   if (report.inputs.size() > 1) columns.push_back({"file", file});
   if (timed) columns.push_back({"time [s]", time});
   columns.push_back({"displacement [m]", displacement});
   columns.push_back({"force [N]", force});
   columns.push_back({"fitted_force [N]", fitted});
   columns.push_back({"residual [N]", residual});
-  return CsvText(columns);
+  return io::CsvText(columns);
 }
 
 }  // namespace mindahl::cli

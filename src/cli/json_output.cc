@@ -18,7 +18,7 @@ void WriteJson(const nlohmann::ordered_json& json, const std::string& path, Cons
   if (path == "-") {
     console.out << text;
   } else {
-    WriteFileAtomically(path, text);
+    io::WriteFileAtomically(path, text);
   }
 }
 

@@ -47,8 +47,8 @@ ContactState::OpenBranch ContactState::Open(const Branch& branch, double origin_
 ContactState::Shape ContactState::ShapeOn(const OpenBranch& branch) const {
   return backbone::WithShape(law_.shape_exponent, [&](const auto& contact) -> Shape {
     if (!sprung_) return contact;
-    return mindahl::ShapeOn(SprungShape{contact, spring_travel_},
-                            {branch.origin, branch.force, branch.height, branch.rate});
+    return mindahl::models::ShapeOn(SprungShape{contact, spring_travel_},
+                                    {branch.origin, branch.force, branch.height, branch.rate});
   });
 }
 

@@ -8,7 +8,7 @@
 #include "models/madelung.h"
 #include "models/within_reach.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 void RequireDisplacements(std::span<const double> displacement) {
@@ -161,4 +161,4 @@ LoadingPath MakeEnvelopePath(std::span<const double> displacement,
   return path;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

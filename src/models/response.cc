@@ -15,7 +15,7 @@
 #include "models/scaled_branches.h"
 #include "models/series_spring.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 /// What forces over Tc depend on: ln(σ/Tc), α, δ₀ and, with a spring, ln c, c = Tc/k_r its travel
@@ -328,4 +328,4 @@ void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
                        displacement, force, gradient);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

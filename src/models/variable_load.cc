@@ -12,7 +12,7 @@
 #include "models/slip_at_load.h"
 #include "models/within_reach.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 /// @throws InvalidArgument naming the first sample that is no step of a contact
@@ -79,4 +79,4 @@ void EvaluateForceUnderLoad(const LoadDependentLaw& law, std::span<const double>
   }
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models
