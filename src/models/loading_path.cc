@@ -3,20 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string_view>
 
 #include "mindahl/core/error.h"
+#include "models/madelung.h"
+#include "models/within_reach.h"
 
 namespace mindahl::models {
 namespace {
-
-void RequireWithinReach(std::string_view quantity, double value) {
-  if (!(std::abs(value) <= kLargestPathDisplacement)) {
-    ThrowInvalid(quantity, value, "must be finite and within +-1e307 m");
-  }
-}
 
 void RequireDisplacements(std::span<const double> displacement) {
   if (displacement.empty()) {
@@ -29,8 +22,8 @@ void RequireDisplacements(std::span<const double> displacement) {
                  static_cast<double>(displacement.size()), "must be <= 2147483640");
   }
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    if (!(std::abs(displacement[i]) <= kLargestPathDisplacement)) {
-      RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
+    if (!models::IsWithinReach(displacement[i])) {
+      models::RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
     }
   }
 }
@@ -48,8 +41,8 @@ std::int8_t FirstDirection(std::span<const double> displacement,
   return SignOf(first_extreme - next);
 }
 
-/// The branches that are open at the present displacement, oldest first, and the rules by which
-/// they close. The only state is the stack: the origins on it are the surviving extrema.
+/// The branches that are open at the present displacement, oldest first. The only state is the
+/// stack: the origins on it are the surviving extrema.
 class OpenBranches {
  public:
   OpenBranches(LoadingPath& path, Memory memory) : path_(path), memory_(memory) {}
@@ -72,30 +65,15 @@ class OpenBranches {
   /// Moves on to `displacement` in the present direction; closes what it passes.
   void Advance(double displacement) {
     if (memory_ == Memory::kNone) return;
-    while (Passes(displacement)) {
-      // The inner loop is the present branch and the one it answers; the virgin curve answers none.
-      const bool rejoins_virgin_curve = open_.size() == 2;
-      open_.resize(open_.size() - (rejoins_virgin_curve ? 1 : 2));
-    }
+    const auto origin_of = [&](std::size_t i) {
+      return path_.branches[static_cast<std::size_t>(open_[i])].origin;
+    };
+    open_.resize(models::StillOpen(open_.size(), origin_of, direction_, displacement));
   }
 
   [[nodiscard]] std::int32_t Present() const { return open_.back(); }
 
  private:
-  [[nodiscard]] const Branch& Top() const {
-    return path_.branches[static_cast<std::size_t>(open_.back())];
-  }
-
-  [[nodiscard]] bool Passes(double displacement) const {
-    if (open_.size() < 2) return false;
-    const Branch& present = Top();
-    const Branch& answered = path_.branches[static_cast<std::size_t>(open_[open_.size() - 2])];
-    const double previous_extreme = IsVirgin(answered.start)
-                                        ? 2 * answered.origin - present.origin  // the mirror image
-                                        : answered.origin;
-    return direction_ * (displacement - previous_extreme) >= 0;
-  }
-
   LoadingPath& path_;
   Memory memory_;
   std::vector<std::int32_t> open_;
@@ -143,7 +121,7 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial) {
   RequireDisplacements(displacement);
-  RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
+  models::RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
   LoadingPath path;
   constexpr std::size_t kInitialBranches = 3;
   path.branches.reserve(reversals.size() + kInitialBranches);
@@ -166,7 +144,7 @@ LoadingPath MakeEnvelopePath(std::span<const double> displacement,
                              std::span<const double> amplitude, double unloaded_displacement) {
   RequireDisplacements(displacement);
   RequireSameSize("displacement", displacement.size(), "amplitude", amplitude.size());
-  RequireWithinReach("unloaded displacement [m]", unloaded_displacement);
+  models::RequireWithinReach("unloaded displacement [m]", unloaded_displacement);
   LoadingPath path;
   double origin = unloaded_displacement;
   std::int8_t direction = 1;

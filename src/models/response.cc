@@ -13,6 +13,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "models/scaled_branches.h"
+#include "models/series_spring.h"
 
 namespace mindahl::models {
 namespace {
@@ -206,29 +207,6 @@ void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
   }
 }
 
-/// c = Tc/k_r [m], the spring's travel at slip.
-/// @throws InvalidArgument where the rig cannot be accounted for
-double SpringTravel(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig) {
-  Validate(rig);
-  if (model.scaled_by_peak) {
-    throw InvalidArgument(fmt::format(
-        "model {} is scaled by the peak at the contact's own amplitude: must have a rigid rig, not "
-        "a series stiffness [N/m] = {:.6g}",
-        model.name, rig.stiffness));
-  }
-  // Compared before it is divided by, for no quotient to overflow.
-  constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance<double>;
-  constexpr double kLongest = 1e300;  // [m]
-  if (rig.stiffness < kSoftest * law.tangential_stiffness ||
-      rig.stiffness < law.slip_force / kLongest) {
-    ThrowInvalid("series stiffness [N/m]", rig.stiffness,
-                 "must be >= 1e-100 of the tangential stiffness and let the rig travel <= 1e300 m");
-  }
-  return law.slip_force / rig.stiffness;
-}
-
-bool IsRigid(const SeriesSpring& rig) { return std::isinf(rig.stiffness) && rig.stiffness > 0; }
-
 template <typename Real, typename Shape>
 void EvaluateRuns(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                   const ScaledBranches& branches, const Shape& shape,
@@ -261,7 +239,7 @@ void EvaluateInSeries(const FrictionModel& model, const BranchLaw& law, const Lo
                       const SeriesSpring& rig) {
   RequireRange<double>(law);
   RequireSizes(path, displacement, force);
-  const double travel = SpringTravel(model, law, rig);
+  const double travel = models::SpringTravel(model, law, rig);
   backbone::WithShape(law.shape_exponent, [&](const auto& contact) {
     const SprungShape shape{contact, travel};
     const ScaledBranches branches = ScaleBranches(BranchScaling(model, law, travel), path, shape);
@@ -319,7 +297,7 @@ double GrossSlipDisplacement(const BranchLaw& law, const SeriesSpring& rig) {
 void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const LoadingPath& path,
                    std::span<const double> displacement, std::span<double> force,
                    const SeriesSpring& rig) {
-  if (IsRigid(rig)) {
+  if (models::IsRigid(rig)) {
     Evaluate(model, law, path, displacement, force);
   } else {
     EvaluateInSeries(model, law, path, displacement, force, rig);
@@ -339,12 +317,12 @@ void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
   RequireSizes(path, displacement, force);
   RequireSameSize("gradient", gradient.size(), "displacement times gradient columns",
                   displacement.size() * kGradientColumns);
-  if (IsRigid(rig)) {
+  if (models::IsRigid(rig)) {
     EvaluateWithGradient(model, law, path, BranchScaling(model, law),
                          DirectShape{law.shape_exponent}, displacement, force, gradient);
     return;
   }
-  const double travel = SpringTravel(model, law, rig);
+  const double travel = models::SpringTravel(model, law, rig);
   EvaluateWithGradient(model, law, path, BranchScaling(model, law, travel),
                        SprungShape{backbone::GeneralShape<double>{law.shape_exponent}, travel},
                        displacement, force, gradient);

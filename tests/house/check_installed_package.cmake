@@ -1,5 +1,5 @@
 cmake_minimum_required(VERSION 3.25)
-# Installs the build into a scratch prefix and builds the example of examples/ against it.
+# Installs the build into a scratch prefix and builds and runs the examples of examples/ against it.
 set(prefix ${BUILD_DIR}/installed_package/prefix)
 set(user ${BUILD_DIR}/installed_package/user)
 file(REMOVE_RECURSE ${BUILD_DIR}/installed_package)
@@ -21,3 +21,4 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${user} -G ${GENERATOR} -DCMAK
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${prefix} ${flags})
 run(${CMAKE_COMMAND} --build ${user})
 run(${user}/fit_record ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv)
+run(${user}/mass_on_contact)

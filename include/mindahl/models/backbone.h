@@ -142,6 +142,7 @@ struct GeneralShape {
   [[nodiscard]] Real Slope(const Reduced<Real>& at) const {
     return at.z > 0 ? At(at).slope : Real(0);
   }
+  [[nodiscard]] Real Slope(Real y) const { return Slope(Reduce(y)); }
 
  private:
   static constexpr Real kNearSlip = Real(0.5);  // of w
@@ -156,12 +157,18 @@ struct MindlinShape {
     const Real z = 1 - w;
     return w * (1 + z + z * z) / (1 + z * std::sqrt(z));
   }
+
+  /// √z
+  [[nodiscard]] Real Slope(Real y) const {
+    return std::sqrt(std::max(GeneralShape<Real>{Real(1) / 3}.Reduce(y).z, Real(0)));
+  }
 };
 
 /// α = 0, Jenkins: elastic, then perfectly plastic.
 template <typename Real>
 struct JenkinsShape {
   [[nodiscard]] Real Force(Real y) const { return std::min(y, Real(1)); }
+  [[nodiscard]] Real Slope(Real y) const { return y < 1 ? Real(1) : Real(0); }
 };
 
 /// Calls `visitor` with the cheapest shape that is exact for α: chosen once, outside the kernels.
@@ -249,6 +256,13 @@ class InSeries<GeneralShape<Real>> {
   /// Φ
   [[nodiscard]] Real Force(Real total) const {
     return Slips(total) ? Real(1) : ForceAt(LogShare(total));
+  }
+
+  /// dΦ/dY = φ'/(1+κφ')
+  [[nodiscard]] Real Slope(Real total) const {
+    if (Slips(total)) return 0;
+    const Real slope = GeneralShape<Real>{shape_exponent_}.Slope(DisplacementAt(LogShare(total)));
+    return slope / (1 + compliance_ * slope);
   }
 
   [[nodiscard]] SeriesDerivatives<Real> Differentiate(Real total) const {
@@ -362,9 +376,12 @@ class InSeries<JenkinsShape<Real>> {
   InSeries(const JenkinsShape<Real>& /*shape*/, Real compliance) : total_slope_(1 + compliance) {}
 
   [[nodiscard]] Real Force(Real total) const { return std::min(total / total_slope_, Real(1)); }
+  [[nodiscard]] Real Slope(Real total) const {
+    return total < total_slope_ ? 1 / total_slope_ : Real(0);
+  }
 
  private:
-  Real total_slope_;
+  Real total_slope_;  // 1 + κ
 };
 
 }  // namespace mindahl::models::backbone

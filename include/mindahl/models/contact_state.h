@@ -1,0 +1,178 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <variant>
+#include <vector>
+
+#include "mindahl/models/backbone.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::models {
+
+struct ContactStateOptions {
+  double unloaded_displacement = 0.0;  ///< δ₀ [m], within ±1e307: T = 0 there
+  SeriesSpring rig = {};               ///< in series; δ is then that of spring and contact
+};
+
+/// A contact that is moved step by step and remembers what a law of friction has it remember: for
+/// loops in which the next displacement follows from this force, as in discrete elements and
+/// control.
+///
+///   T = Tc·(t₀ + span·v·sgn(e)·φ(k|e|)),  e = δ − origin of the present branch
+///
+/// as EvaluateForce of response.h, from which it differs in no bit where the compiler fuses no
+/// multiplication with an addition: every change of direction is a reversal. No step size enters;
+/// a step however long is exact for a motion that does not turn within it.
+///
+/// A state is a value. Copies go on by themselves, and an assignment to a state that is there
+/// reuses its memory; Peek tries a displacement without either.
+class ContactState {
+ public:
+  /// The virgin contact: T = 0 at δ₀, nothing to remember.
+  /// @param model  any of FrictionModels() that is not scaled by the peak, or a model of the user's
+  ///   that outlives the state and its copies
+  /// @param law    its α is used as it stands, also for a model that prescribes one
+  /// @throws InvalidArgument for an invalid law, option or spring (as EvaluateForce), and for a
+  ///   model that is scaled by the peak: it refers to the amplitude of the whole excitation, which
+  ///   no step knows
+  ContactState(const FrictionModel& model, const BranchLaw& law,
+               const ContactStateOptions& options = {});
+
+  /// Moves on to δ and returns the force there.
+  /// @param displacement  δ [m], within ±1e307; the present one is no step
+  /// @returns T [N]; |T| <= Tc where the model is bounded
+  /// @throws InvalidArgument, the state being left as it was, for a displacement that is NaN or out
+  ///   of range, for α > 1 beyond 1.8e200 elastic limits of a branch, and for a branch 1e100 times
+  ///   stiffer than the spring
+  /// Error as of EvaluateForce. Cost: one branch law, in all 1.1 times a sample of EvaluateForce, 2
+  /// times where that is vectorised (bench/contact_state_bench.cc); at a reversal a branch is
+  /// opened too. Memory: 40 bytes an extreme that is remembered, none for Dahl's own law; it grows
+  /// with the nesting alone, and nothing else is allocated.
+  double Move(double displacement) {
+    if (!course_.HoldsTo(displacement)) Turn(displacement);
+    displacement_ = displacement;
+    course_.ahead = course_.direction * displacement;
+    force_over_slip_ = course_.ForceOverSlip(shape_, displacement);
+    return Force();
+  }
+
+  /// What Move(δ) would return or throw, without moving. Cost: as of Move, but what closes n loops
+  /// looks at each of them every time that it is tried.
+  [[nodiscard]] double Peek(double displacement) const {
+    return course_.HoldsTo(displacement) ? Force(course_.ForceOverSlip(shape_, displacement))
+                                         : PeekAcrossBranches(displacement);
+  }
+
+  /// T [N] at the present displacement.
+  [[nodiscard]] double Force() const { return Force(force_over_slip_); }
+
+  /// δ [m]
+  [[nodiscard]] double Displacement() const { return displacement_; }
+
+  /// dT/dδ [N/m] onward in the direction of the last motion, for a further iteration or an implicit
+  /// step; σ before any. The stiffness against that direction is that of a new branch. At a corner
+  /// (α = 0 at slip) that of the slipping side; infinite where Dahl's σ·2^α exceeds the largest
+  /// double.
+  /// Error below 16 ε of the stiffness with which the branch starts, to what a change of δ by 4 ε
+  /// would make. Cost: as of Move.
+  [[nodiscard]] double TangentStiffness() const;
+
+  /// What TangentStiffness() would be after Move(δ), without moving.
+  /// @throws InvalidArgument as Move
+  [[nodiscard]] double PeekTangentStiffness(double displacement) const;
+
+  /// Back to the virgin contact at δ₀; keeps the memory that was reserved.
+  void Reset();
+
+  /// Makes room for so many remembered extremes, after which Move allocates nothing before they are
+  /// more.
+  void Reserve(std::size_t extremes) { suspended_.reserve(extremes); }
+
+  /// Extremes that are remembered: the depth of nesting.
+  [[nodiscard]] std::size_t RememberedExtremes() const { return suspended_.size(); }
+
+ private:
+  using Jenkins = backbone::JenkinsShape<double>;
+  using Mindlin = backbone::MindlinShape<double>;
+  using General = backbone::GeneralShape<double>;
+  /// φ on a branch; behind a spring each branch has its own.
+  using Shape = std::variant<Jenkins, Mindlin, General, backbone::InSeries<Jenkins>,
+                             backbone::InSeries<Mindlin>, backbone::InSeries<General>>;
+
+  /// t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin
+  struct OpenBranch {
+    double origin = 0.0;  // [m]
+    double force = 0.0;   // over Tc
+    double height = 1.0;
+    double rate = 0.0;   // [1/m]
+    double reach = 0.0;  // [m], largest |e| that rate multiplies
+  };
+
+  /// A branch as it is run in one direction s, in which sgn(e) = s.
+  struct Course {
+    OpenBranch branch;
+    double direction = 0.0;  // s = ±1; 0 before any motion
+    double start = 0.0;      // s·origin
+    double ahead = 0.0;      // s·δ, of the present displacement
+    double end = 0.0;        // s times the displacement before which the branch holds
+    double rise = 0.0;       // s·height
+
+    /// Neither a reversal, nor beyond the end, nor NaN.
+    [[nodiscard]] bool HoldsTo(double displacement) const {
+      const double there = direction * displacement;
+      return there >= ahead && there < end;
+    }
+    /// y
+    [[nodiscard]] double Reduced(double displacement) const {
+      return branch.rate * std::min(direction * displacement - start, branch.reach);
+    }
+    [[nodiscard]] double ForceOverSlip(const Shape& shape, double displacement) const {
+      return branch.force + rise * Share(shape, Reduced(displacement));
+    }
+  };
+
+  /// A course that is entered, and how many branches are then open.
+  struct Entry {
+    Course course;
+    std::size_t open = 1;
+  };
+
+  /// φ(y)
+  static double Share(const Shape& shape, double y) {
+    if (std::holds_alternative<Jenkins>(shape)) return Jenkins{}.Force(y);
+    if (std::holds_alternative<Mindlin>(shape)) return Mindlin{}.Force(y);
+    return TranscendentalShare(shape, y);
+  }
+  static double TranscendentalShare(const Shape& shape, double y);
+
+  [[nodiscard]] double Force(double force_over_slip) const {
+    return law_.slip_force * std::clamp(force_over_slip, -limit_, limit_);
+  }
+
+  [[nodiscard]] OpenBranch Open(const Branch& branch, double origin_force) const;
+  [[nodiscard]] Shape ShapeOn(const OpenBranch& branch) const;
+  [[nodiscard]] Entry Enter(double displacement) const;
+  void Turn(double displacement);
+  [[nodiscard]] double PeekAcrossBranches(double displacement) const;
+  [[nodiscard]] double TangentStiffnessOn(const Course& course, const Shape& shape,
+                                          double displacement) const;
+
+  const FrictionModel* model_;
+  BranchLaw law_;
+  double unloaded_displacement_;
+  bool sprung_;
+  double spring_travel_ = 0.0;  // Tc/k_r [m]
+  double limit_;                // of |T|/Tc
+  Course course_;
+  Shape shape_;  // on the present branch
+  double displacement_ = 0.0;
+  double force_over_slip_ = 0.0;
+  std::vector<OpenBranch> suspended_;  // the open branches below the present one, oldest first
+};
+
+}  // namespace mindahl::models

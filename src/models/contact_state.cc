@@ -1,0 +1,140 @@
+#include "mindahl/models/contact_state.h"
+
+#include <fmt/format.h>
+
+#include "mindahl/core/error.h"
+#include "models/madelung.h"
+#include "models/scaled_branches.h"
+#include "models/series_spring.h"
+#include "models/within_reach.h"
+
+namespace mindahl::models {
+
+ContactState::ContactState(const FrictionModel& model, const BranchLaw& law,
+                           const ContactStateOptions& options)
+    : model_(&model),
+      law_(law),
+      unloaded_displacement_(options.unloaded_displacement),
+      sprung_(!IsRigid(options.rig)),
+      limit_(ForceLimit(model)) {
+  Validate(law);
+  if (model.scaled_by_peak) {
+    throw InvalidArgument(fmt::format(
+        "model {} is scaled by the peak of the steady loop: must be given the amplitude of the "
+        "whole excitation, which a contact that is moved step by step does not know",
+        model.name));
+  }
+  RequireWithinReach("unloaded displacement [m]", unloaded_displacement_);
+  if (sprung_) spring_travel_ = SpringTravel(model, law, options.rig);
+  Reset();
+}
+
+void ContactState::Reset() {
+  suspended_.clear();
+  displacement_ = unloaded_displacement_;
+  force_over_slip_ = 0.0;
+  course_ = {};
+  course_.branch = Open({.origin = unloaded_displacement_, .start = BranchStart::kUnloaded}, 0.0);
+  shape_ = ShapeOn(course_.branch);
+}
+
+ContactState::OpenBranch ContactState::Open(const Branch& branch, double origin_force) const {
+  const ScaledBranch<double> scaled =
+      BranchScaling(*model_, law_, spring_travel_).Start(branch, origin_force);
+  return {scaled.origin, scaled.force, scaled.height, scaled.rate, backbone::Reach(scaled.rate)};
+}
+
+ContactState::Shape ContactState::ShapeOn(const OpenBranch& branch) const {
+  return backbone::WithShape(law_.shape_exponent, [&](const auto& contact) -> Shape {
+    if (!sprung_) return contact;
+    return mindahl::models::ShapeOn(SprungShape{contact, spring_travel_},
+                                    {branch.origin, branch.force, branch.height, branch.rate});
+  });
+}
+
+ContactState::Entry ContactState::Enter(double displacement) const {
+  RequireWithinReach("displacement [m]", displacement);
+  const double direction = displacement > displacement_   ? 1.0
+                           : displacement < displacement_ ? -1.0
+                                                          : course_.direction;
+  const bool reverses = direction * course_.direction < 0;
+  const std::size_t open_before = suspended_.size() + 1;
+  const auto open_from_here = [&] {
+    return Open({.origin = displacement_, .direction = static_cast<std::int8_t>(direction)},
+                force_over_slip_);
+  };
+  Entry entry;
+  Course& course = entry.course;
+  double end = direction == 0 ? 0.0 : kLargestPathDisplacement;
+  if (model_->memory == Memory::kNone) {
+    course.branch = reverses ? open_from_here() : course_.branch;
+  } else {
+    const auto origin_of = [&](std::size_t i) {
+      return i + 1 < open_before ? suspended_[i].origin
+             : i < open_before   ? course_.branch.origin
+                                 : displacement_;
+    };
+    entry.open = StillOpen(open_before + (reverses ? 1 : 0), origin_of, direction, displacement);
+    course.branch = entry.open > open_before    ? open_from_here()
+                    : entry.open == open_before ? course_.branch
+                                                : suspended_[entry.open - 1];
+    if (entry.open >= 2)
+      end = std::min(end, direction * ClosingDisplacement(entry.open, origin_of));
+  }
+  const OpenBranch& branch = course.branch;
+  // For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
+  if (law_.shape_exponent > 1) {
+    if (std::abs(displacement - branch.origin) > branch.reach) {
+      ThrowInvalid("displacement [m]", displacement,
+                   fmt::format("must be within {:.3g} elastic limits of its branch, {:.3g} m, for "
+                               "shape exponents > 1",
+                               backbone::kLargestDisplacement<double>, branch.reach));
+    }
+    const double farthest = std::min(branch.reach, 2 * kLargestPathDisplacement);
+    end = std::min(end, direction * branch.origin + farthest);
+  }
+  course.direction = direction;
+  course.start = direction * branch.origin;
+  course.end = end;
+  course.rise = direction * branch.height;
+  return entry;
+}
+
+void ContactState::Turn(double displacement) {
+  const Entry entry = Enter(displacement);
+  if (sprung_) shape_ = ShapeOn(entry.course.branch);
+  if (entry.open > suspended_.size() + 1) {
+    suspended_.push_back(course_.branch);
+  } else {
+    suspended_.resize(entry.open - 1);
+  }
+  course_ = entry.course;
+}
+
+double ContactState::PeekAcrossBranches(double displacement) const {
+  const Course course = Enter(displacement).course;
+  return Force(course.ForceOverSlip(sprung_ ? ShapeOn(course.branch) : shape_, displacement));
+}
+
+double ContactState::TranscendentalShare(const Shape& shape, double y) {
+  return std::visit([y](const auto& on) { return on.Force(y); }, shape);
+}
+
+double ContactState::TangentStiffnessOn(const Course& course, const Shape& shape,
+                                        double displacement) const {
+  const double y = course.Reduced(displacement);
+  const double slope = std::visit([y](const auto& on) { return on.Slope(y); }, shape);
+  return law_.slip_force * (course.branch.height * course.branch.rate * slope);
+}
+
+double ContactState::TangentStiffness() const {
+  return TangentStiffnessOn(course_, shape_, displacement_);
+}
+
+double ContactState::PeekTangentStiffness(double displacement) const {
+  if (course_.HoldsTo(displacement)) return TangentStiffnessOn(course_, shape_, displacement);
+  const Course course = Enter(displacement).course;
+  return TangentStiffnessOn(course, sprung_ ? ShapeOn(course.branch) : shape_, displacement);
+}
+
+}  // namespace mindahl::models

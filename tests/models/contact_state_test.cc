@@ -1,0 +1,540 @@
+#include "mindahl/models/contact_state.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cfenv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../support/histories.h"
+#include "mindahl/core/error.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/response.h"
+
+namespace {
+std::size_t allocations = 0;
+}  // namespace
+
+// All of this program's allocations are counted: that Move makes none is part of its contract. Out
+// of line, for the compiler not to see malloc and free where it looks for new and delete.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
+  std::free(memory);
+}
+
+namespace mindahl::models {
+namespace {
+
+using mindahl::testing::Generator;
+using mindahl::testing::History;
+using mindahl::testing::LogUniform;
+using mindahl::testing::Model;
+using mindahl::testing::PathOf;
+using mindahl::testing::RandomHistory;
+using mindahl::testing::Uniform;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Of Tc, between a state and its path: none. Where multiplications are fused with additions the
+/// two may be compiled differently, each within the bound of response.h.
+#ifdef __FP_FAST_FMA
+constexpr double kAgreement = 1e-13;
+#else
+constexpr double kAgreement = 0.0;
+#endif
+
+struct Case {
+  const FrictionModel* model = nullptr;
+  double shape_exponent = 0.0;
+};
+
+/// Every model that can be moved step by step, with every exponent that it allows.
+std::vector<Case> Cases() {
+  std::vector<Case> cases;
+  for (const FrictionModel& model : FrictionModels()) {
+    if (model.scaled_by_peak) continue;
+    for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 0.5, 1.0, 2.0, 100.0}) {
+      if (model.shape_exponent.value_or(alpha) == alpha) cases.push_back({&model, alpha});
+    }
+  }
+  return cases;
+}
+
+std::vector<double> Respond(const FrictionModel& model, const BranchLaw& law,
+                            const History& displacement, const ContactStateOptions& options) {
+  std::vector<double> force(displacement.size());
+  EvaluateForce(
+      model, law,
+      PathOf(model, displacement, {.unloaded_displacement = options.unloaded_displacement}),
+      displacement, force, options.rig);
+  return force;
+}
+
+/// On a coarse grid: extremes are met again exactly, passed by nothing, and turned on.
+History OnGrid(History history, double spacing) {
+  for (double& displacement : history) displacement = spacing * std::round(displacement / spacing);
+  return history;
+}
+
+/// Inward, then outward again, step by step, past every extreme exactly.
+History Spiral(std::size_t reversals) {
+  History history(reversals);
+  for (std::size_t i = 0; i < reversals; ++i) {
+    const double size = 3 * static_cast<double>(reversals - i) / static_cast<double>(reversals);
+    history[i] = i % 2 == 0 ? size : -size;
+  }
+  const History outward(history.rbegin(), history.rend());
+  history.insert(history.end(), outward.begin() + 1, outward.end());
+  history.push_back(2 * history.front());
+  return history;
+}
+
+History DrawHistory(Generator& generator) {
+  switch (generator() % 4) {
+    case 0:
+      return OnGrid(RandomHistory(generator), 0.5);
+    case 1:
+      return OnGrid(RandomHistory(generator), 0.125);
+    case 2:
+      return Spiral(2 + generator() % 30);
+    default:
+      return RandomHistory(generator);
+  }
+}
+
+/// Moves along the history and demands the forces of its path, from Move and from Peek alike.
+void ExpectAgreement(const FrictionModel& model, const BranchLaw& law, const History& history,
+                     const ContactStateOptions& options) {
+  const std::vector<double> expected = Respond(model, law, history, options);
+  ContactState contact(model, law, options);
+  Generator generator(3);
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    static_cast<void>(contact.Peek(Uniform(generator, -5, 5)));
+    static_cast<void>(contact.PeekTangentStiffness(Uniform(generator, -5, 5)));
+    const double foretold = contact.Peek(history[i]);
+    const double stiffness_foretold = contact.PeekTangentStiffness(history[i]);
+    const double force = contact.Move(history[i]);
+    ASSERT_LE(std::abs(force - expected[i]), kAgreement * law.slip_force) << "step " << i;
+    ASSERT_EQ(force, foretold) << "step " << i;
+    ASSERT_EQ(contact.Force(), force);
+    ASSERT_EQ(contact.Displacement(), history[i]);
+    ASSERT_EQ(contact.TangentStiffness(), stiffness_foretold) << "step " << i;
+  }
+}
+
+TEST(ContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
+  Generator generator(1);
+  for (const Case& c : Cases()) {
+    SCOPED_TRACE(std::string(c.model->name) + ", alpha " + std::to_string(c.shape_exponent));
+    for (int i = 0; i < 1000; ++i) {
+      const double unloaded_displacement =
+          i % 3 == 0 ? std::round(Uniform(generator, -4, 4)) / 2 : 0.0;
+      ExpectAgreement(*c.model, {1.0, c.shape_exponent, 1.0}, DrawHistory(generator),
+                      {.unloaded_displacement = unloaded_displacement});
+      if (HasFatalFailure()) FAIL() << "history " << i;
+    }
+  }
+}
+
+TEST(ContactState, DoesSoBehindASpring) {
+  Generator generator(2);
+  for (const Case& c : Cases()) {
+    SCOPED_TRACE(std::string(c.model->name) + ", alpha " + std::to_string(c.shape_exponent));
+    for (const double stiffness : {1e-3, 0.5, 1.0, 1e3, 1e300}) {
+      for (int i = 0; i < 30; ++i) {
+        ExpectAgreement(*c.model, {1.0, c.shape_exponent, 1.0}, DrawHistory(generator),
+                        {.rig = {.stiffness = stiffness}});
+        if (HasFatalFailure()) FAIL() << "history " << i << ", rig " << stiffness;
+      }
+    }
+  }
+}
+
+TEST(ContactState, DoesSoHoweverDeepTheNesting) {
+  constexpr std::size_t kReversals = 1'000'000;
+  const History history = Spiral(kReversals);
+  const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
+  for (const char* name : {"mindlin", "dahl"}) {
+    const std::vector<double> expected = Respond(Model(name), law, history, {});
+    ContactState contact(Model(name), law);
+    double largest = 0.0;
+    std::size_t deepest = 0;
+    for (std::size_t i = 0; i < history.size(); ++i) {
+      largest = std::max(largest, std::abs(contact.Move(history[i]) - expected[i]));
+      deepest = std::max(deepest, contact.RememberedExtremes());
+    }
+    EXPECT_LE(largest, kAgreement) << name;
+    EXPECT_EQ(deepest, Model(name).memory == Memory::kNone ? 0 : kReversals - 1) << name;
+    EXPECT_EQ(contact.RememberedExtremes(), 0U) << name;
+  }
+}
+
+TEST(ContactState, DoesSoAtEveryExtremeAndRaisesNoFlag) {
+  // docs/theory.md §8 by way of the histories of tests/properties.
+  constexpr int kTrapped = FE_INVALID | FE_OVERFLOW | FE_DIVBYZERO;
+  for (const FrictionModel& model : FrictionModels()) {
+    if (model.scaled_by_peak) continue;
+    for (const double alpha : {0.0, 1e-300, 1e-16, 1e-8, 1.0 / 3.0, 0.5, 1 - 1e-8, 1 - 1e-15, 1.0,
+                               1 + 1e-15, 1 + 1e-8, 2.0, 10.0, 100.0}) {
+      for (const auto& [stiffness, slip_force] :
+           {std::pair{1e-9, 1e12}, {1e15, 1e-15}, {1e-9, 1e-15}, {1e15, 1e12}, {1.0, 1.0}}) {
+        const BranchLaw law{stiffness, alpha, slip_force};
+        const double limit = slip_force / stiffness;
+        for (const double lambda :
+             {1e-300, 1e-18, 1e-9, 0.5, 1.0, 1 / (1 - 1.0 / 3.0), 2.0, 1e12}) {
+          const double x = lambda * limit;
+          const History history = {
+              0.0,   0.0,    x, x,       std::nextafter(x, 0.0), -x, 0.0, std::nextafter(x, 2 * x),
+              x / 2, -2 * x, x, 0.25 * x};
+          const std::vector<double> expected = Respond(model, law, history, {});
+          std::feclearexcept(kTrapped);
+          ContactState contact(model, law);
+          std::vector<double> force;
+          bool stiffness_is_number = true;
+          for (const double displacement : history) {
+            force.push_back(contact.Move(displacement));
+            stiffness_is_number &= contact.TangentStiffness() >= 0;
+          }
+          ASSERT_EQ(std::fetestexcept(kTrapped), 0) << model.name << ' ' << alpha << ' ' << lambda;
+          ASSERT_TRUE(stiffness_is_number) << model.name << ' ' << alpha << ' ' << lambda;
+          for (std::size_t i = 0; i < force.size(); ++i) {
+            ASSERT_LE(std::abs(force[i] - expected[i]), kAgreement * slip_force)
+                << model.name << ' ' << alpha << ' ' << lambda << ' ' << i;
+            ASSERT_LE(std::abs(force[i]), slip_force);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ContactState, ReachesTheEndsOfItsRange) {
+  constexpr double kLargest = 1e307;
+  for (const Case& c : Cases()) {
+    if (c.shape_exponent > 1) continue;
+    ExpectAgreement(*c.model, {1.0, c.shape_exponent, 1.0},
+                    {kLargest, -kLargest, -kLargest, 0.5 * kLargest, kLargest, -1.0}, {});
+    ExpectAgreement(*c.model, {1.0, c.shape_exponent, 1.0}, {-kLargest, kLargest, 0.0},
+                    {.unloaded_displacement = kLargest});
+  }
+}
+
+TEST(ContactState, AStepOfNoLengthChangesNothing) {
+  Generator generator(4);
+  for (const Case& c : Cases()) {
+    for (int i = 0; i < 100; ++i) {
+      ContactState once(*c.model, {1.0, c.shape_exponent, 1.0});
+      ContactState often = once;
+      for (const double displacement : DrawHistory(generator)) {
+        once.Move(displacement);
+        for (std::uint64_t k = 1 + generator() % 3; k > 0; --k) often.Move(displacement);
+        ASSERT_EQ(often.Force(), once.Force());
+        ASSERT_EQ(often.TangentStiffness(), once.TangentStiffness());
+        ASSERT_EQ(often.RememberedExtremes(), once.RememberedExtremes());
+      }
+    }
+  }
+}
+
+// --- Stiffness -----------------------------------------------------------------------------------
+
+TEST(ContactState, HasTheStiffnessThatItsLawStates) {
+  // dT/dδ of the present branch: σ·u^α on the virgin curve, the same of half the way since the last
+  // reversal for a Masing law, σ(1 − sT/Tc)^α for Dahl's own. Away from slip, where it is steep in
+  // δ.
+  constexpr double kRounding = 16 * kEpsilon;
+  constexpr double kAwayFromSlip =
+      0.6;  // of y, or of T/Tc: a power α <= 100 of 0.4 amplifies 1/0.4
+  for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 0.5, 1.0, 2.0, 100.0}) {
+    const BranchLaw law{3.0, alpha, 5.0};
+    const double limit = law.slip_force / law.tangential_stiffness;
+    ContactState masing(Model("mindlin-dahl"), law);
+    ContactState dahl(Model("dahl"), law);
+    EXPECT_NEAR(masing.TangentStiffness(), 3.0, 3.0 * kRounding);
+    for (double y = 0.0; y < kAwayFromSlip; y += 0.05) {
+      masing.Move(y * limit);
+      const double amplification = 1 + alpha * y;  // of the rounding of y
+      ASSERT_NEAR(masing.TangentStiffness(), BackboneSlope(law, y * limit),
+                  3.0 * kRounding * amplification)
+          << alpha << ' ' << y;
+      dahl.Move(y * limit);
+      ASSERT_NEAR(dahl.TangentStiffness(), 3.0 * std::pow(1 - dahl.Force() / 5.0, alpha),
+                  3.0 * kRounding * (1 + alpha))
+          << alpha << ' ' << y;
+    }
+    const double turn = masing.Displacement();
+    for (double y = 0.05; y < kAwayFromSlip; y += 0.05) {
+      masing.Move(turn - 2 * y * limit);
+      ASSERT_NEAR(masing.TangentStiffness(), BackboneSlope(law, y * limit),
+                  3.0 * kRounding * (1 + alpha * y))
+          << alpha << ' ' << y;
+    }
+  }
+}
+
+TEST(ContactState, KeepsTheDigitsOfItsStiffnessNextToSlip) {
+  // Where y = δ is exact so is what is left to go, and φ' has its 4 ε (backbone.h).
+  constexpr double kRounding = 4 * kEpsilon;
+  for (const double alpha : {0.0, 1e-8, 0.1, 1.0 / 3.0, 0.5, 0.9}) {
+    const BranchLaw law{1.0, alpha, 1.0};
+    const double slip = GrossSlipDisplacement(law);
+    for (int k = 1; k <= 53; ++k) {
+      for (const double x : {slip * (1 - std::ldexp(1.0, -k)), slip * (1 + std::ldexp(1.0, -k))}) {
+        ContactState contact(Model("mindlin-dahl"), law);
+        EXPECT_NEAR(contact.PeekTangentStiffness(x), BackboneSlope(law, x), kRounding)
+            << alpha << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(ContactState, HasTheStiffnessOfItsForce) {
+  // Central differences within a branch, of every model and behind a spring.
+  constexpr double kStep = 1e-5;  // of the elastic limit; errs by kStep²·f'''/6
+  constexpr double kDifference = 1e-6;
+  Generator generator(5);
+  for (const Case& c : Cases()) {
+    if (c.shape_exponent > 2) continue;  // f''' ∝ α²
+    for (const double rig : {kInfinity, 0.7}) {
+      int compared = 0;
+      for (int i = 0; i < 300; ++i) {
+        ContactState contact(*c.model, {1.0, c.shape_exponent, 1.0}, {.rig = {rig}});
+        for (const double displacement : DrawHistory(generator)) {
+          const double before = contact.Displacement();
+          contact.Move(displacement);
+          const double s = displacement > before ? 1.0 : -1.0;
+          const bool near_slip = std::abs(contact.Force()) > 0.8;
+          if (near_slip || std::abs(displacement - before) < 2 * kStep) continue;
+          ContactState ahead = contact;
+          const double beyond = ahead.Move(displacement + s * kStep);
+          if (ahead.RememberedExtremes() != contact.RememberedExtremes()) continue;
+          ContactState further = ahead;
+          const double farthest = further.Move(displacement + 2 * s * kStep);
+          if (further.RememberedExtremes() != contact.RememberedExtremes()) continue;
+          ASSERT_NEAR(ahead.TangentStiffness(), s * (farthest - contact.Force()) / (2 * kStep),
+                      kDifference)
+              << c.model->name << ' ' << c.shape_exponent << ' ' << rig << ' ' << beyond;
+          ++compared;
+        }
+      }
+      EXPECT_GT(compared, 1000) << c.model->name;
+    }
+  }
+}
+
+TEST(ContactState, IsAsStiffAsSpringAndContactInSeries) {
+  constexpr double kRounding = 64 * kEpsilon;
+  constexpr SeriesSpring kRig{2.0};
+  for (const double alpha : {0.0, 1.0 / 3.0, 0.5, 1.0, 2.0}) {
+    const BranchLaw law{3.0, alpha, 5.0};
+    ContactState both(Model("mindlin-dahl"), law, {.rig = kRig});
+    ContactState alone(Model("mindlin-dahl"), law);
+    EXPECT_NEAR(both.TangentStiffness(), 1.2, 1.2 * kRounding);  // 1/(1/3 + 1/2)
+    for (const double x : {0.1, 0.5, 0.9, 0.4, 0.2, 0.5}) {
+      const double force = alone.Move(x);
+      both.Move(x + force / kRig.stiffness);
+      const double series = 1 / (1 / alone.TangentStiffness() + 1 / kRig.stiffness);
+      EXPECT_NEAR(both.TangentStiffness(), series, kRounding) << alpha << ' ' << x;
+    }
+  }
+}
+
+TEST(ContactState, HasNoStiffnessInSlip) {
+  for (const SeriesSpring rig : {SeriesSpring{}, SeriesSpring{1.0}}) {
+    for (const double alpha : {0.0, 1.0 / 3.0, 0.5}) {
+      ContactState contact(Model("mindlin-dahl"), {1.0, alpha, 1.0}, {.rig = rig});
+      EXPECT_EQ(contact.Move(10.0), 1.0);
+      EXPECT_EQ(contact.TangentStiffness(), 0.0);
+      EXPECT_GT(contact.PeekTangentStiffness(9.9), 0.0);  // back
+    }
+  }
+}
+
+// --- A state as a value --------------------------------------------------------------------------
+
+TEST(ContactState, ACopyGoesItsOwnWay) {
+  Generator generator(6);
+  const BranchLaw law{1.0, 1.0 / 3.0, 1.0};
+  for (int i = 0; i < 300; ++i) {
+    const History history = DrawHistory(generator);
+    ContactState contact(Model("mindlin"), law);
+    ContactState trial = contact;
+    for (const double displacement : history) {
+      trial = contact;
+      const double elsewhere = Uniform(generator, -5, 5);
+      const double trial_force = trial.Move(elsewhere);
+      ASSERT_EQ(contact.Peek(elsewhere), trial_force);
+      contact.Move(displacement);
+      ASSERT_EQ(trial.Force(), trial_force);
+    }
+    ASSERT_EQ(contact.Force(), Respond(Model("mindlin"), law, history, {}).back());
+  }
+}
+
+TEST(ContactState, ResetMakesItVirgin) {
+  Generator generator(7);
+  for (const Case& c : Cases()) {
+    ContactState contact(*c.model, {1.0, c.shape_exponent, 1.0}, {.unloaded_displacement = 0.5});
+    for (const double displacement : Spiral(9)) contact.Move(displacement);
+    contact.Reset();
+    EXPECT_EQ(contact.Force(), 0.0);
+    EXPECT_EQ(contact.Displacement(), 0.5);
+    EXPECT_EQ(contact.RememberedExtremes(), 0U);
+    const History history = DrawHistory(generator);
+    std::vector<double> force;
+    for (const double displacement : history) force.push_back(contact.Move(displacement));
+    EXPECT_EQ(force, Respond(*c.model, {1.0, c.shape_exponent, 1.0}, history,
+                             {.unloaded_displacement = 0.5}));
+  }
+}
+
+TEST(ContactState, RemembersAsManyExtremesAsTheLoopIsDeepNotAsItIsLong) {
+  // Ten million steps on a loop with an inner loop: nothing is allocated after the first cycle, and
+  // no force drifts after the second by a bit.
+  constexpr std::size_t kSteps = 10'000'000;
+  History cycle;
+  for (int i = 0; i < 20; ++i) cycle.push_back(-1.2 + 0.1 * i);  // to 0.7, back to 0.2, on to 1.2
+  for (int i = 1; i <= 5; ++i) cycle.push_back(0.7 - 0.1 * i);
+  for (int i = 1; i <= 10; ++i) cycle.push_back(0.2 + 0.1 * i);
+  for (int i = 1; i <= 23; ++i) cycle.push_back(1.2 - 0.1 * i);
+  ContactState contact(Model("mindlin"), {1.0, 1.0 / 3.0, 1.0});
+  std::vector<double> second(cycle.size());
+  std::size_t most = 0;
+  std::size_t allocated = 0;
+  std::size_t drifted = 0;
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const std::size_t phase = i % cycle.size();
+    const double force = contact.Move(cycle[phase]);
+    most = std::max(most, contact.RememberedExtremes());
+    if (i / cycle.size() == 1) second[phase] = force;
+    if (i == cycle.size()) allocated = allocations;
+    if (i / cycle.size() > 1 && force != second[phase]) ++drifted;
+  }
+  EXPECT_EQ(drifted, 0U);
+  EXPECT_EQ(allocations, allocated);
+  EXPECT_LE(most, 4U);
+}
+
+TEST(ContactState, RemembersLittleOfALongRandomWalk) {
+  // Surviving extremes of n random steps grow as log n, by a few a decade.
+  constexpr std::size_t kFew = 100;
+  Generator generator(8);
+  ContactState contact(Model("mindlin"), {1.0, 1.0 / 3.0, 1.0});
+  std::size_t most = 0;
+  double displacement = 0.0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    contact.Move(displacement += Uniform(generator, -0.1, 0.1));
+    most = std::max(most, contact.RememberedExtremes());
+  }
+  EXPECT_LE(most, kFew);
+  EXPECT_GT(most, 5U);
+}
+
+TEST(ContactState, AllocatesNothingWithinItsReserve) {
+  ContactState contact(Model("mindlin"), {1.0, 1.0 / 3.0, 1.0});
+  ContactState trial = contact;
+  ContactState dahl(Model("dahl"), {1.0, 1.0 / 3.0, 1.0});
+  contact.Reserve(50);
+  trial.Reserve(50);
+  const History history = Spiral(50);
+  const std::size_t before = allocations;
+  for (const double displacement : history) {
+    static_cast<void>(contact.Peek(-displacement));
+    trial = contact;
+    trial.Move(0.1 * displacement);
+    contact.Move(displacement);
+    dahl.Move(displacement);
+  }
+  contact.Reset();
+  EXPECT_EQ(allocations, before);
+}
+
+// --- Refusals ------------------------------------------------------------------------------------
+
+std::string RefusalOf(auto call) {
+  try {
+    call();
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(ContactState, RefusesADisplacementByItsValueAndStaysWhereItWas) {
+  for (const Case& c : Cases()) {
+    for (const History& before : {History{}, History{0.5}, History{0.5, -0.25, 0.125}}) {
+      ContactState contact(*c.model, {1.0, c.shape_exponent, 1.0});
+      for (const double displacement : before) contact.Move(displacement);
+      const ContactState copy = contact;
+      for (const auto& [displacement, value] : {std::pair{kNan, "nan"},
+                                                {kInfinity, "inf"},
+                                                {-kInfinity, "-inf"},
+                                                {1.01e307, "1.01e+307"},
+                                                {-1.01e307, "-1.01e+307"}}) {
+        const std::string expected = std::string("displacement [m] = ") + value +
+                                     " is invalid: must be finite and within +-1e307 m";
+        const double at = displacement;
+        EXPECT_EQ(RefusalOf([&] { contact.Move(at); }), expected);
+        EXPECT_EQ(RefusalOf([&] { static_cast<void>(contact.Peek(at)); }), expected);
+        EXPECT_EQ(RefusalOf([&] { static_cast<void>(contact.PeekTangentStiffness(at)); }),
+                  expected);
+      }
+      EXPECT_EQ(contact.Force(), copy.Force());
+      EXPECT_EQ(contact.Displacement(), copy.Displacement());
+      EXPECT_EQ(contact.RememberedExtremes(), copy.RememberedExtremes());
+      EXPECT_EQ(contact.Move(0.25), ContactState(copy).Move(0.25));
+    }
+  }
+}
+
+TEST(ContactState, RefusesAForceThatStillGrowsBeyondItsReach) {
+  using ::testing::HasSubstr;
+  ContactState contact(Model("mindlin-dahl"), {1.0, 2.0, 1.0});
+  contact.Move(1e200);
+  EXPECT_THAT(RefusalOf([&] { contact.Move(1e201); }),
+              HasSubstr("displacement [m] = 1e+201 is invalid: must be within 1.8e+200 elastic"));
+  EXPECT_EQ(contact.Displacement(), 1e200);
+  EXPECT_NO_THROW(contact.Move(-1e200));
+}
+
+TEST(ContactState, RefusesAModelThatHasToKnowTheAmplitude) {
+  EXPECT_EQ(RefusalOf([] {
+              ContactState(Model("simplified-dahl"), {1.0, 0.5, 1.0});
+            }),
+            "model simplified-dahl is scaled by the peak of the steady loop: must be given the "
+            "amplitude of the whole excitation, which a contact that is moved step by step does "
+            "not know");
+}
+
+TEST(ContactState, RefusesALawASpringOrAnOriginThatIsNone) {
+  using ::testing::HasSubstr;
+  const auto refusal = [](const BranchLaw& law, const ContactStateOptions& options) {
+    return RefusalOf([&] { ContactState(Model("dahl"), law, options); });
+  };
+  const BranchLaw law{1.0, 0.5, 1.0};
+  EXPECT_THAT(refusal({-1.0, 0.5, 1.0}, {}), HasSubstr("tangential stiffness [N/m] = -1"));
+  EXPECT_THAT(refusal(law, {.unloaded_displacement = kNan}),
+              HasSubstr("unloaded displacement [m] = nan"));
+  EXPECT_THAT(refusal(law, {.rig = {.stiffness = 0.0}}), HasSubstr("series stiffness [N/m] = 0"));
+  EXPECT_THAT(refusal(law, {.rig = {.stiffness = 1e-300}}),
+              HasSubstr("series stiffness [N/m] = 1e-300"));
+}
+
+}  // namespace
+}  // namespace mindahl::models
