@@ -514,7 +514,9 @@ void AppendFit(std::vector<Field<Report>>& rows) {
                &ResidualStatistics::effective_samples),
       Residual("degrees_of_freedom", "-", "of the errors", &ResidualStatistics::degrees_of_freedom),
       {"residuals.force_noise", "N", "standard deviation, given or estimated",
-       [](const Report& report) { return Number(report.fit.force_noise); }},
+       [](const Report& report) {
+         return report.failed() ? Missing() : Number(report.fit.force_noise);
+       }},
       {"residuals.outliers", "", "samples that the loss gives less than half their weight",
        [](const Report& report) { return Count(report.fit.outliers); }},
       {"residual_structure", "", "one a file",

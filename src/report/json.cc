@@ -37,7 +37,12 @@ Json Convert(const Value& value) { return std::visit(Converter{}, value.content)
 }  // namespace
 
 std::string ToJson(const Report& report) {
-  Json json = Converter{}(Document(report));
+  const Value::Object document = Document(report);
+  Json json = Converter{}(document);
+  json["nulls"] = Json::array();
+  for (const NullPlace& null : CollectNulls(document)) {
+    json["nulls"].push_back({{"path", null.path}, {"why", null.why}});
+  }
   json["warnings"] = Json::array();
   for (const std::vector<Warning>& warnings : {report.fit_warnings, report.contact_warnings}) {
     for (const Warning& warning : warnings) {
