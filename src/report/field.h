@@ -14,11 +14,22 @@ namespace mindahl::report {
 /// One row of a report: a new field is one of these.
 template <typename Item>
 struct Field {
+  using Get = std::function<Value(const Item&)>;
+  using WhyNull = std::function<std::string(const Item&)>;
+
+  Field(std::string row_path, std::string row_unit, std::string row_label, Get getter,
+        WhyNull reason = nullptr)
+      : path(std::move(row_path)),
+        unit(std::move(row_unit)),
+        label(std::move(row_label)),
+        get(std::move(getter)),
+        why_null(std::move(reason)) {}
+
   std::string path;   ///< from the item: "loop.amplitude", "ci95[0]"
   std::string unit;   ///< "" where it has none, "-" for a ratio
   std::string label;  ///< what it is
-  std::function<Value(const Item&)> get;
-  std::function<std::string(const Item&)> why_null = {};  ///< asked where `get` gives a null
+  Get get;
+  WhyNull why_null;  ///< asked where `get` gives a null
 };
 
 template <typename Item>

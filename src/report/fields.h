@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,16 @@ struct ContactField {
 
 /// In the order of the reports.
 const std::vector<ContactField>& ContactFields();
+
+/// What the documentation says of a field.
+struct FieldDescription {
+  std::string path;  ///< NAME and QUANTITY stand for what they are, [] for every place of a list
+  std::string unit;
+  std::string label;
+};
+
+/// Every field that a report may have.
+std::vector<FieldDescription> DescribeFields();
 
 /// The whole report as keys and values.
 Value::Object Document(const Report& report);

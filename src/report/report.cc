@@ -6,6 +6,7 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/report/contact.h"
+#include "mindahl/report/sentences.h"
 
 namespace mindahl::report {
 namespace {
@@ -30,16 +31,16 @@ void Require(const ReportInput& input) {
   }
 }
 
+/// The sentences are the fit's own until it gives findings: then Sentence(finding, fit) of each.
 std::vector<Warning> FitWarnings(const FitResult& fit) {
   std::vector<Warning> warnings;
   for (const FitWarning& warning : fit.warnings) {
     warnings.push_back({warning.code, warning.message});
   }
   if (fit.parameters.empty()) {
-    warnings.push_back(
-        {"fit_failed", fmt::format("the fit failed, so no parameter, residual, loop, contact or "
-                                   "mapping value was computed: {}",
-                                   fit.termination)});
+    Finding failure;
+    failure.code = "fit_failed";
+    warnings.push_back({"fit_failed", Sentence(failure, fit)});
   }
   return warnings;
 }

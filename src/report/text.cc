@@ -268,8 +268,8 @@ std::string ToText(const Report& report) {
   text += fmt::format("\nloop: X = {:.5g} m, T* = {:.5g} N, {}\n", measures.amplitude,
                       measures.peak_force, SlipText(loop));
   text += fmt::format(
-      "      energy per cycle {} J measured, {:.5g} J model\n",
-      measures.energy_per_cycle ? fmt::format("{:.5g}", *measures.energy_per_cycle) : "not",
+      "      energy per cycle {} measured, {:.5g} J model\n",
+      measures.energy_per_cycle ? fmt::format("{:.5g} J", *measures.energy_per_cycle) : "not",
       loop.model_energy);
   if (loop.energy_ratio) {
     text += fmt::format(
