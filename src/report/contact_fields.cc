@@ -30,7 +30,7 @@ const std::vector<Field<HertzPrediction>>& HertzFields() {
       rows.push_back(
           {name, unit, label, [member](const Item& item) { return Number((item.*member).value); }});
       rows.push_back(
-          {name + "_standard_error", unit, "of inputs alone",
+          {name + "_standard_error", unit, "standard error, of inputs alone",
            [member](const Item& item) { return Number((item.*member).standard_error); }});
     };
     const auto propagated = [&](const char* path, const char* unit, const char* label,
@@ -97,10 +97,11 @@ void AddContactFields(FieldTable& table) {
     if (field.key != "compliance") continue;
     rows.push_back({"contact.compliance_definition", "", "which G* is meant",
                     [](const Report&) { return Text("G* = (2-nu1)/G1 + (2-nu2)/G2"); }});
-    rows.push_back(
-        {"contact.compliance_unit", "", "its unit", [](const Report&) { return Text("1/Pa"); }});
+    rows.push_back({"contact.compliance_unit", "", "unit of compliance",
+                    [](const Report&) { return Text("1/Pa"); }});
   }
-  rows.push_back({"contact.normal_load", "N", "given or measured", [](const Report& report) {
+  rows.push_back({"contact.normal_load", "N", "normal load, given or the mean of its column",
+                  [](const Report& report) {
                     return report.known.normal_load ? Number(report.known.normal_load->value)
                                                     : Missing("not given, and no column has it");
                   }});

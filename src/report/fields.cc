@@ -36,30 +36,30 @@ void AddInputFields(FieldTable& table) {
   table.Add({
       {"schema", "", "name and version of this form",
        [](const Report&) { return Text("mindahl.fit/1"); }},
-      {"version", "", "of mindahl", [](const Report&) { return Text(Version()); }},
-      {"input.files", "", "names of the files",
+      {"version", "", "version of mindahl", [](const Report&) { return Text(Version()); }},
+      {"input.files", "", "names of the files, as they were given",
        [](const Report& report) {
          Value::Array files;
          for (const std::string& file : report.files) files.push_back(Text(file));
          return Value{std::move(files)};
        }},
-      {"input.samples", "", "read, those that do not count too",
+      {"input.samples", "", "samples read, those that do not count too",
        [](const Report& report) {
          std::size_t samples = 0;
          for (const RecordFile& input : report.records) samples += input.record.size();
          return Count(samples);
        }},
-      {"input.cycles", "", "complete cycles",
+      {"input.cycles", "", "complete cycles, of all files",
        Sum([](const RecordFit& record) { return record.measures.cycles; })},
-      {"input.reversals", "", "turning points",
+      {"input.reversals", "", "turning points of the motion, of all files",
        Sum([](const RecordFit& record) { return record.reversals.size(); })},
-      {"input.units.displacement", "", "of the first file",
+      {"input.units.displacement", "", "unit of the column in the first file",
        [](const Report& report) { return Text(report.records.front().displacement.unit); }},
-      {"input.units.force", "", "of the first file",
+      {"input.units.force", "", "unit of the column in the first file",
        [](const Report& report) { return Text(report.records.front().force.unit); }},
-      {"input.units.time", "", "of the first file; absent where it has none",
+      {"input.units.time", "", "likewise; absent where there is no such column",
        [](const Report& report) { return UnitOf(report.records.front().time); }},
-      {"input.units.normal_load", "", "of the first file; absent where it has none",
+      {"input.units.normal_load", "", "likewise; absent where there is no such column",
        [](const Report& report) { return UnitOf(report.records.front().normal_load); }},
       {"input.left_out", "", "samples that do not count",
        Sum([](const RecordFit& record) { return record.left_out; })},
@@ -67,7 +67,8 @@ void AddInputFields(FieldTable& table) {
        OneARecord(&RecordFit::reversal_gate)},
       {"input.displacement_noise", "m", "one a file: standard deviation, given or estimated",
        OneARecord(&RecordFit::displacement_noise)},
-      {"input.force_sign", "", "same or opposite, of force and displacement",
+      {"input.force_sign", "",
+       "same or opposite: the sign of the force for that of the displacement",
        [](const Report& report) { return Text(report.fit.force_sense > 0 ? "same" : "opposite"); }},
   });
 }

@@ -20,21 +20,23 @@ std::function<Value(const Report&)> OfLoop(Get get) {
 void AddLoopFields(FieldTable& table) {
   table.Add({
       {"loop.amplitude", "m", "X of the widest record", Measured(&LoopMeasures::amplitude)},
-      {"loop.centre", "m", "of its displacements", Measured(&LoopMeasures::centre)},
-      {"loop.peak_force", "N", "T*", Measured(&LoopMeasures::peak_force)},
-      {"loop.energy_per_cycle_measured", "J", "mean over closed cycles",
+      {"loop.centre", "m", "midway between the extremes of the displacement",
+       Measured(&LoopMeasures::centre)},
+      {"loop.peak_force", "N", "T* of the widest record", Measured(&LoopMeasures::peak_force)},
+      {"loop.energy_per_cycle_measured", "J", "W, mean over closed cycles",
        [](const Report& report) {
          return Number(report.fit.WidestRecord().measures.energy_per_cycle);
        },
        [](const Report&) { return std::string("the record closes no cycle"); }},
-      {"loop.energy_per_cycle_model", "J", "of the fitted law at the amplitude",
+      {"loop.energy_per_cycle_model", "J",
+       "W of the fitted law at the amplitude, the rig's travel taken off",
        OfLoop([](const LoopDescription& loop) { return Number(loop.model_energy); })},
       {"loop.energy_ratio", "-", "W/(4XT*), the model's W where none was measured",
        OfLoop([](const LoopDescription& loop) { return Number(loop.energy_ratio); }),
        [](const Report&) {
          return std::string("needs a force that differs between the extremes of the displacement");
        }},
-      {"loop.slip_regime", "", "partial or gross",
+      {"loop.slip_regime", "", "partial or gross slip",
        OfLoop([](const LoopDescription& loop) { return Text(Name(loop.regime)); })},
       {"loop.gross_slip_displacement", "m", "δc of the fitted law",
        OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_displacement); }),

@@ -13,10 +13,11 @@ const std::vector<Field<BranchShape>>& BranchFields() {
   static const std::vector<Field<Item>> fields = {
       {"branch", "", "virgin, unloading or reloading",
        [](const Item& item) { return Text(item.branch); }},
-      {"samples", "", "of the branch", [](const Item& item) { return Count(item.samples); }},
-      {"alpha", "-", "of this branch alone",
+      {"samples", "", "samples on these branches",
+       [](const Item& item) { return Count(item.samples); }},
+      {"alpha", "-", "α of these branches alone, the rest shared",
        [](const Item& item) { return Number(item.shape_exponent); }, why},
-      {"standard_error", "-", "of alpha",
+      {"standard_error", "-", "standard error of alpha",
        [](const Item& item) { return Number(item.standard_error); }, why},
   };
   return fields;
@@ -120,7 +121,7 @@ void AddMappingFields(FieldTable& table) {
        [](const Report& report) { return List(BranchFields(), report.fit.branch_shapes); }},
       {"mapping.sigma_over_hertz_mindlin", "-", "σ/(8a/G*)", ratio(&UncertainValue::value),
        WhyNoRatio},
-      {"mapping.sigma_over_hertz_mindlin_standard_error", "-", "its error",
+      {"mapping.sigma_over_hertz_mindlin_standard_error", "-", "standard error of σ/(8a/G*)",
        ratio(&UncertainValue::standard_error), WhyNoRatio},
       {"mapping.stiffness_tests", "", "σ/(8a/G*) against 1, one a known radius", StiffnessTests},
   });

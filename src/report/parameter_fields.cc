@@ -102,11 +102,13 @@ Value Correlations(const Report& report) {
 
 void AddParameterFields(FieldTable& table) {
   table.Add({
-      {"model", "", "name", [](const Report& report) { return Text(report.fit.model->name); }},
-      {"initial_state", "", "virgin or steady",
+      {"model", "", "name of the model",
+       [](const Report& report) { return Text(report.fit.model->name); }},
+      {"initial_state", "", "virgin or steady: the contact before the record",
        [](const Report& report) { return Text(Name(report.fit.initial_state)); }},
-      {"parameters", "", "by name", Parameters},
-      {"correlation", "-", "of the errors of free parameters", Correlations},
+      {"parameters", "", "one member a parameter, by name", Parameters},
+      {"correlation", "-", "correlation of the errors of free parameters, by their names",
+       Correlations},
   });
   table.Describe("parameters.NAME.", ParameterFields());
   table.items.push_back({"correlation.NAME.NAME", "-", "of the errors of two free parameters"});

@@ -5,13 +5,14 @@ namespace mindahl::report {
 const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   using Item = PropagatedValue;
   static const std::vector<Field<Item>> fields = {
-      {"value", "of the quantity", "value", [](const Item& item) { return Number(item.value); }},
-      {"standard_error", "of the quantity", "of the fit and of what is known besides it",
+      {"value", "of the quantity", "estimate", [](const Item& item) { return Number(item.value); }},
+      {"standard_error", "of the quantity",
+       "standard error of the fit and of what is known besides it",
        [](const Item& item) { return Number(item.standard_error); },
        [](const Item&) {
          return std::string("the record leaves open the parameter that it rests on");
        }},
-      {"unit", "", "of value and error", [](const Item&) { return Text("-"); }},
+      {"unit", "", "unit of value and error", [](const Item&) { return Text("-"); }},
       {"from_fit", "-", "the fit's share of the variance",
        [](const Item& item) { return Number(item.FitShare()); }},
       {"from_inputs", "-", "the inputs' share of the variance",

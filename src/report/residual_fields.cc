@@ -29,9 +29,11 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
   static const std::vector<Field<Item>> fields = {
       {"direction", "", "up or down",
        [](const Item& item) { return Text(item.direction > 0 ? "up" : "down"); }},
-      {"strokes", "", "strokes that count", [](const Item& item) { return Count(item.strokes); }},
+      {"strokes", "", "strokes that count, those at least three quarters as long as the longest",
+       [](const Item& item) { return Count(item.strokes); }},
       {"mean", "N", "mean residual", [](const Item& item) { return Number(item.mean); }},
-      {"rms", "N", "root mean square", [](const Item& item) { return Number(item.rms); }},
+      {"rms", "N", "root mean square of the residual",
+       [](const Item& item) { return Number(item.rms); }},
       {"along_stroke", "", "parts of the stroke",
        [](const Item& item) { return List(BinFields(), item.bins); }},
   };
@@ -56,22 +58,25 @@ const std::vector<Field<RecordFit>>& StructureFields() {
 
 void AddResidualFields(FieldTable& table) {
   table.Add({
-      Residual("rms", "N", "root mean square", &ResidualStatistics::rms),
-      Residual("max_abs", "N", "largest", &ResidualStatistics::max_abs),
+      Residual("rms", "N", "root mean square of fitted − measured", &ResidualStatistics::rms),
+      Residual("max_abs", "N", "largest residual", &ResidualStatistics::max_abs),
       Residual("normalized_rms", "-", "rms over Tc", &ResidualStatistics::normalized_rms),
-      Residual("r_squared", "-", "R²", &ResidualStatistics::r_squared),
-      Residual("durbin_watson", "-", "2 when white, near 0 when autocorrelated",
+      Residual("r_squared", "-", "share of the force's variance that the fit explains",
+               &ResidualStatistics::r_squared),
+      Residual("durbin_watson", "-",
+               "2 where residuals are white, near 0 where they are autocorrelated",
                &ResidualStatistics::durbin_watson),
-      Residual("effective_samples", "-", "samples by their autocorrelation",
+      Residual("effective_samples", "-", "samples less what their autocorrelation takes away",
                &ResidualStatistics::effective_samples),
-      Residual("degrees_of_freedom", "-", "of the errors", &ResidualStatistics::degrees_of_freedom),
-      {"residuals.force_noise", "N", "standard deviation, given or estimated",
+      Residual("degrees_of_freedom", "-", "degrees of freedom of errors and tests",
+               &ResidualStatistics::degrees_of_freedom),
+      {"residuals.force_noise", "N", "standard deviation of the force, given or estimated",
        [](const Report& report) {
          return report.failed() ? Missing() : Number(report.fit.force_noise);
        }},
       {"residuals.outliers", "", "samples that the loss gives less than half their weight",
        [](const Report& report) { return Count(report.fit.outliers); }},
-      {"residual_structure", "", "one a file",
+      {"residual_structure", "", "the repeatable residual, one entry a file",
        [](const Report& report) { return List(StructureFields(), report.fit.records); }},
   });
   table.Describe("residual_structure[].", StructureFields());

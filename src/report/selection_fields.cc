@@ -13,29 +13,30 @@ std::string WhyNothingHeldOut(const ModelScore& score) {
 const std::vector<Field<ModelScore>>& ScoreFields() {
   using Item = ModelScore;
   static const std::vector<Field<Item>> fields = {
-      {"model", "", "name", [](const Item& item) { return Text(item.model->name); }},
+      {"model", "", "name of the model", [](const Item& item) { return Text(item.model->name); }},
       {"rig", "", "with a fitted spring in series",
        [](const Item& item) { return Flag(item.rig); }},
-      {"free_parameters", "", "number",
+      {"free_parameters", "", "number of free parameters",
        [](const Item& item) { return Count(item.free_parameters); }},
-      {"rms", "N", "of the samples that are scored",
+      {"rms", "N", "root mean square residual of the samples that are scored",
        [](const Item& item) { return Number(item.rms); }, WhyNoScore},
       {"aicc", "-", "AICc on effective samples", [](const Item& item) { return Number(item.aicc); },
        WhyNoScore},
-      {"delta_aicc", "-", "above the least",
+      {"delta_aicc", "-", "AICc above the least",
        [](const Item& item) { return Number(item.delta_aicc); }, WhyNoScore},
-      {"akaike_weight", "-", "weight", [](const Item& item) { return Number(item.akaike_weight); },
-       WhyNoScore},
+      {"akaike_weight", "-", "exp(−ΔAICc/2) over its sum",
+       [](const Item& item) { return Number(item.akaike_weight); }, WhyNoScore},
       {"held_out_rms", "N", "error of predicting cycles held out",
        [](const Item& item) { return Number(item.held_out_rms); }, WhyNothingHeldOut},
-      {"held_out_standard_error", "N", "of held_out_rms",
+      {"held_out_standard_error", "N", "standard error of held_out_rms",
        [](const Item& item) { return Number(item.held_out_standard_error); }, WhyNothingHeldOut},
-      {"converged", "", "did the fit", [](const Item& item) { return Flag(item.converged); }},
+      {"converged", "", "whether the fit converged",
+       [](const Item& item) { return Flag(item.converged); }},
       {"at_bound", "", "a free parameter ran to a bound",
        [](const Item& item) { return Flag(item.at_bound); }},
       {"redundant", "", "the same as a simpler model",
        [](const Item& item) { return Flag(item.redundant); }},
-      {"remark", "", "what else is to be known",
+      {"remark", "", "what else is to be known; may be empty",
        [](const Item& item) { return Text(item.remark); }},
   };
   return fields;
@@ -44,19 +45,20 @@ const std::vector<Field<ModelScore>>& ScoreFields() {
 const std::vector<Field<ModelSelection>>& SelectionFields() {
   using Item = ModelSelection;
   static const std::vector<Field<Item>> fields = {
-      {"chosen", "", "place in models", [](const Item& item) { return Count(item.chosen); }},
-      {"indistinguishable", "", "places in models, simplest first",
+      {"chosen", "", "the reported one: its place in models",
+       [](const Item& item) { return Count(item.chosen); }},
+      {"indistinguishable", "", "those that the record does not tell from it, simplest first",
        [](const Item& item) {
          Value::Array places;
          for (const std::size_t place : item.indistinguishable) places.push_back(Count(place));
          return Value{std::move(places)};
        }},
-      {"effective_samples", "-", "of the criterion",
+      {"effective_samples", "-", "effective samples of AICc",
        [](const Item& item) { return Number(item.effective_samples); },
        [](const Item&) { return std::string("no model has a fit to the record"); }},
-      {"held_out_cycles", "", "each was predicted once",
+      {"held_out_cycles", "", "cycles held out, each predicted once",
        [](const Item& item) { return Count(item.held_out_cycles); }},
-      {"verdict", "", "in words", [](const Item& item) { return Text(item.verdict); }},
+      {"verdict", "", "the choice in words", [](const Item& item) { return Text(item.verdict); }},
       {"models", "", "every model without, then with a rig",
        [](const Item& item) { return List(ScoreFields(), item.scores); }},
   };
@@ -67,7 +69,7 @@ const std::vector<Field<ModelSelection>>& SelectionFields() {
 
 void AddSelectionFields(FieldTable& table) {
   table.Add({
-      {"model_selection", "", "where the model was chosen",
+      {"model_selection", "", "how the model was chosen; absent unless it was",
        [](const Report& report) {
          return report.selection ? Value{Render(SelectionFields(), *report.selection)} : Value{};
        }},

@@ -1,15 +1,18 @@
+#include <fmt/format.h>
+
 #include "report/field_table.h"
 
 namespace mindahl::report {
 namespace {
 
-std::vector<Field<StartReport>> LawFields(const std::string& prefix, BranchLaw StartReport::*law) {
+std::vector<Field<StartReport>> LawFields(const std::string& prefix, const char* where,
+                                          BranchLaw StartReport::*law) {
   const auto why = [](const StartReport&) {
     return std::string("the solver came to nothing finite from here");
   };
   const auto row = [&](const char* name, const char* unit, double BranchLaw::*member) {
     return Field<StartReport>{
-        prefix + "." + name, unit, name,
+        prefix + "." + name, unit, fmt::format("{} of the law {}", name, where),
         [law, member](const StartReport& item) { return Number(item.*law.*member); }, why};
   };
   return {row("sigma", "N/m", &BranchLaw::tangential_stiffness),
@@ -27,13 +30,13 @@ const std::vector<Field<StartReport>>& StartFields() {
     const auto append = [&](const std::vector<Field<Item>>& more) {
       rows.insert(rows.end(), more.begin(), more.end());
     };
-    append(LawFields("start", &Item::start));
-    append({{"initial_rms", "N", "at the start",
+    append(LawFields("start", "at the start", &Item::start));
+    append({{"initial_rms", "N", "root mean square residual at the start",
              [](const Item& item) { return Number(item.initial_rms); }, why}});
-    append(LawFields("reached", &Item::reached));
-    append({{"final_rms", "N", "where it ended",
+    append(LawFields("reached", "where it ended", &Item::reached));
+    append({{"final_rms", "N", "root mean square residual where it ended",
              [](const Item& item) { return Number(item.final_rms); }, why},
-            {"converged", "", "did the solver",
+            {"converged", "", "whether the solver converged from here",
              [](const Item& item) { return Flag(item.converged); }}});
     return rows;
   }();
@@ -44,13 +47,13 @@ const std::vector<Field<StartReport>>& StartFields() {
 
 void AddSolverFields(FieldTable& table) {
   table.Add({
-      {"solver.converged", "", "did it",
+      {"solver.converged", "", "whether it converged",
        [](const Report& report) { return Flag(report.fit.converged); }},
-      {"solver.iterations", "", "number",
+      {"solver.iterations", "", "number of iterations",
        [](const Report& report) { return Integer(report.fit.iterations); }},
       {"solver.termination", "", "why it stopped",
        [](const Report& report) { return Text(report.fit.termination); }},
-      {"solver.starts", "", "where the solver began",
+      {"solver.starts", "", "the starting points that were refined",
        [](const Report& report) { return List(StartFields(), report.fit.starts); }},
   });
   table.Describe("solver.starts[].", StartFields());

@@ -47,7 +47,7 @@ void ExpectParameter(const json& parameter, const std::string& unit) {
   EXPECT_THAT(verdicts, ::testing::Contains(parameter.at("identifiability").get<std::string>()));
 }
 
-/// Every key of docs/cli.md, with its type.
+/// Every key of docs/contract.md, with its type.
 void ExpectContract(const json& fit) {
   EXPECT_EQ(fit.at("schema"), "mindahl.fit/1");
   EXPECT_TRUE(fit.at("version").is_string());

@@ -157,5 +157,13 @@ TEST(FindingCodes, CoverWhatTheIdentificationFinds) {
   }
 }
 
+TEST(FindingCodes, HaveALineInTheDocumentation) {
+  const std::string contract =
+      Content(std::filesystem::path(MINDAHL_SOURCE_DIR) / "docs" / "contract.md");
+  for (const std::string_view code : FindingCodes()) {
+    EXPECT_THAT(contract, HasSubstr("| `" + std::string(code) + "`")) << code;
+  }
+}
+
 }  // namespace
 }  // namespace mindahl
