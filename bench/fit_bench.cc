@@ -14,6 +14,9 @@
 namespace {
 
 using namespace mindahl;
+using namespace mindahl::loop;
+using namespace mindahl::models;
+using namespace mindahl::identification;
 
 constexpr BranchLaw kLaw{
     .tangential_stiffness = 4.8e7, .shape_exponent = 1.0 / 3, .slip_force = 15};

@@ -17,6 +17,8 @@
 namespace {
 
 using namespace mindahl;
+using namespace mindahl::models;
+using namespace mindahl::methods;
 
 constexpr BranchLaw kLaw{
     .tangential_stiffness = 4.8e7, .shape_exponent = 1.0 / 3, .slip_force = 15};

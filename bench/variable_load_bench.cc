@@ -17,6 +17,8 @@
 namespace {
 
 using namespace mindahl;
+using namespace mindahl::loop;
+using namespace mindahl::models;
 
 constexpr double kCycles = 50;
 constexpr std::size_t kSamplesPerCycle = 200;

@@ -6,9 +6,10 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const mindahl::Record record = mindahl::ReadRecord(argv[1]).record;
-  const mindahl::FitResult fit = mindahl::Fit({&record, 1}, {.offsets = true});
-  for (const mindahl::ParameterEstimate& parameter : fit.parameters) {
+  const mindahl::loop::Record record = mindahl::io::ReadRecord(argv[1]).record;
+  const mindahl::identification::FitResult fit =
+      mindahl::identification::Fit({&record, 1}, {.offsets = true});
+  for (const mindahl::identification::ParameterEstimate& parameter : fit.parameters) {
     std::printf("%-20s %.10g %s\n", parameter.name.c_str(), parameter.value,
                 parameter.unit.c_str());
   }

@@ -21,15 +21,15 @@ int main(int argc, char** argv) {
   try {
     mindahl::report::ReportInput input;
     input.files = {argv[1]};
-    input.records = {mindahl::ReadRecord(argv[1])};
-    const std::vector<mindahl::Record> records = {input.records.front().record};
+    input.records = {mindahl::io::ReadRecord(argv[1])};
+    const std::vector<mindahl::loop::Record> records = {input.records.front().record};
     // The load as given, else the mean of its column where the record has one.
     if (argc == 3) {
       input.known.normal_load = std::strtod(argv[2], nullptr);
     } else if (const auto mean = mindahl::report::MeanNormalLoad(records); mean && *mean > 0) {
       input.known.normal_load = *mean;
     }
-    input.fit = mindahl::Fit(records, {.offsets = true});
+    input.fit = mindahl::identification::Fit(records, {.offsets = true});
     const mindahl::report::Report report = mindahl::report::MakeReport(std::move(input));
     std::fputs(mindahl::report::ToJson(report).c_str(), stdout);
     return report.fit.converged ? 0 : 3;

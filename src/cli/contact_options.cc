@@ -10,6 +10,10 @@
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
+
+using contact::KnownBody;
+using contact::UncertainValue;
+
 namespace {
 
 constexpr const char* kGroup = "What is known of the contact";
@@ -139,7 +143,7 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options) {
 }
 
 bool IsAnythingGiven(const ContactOptions& options) {
-  const KnownContact& known = options.known;
+  const contact::KnownContact& known = options.known;
   const auto body_given = [](const KnownBody& body) {
     return body.youngs_modulus || body.poisson_ratio || body.radius;
   };

@@ -15,15 +15,15 @@ inline constexpr const char* kComplianceUnit = "1/Pa";
 
 /// What the user knows of the contact: the same options in every command.
 struct ContactOptions {
-  KnownContact known;
-  std::optional<UncertainValue> friction_coefficient;
+  contact::KnownContact known;
+  std::optional<contact::UncertainValue> friction_coefficient;
 };
 
 /// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
 /// other option and, unless it is exact, one standard uncertainty, in percent of the number's
 /// magnitude with %. Blanks around either do not count.
 /// @throws InputError naming the option, the text, the rule and the remedy
-UncertainValue ParseUncertainValue(std::string_view text, std::string_view option);
+contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option);
 
 /// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance.
 /// Each takes a standard uncertainty.

@@ -10,7 +10,7 @@
 namespace mindahl::cli {
 namespace {
 
-void CollectMissing(const KnownBody& body, int number, std::vector<std::string>& missing) {
+void CollectMissing(const contact::KnownBody& body, int number, std::vector<std::string>& missing) {
   if (!body.youngs_modulus) missing.push_back(fmt::format("--youngs-modulus-{}", number));
   if (!body.poisson_ratio) missing.push_back(fmt::format("--poisson-{}", number));
   if (!body.radius) missing.push_back(fmt::format("--radius-{}", number));
@@ -26,7 +26,7 @@ void CollectMissing(const KnownBody& body, int number, std::vector<std::string>&
 }  // namespace
 
 ContactParameters ResolveContact(const ContactOptions& options) {
-  const KnownContact& known = options.known;
+  const contact::KnownContact& known = options.known;
   std::vector<std::string> missing;
   if (!options.friction_coefficient) missing.emplace_back("--friction");
   if (!known.normal_load) missing.emplace_back("--normal-load");
@@ -48,14 +48,15 @@ ContactParameters ResolveContact(const ContactOptions& options) {
   }
   if (!missing.empty()) ThrowMissing(missing);
 
-  const PredictedContact predicted = PredictContact(known, *options.friction_coefficient);
+  const contact::PredictedContact predicted =
+      contact::PredictContact(known, *options.friction_coefficient);
   ContactParameters result{
       .dahl = {.tangential_stiffness = predicted.tangential_stiffness.value,
                .slip_force = predicted.slip_force.value,
                .gross_slip_displacement = predicted.gross_slip_displacement.value},
       .quantities = {}};
   const auto add = [&](const char* section, const char* name,
-                       const std::optional<UncertainValue>& value, const char* unit,
+                       const std::optional<contact::UncertainValue>& value, const char* unit,
                        const char* meaning) {
     if (value) result.quantities.push_back({section, name, *value, unit, meaning});
   };
@@ -71,7 +72,8 @@ ContactParameters ResolveContact(const ContactOptions& options) {
   add("contact", "gross_slip_displacement", predicted.gross_slip_displacement, "m",
       "delta_c = 3 mu N G*/(16 a)");
   add("parameters", "sigma", predicted.tangential_stiffness, "N/m", "8a/G*");
-  add("parameters", "alpha", UncertainValue(kMindlinShapeExponent), "-", "1/3, Mindlin");
+  add("parameters", "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-",
+      "1/3, Mindlin");
   add("parameters", "slip_force", predicted.slip_force, "N", "Tc = mu N");
   return result;
 }

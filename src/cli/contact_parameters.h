@@ -12,13 +12,13 @@ namespace mindahl::cli {
 struct ContactQuantity {
   std::string section;  // of the JSON
   std::string name;
-  UncertainValue value;
+  contact::UncertainValue value;
   std::string unit;
   std::string meaning;
 };
 
 struct ContactParameters {
-  MindlinDahlParameters dahl;
+  contact::MindlinDahlParameters dahl;
   std::vector<ContactQuantity> quantities;
 };
 

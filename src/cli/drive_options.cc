@@ -16,12 +16,12 @@ namespace {
 
 ImposedMotion MotionFromFile(const DriveOptions& options) {
   ImposedMotion motion;
-  const ColumnChoice displacement{.column = "", .unit = options.path_unit};
+  const io::ColumnChoice displacement{.column = "", .unit = options.path_unit};
   if (options.load_column.empty()) {
-    motion.displacement = ReadDisplacementPath(options.path, displacement);
+    motion.displacement = io::ReadDisplacementPath(options.path, displacement);
   } else {
-    LoadedPath loaded = ReadLoadedPath(options.path, displacement,
-                                       {.column = options.load_column, .unit = options.load_unit});
+    io::LoadedPath loaded = io::ReadLoadedPath(
+        options.path, displacement, {.column = options.load_column, .unit = options.load_unit});
     motion.displacement = std::move(loaded.displacement);
     motion.normal_load = std::move(loaded.normal_load);
   }
@@ -31,9 +31,9 @@ ImposedMotion MotionFromFile(const DriveOptions& options) {
   return motion;
 }
 
-ImposedMotion MotionFromWaveform(const DriveOptions& options, const BranchLaw& law) {
-  ExcitationOptions excitation = options.excitation;
-  excitation.waveform = *FindWaveform(options.waveform);
+ImposedMotion MotionFromWaveform(const DriveOptions& options, const models::BranchLaw& law) {
+  models::ExcitationOptions excitation = options.excitation;
+  excitation.waveform = *models::FindWaveform(options.waveform);
   excitation.seed = options.seed;
   if (options.lambda.has_value() == options.amplitude.has_value()) {
     throw InputError("--lambda or --amplitude, one of the two, must be given (or --path)");
@@ -52,13 +52,16 @@ ImposedMotion MotionFromWaveform(const DriveOptions& options, const BranchLaw& l
     RequirePositive("--amplitude [m]", *options.amplitude);
     excitation.amplitude = *options.amplitude;
   }
-  Excitation made = MakeExcitation(excitation);
+  models::Excitation made = models::MakeExcitation(excitation);
   ImposedMotion motion{std::move(made.time), std::move(made.displacement), {}, {}};
-  if (excitation.waveform == Waveform::kGrowingSine) motion.envelope = std::move(made.envelope);
+  if (excitation.waveform == models::Waveform::kGrowingSine)
+    motion.envelope = std::move(made.envelope);
   return motion;
 }
 
-std::vector<std::string> Waveforms() { return {WaveformNames().begin(), WaveformNames().end()}; }
+std::vector<std::string> Waveforms() {
+  return {models::WaveformNames().begin(), models::WaveformNames().end()};
+}
 
 }  // namespace
 
@@ -123,7 +126,7 @@ void AddLoadColumnOptions(CLI::App& command, DriveOptions& options) {
       ->group("Excitation");
 }
 
-ImposedMotion MakeMotion(const DriveOptions& options, const BranchLaw& law) {
+ImposedMotion MakeMotion(const DriveOptions& options, const models::BranchLaw& law) {
   return options.path.empty() ? MotionFromWaveform(options, law) : MotionFromFile(options);
 }
 

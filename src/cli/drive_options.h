@@ -17,7 +17,7 @@ struct DriveOptions {
   std::string waveform = "sine";
   std::optional<double> lambda;
   std::optional<double> amplitude;
-  ExcitationOptions excitation{.cycles = 1.0};
+  models::ExcitationOptions excitation{.cycles = 1.0};
   std::string path;
   std::string path_unit;
   std::string load_column;  ///< of that file; "" = the load is constant
@@ -33,7 +33,7 @@ struct ImposedMotion {
   std::vector<double> normal_load;   ///< [N]; empty unless a file gives it
 
   /// Valid as long as this.
-  [[nodiscard]] Drive drive() const { return {displacement, envelope}; }
+  [[nodiscard]] methods::Drive drive() const { return {displacement, envelope}; }
 };
 
 /// Adds --waveform … --growth, --path and --path-unit; --seed is the command's.
@@ -45,6 +45,6 @@ void AddLoadColumnOptions(CLI::App& command, DriveOptions& options);
 
 /// @param law  to which --lambda refers
 /// @throws InputError or InvalidArgument naming the option, or the place in the file
-ImposedMotion MakeMotion(const DriveOptions& options, const BranchLaw& law);
+ImposedMotion MakeMotion(const DriveOptions& options, const models::BranchLaw& law);
 
 }  // namespace mindahl::cli

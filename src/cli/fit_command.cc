@@ -32,11 +32,18 @@
 #include "mindahl/report/text.h"
 
 namespace mindahl::cli {
+
+using identification::FitOptions;
+using identification::Interval;
+using identification::Loss;
+using io::RecordFile;
+using loop::Record;
+
 namespace {
 
 struct FitCommandOptions {
   std::vector<std::string> files;
-  RecordColumns columns;
+  io::RecordColumns columns;
   std::string time_window;
   std::string model = "mindlin-dahl";
   std::string initial_state = "auto";
@@ -162,9 +169,9 @@ constexpr std::string_view kAutomatic = "auto";
 
 FitOptions MakeFitOptions(const FitCommandOptions& options) {
   FitOptions fit;
-  if (options.model != kAutomatic) fit.model = FindFrictionModel(options.model);
-  if (options.initial_state == "virgin") fit.initial_state = InitialState::kVirgin;
-  if (options.initial_state == "steady") fit.initial_state = InitialState::kSteady;
+  if (options.model != kAutomatic) fit.model = models::FindFrictionModel(options.model);
+  if (options.initial_state == "virgin") fit.initial_state = models::InitialState::kVirgin;
+  if (options.initial_state == "steady") fit.initial_state = models::InitialState::kSteady;
   if (options.force_sign == "same") fit.force_sense = 1;
   if (options.force_sign == "opposite") fit.force_sense = -1;
   fit.offsets = options.offsets == "on";
@@ -228,7 +235,7 @@ void ApplyTimeWindow(RecordFile& input, const std::string& file, const Interval&
 std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& console) {
   std::vector<RecordFile> inputs;
   for (const std::string& file : options.files) {
-    RecordFile& input = inputs.emplace_back(ReadRecord(file, options.columns));
+    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, options.columns));
     if (!options.time_window.empty()) {
       ApplyTimeWindow(input, file,
                       ParseInterval(options.time_window, "--time-window", "LO:HI in seconds"));
@@ -282,12 +289,12 @@ void UseMeasuredNormalLoad(ContactOptions& contact, std::span<const Record> reco
                              *mean);
 }
 
-bool Established(const FitResult& fit, bool strict) {
+bool Established(const identification::FitResult& fit, bool strict) {
   if (!fit.converged) return false;
   if (!strict) return true;
-  return std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
-    return estimate.status == ParameterStatus::kFixed ||
-           estimate.identifiability == Identifiability::kIdentifiable;
+  return std::ranges::all_of(fit.parameters, [](const identification::ParameterEstimate& estimate) {
+    return estimate.status == identification::ParameterStatus::kFixed ||
+           estimate.identifiability == identification::Identifiability::kIdentifiable;
   });
 }
 
@@ -298,16 +305,16 @@ void Write(const FitCommandOptions& options, const report::Report& report, Conso
   }
   if (report.failed()) {  // no curve to draw, no residual to list
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.termination);
-    if (!options.json_path.empty()) WriteText(ToJson(report), options.json_path, console);
+    if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
     return;
   }
   // The plot first: it alone may still fail.
-  if (!options.plot_path.empty()) WritePlot(ToPlot(report), options.plot_path);
+  if (!options.plot_path.empty()) io::WritePlot(report::ToPlot(report), options.plot_path);
   if (!options.residuals_path.empty()) {
-    WriteFileAtomically(options.residuals_path, ResidualsCsv(report));
+    io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
   }
-  if (!options.json_path.empty()) WriteText(ToJson(report), options.json_path, console);
-  if (options.json_path != "-") console.out << ToText(report);
+  if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
+  if (options.json_path != "-") console.out << report::ToText(report);
 }
 
 void RunFit(FitCommandOptions options, Console& console) {
@@ -322,13 +329,13 @@ void RunFit(FitCommandOptions options, Console& console) {
   for (const RecordFile& input : inputs) records.push_back(input.record);
   UseMeasuredNormalLoad(options.contact, records, fit_options.load_window, console);
 
-  std::optional<ModelSelection> selection;
-  FitResult fit;
+  std::optional<identification::ModelSelection> selection;
+  identification::FitResult fit;
   if (options.model == kAutomatic) {
-    selection = SelectModel(records, fit_options);
+    selection = identification::SelectModel(records, fit_options);
     fit = selection->fit;
   } else {
-    fit = Fit(records, fit_options);
+    fit = identification::Fit(records, fit_options);
   }
   console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
   const report::Report report = report::MakeReport({.files = options.files,
@@ -342,10 +349,10 @@ void RunFit(FitCommandOptions options, Console& console) {
 
 void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {
   const std::string group = "Columns and units";
-  const auto column = [&](const char* name, ColumnChoice& choice, const char* description) {
+  const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
     command.add_option(name, choice.column, description)->type_name("COL")->group(group);
   };
-  const auto unit = [&](const char* name, ColumnChoice& choice, const char* description) {
+  const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
     command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
   };
   column("--displacement", options.columns.displacement,
@@ -380,7 +387,7 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
   const std::string group = "Model";
   std::vector<std::string> models;
   std::string description = "friction model:";
-  for (const FrictionModel& model : FrictionModels()) {
+  for (const models::FrictionModel& model : models::FrictionModels()) {
     if (model.scaled_by_peak) continue;
     models.emplace_back(model.name);
     description += fmt::format(" {} ({});", model.name, model.title);

@@ -7,6 +7,8 @@
 
 namespace mindahl::cli {
 
+using models::BranchLaw;
+
 void AddLawOptions(CLI::App& command, LawOptions& options) {
   const std::string parameters = "Parameters";
   AddOptional(command, "--sigma", options.sigma, "tangential stiffness sigma [N/m]", "N/M")
@@ -36,7 +38,7 @@ BranchLaw ResolveLaw(const LawOptions& options) {
   }
   BranchLaw law;
   if (by_contact) {
-    const MindlinDahlParameters dahl = ResolveContact(options.contact).dahl;
+    const contact::MindlinDahlParameters dahl = ResolveContact(options.contact).dahl;
     law = {dahl.tangential_stiffness, dahl.shape_exponent, dahl.slip_force};
   } else if (options.sigma && options.slip_force) {
     law = {.tangential_stiffness = *options.sigma, .slip_force = *options.slip_force};

@@ -29,14 +29,14 @@ void Validate(const LawOptions& options);
 
 /// α is the option's, by default 1/3.
 /// @throws InputError when parameters are missing or given twice
-BranchLaw ResolveLaw(const LawOptions& options);
+models::BranchLaw ResolveLaw(const LawOptions& options);
 
 /// The law as a model uses it that prescribes α.
 /// @throws InputError when --alpha contradicts it
-BranchLaw ResolveLaw(const LawOptions& options, std::string_view model,
-                     std::optional<double> prescribed_exponent);
+models::BranchLaw ResolveLaw(const LawOptions& options, std::string_view model,
+                             std::optional<double> prescribed_exponent);
 
 /// The options that say the same law in a command to copy: "--sigma 1e8 --alpha 0.33 …".
-std::string LawArguments(const BranchLaw& law);
+std::string LawArguments(const models::BranchLaw& law);
 
 }  // namespace mindahl::cli

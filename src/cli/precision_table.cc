@@ -17,21 +17,21 @@ std::string PrecisionTableHead() {
                      "rms dT", "energy");
 }
 
-std::string PrecisionTableRow(const WorkPrecision& point, double floor) {
-  return fmt::format("{:<50} {:>10.2f} {:>8.1f}  {:>8} {:>8} {:>8}", Describe(point.approximation),
-                     point.cost, point.cost / floor, Error(point.precision.max_force),
-                     Error(point.precision.rms_force),
+std::string PrecisionTableRow(const tradeoff::WorkPrecision& point, double floor) {
+  return fmt::format("{:<50} {:>10.2f} {:>8.1f}  {:>8} {:>8} {:>8}",
+                     tradeoff::Describe(point.approximation), point.cost, point.cost / floor,
+                     Error(point.precision.max_force), Error(point.precision.rms_force),
                      point.precision.energy ? Error(*point.precision.energy) : "-");
 }
 
-nlohmann::ordered_json PrecisionJson(const WorkPrecision& point) {
-  const Approximation& approximation = point.approximation;
+nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point) {
+  const tradeoff::Approximation& approximation = point.approximation;
   nlohmann::ordered_json json;
   json["model"] = approximation.model;
   json["method"] = nullptr;
   json["steps"] = nullptr;
   json["tolerance"] = nullptr;
-  if (const Method* method = FindMethod(approximation.method)) {
+  if (const methods::Method* method = methods::FindMethod(approximation.method)) {
     json["method"] = approximation.method;
     if (!method->steps.empty()) json["steps"] = approximation.resolution.steps;
     if (method->adaptive) json["tolerance"] = approximation.resolution.tolerance;

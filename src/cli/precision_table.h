@@ -12,9 +12,9 @@ std::string PrecisionTableHead();
 
 /// One row of it, without an end of line.
 /// @param floor  the arithmetic floor [ns/sample] that costs are compared with
-std::string PrecisionTableRow(const WorkPrecision& point, double floor);
+std::string PrecisionTableRow(const tradeoff::WorkPrecision& point, double floor);
 
 /// {"model", "method", "steps", "tolerance", "cost_ns_per_sample", "max_force_error", …}
-nlohmann::ordered_json PrecisionJson(const WorkPrecision& point);
+nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point);
 
 }  // namespace mindahl::cli

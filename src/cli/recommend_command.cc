@@ -23,6 +23,14 @@
 #include "mindahl/tradeoff/recommendation.h"
 
 namespace mindahl::cli {
+
+using models::BranchLaw;
+using tradeoff::Approximation;
+using tradeoff::Candidate;
+using tradeoff::Criterion;
+using tradeoff::Recommendation;
+using tradeoff::RecommendOptions;
+
 namespace {
 
 struct RecommendCommandOptions {
@@ -70,7 +78,7 @@ double ParseTolerance(const std::string& text) {
 std::string CommandCall(const RecommendCommandOptions& options, const Approximation& approximation,
                         const BranchLaw& law) {
   std::string call = fmt::format("mindahl simulate --model {}", approximation.model);
-  if (const Method* method = FindMethod(approximation.method)) {
+  if (const methods::Method* method = methods::FindMethod(approximation.method)) {
     if (method->name != "exact") call += fmt::format(" --method {}", method->name);
     if (method->adaptive) {
       call += fmt::format(" --tolerance {:g}", approximation.resolution.tolerance);
@@ -78,7 +86,7 @@ std::string CommandCall(const RecommendCommandOptions& options, const Approximat
       call += fmt::format(" --steps {}", approximation.resolution.steps);
     }
   }
-  const FrictionModel* model = FindFrictionModel(approximation.model);
+  const models::FrictionModel* model = models::FindFrictionModel(approximation.model);
   if (model == nullptr || model->shape_exponent) {
     call += fmt::format(" --sigma {} --slip-force {}", law.tangential_stiffness, law.slip_force);
   } else {
@@ -90,7 +98,7 @@ std::string CommandCall(const RecommendCommandOptions& options, const Approximat
       call += fmt::format(" --path-unit {}", options.drive.path_unit);
     }
   } else {
-    const ExcitationOptions& excitation = options.drive.excitation;
+    const models::ExcitationOptions& excitation = options.drive.excitation;
     call +=
         fmt::format(" --waveform {} {} --cycles {} --samples-per-cycle {}", options.drive.waveform,
                     options.drive.lambda ? fmt::format("--lambda {}", *options.drive.lambda)
@@ -105,7 +113,7 @@ std::string CommandCall(const RecommendCommandOptions& options, const Approximat
 }
 
 std::string LibraryCall(const Approximation& approximation, const BranchLaw& law) {
-  const Method* method = FindMethod(approximation.method);
+  const methods::Method* method = methods::FindMethod(approximation.method);
   std::string resolution;
   if (method != nullptr && method->adaptive) {
     resolution = fmt::format(", {{.tolerance = {:g}}}", approximation.resolution.tolerance);
@@ -114,9 +122,10 @@ std::string LibraryCall(const Approximation& approximation, const BranchLaw& law
   }
   return fmt::format(
       "#include \"mindahl/tradeoff/approximation.h\"\n"
-      "const mindahl::BranchLaw law{{.tangential_stiffness = {}, .shape_exponent = {}, "
+      "const mindahl::models::BranchLaw law{{.tangential_stiffness = {}, .shape_exponent = {}, "
       ".slip_force = {}}};\n"
-      "const auto evaluate = mindahl::Prepare(mindahl::Approximation{{\"{}\", \"{}\"{}}}, law);\n"
+      "const auto evaluate = mindahl::tradeoff::Prepare(mindahl::tradeoff::Approximation{{\"{}\", "
+      "\"{}\"{}}}, law);\n"
       "evaluate({{.displacement = x}}, force);  // spans of one length, the contact unloaded at "
       "0\n",
       law.tangential_stiffness, law.shape_exponent, law.slip_force, approximation.model,
@@ -129,19 +138,19 @@ std::string Verdict(const Recommendation& recommendation) {
   const std::size_t choice = *recommendation.choice;
   const Approximation& approximation = recommendation.candidates[choice].point.approximation;
   if (choice == recommendation.exact) {
-    return fmt::format("{}: nothing cheaper will do", Describe(approximation));
+    return fmt::format("{}: nothing cheaper will do", tradeoff::Describe(approximation));
   }
-  if (const LimitLaw* limit = FindLimitLaw(approximation.model)) {
+  if (const models::LimitLaw* limit = models::FindLimitLaw(approximation.model)) {
     return fmt::format("{}: {}", approximation.model, limit->title);
   }
-  return fmt::format("{}: {}", Describe(approximation),
-                     FindFrictionModel(approximation.model)->title);
+  return fmt::format("{}: {}", tradeoff::Describe(approximation),
+                     models::FindFrictionModel(approximation.model)->title);
 }
 
 std::string AfterTransient(const Recommendation& recommendation) {
   const Candidate& candidate = recommendation.candidates[*recommendation.after_transient];
   return fmt::format("{} after {} cycle{}, {:.1f} ns/sample",
-                     Describe(candidate.point.approximation), *candidate.settles_after,
+                     tradeoff::Describe(candidate.point.approximation), *candidate.settles_after,
                      *candidate.settles_after == 1 ? "" : "s", candidate.point.cost);
 }
 
@@ -266,7 +275,7 @@ void RunRecommend(const RecommendCommandOptions& options, Console& console) {
   const BranchLaw law = ResolveLaw(options.law);
   const ImposedMotion motion = MakeMotion(options.drive, law);
   const std::size_t samples = motion.displacement.size();
-  const Recommendation recommendation = Recommend(law, motion.drive(), asked);
+  const Recommendation recommendation = tradeoff::Recommend(law, motion.drive(), asked);
   if (options.json != "-") {
     PrintReport(options, law, asked, samples, recommendation, console.out);
   }

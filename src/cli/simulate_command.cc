@@ -24,6 +24,11 @@
 #include "mindahl/tradeoff/approximation.h"
 
 namespace mindahl::cli {
+
+using methods::Method;
+using models::FrictionModel;
+using tradeoff::Approximation;
+
 namespace {
 
 struct SimulateOptions {
@@ -40,20 +45,20 @@ struct SimulateOptions {
 
 std::vector<std::string> ModelNames() {
   std::vector<std::string> names;
-  for (const FrictionModel& model : FrictionModels()) names.emplace_back(model.name);
-  for (const LimitLaw& law : LimitLaws()) names.emplace_back(law.name);
+  for (const FrictionModel& model : models::FrictionModels()) names.emplace_back(model.name);
+  for (const models::LimitLaw& law : models::LimitLaws()) names.emplace_back(law.name);
   return names;
 }
 
 std::vector<std::string> MethodNames() {
   std::vector<std::string> names;
-  for (const Method& method : Methods()) names.emplace_back(method.name);
+  for (const Method& method : methods::Methods()) names.emplace_back(method.name);
   return names;
 }
 
 std::string MethodHelp() {
   std::string help = "how the response is computed; --steps counts, by default";
-  for (const Method& method : Methods()) {
+  for (const Method& method : methods::Methods()) {
     help += fmt::format("\n{}: {}", method.name, method.title);
     if (!method.steps.empty()) help += fmt::format(" ({} {})", method.default_steps, method.steps);
   }
@@ -62,12 +67,12 @@ std::string MethodHelp() {
 
 /// α where the model prescribes it.
 std::optional<double> PrescribedExponent(const std::string& model) {
-  const FrictionModel* found = FindFrictionModel(model);
+  const FrictionModel* found = models::FindFrictionModel(model);
   return found == nullptr ? std::nullopt : found->shape_exponent;
 }
 
 Approximation ResolveMethod(const SimulateOptions& options) {
-  const Method& method = *FindMethod(options.method);
+  const Method& method = *methods::FindMethod(options.method);
   if (options.steps && method.steps.empty()) {
     throw InputError(fmt::format(
         "--steps {} says nothing to --method {}, which makes none: choose another method",
@@ -78,7 +83,7 @@ Approximation ResolveMethod(const SimulateOptions& options) {
         fmt::format("--tolerance {} says nothing to --method {}: it belongs to --method dopri5",
                     *options.tolerance, method.name));
   }
-  const bool is_limit = FindLimitLaw(options.model) != nullptr;
+  const bool is_limit = models::FindLimitLaw(options.model) != nullptr;
   if (is_limit && method.name != "exact") {
     throw InputError(
         fmt::format("--method {} does not serve --model {}: it has no branches to follow",
@@ -91,9 +96,10 @@ Approximation ResolveMethod(const SimulateOptions& options) {
 }
 
 /// Under a varying load: σ and Tc are those at the reference load.
-LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
-  const FrictionModel* model = FindFrictionModel(options.model);
-  if (model == nullptr || model->memory != Memory::kReturnPoint || options.method != "exact") {
+models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
+  const FrictionModel* model = models::FindFrictionModel(options.model);
+  if (model == nullptr || model->memory != models::Memory::kReturnPoint ||
+      options.method != "exact") {
     throw InputError(
         fmt::format("--normal-load-column does not serve --model {} --method {}: use --model "
                     "mindlin, mindlin-dahl or jenkins and --method exact",
@@ -107,7 +113,7 @@ LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
   }
   LawOptions at_reference = options.law;
   if (options.law.sigma || options.law.slip_force) at_reference.contact.known.normal_load.reset();
-  const BranchLaw law = ResolveLaw(at_reference, options.model, model->shape_exponent);
+  const models::BranchLaw law = ResolveLaw(at_reference, options.model, model->shape_exponent);
   return {.friction_coefficient = law.slip_force / *load,
           .reference_load = *load,
           .reference_stiffness = law.tangential_stiffness,
@@ -129,28 +135,29 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   ImposedMotion motion;
   std::vector<double> force;
   if (options.drive.load_column.empty()) {
-    const BranchLaw law = ResolveLaw(options.law, options.model, PrescribedExponent(options.model));
+    const models::BranchLaw law =
+        ResolveLaw(options.law, options.model, PrescribedExponent(options.model));
     motion = MakeMotion(options.drive, law);
     force.resize(motion.displacement.size());
     Prepare(approximation, law)(motion.drive(), force);
   } else {
-    const LoadDependentLaw law = ResolveLoadedLaw(options);
-    motion = MakeMotion(options.drive, BranchLawAtLoad(law, law.reference_load));
+    const models::LoadDependentLaw law = ResolveLoadedLaw(options);
+    motion = MakeMotion(options.drive, models::BranchLawAtLoad(law, law.reference_load));
     force.resize(motion.displacement.size());
-    EvaluateForceUnderLoad(law, motion.displacement, motion.normal_load, force);
+    models::EvaluateForceUnderLoad(law, motion.displacement, motion.normal_load, force);
   }
 
   boost::random::mt19937_64 engine(options.drive.seed);
   AddNoise(force, options.force_noise, engine);
   AddNoise(motion.displacement, options.displacement_noise, engine);
-  std::vector<CsvColumn> columns = {
+  std::vector<io::CsvColumn> columns = {
       {"time [s]", motion.time}, {"displacement [m]", motion.displacement}, {"force [N]", force}};
   if (!motion.normal_load.empty()) columns.push_back({"normal load [N]", motion.normal_load});
-  const std::string text = CsvText(columns);
+  const std::string text = io::CsvText(columns);
   if (options.output.empty() || options.output == "-") {
     console.out << text;
   } else {
-    WriteFileAtomically(options.output, text);
+    io::WriteFileAtomically(options.output, text);
   }
 }
 

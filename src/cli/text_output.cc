@@ -8,7 +8,7 @@ void WriteText(std::string_view text, const std::string& path, Console& console)
   if (path == "-") {
     console.out << text;
   } else {
-    WriteFileAtomically(path, text);
+    io::WriteFileAtomically(path, text);
   }
 }
 

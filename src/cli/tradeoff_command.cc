@@ -27,6 +27,15 @@
 #include "mindahl/tradeoff/work_precision.h"
 
 namespace mindahl::cli {
+
+using models::BranchLaw;
+using models::Waveform;
+using tradeoff::Criterion;
+using tradeoff::LambdaRange;
+using tradeoff::ModelRegion;
+using tradeoff::ModelRegionOptions;
+using tradeoff::WorkPrecision;
+
 namespace {
 
 /// An excitation of the study.
@@ -62,7 +71,7 @@ struct MeasuredScene {
   std::string name;
   std::string title;
   std::size_t samples = 0;
-  CostFloor floor;
+  tradeoff::CostFloor floor;
   std::vector<WorkPrecision> points;
   std::vector<bool> front;  // by the largest force error
 };
@@ -80,7 +89,7 @@ BranchLaw PaperContact() {
   contact.known.normal_load = 100;
   contact.known.contact_radius = 0.0027;
   contact.known.tangential_compliance = 4.42e-11;
-  const MindlinDahlParameters dahl = ResolveContact(contact).dahl;
+  const contact::MindlinDahlParameters dahl = ResolveContact(contact).dahl;
   return {dahl.tangential_stiffness, dahl.shape_exponent, dahl.slip_force};
 }
 
@@ -92,14 +101,15 @@ double SlipReach(const BranchLaw& law) {
 }
 
 MeasuredScene Measure(const BranchLaw& law, std::string name, std::string title,
-                      const Drive& drive) {
-  MeasuredScene measured{.name = std::move(name),
-                         .title = std::move(title),
-                         .samples = drive.displacement.size(),
-                         .floor = MeasureCostFloor(drive),
-                         .points = MeasureWorkPrecision(law, drive, AllApproximations(law)),
-                         .front = {}};
-  measured.front = ParetoFront(measured.points, Criterion::kMaxForce);
+                      const methods::Drive& drive) {
+  MeasuredScene measured{
+      .name = std::move(name),
+      .title = std::move(title),
+      .samples = drive.displacement.size(),
+      .floor = tradeoff::MeasureCostFloor(drive),
+      .points = tradeoff::MeasureWorkPrecision(law, drive, tradeoff::AllApproximations(law)),
+      .front = {}};
+  measured.front = tradeoff::ParetoFront(measured.points, Criterion::kMaxForce);
   return measured;
 }
 
@@ -107,7 +117,7 @@ std::vector<MeasuredScene> MeasureScenes(const TradeoffOptions& options, const B
   std::vector<MeasuredScene> measured;
   if (!options.path.empty()) {
     const std::vector<double> displacement =
-        ReadDisplacementPath(options.path, {.column = "", .unit = options.path_unit});
+        io::ReadDisplacementPath(options.path, {.column = "", .unit = options.path_unit});
     measured.push_back(Measure(law, "path", options.path, {.displacement = displacement}));
     return measured;
   }
@@ -115,10 +125,11 @@ std::vector<MeasuredScene> MeasureScenes(const TradeoffOptions& options, const B
     const bool chosen = options.scenes.empty() ||
                         std::ranges::find(options.scenes, scene.name) != options.scenes.end();
     if (!chosen) continue;
-    const Excitation excitation = MakeExcitation({.waveform = scene.waveform,
-                                                  .amplitude = scene.lambda * SlipReach(law),
-                                                  .cycles = scene.cycles});
-    Drive drive{.displacement = excitation.displacement};
+    const models::Excitation excitation =
+        models::MakeExcitation({.waveform = scene.waveform,
+                                .amplitude = scene.lambda * SlipReach(law),
+                                .cycles = scene.cycles});
+    methods::Drive drive{.displacement = excitation.displacement};
     if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
     measured.push_back(Measure(law, std::string(scene.name),
                                fmt::format("{}, lambda = {:g}", scene.title, scene.lambda), drive));
@@ -228,31 +239,32 @@ std::string RegionsCsv(const std::vector<ModelRegion>& regions) {
 
 /// Errors against cost, one panel a scene: a curve for each method with its resolutions, a marker
 /// for each model.
-Plot WorkPrecisionPlot(const std::vector<MeasuredScene>& scenes) {
+io::Plot WorkPrecisionPlot(const std::vector<MeasuredScene>& scenes) {
   constexpr double kRounding = 1e-17;  // an error of 0 has no place on a logarithmic axis
-  Plot plot{.title = "Work and precision: largest force error against cost", .panels = {}};
+  io::Plot plot{.title = "Work and precision: largest force error against cost", .panels = {}};
   plot.columns = scenes.size() > 1 ? 2 : 1;
   const int rows = static_cast<int>((scenes.size() + 1) / 2);
   plot.width = plot.columns == 2 ? 1500 : 900;
   plot.height = 60 + 460 * rows;
   for (const MeasuredScene& scene : scenes) {
-    PlotPanel panel{
+    io::PlotPanel panel{
         .x_label = "cost [ns/sample]", .y_label = "largest error of T over T*", .series = {}};
     panel.log_x = true;
     panel.log_y = true;
     panel.title = scene.title;
     std::vector<std::string> order;
-    std::map<std::string, PlotSeries> curves;
+    std::map<std::string, io::PlotSeries> curves;
     for (const WorkPrecision& point : scene.points) {
-      const Approximation& approximation = point.approximation;
+      const tradeoff::Approximation& approximation = point.approximation;
       const bool other_model = approximation.model != scene.points.back().approximation.model;
       const std::string label = other_model ? approximation.model : approximation.method;
       if (!curves.contains(label)) {
         order.push_back(label);
-        curves[label] = {.label = label,
-                         .x = {},
-                         .y = {},
-                         .style = other_model ? PlotStyle::kMarkers : PlotStyle::kLineAndPoints};
+        curves[label] = {
+            .label = label,
+            .x = {},
+            .y = {},
+            .style = other_model ? io::PlotStyle::kMarkers : io::PlotStyle::kLineAndPoints};
       }
       curves[label].x.push_back(point.cost);
       curves[label].y.push_back(std::max(point.precision.max_force, kRounding));
@@ -319,12 +331,13 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   const std::vector<MeasuredScene> scenes = MeasureScenes(options, law);
   const ModelRegionOptions studied;
   std::vector<ModelRegion> regions;
-  if (law.shape_exponent < 1) regions = FindModelRegions(law, studied);
+  if (law.shape_exponent < 1) regions = tradeoff::FindModelRegions(law, studied);
 
   // The plot first: it alone may still fail.
-  if (!options.plot.empty()) WritePlot(WorkPrecisionPlot(scenes), options.plot);
-  if (!options.csv.empty()) WriteFileAtomically(options.csv, PointsCsv(scenes));
-  if (!options.regions_csv.empty()) WriteFileAtomically(options.regions_csv, RegionsCsv(regions));
+  if (!options.plot.empty()) io::WritePlot(WorkPrecisionPlot(scenes), options.plot);
+  if (!options.csv.empty()) io::WriteFileAtomically(options.csv, PointsCsv(scenes));
+  if (!options.regions_csv.empty())
+    io::WriteFileAtomically(options.regions_csv, RegionsCsv(regions));
   if (options.json != "-") {
     console.out << fmt::format(
         "sigma = {:g} N/m, alpha = {:g}, Tc = {:g} N; * is on the Pareto front "

@@ -15,19 +15,23 @@
 #include "mindahl/identification/mapping_validation.h"
 
 namespace mindahl::cli {
+
+using identification::ValidationReport;
+
 namespace {
 
 struct ValidateOptions {
-  ValidationOptions validation;
+  identification::ValidationOptions validation;
   std::string json_path;
 };
 
-nlohmann::ordered_json ToJson(const ValidationReport& report, const ValidationOptions& options) {
+nlohmann::ordered_json ToJson(const ValidationReport& report,
+                              const identification::ValidationOptions& options) {
   nlohmann::ordered_json json = {
       {"schema", "mindahl.validate/1"}, {"version", Version()}, {"cases", options.cases},
       {"seed", options.seed},           {"fits", report.fits},  {"failures", report.failures},
       {"passed", report.failures == 0}};
-  for (const ValidationRow& row : report.rows) {
+  for (const identification::ValidationRow& row : report.rows) {
     nlohmann::ordered_json entry = {
         {"lambda", row.lambda},
         {"noise", row.noise},
@@ -55,7 +59,7 @@ std::string Table(const ValidationReport& report) {
       "not    coverage  worst   failed\n"
       "of T*                   median   worst        median   worst        median   worst        "
       "ident.   of 95%   error\n";
-  for (const ValidationRow& row : report.rows) {
+  for (const identification::ValidationRow& row : report.rows) {
     const std::string worst =
         row.noise > 0
             ? fmt::format("{:5.1f} SE", row.worst_standardized)
@@ -76,12 +80,13 @@ std::string Table(const ValidationReport& report) {
 void RunValidate(const ValidateOptions& options, Console& console) {
   if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
   const std::size_t step = std::max<std::size_t>(options.validation.cases / 10, 1);
-  const ValidationReport report = ValidateMapping(options.validation, [&](std::size_t done) {
-    if (done % step == 0) {
-      console.err << fmt::format("{} of {} contacts\n", done, options.validation.cases)
-                  << std::flush;
-    }
-  });
+  const ValidationReport report =
+      identification::ValidateMapping(options.validation, [&](std::size_t done) {
+        if (done % step == 0) {
+          console.err << fmt::format("{} of {} contacts\n", done, options.validation.cases)
+                      << std::flush;
+        }
+      });
   if (!options.json_path.empty()) {
     WriteJson(ToJson(report, options.validation), options.json_path, console);
   }
@@ -94,7 +99,8 @@ void RunValidate(const ValidateOptions& options, Console& console) {
         "truth "
         "within\n{:g} standard errors (likelihood ratio). A parameter may be reported as not "
         "identifiable with noise only.\n",
-        NoiseFreeTolerance(0.5), NoiseFreeTolerance(0.3), kStandardErrorsTolerated);
+        identification::NoiseFreeTolerance(0.5), identification::NoiseFreeTolerance(0.3),
+        identification::kStandardErrorsTolerated);
     console.out << (report.failures == 0
                         ? std::string("passed: every case within its tolerance\n")
                         : fmt::format("FAILED: {} of {} fits\n", report.failures, report.fits));

@@ -5,7 +5,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 
 /// @throws InvalidArgument unless −1 < ν <= 0.5, the bounds of a stable isotropic body.
 inline void RequirePoissonRatio(std::string_view quantity, double poisson_ratio) {
@@ -23,4 +23,4 @@ inline void RequireSurfaceRadius(std::string_view quantity, double radius) {
   }
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

@@ -7,7 +7,7 @@
 #include "contact/in_range.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 void RequireWithinSlipForce(double tangential_force, double slip_force) {
@@ -177,4 +177,4 @@ double MindlinEnergyPerCycleAtAmplitude(const MindlinContact& contact,
   return energy_at_gross_slip * EnergyShare(stick_ratio, one_minus_stick_ratio);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

@@ -9,7 +9,7 @@
 #include "contact/in_range.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 constexpr std::string_view kNormalLoad = "normal load [N]";
@@ -105,4 +105,4 @@ double HertzApproach(double contact_radius, double equivalent_radius) {
   return InRange("approach [m]", radius * radius / equivalent_radius);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

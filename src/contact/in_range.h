@@ -5,7 +5,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 
 /// A positive result rounded to double.
 /// @throws InvalidArgument where it is beyond the normal doubles
@@ -19,4 +19,4 @@ inline double InRange(std::string_view quantity, long double value) {
   return static_cast<double>(value);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

@@ -12,7 +12,7 @@
 #include "contact/body_requirements.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 /// What may be uncertain: the fit's two, then the inputs.
@@ -531,4 +531,4 @@ IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
   return identified;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

@@ -5,7 +5,10 @@
 #include <array>
 #include <cmath>
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using models::BranchStart;
+
 namespace {
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -19,12 +22,12 @@ constexpr std::size_t kFewest = 10;
 std::vector<std::size_t> Kinds(const Candidate& candidate, const ScaledRecords& data) {
   std::vector<std::size_t> kinds;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const LoadingPath path = candidate.residual.PathOf(r, candidate.solution.theta);
-    const Branch& first = path.branches.front();
+    const models::LoadingPath path = candidate.residual.PathOf(r, candidate.solution.theta);
+    const models::Branch& first = path.branches.front();
     const bool first_up = first.start != BranchStart::kUnloaded || first.direction > 0;
     std::size_t kind = 2;
-    for (const BranchRun& run : path.runs) {
-      const Branch& branch = path.branches[static_cast<std::size_t>(run.branch)];
+    for (const models::BranchRun& run : path.runs) {
+      const models::Branch& branch = path.branches[static_cast<std::size_t>(run.branch)];
       const bool back = (branch.direction > 0) != first_up;
       // A steady loop's virgin curve is not in the record: a sample on it is an extreme that came
       // back to the last bit, and ends the stroke before.
@@ -123,4 +126,4 @@ std::vector<BranchShape> FitBranchShapes(const Candidate& candidate, const Scale
   return shapes;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -7,7 +7,7 @@
 #include "identification/noise_model.h"
 #include "mindahl/identification/fit.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// α of the virgin, the unloading and the reloading branches on their own, by one linear
 /// least-squares step from the fit with a column for each in place of the one for α. Kinds of
@@ -19,4 +19,4 @@ std::vector<BranchShape> FitBranchShapes(const Candidate& candidate, const Scale
                                          const NoiseModel& noise,
                                          std::span<const std::size_t> record_rows, double variance);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

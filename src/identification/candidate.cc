@@ -11,7 +11,10 @@
 #include "identification/starting_values.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using models::InitialState;
+
 namespace {
 
 double Rms(double sum_of_squares, const ScaledRecords& data) {
@@ -23,7 +26,7 @@ double Rms(double sum_of_squares, const ScaledRecords& data) {
 std::optional<StartingPoint> StartWithFreeShape(InitialState state, const ScaledRecords& data,
                                                 const FitOptions& options,
                                                 const ParameterLayout& held) {
-  FrictionModel model = *options.model;
+  models::FrictionModel model = *options.model;
   model.shape_exponent.reset();
   FitOptions relaxed = options;
   relaxed.model = &model;
@@ -121,4 +124,4 @@ Candidate FitBestState(const ScaledRecords& data, const FitOptions& options) {
              : std::move(steady);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

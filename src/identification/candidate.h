@@ -8,11 +8,11 @@
 #include "identification/solver.h"
 #include "mindahl/identification/fit.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// A fit of all records from one assumption about their past.
 struct Candidate {
-  InitialState state;
+  models::InitialState state;
   ParameterLayout layout;
   ForceResidual residual;
   Solution solution;
@@ -24,4 +24,4 @@ struct Candidate {
 /// @throws InvalidArgument when there are fewer samples than free parameters
 Candidate FitBestState(const ScaledRecords& data, const FitOptions& options);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 /// A standard deviation from as many draws is good to 1/√(2·200) = 5 %; of long records fewer,
@@ -51,7 +51,7 @@ DisplacementErrors::DisplacementErrors(const ScaledRecords& data,
       if (!(readings[r].noise > 0)) continue;
       drawn.displacement =
           readings[r].smoother.Smooth(DrawReading(readings[r], record.displacement, engine));
-      drawn.reversals = MoveReversals(drawn.displacement, record.reversals);
+      drawn.reversals = loop::MoveReversals(drawn.displacement, record.reversals);
     }
   }
 }
@@ -75,4 +75,4 @@ Eigen::MatrixXd DisplacementErrors::ForceErrors(const Candidate& candidate) cons
   return forces.colwise() - force;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -9,11 +9,11 @@
 #include "identification/scaled_records.h"
 #include "mindahl/loop/displacement_noise.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// How a record's displacement was read, in units of the data.
 struct DisplacementReading {
-  DisplacementSmoother smoother;
+  loop::DisplacementSmoother smoother;
   double noise = 0.0;         // standard deviation of a sample; 0 where the record counts as exact
   double encoder_step = 0.0;  // 0 where it is no encoder's
   std::vector<bool> repeats;  // samples that say what the one before said: one error
@@ -51,4 +51,4 @@ class DisplacementErrors {
   std::vector<std::vector<Drawn>> draws_;  // of all records each
 };
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

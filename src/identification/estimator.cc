@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 constexpr double kConfidence = 0.95;
@@ -126,4 +126,4 @@ double Estimator::ScaleSign(std::size_t index) const {
   return candidate_.layout.parameters()[index].scale < 0 ? -1.0 : 1.0;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

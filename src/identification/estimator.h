@@ -6,7 +6,7 @@
 #include "identification/candidate.h"
 #include "identification/uncertainty.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// Values, standard errors, intervals and correlations of one fit, from the likelihood's parabola
 /// at its maximum.
@@ -44,4 +44,4 @@ class Estimator {
   LocalUncertainty full_;         // of all free parameters
 };
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

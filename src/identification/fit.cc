@@ -23,7 +23,10 @@
 #include "mindahl/loop/displacement_noise.h"
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using loop::Record;
+
 namespace {
 
 /// Degrees of freedom of a variance that is known: as good as infinite.
@@ -118,15 +121,15 @@ int PrepareRecords(std::span<const Record> records, const FitOptions& options, F
   for (const Record& record : records) {
     RecordFit& fit = result.records.emplace_back();
     fit.reversal_gate = options.reversal_gate.value_or(
-        std::max(EstimateReversalGate(record.displacement), ReachOfNoise(record, options)));
-    fit.reversals = FindReversals(record.displacement, fit.reversal_gate);
-    votes += ForceSense(record, fit.reversals);
+        std::max(loop::EstimateReversalGate(record.displacement), ReachOfNoise(record, options)));
+    fit.reversals = loop::FindReversals(record.displacement, fit.reversal_gate);
+    votes += loop::ForceSense(record, fit.reversals);
   }
   const int sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
   for (std::size_t r = 0; r < records.size(); ++r) {
     Record oriented = records[r];
     for (double& force : oriented.force) force *= sense;
-    result.records[r].measures = MeasureLoop(oriented, result.records[r].reversals);
+    result.records[r].measures = loop::MeasureLoop(oriented, result.records[r].reversals);
   }
   return sense;
 }
@@ -179,7 +182,7 @@ double DisplacementNoise(const Record& record, double gate, double encoder_step,
   if (options.displacement_noise) return *options.displacement_noise;
   const auto [lowest, highest] = std::ranges::minmax(record.displacement);
   const bool is_coarse = encoder_step > kCoarse * (highest / 2 - lowest / 2);
-  return gate > 0 || is_coarse ? EstimateDisplacementNoise(record.displacement) : 0.0;
+  return gate > 0 || is_coarse ? loop::EstimateDisplacementNoise(record.displacement) : 0.0;
 }
 
 /// The records as they are fitted: without the noise that smoothing can take away, which would bend
@@ -190,11 +193,11 @@ std::vector<Record> SettleRecords(std::span<const Record> records, const FitOpti
   for (std::size_t r = 0; r < settled.size(); ++r) {
     RecordFit& fit = result.records[r];
     std::vector<double>& displacement = settled[r].displacement;
-    const double encoder_step = EncoderStep(displacement);
+    const double encoder_step = loop::EncoderStep(displacement);
     fit.displacement_noise =
         DisplacementNoise(records[r], fit.reversal_gate, encoder_step, options);
     DisplacementReading& reading = readings.emplace_back(
-        DisplacementReading{DisplacementSmoother(displacement, fit.displacement_noise),
+        DisplacementReading{loop::DisplacementSmoother(displacement, fit.displacement_noise),
                             fit.displacement_noise,
                             encoder_step,
                             {}});
@@ -204,7 +207,7 @@ std::vector<Record> SettleRecords(std::span<const Record> records, const FitOpti
     }
     if (!(fit.displacement_noise > 0)) continue;
     displacement = reading.smoother.Smooth(displacement);
-    fit.reversals = MoveReversals(displacement, fit.reversals);
+    fit.reversals = loop::MoveReversals(displacement, fit.reversals);
   }
   return settled;
 }
@@ -424,4 +427,4 @@ FitResult Fit(std::span<const Record> records, const FitOptions& options) {
   return result;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

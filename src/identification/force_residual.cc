@@ -4,7 +4,12 @@
 #include <cmath>
 #include <numeric>
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using models::InitialState;
+using models::kGradientColumns;
+using models::LoadingPath;
+
 namespace {
 
 /// A record's displacement with its turning points put in beside the outermost sample of each
@@ -39,10 +44,10 @@ TurnedHistory PutInTurningPoints(const ScaledRecord& record, std::span<const dou
   return turned;
 }
 
-LoadingPath MakePath(const FrictionModel& model, InitialState state, std::size_t record,
+LoadingPath MakePath(const models::FrictionModel& model, InitialState state, std::size_t record,
                      std::span<const double> displacement, std::span<const std::size_t> reversals,
                      const std::vector<double>& theta) {
-  return MakeLoadingPath(
+  return models::MakeLoadingPath(
       displacement, reversals, model.memory,
       {.state = state,
        .unloaded_displacement = theta[ParameterLayout::OfRecord(record, kUnloadedDisplacement)]});
@@ -50,7 +55,7 @@ LoadingPath MakePath(const FrictionModel& model, InitialState state, std::size_t
 
 }  // namespace
 
-ForceResidual::ForceResidual(const ScaledRecords& data, const FrictionModel& model,
+ForceResidual::ForceResidual(const ScaledRecords& data, const models::FrictionModel& model,
                              InitialState state, const ParameterLayout& layout)
     : data_(&data), model_(&model), state_(state), has_rig_(layout.has_rig()) {
   std::size_t position = ParameterLayout::OfRecord(data_->records.size(), 0);
@@ -58,8 +63,8 @@ ForceResidual::ForceResidual(const ScaledRecords& data, const FrictionModel& mod
     first_overshoot_.push_back(position);
     position += record.reversals.size();
     if (state_ == InitialState::kVirgin) continue;
-    steady_paths_.push_back(MakeLoadingPath(record.displacement, record.reversals, model_->memory,
-                                            {.state = InitialState::kSteady}));
+    steady_paths_.push_back(models::MakeLoadingPath(
+        record.displacement, record.reversals, model_->memory, {.state = InitialState::kSteady}));
   }
 }
 
@@ -71,16 +76,16 @@ LoadingPath ForceResidual::PathOf(std::size_t record, const std::vector<double>&
 
 void ForceResidual::Respond(std::size_t r, const std::vector<double>& theta,
                             std::span<double> force, std::vector<double>* gradient) const {
-  const BranchLaw law = ParameterLayout::ScaledLaw(theta);
-  const SeriesSpring rig = RigOf(theta);
+  const models::BranchLaw law = ParameterLayout::ScaledLaw(theta);
+  const models::SeriesSpring rig = RigOf(theta);
   const ScaledRecord& record = data_->records[r];
   if (theta.size() <= first_overshoot_.front()) {
     if (gradient == nullptr) {
-      EvaluateForce(*model_, law, PathOf(r, theta), record.displacement, force, rig);
+      models::EvaluateForce(*model_, law, PathOf(r, theta), record.displacement, force, rig);
     } else {
       gradient->resize(force.size() * kGradientColumns);
-      EvaluateForceAndGradient(*model_, law, PathOf(r, theta), record.displacement, force,
-                               *gradient, rig);
+      models::EvaluateForceAndGradient(*model_, law, PathOf(r, theta), record.displacement, force,
+                                       *gradient, rig);
     }
     return;
   }
@@ -91,11 +96,12 @@ void ForceResidual::Respond(std::size_t r, const std::vector<double>& theta,
   std::vector<double> all_force(turned.displacement.size());
   std::vector<double> all_gradient;
   if (gradient == nullptr) {
-    EvaluateForce(*model_, law, path, turned.displacement, all_force, rig);
+    models::EvaluateForce(*model_, law, path, turned.displacement, all_force, rig);
   } else {
     all_gradient.resize(all_force.size() * kGradientColumns);
     gradient->resize(force.size() * kGradientColumns);
-    EvaluateForceAndGradient(*model_, law, path, turned.displacement, all_force, all_gradient, rig);
+    models::EvaluateForceAndGradient(*model_, law, path, turned.displacement, all_force,
+                                     all_gradient, rig);
   }
   for (std::size_t i = 0; i < force.size(); ++i) {
     force[i] = all_force[turned.samples[i]];
@@ -105,7 +111,7 @@ void ForceResidual::Respond(std::size_t r, const std::vector<double>& theta,
   }
 }
 
-SeriesSpring ForceResidual::RigOf(const std::vector<double>& theta) const {
+models::SeriesSpring ForceResidual::RigOf(const std::vector<double>& theta) const {
   if (!has_rig_) return {};
   return {.stiffness = std::exp(theta[kLogRigStiffness])};
 }
@@ -169,7 +175,7 @@ void ForceResidual::Differentiate(const std::vector<double>& theta,
     const auto load_ratio = [&record](std::size_t i) {
       return record.load_ratio.empty() ? 1.0 : record.load_ratio[i];
     };
-    const auto from_model = [&](GradientColumn model_column) {
+    const auto from_model = [&](models::GradientColumn model_column) {
       return [&gradient, &load_ratio, model_column](std::size_t i) {
         return load_ratio(i) * gradient[i * kGradientColumns + model_column];
       };
@@ -178,19 +184,19 @@ void ForceResidual::Differentiate(const std::vector<double>& theta,
     for (std::size_t column = 0; column < free.size(); ++column) {
       const std::size_t parameter = free[column];
       if (parameter == kLogStiffness) {
-        fill(column, from_model(kPerLogStiffness));
+        fill(column, from_model(models::kPerLogStiffness));
       } else if (parameter == kShapeExponent) {
-        fill(column, from_model(kPerShapeExponent));
+        fill(column, from_model(models::kPerShapeExponent));
       } else if (parameter == kLogSlipForce) {
-        fill(column, from_model(kPerLogSlipForce));
+        fill(column, from_model(models::kPerLogSlipForce));
       } else if (parameter == kLogRigStiffness) {
-        fill(column, from_model(kPerLogSeriesStiffness));
+        fill(column, from_model(models::kPerLogSeriesStiffness));
       } else if (parameter == kPlateauSlope) {
         fill(column, [&](std::size_t i) { return record.displacement[i]; });
       } else if (parameter == ParameterLayout::OfRecord(r, kForceOffset)) {
         fill(column, [](std::size_t) { return 1.0; });
       } else if (parameter == ParameterLayout::OfRecord(r, kUnloadedDisplacement)) {
-        fill(column, from_model(kPerUnloadedDisplacement));
+        fill(column, from_model(models::kPerUnloadedDisplacement));
       } else if (parameter == ParameterLayout::OfRecord(r, kForceDrift)) {
         fill(column, [&](std::size_t i) { return record.time[i]; });
       } else if (parameter >= first_overshoot_[r] && parameter < last_overshoot) {
@@ -216,4 +222,4 @@ void ForceResidual::Differentiate(const std::vector<double>& theta,
   }
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

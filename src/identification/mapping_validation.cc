@@ -15,7 +15,11 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/excitation.h"
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using contact::MindlinDahlParameters;
+using loop::Record;
+
 namespace {
 
 constexpr std::array kCycles = {1.0, 1.25, 2.0, 2.5, 3.0, 4.0};
@@ -24,10 +28,10 @@ constexpr std::array<std::size_t, 3> kSamplesPerCycle = {100, 200, 400};
 struct Case {
   double friction_coefficient = 0.0;
   double normal_load = 0.0;
-  MindlinContact contact;
+  contact::MindlinContact contact;
   double lambda = 0.0;
   double direction = 1.0;
-  ExcitationOptions excitation;
+  models::ExcitationOptions excitation;
 };
 
 class CaseGenerator {
@@ -41,11 +45,13 @@ class CaseGenerator {
     drawn.normal_load = LogUniform(1e-6, 1e5);
     drawn.contact.contact_radius = LogUniform(1e-8, 3e-2);
     drawn.contact.tangential_compliance = LogUniform(1e-12, 1e-8);
-    drawn.contact.slip_force = GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
+    drawn.contact.slip_force =
+        contact::GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
     drawn.lambda = options_.lambdas[index % options_.lambdas.size()];
     const std::size_t round = index / options_.lambdas.size();
     drawn.direction = round % 2 == 0 ? 1.0 : -1.0;
-    drawn.excitation.waveform = round / 2 % 2 == 0 ? Waveform::kSine : Waveform::kTriangle;
+    drawn.excitation.waveform =
+        round / 2 % 2 == 0 ? models::Waveform::kSine : models::Waveform::kTriangle;
     drawn.excitation.cycles = kCycles[round % kCycles.size()];
     drawn.excitation.samples_per_cycle = kSamplesPerCycle[index % kSamplesPerCycle.size()];
     drawn.excitation.amplitude = drawn.lambda * GrossSlipDisplacement(drawn.contact);
@@ -69,7 +75,7 @@ class CaseGenerator {
 
 /// The loop by Mindlin's equations 13 to 15, phase by phase.
 Record MindlinRecord(const Case& drawn) {
-  const Excitation excitation = MakeExcitation(drawn.excitation);
+  const models::Excitation excitation = models::MakeExcitation(drawn.excitation);
   const double amplitude = drawn.excitation.amplitude;
   const double per_cycle = static_cast<double>(drawn.excitation.samples_per_cycle);
   Record record;
@@ -79,11 +85,11 @@ Record MindlinRecord(const Case& drawn) {
     const double phase = static_cast<double>(i) / per_cycle;
     double force = 0.0;
     if (phase <= 0.25) {
-      force = MindlinVirginForce(drawn.contact, x);
+      force = contact::MindlinVirginForce(drawn.contact, x);
     } else {
       const bool unloading = std::fmod(phase - 0.25, 1.0) < 0.5;
-      force = unloading ? MindlinUnloadingForce(drawn.contact, x, amplitude)
-                        : MindlinReloadingForce(drawn.contact, x, amplitude);
+      force = unloading ? contact::MindlinUnloadingForce(drawn.contact, x, amplitude)
+                        : contact::MindlinReloadingForce(drawn.contact, x, amplitude);
     }
     record.displacement.push_back(drawn.direction * x);
     record.force.push_back(drawn.direction * force);
@@ -232,7 +238,7 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
   CaseGenerator generator(options);
   for (std::size_t index = 0; index < options.cases; ++index) {
     const Case drawn = generator.Next(index);
-    const MindlinDahlParameters truth = MapMindlinToDahl(drawn.contact);
+    const MindlinDahlParameters truth = contact::MapMindlinToDahl(drawn.contact);
     const Record clean = MindlinRecord(drawn);
     const double peak =
         *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });
@@ -258,4 +264,4 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
   return report;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

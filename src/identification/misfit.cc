@@ -8,7 +8,7 @@
 
 #include "identification/verdicts.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 /// Of the variance of the residuals, where they are poor and where they fail; less is noise.
@@ -112,4 +112,4 @@ void JudgeMisfit(FitResult& result) {
   }
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

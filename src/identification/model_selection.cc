@@ -16,7 +16,10 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/residual_statistics.h"
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using loop::Record;
+
 namespace {
 
 /// Twice the log-likelihood that a candidate must gain on a simpler one to be another: ten times
@@ -67,7 +70,7 @@ std::vector<ModelScore> ListCandidates(const FitOptions& options) {
   const auto alpha = options.fixed.find("alpha");
   const bool rig_is_known = options.fixed.contains("rig_stiffness");
   std::vector<ModelScore> scores;
-  for (const FrictionModel& model : FrictionModels()) {
+  for (const models::FrictionModel& model : models::FrictionModels()) {
     if (model.scaled_by_peak) continue;
     if (model.shape_exponent && alpha != options.fixed.end() &&
         *model.shape_exponent != alpha->second) {
@@ -140,7 +143,7 @@ double RobustScale(const FitResult& fit, const SampleMask& mask) {
   for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
     residuals.insert(residuals.end(), series.begin(), series.end());
   }
-  return mindahl::RobustScale(std::move(residuals));
+  return mindahl::identification::RobustScale(std::move(residuals));
 }
 
 /// The fit that a measure of its residuals is least for.
@@ -519,4 +522,4 @@ ModelSelection SelectModel(std::span<const Record> records, const FitOptions& op
   return result;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 constexpr std::size_t kHighestOrder = 12;
@@ -157,4 +157,4 @@ std::vector<double> NoiseModel::Quadratic(std::span<const double> jacobian,
   return result;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// How a fit's residuals hang together: an autoregressive process, the same for all records,
 ///   r_t = Σ φ_k r_{t−k} + ε_t,  k = 1 … p
@@ -29,4 +29,4 @@ struct NoiseModel {
 /// @param residuals  one series a record; an exact 0 is a sample that does not count
 NoiseModel EstimateNoise(std::span<const std::vector<double>> residuals);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

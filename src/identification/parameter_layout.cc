@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 // Default bounds, in units of the data (half ranges of displacement and force). They are far
@@ -78,7 +78,7 @@ double ScaledParameter::ToTheta(double value) const {
 }
 
 ParameterLayout::ParameterLayout(const ScaledRecords& data, const FitOptions& options,
-                                 InitialState state) {
+                                 models::InitialState state) {
   parameters_.push_back(
       Logarithmic("sigma", "N/m", data.force / data.length, kLowestStiffness, kHighestStiffness));
   parameters_.push_back(Linear("alpha", "-", 0.0, 1.0, 0.0, kHighestShapeExponent));
@@ -111,7 +111,7 @@ ParameterLayout::ParameterLayout(const ScaledRecords& data, const FitOptions& op
     ScaledParameter unloaded =
         Linear(Numbered("displacement_offset", r, count), "m", record.displacement_reference,
                data.length, -kWidestOffset, kWidestOffset);
-    if (state == InitialState::kSteady) {
+    if (state == models::InitialState::kSteady) {
       Hold(unloaded, record.displacement_reference);  // the centre of the loop
       unloaded.estimated_elsewhere = true;
     } else if (!has_offsets) {
@@ -214,7 +214,7 @@ ParameterLayout ParameterLayout::WithFixed(std::size_t index, double theta) cons
   return copy;
 }
 
-SeriesSpring ParameterLayout::Rig(const std::vector<double>& theta) const {
+models::SeriesSpring ParameterLayout::Rig(const std::vector<double>& theta) const {
   if (!has_rig()) return {};
   return {.stiffness = parameters_[kLogRigStiffness].ToValue(theta[kLogRigStiffness])};
 }
@@ -227,16 +227,16 @@ std::vector<std::size_t> ParameterLayout::Reported() const {
   return positions;
 }
 
-BranchLaw ParameterLayout::ScaledLaw(const std::vector<double>& theta) {
+models::BranchLaw ParameterLayout::ScaledLaw(const std::vector<double>& theta) {
   return {.tangential_stiffness = std::exp(theta[kLogStiffness]),
           .shape_exponent = theta[kShapeExponent],
           .slip_force = std::exp(theta[kLogSlipForce])};
 }
 
-BranchLaw ParameterLayout::Law(const std::vector<double>& theta) const {
+models::BranchLaw ParameterLayout::Law(const std::vector<double>& theta) const {
   return {.tangential_stiffness = parameters_[kLogStiffness].ToValue(theta[kLogStiffness]),
           .shape_exponent = theta[kShapeExponent],
           .slip_force = parameters_[kLogSlipForce].ToValue(theta[kLogSlipForce])};
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

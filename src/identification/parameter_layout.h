@@ -10,7 +10,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// One parameter as the solver sees it: θ, non-dimensional and of order one.
 ///   value = reference + scale·θ,  or  value = scale·exp(θ) where logarithmic
@@ -48,7 +48,7 @@ enum ParameterIndex : std::size_t {
 class ParameterLayout {
  public:
   /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
-  ParameterLayout(const ScaledRecords& data, const FitOptions& options, InitialState state);
+  ParameterLayout(const ScaledRecords& data, const FitOptions& options, models::InitialState state);
 
   /// A copy with one more free parameter a reversal: how far the turning point lies beyond the
   /// outermost sample, in units of the data, at most the longer of the steps beside it.
@@ -69,14 +69,14 @@ class ParameterLayout {
   [[nodiscard]] ParameterLayout WithFixed(std::size_t index, double theta) const;
 
   /// σ, α, Tc in the units of the data.
-  static BranchLaw ScaledLaw(const std::vector<double>& theta);
+  static models::BranchLaw ScaledLaw(const std::vector<double>& theta);
   /// The spring in series with the contact, in SI; rigid where it is absent.
-  [[nodiscard]] SeriesSpring Rig(const std::vector<double>& theta) const;
+  [[nodiscard]] models::SeriesSpring Rig(const std::vector<double>& theta) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kLogRigStiffness].absent; }
   /// Positions of the parameters that a result reports.
   [[nodiscard]] std::vector<std::size_t> Reported() const;
   /// σ, α, Tc in SI.
-  [[nodiscard]] BranchLaw Law(const std::vector<double>& theta) const;
+  [[nodiscard]] models::BranchLaw Law(const std::vector<double>& theta) const;
 
  private:
   void ApplyOptions(const FitOptions& options);
@@ -87,4 +87,4 @@ class ParameterLayout {
   std::size_t reported_ = 0;
 };
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

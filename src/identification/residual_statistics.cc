@@ -5,7 +5,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residuals,
                                      std::span<const std::vector<double>> forces, double slip_force,
@@ -47,4 +47,4 @@ ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residu
   return statistics;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 constexpr std::size_t kBins = 20;
@@ -148,4 +148,4 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
   return structure;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

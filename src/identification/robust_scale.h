@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// Standard deviation of normal values of mean 0 by the median of their magnitudes, which outliers
 /// do not move.
@@ -18,4 +18,4 @@ inline double RobustScale(std::vector<double> values) {
   return kNormalDeviation * *middle;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

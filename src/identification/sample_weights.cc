@@ -11,7 +11,7 @@
 #include "identification/solver.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 constexpr int kMostRounds = 50;
@@ -184,7 +184,7 @@ class Weighting {
 
 }  // namespace
 
-std::vector<std::size_t> LeaveOut(ScaledRecords& data, std::span<const Record> records,
+std::vector<std::size_t> LeaveOut(ScaledRecords& data, std::span<const loop::Record> records,
                                   std::span<const std::vector<std::size_t>> reversals,
                                   const FitOptions& options) {
   if (!options.held_out.empty()) {
@@ -192,7 +192,7 @@ std::vector<std::size_t> LeaveOut(ScaledRecords& data, std::span<const Record> r
   }
   std::vector<std::size_t> left_out;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Record& record = records[r];
+    const loop::Record& record = records[r];
     ScaledRecord& scaled = data.records[r];
     std::size_t& count = left_out.emplace_back(0);
     const auto leave_out = [&](std::size_t i) {
@@ -273,4 +273,4 @@ WeightedNoise FitWithWeights(Candidate& candidate, ScaledRecords& data, const Fi
   return noise;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

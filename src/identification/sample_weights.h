@@ -9,12 +9,12 @@
 #include "identification/scaled_records.h"
 #include "mindahl/identification/fit.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// Gives weight 0 to what options leave out: samples outside the load window, and the first cycles.
 /// @returns the samples left out, one number a record
 /// @throws InvalidArgument where a record has no normal load for a window, or nothing is left
-std::vector<std::size_t> LeaveOut(ScaledRecords& data, std::span<const Record> records,
+std::vector<std::size_t> LeaveOut(ScaledRecords& data, std::span<const loop::Record> records,
                                   std::span<const std::vector<std::size_t>> reversals,
                                   const FitOptions& options);
 
@@ -42,4 +42,4 @@ WeightedNoise PlainNoise(const Candidate& candidate, const ScaledRecords& data,
 WeightedNoise FitWithWeights(Candidate& candidate, ScaledRecords& data, const FitOptions& options,
                              const DisplacementErrors& displacement_errors);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

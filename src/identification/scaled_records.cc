@@ -6,7 +6,10 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using loop::Record;
+
 namespace {
 
 struct Range {
@@ -98,4 +101,4 @@ ScaledRecords Scale(std::span<const Record> records,
   return scaled;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

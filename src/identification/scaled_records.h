@@ -5,7 +5,7 @@
 
 #include "mindahl/loop/record.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// A record in units of the data, with the force in the displacement's sense.
 struct ScaledRecord {
@@ -45,7 +45,7 @@ std::vector<std::vector<double>> SplitByRecord(const ScaledRecords& data,
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
 /// more
 ///   than 1e100
-ScaledRecords Scale(std::span<const Record> records,
+ScaledRecords Scale(std::span<const loop::Record> records,
                     std::span<const std::vector<std::size_t>> reversals, int sense);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 /// Tc over half the range of the force.
@@ -146,4 +146,4 @@ bool StiffnessIsOpenAbove(const ForceResidual& residual, const ParameterLayout& 
   return ratio.Of(rigid) < critical;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

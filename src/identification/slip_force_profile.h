@@ -6,7 +6,7 @@
 #include "identification/parameter_layout.h"
 #include "identification/solver.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// Ends of the set of parameters that the data do not tell from the best fit.
 struct Range {
@@ -42,4 +42,4 @@ bool StiffnessIsOpenAbove(const ForceResidual& residual, const ParameterLayout& 
                           const Solution& best, double variance, double effective_share,
                           double critical, const FitOptions& options);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

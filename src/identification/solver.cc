@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 /// All residuals as one block: the gradient is ours, in closed form.
@@ -124,4 +124,4 @@ Solution Solve(const ForceResidual& residual, const ParameterLayout& layout,
   return solution;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

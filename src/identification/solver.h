@@ -7,7 +7,7 @@
 #include "identification/parameter_layout.h"
 #include "mindahl/identification/fit.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 struct Solution {
   std::vector<double> theta;  // all parameters
@@ -22,4 +22,4 @@ struct Solution {
 Solution Solve(const ForceResidual& residual, const ParameterLayout& layout,
                std::vector<double> start, const FitOptions& options);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -9,7 +9,10 @@
 #include "identification/force_residual.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl {
+namespace mindahl::identification {
+
+using models::InitialState;
+
 namespace {
 
 constexpr std::array kReaches = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0,  // σX/Tc
@@ -80,8 +83,9 @@ class StartingGrid {
     paths_.clear();
     for (std::size_t r = 0; r < data_.records.size(); ++r) {
       const ScaledRecord& record = data_.records[r];
-      paths_.push_back(MakeLoadingPath(record.displacement, record.reversals, model_.memory,
-                                       {.state = state_, .unloaded_displacement = unloaded_[r]}));
+      paths_.push_back(
+          models::MakeLoadingPath(record.displacement, record.reversals, model_.memory,
+                                  {.state = state_, .unloaded_displacement = unloaded_[r]}));
     }
   }
 
@@ -95,7 +99,7 @@ class StartingGrid {
     point.sum_of_squares = std::numeric_limits<double>::infinity();
 
     const ScaledParameter& rig_stiffness = parameters[kLogRigStiffness];
-    SeriesSpring rig;  // in units of Tc, which is about 1
+    models::SeriesSpring rig;  // in units of Tc, which is about 1
     double contact_reach = reach;
     if (layout_.has_rig()) {
       rig.stiffness =
@@ -108,8 +112,8 @@ class StartingGrid {
     for (std::size_t r = 0; r < data_.records.size(); ++r) {
       const ScaledRecord& record = data_.records[r];
       t.resize(record.force.size());
-      EvaluateForce(model_, {contact_reach, shape_exponent, 1.0}, paths_[r], record.displacement, t,
-                    rig);
+      models::EvaluateForce(model_, {contact_reach, shape_exponent, 1.0}, paths_[r],
+                            record.displacement, t, rig);
       sums.push_back(Accumulate(t, record));
     }
     const ScaledParameter& stiffness = parameters[kLogStiffness];
@@ -143,11 +147,11 @@ class StartingGrid {
  private:
   const ScaledRecords& data_;
   const ParameterLayout& layout_;
-  const FrictionModel& model_;
+  const models::FrictionModel& model_;
   InitialState state_;
   ForceResidual residual_;
   std::vector<double> unloaded_;
-  std::vector<LoadingPath> paths_;
+  std::vector<models::LoadingPath> paths_;
 };
 
 /// Guesses of where each record's contact was unloaded.
@@ -296,4 +300,4 @@ std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
   return starts;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

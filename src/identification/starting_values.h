@@ -6,7 +6,7 @@
 #include "identification/scaled_records.h"
 #include "mindahl/identification/fit.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 struct StartingPoint {
   std::vector<double> theta;  // all parameters
@@ -26,6 +26,7 @@ struct StartingPoint {
 /// dropped.
 std::vector<StartingPoint> FindStartingPoints(const ScaledRecords& data,
                                               const ParameterLayout& layout,
-                                              const FitOptions& options, InitialState state);
+                                              const FitOptions& options,
+                                              models::InitialState state);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -7,7 +7,7 @@
 
 #include "mindahl/identification/residual_statistics.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 /// More reversals than this are a long record, whose many cycles average the missed extremes.
@@ -81,4 +81,4 @@ std::optional<TurningPointFit> FitTurningPoints(const ScaledRecords& data,
   return fit;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

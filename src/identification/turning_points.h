@@ -6,7 +6,7 @@
 #include "identification/parameter_layout.h"
 #include "identification/solver.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// A fit in which the turning points are free to lie beyond the outermost samples.
 struct TurningPointFit {
@@ -27,4 +27,4 @@ std::optional<TurningPointFit> FitTurningPoints(const ScaledRecords& data,
                                                 const ParameterLayout& layout, const Solution& best,
                                                 const FitOptions& options);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

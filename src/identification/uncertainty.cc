@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -90,4 +90,4 @@ LocalUncertainty AnalyseJacobian(const ForceResidual& residual, const std::vecto
   return result;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -9,7 +9,7 @@
 #include "identification/noise_model.h"
 #include "identification/parameter_layout.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// What the Jacobian at the solution says about the free parameters, before any noise level is put
 /// in: covariance = variance of a residual × `factor`.
@@ -47,4 +47,4 @@ LocalUncertainty AnalyseJacobian(const ForceResidual& residual, const std::vecto
                                  std::span<const std::size_t> rows,
                                  const DisplacementEffect& displacement);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

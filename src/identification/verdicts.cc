@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 ParameterEstimate& Mutable(FitResult& result, std::string_view name) {
@@ -49,7 +49,7 @@ void JudgeProfile(FitResult& result, const ParameterLayout& layout, const SlipFo
   Widen(slip_force, layout.parameters()[kLogSlipForce], profile.slip_force, quantile);
   if (!profile.open_above) return;
 
-  const LoopMeasures& measures = result.WidestRecord().measures;
+  const loop::LoopMeasures& measures = result.WidestRecord().measures;
   OpenAbove(slip_force);
   // A contact that carried T* has at least that slip force, unless the fit is too poor to say.
   slip_force.lower95 =
@@ -120,4 +120,4 @@ void JudgeNullDirections(FitResult& result, const Candidate& candidate,
                    list));
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -7,7 +7,7 @@
 #include "identification/uncertainty.h"
 #include "mindahl/identification/fit.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 void Warn(FitResult& result, std::string code, std::string message);
 
@@ -25,4 +25,4 @@ void JudgeStiffness(FitResult& result, bool open_above);
 /// Calls a parameter not identifiable whose 95 % interval is too wide to be of use.
 void JudgeIntervals(FitResult& result);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -14,7 +14,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 [[noreturn]] void Fail(const std::filesystem::path& path, int error) {
@@ -118,4 +118,4 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   Replace(target, old, content, path);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -6,7 +6,7 @@
 #include "io/number_cell.h"
 #include "mindahl/core/units.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 constexpr std::size_t kLongestUnit = 8;  // bytes; "furlong" is a unit to refuse, not part of a name
@@ -65,4 +65,4 @@ ColumnName SplitColumnName(std::string_view header) {
   return {std::string(header), ""};
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".
 struct ColumnName {
@@ -25,4 +25,4 @@ std::string_view WithoutBrackets(std::string_view cell);
 /// bar...).
 bool LooksLikeUnit(std::string_view cell);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -13,7 +13,7 @@
 #include "io/number_cell.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 constexpr std::size_t kSampledRows = 1000;
@@ -271,4 +271,4 @@ CsvLayout FindCsvLayout(std::string_view text, const std::string& file) {
                   file, kSampledRows));
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -7,7 +7,7 @@
 
 #include "io/csv_tokenizer.h"
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// How a text is to be read as a table; csv_table.h states the rules by which it is found.
 struct CsvLayout {
@@ -27,4 +27,4 @@ CsvLayout FindCsvLayout(std::string_view text, const std::string& file);
 /// @throws InputError: the quotation mark opened on `line` has no partner.
 [[noreturn]] void ThrowOpenQuote(const std::string& file, std::size_t line);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

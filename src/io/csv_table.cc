@@ -17,7 +17,7 @@
 #include "io/number_cell.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
@@ -169,4 +169,4 @@ void CsvTable::ThrowNotANumber(std::size_t row_index, std::size_t column) const 
   }
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -5,7 +5,7 @@
 
 #include "io/number_cell.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 bool IsBlankOrComment(std::string_view line) {
@@ -95,4 +95,4 @@ void CsvTokenizer::OnRow(int /*terminator*/, void* tokenizer) {
   static_cast<CsvTokenizer*>(tokenizer)->row_complete_ = true;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

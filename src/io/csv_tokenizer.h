@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// What separates the cells of a row; kBlanks is any run of spaces and tabs.
 enum class Delimiter : char { kTab = '\t', kSemicolon = ';', kComma = ',', kBlanks = ' ' };
@@ -67,4 +67,4 @@ class CsvTokenizer {
   bool row_complete_ = false;
 };
 
-}  // namespace mindahl
+}  // namespace mindahl::io

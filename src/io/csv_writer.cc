@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 /// Quoted when it must be: RFC 4180 §2.6, and a '#' or blank that a reader would take for its own.
@@ -52,4 +52,4 @@ std::string CsvText(const std::vector<CsvColumn>& columns) {
   return text;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -17,7 +17,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 /// A directory of its own, removed with all it holds.
@@ -99,4 +99,4 @@ std::string RunGnuplot(std::string_view script) {
   return drawn;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// Runs gnuplot on a script and returns what it writes to its standard output.
 /// No shell is involved, and the user's own gnuplot settings are not read.
@@ -11,4 +11,4 @@ namespace mindahl {
 /// @throws std::runtime_error with its messages when it fails
 std::string RunGnuplot(std::string_view script);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// Text from a file as a message shows it: on one line, and cut off after 60 bytes or so.
 inline std::string ForMessage(std::string_view text) {
@@ -19,4 +19,4 @@ inline std::string ForMessage(std::string_view text) {
   return size < text.size() ? shown + "..." : shown;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 bool IsDigit(char character) { return character >= '0' && character <= '9'; }
@@ -82,4 +82,4 @@ NumberCell ReadNumber(std::string_view cell, bool decimal_comma) {
   return number;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

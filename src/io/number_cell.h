@@ -3,7 +3,7 @@
 #include <limits>
 #include <string_view>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// What the text of one cell is, read as a number.
 struct NumberCell {
@@ -29,4 +29,4 @@ NumberCell ReadNumber(std::string_view cell, bool decimal_comma);
 /// `text` without the blanks and tabs around it.
 std::string_view Trimmed(std::string_view text);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

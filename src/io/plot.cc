@@ -15,7 +15,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/io/atomic_file.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 constexpr std::size_t kMostPoints = 20'000;
@@ -423,4 +423,4 @@ void WritePlot(const Plot& plot, const std::filesystem::path& path) {
   WriteFileAtomically(path, RunGnuplot(Script(plot, terminal).Text()));
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

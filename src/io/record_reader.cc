@@ -18,7 +18,7 @@
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 struct Alias {
@@ -396,7 +396,7 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
     }
     return read(role, *column, choice, values);
   };
-  Record& record = file.record;
+  loop::Record& record = file.record;
   file.displacement =
       read(kDisplacement, *assigned.displacement, columns.displacement, record.displacement);
   file.force = read(kForce, *assigned.force, columns.force, record.force);
@@ -420,4 +420,4 @@ LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice&
           ReadPathColumn(table, kNormalLoad, normal_load)};
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::io

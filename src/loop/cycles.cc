@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 /// The reversals, with the record's first and last sample where they lie at an extreme.
@@ -207,4 +207,4 @@ int ForceSense(const Record& record, std::span<const std::size_t> reversals) {
   return SignOf(covariance);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

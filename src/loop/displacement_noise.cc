@@ -9,7 +9,7 @@
 #include "loop/smallest_step.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 /// An encoder's record holds few values: most neighbours differ by whole steps or not at all. So
@@ -155,4 +155,4 @@ std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
   return moved;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 void RequireFiniteColumn(std::string_view quantity, std::span<const double> column) {
@@ -35,4 +35,4 @@ void Validate(const Record& record) {
   RequireFiniteColumn("normal load [N]", record.normal_load);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

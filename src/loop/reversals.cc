@@ -7,7 +7,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/displacement_noise.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 /// A closed inner loop of the displacement history.
@@ -106,4 +106,4 @@ double EstimateReversalGate(std::span<const double> displacement) {
   return gate;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-namespace mindahl {
+namespace mindahl::loop {
 
 /// Least distance [m] between neighbours that differ; 0 where none do.
 inline double SmallestStep(std::span<const double> displacement) {
@@ -16,4 +16,4 @@ inline double SmallestStep(std::span<const double> displacement) {
   return smallest;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

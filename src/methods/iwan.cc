@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 namespace {
 
 /// A tangent of the virgin curve, in long double: differences between neighbours are what the
@@ -51,7 +51,8 @@ long double PointOfTangent(std::size_t i, std::size_t n, IwanSpacing spacing,
 
 }  // namespace
 
-IwanElements MakeIwanElements(const BranchLaw& law, std::size_t elements, IwanSpacing spacing) {
+IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements,
+                              IwanSpacing spacing) {
   Validate(law);
   if (elements == 0) ThrowInvalid("number of Iwan elements [-]", 0.0, "must be >= 1");
   if (law.shape_exponent == 0) return {{law.tangential_stiffness}, {law.slip_force}};
@@ -99,4 +100,4 @@ void EvaluateIwanForce(const IwanElements& elements, std::span<const double> dis
   }
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

@@ -13,12 +13,16 @@
 #include "mindahl/methods/iwan.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl {
+namespace mindahl::methods {
+
+using models::BranchLaw;
+using models::FrictionModel;
+
 namespace {
 
 Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const Resolution&) {
   return [&model, law](const Drive& drive, std::span<double> force) {
-    EvaluateForce(model, law, MakeDrivePath(model, drive), drive.displacement, force);
+    models::EvaluateForce(model, law, MakeDrivePath(model, drive), drive.displacement, force);
   };
 }
 
@@ -27,10 +31,11 @@ Evaluator PrepareExactFloat(const FrictionModel& model, const BranchLaw& law, co
   return [&model, law](const Drive& drive, std::span<double> force) {
     const std::vector<float> narrow(drive.displacement.begin(), drive.displacement.end());
     const std::vector<double> widened(narrow.begin(), narrow.end());
-    const LoadingPath path =
+    const models::LoadingPath path =
         MakeDrivePath(model, {.displacement = widened, .envelope = drive.envelope});
     std::vector<float> narrow_force(narrow.size());
-    EvaluateForce(model, law, path, std::span<const float>(narrow), std::span<float>(narrow_force));
+    models::EvaluateForce(model, law, path, std::span<const float>(narrow),
+                          std::span<float>(narrow_force));
     std::ranges::copy(narrow_force, force.begin());
   };
 }
@@ -98,12 +103,12 @@ constexpr std::array kMethods{
 
 }  // namespace
 
-LoadingPath MakeDrivePath(const FrictionModel& model, const Drive& drive) {
+models::LoadingPath MakeDrivePath(const FrictionModel& model, const Drive& drive) {
   if (!drive.envelope.empty() && model.scaled_by_peak) {
-    return MakeEnvelopePath(drive.displacement, drive.envelope, 0.0);
+    return models::MakeEnvelopePath(drive.displacement, drive.envelope, 0.0);
   }
-  return MakeLoadingPath(drive.displacement, FindReversals(drive.displacement, 0.0), model.memory,
-                         {.state = InitialState::kVirgin});
+  return models::MakeLoadingPath(drive.displacement, loop::FindReversals(drive.displacement, 0.0),
+                                 model.memory, {.state = models::InitialState::kVirgin});
 }
 
 std::span<const Method> Methods() { return kMethods; }
@@ -118,7 +123,7 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
   Validate(law);
   if (resolution.steps == 0) ThrowInvalid("steps [-]", 0.0, "must be >= 1");
   RequirePositive("tolerance [-]", resolution.tolerance);
-  if (method.masing_only && model.memory != Memory::kReturnPoint) {
+  if (method.masing_only && model.memory != models::Memory::kReturnPoint) {
     throw InvalidArgument(fmt::format(
         "method {} does not serve model {}: its elements remember every reversal, the model does "
         "not",
@@ -131,4 +136,4 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
   };
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

@@ -7,7 +7,7 @@
 
 #include "models/scaled_branches.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 namespace {
 
 /// A shape in the sense of backbone.h.
@@ -16,7 +16,7 @@ class TableShape {
   TableShape(double shape_exponent, std::size_t intervals) : node_(intervals + 1) {
     // Slip, y = 1/(1−α), is the last node; for α >= 1 that is infinity.
     const double last = shape_exponent < 1 ? 1 / (2 - shape_exponent) : 1.0;
-    const backbone::GeneralShape<double> shape{shape_exponent};
+    const models::backbone::GeneralShape<double> shape{shape_exponent};
     for (std::size_t i = 0; i < intervals; ++i) {
       const double r = last * static_cast<double>(i) / static_cast<double>(intervals);
       node_[i] = shape.Force(r / (1 - r));
@@ -40,19 +40,20 @@ class TableShape {
 
 }  // namespace
 
-Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
+Evaluator PrepareTable(const models::FrictionModel& model, const models::BranchLaw& law,
                        const Resolution& resolution) {
   const auto shape = std::make_shared<const TableShape>(law.shape_exponent, resolution.steps);
   return [&model, law, shape](const Drive& drive, std::span<double> force) {
-    const LoadingPath path = MakeDrivePath(model, drive);
-    const ScaledBranches branches = ScaleBranches(BranchScaling(model, law), path, *shape);
-    for (const BranchRun& run : path.runs) {
+    const models::LoadingPath path = MakeDrivePath(model, drive);
+    const models::ScaledBranches branches =
+        models::ScaleBranches(models::BranchScaling(model, law), path, *shape);
+    for (const models::BranchRun& run : path.runs) {
       const std::size_t count = run.end - run.begin;
-      EvaluateRun(branches[static_cast<std::size_t>(run.branch)], *shape, law.slip_force,
-                  ForceLimit(model), drive.displacement.subspan(run.begin, count),
-                  force.subspan(run.begin, count));
+      models::EvaluateRun(branches[static_cast<std::size_t>(run.branch)], *shape, law.slip_force,
+                          models::ForceLimit(model), drive.displacement.subspan(run.begin, count),
+                          force.subspan(run.begin, count));
     }
   };
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

@@ -2,10 +2,10 @@
 
 #include "mindahl/methods/method.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 
 /// φ between equal intervals of r = y/(1+y), which takes every y to [0, 1), linearly.
-Evaluator PrepareTable(const FrictionModel& model, const BranchLaw& law,
+Evaluator PrepareTable(const models::FrictionModel& model, const models::BranchLaw& law,
                        const Resolution& resolution);
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

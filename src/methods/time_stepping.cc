@@ -11,7 +11,12 @@
 
 #include "models/scaled_branches.h"
 
-namespace mindahl {
+namespace mindahl::methods {
+
+using models::BranchLaw;
+using models::FrictionModel;
+using models::LoadingPath;
+
 namespace {
 
 /// u₊^α, 0 from slip on also for α = 0 and 1 before the branch: what a trial step asks for.
@@ -35,7 +40,7 @@ class Rate {
 
 /// A branch as far as it has been followed.
 struct FollowedBranch {
-  ScaledBranch<double> scaled;
+  models::ScaledBranch<double> scaled;
   double y = 0.0;          // distance followed, in the branch's scale
   double remaining = 1.0;  // u there
 
@@ -68,13 +73,13 @@ class BranchFollower {
   }
 
  private:
-  void Open(const Branch& branch) {
+  void Open(const models::Branch& branch) {
     const double origin_force = scaling_.OriginForce(
         branch, [&](std::size_t parent) { return MoveTo(parent, branch.origin); });
     followed_.push_back({scaling_.Start(branch, origin_force)});
   }
 
-  BranchScaling scaling_;
+  models::BranchScaling scaling_;
   const LoadingPath& path_;
   const Advance& advance_;
   std::vector<FollowedBranch> followed_;
@@ -85,8 +90,8 @@ Evaluator Follow(const FrictionModel& model, const BranchLaw& law, Advance advan
   return [&model, law, advance = std::move(advance)](const Drive& drive, std::span<double> force) {
     const LoadingPath path = MakeDrivePath(model, drive);
     BranchFollower follower(model, law, path, advance);
-    const double limit = ForceLimit(model);
-    for (const BranchRun& run : path.runs) {
+    const double limit = models::ForceLimit(model);
+    for (const models::BranchRun& run : path.runs) {
       const auto branch = static_cast<std::size_t>(run.branch);
       for (std::size_t i = run.begin; i < run.end; ++i) {
         const double t = follower.MoveTo(branch, drive.displacement[i]);
@@ -196,4 +201,4 @@ Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
   return Follow(model, law, follow);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

@@ -2,7 +2,7 @@
 
 #include "mindahl/methods/method.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 
 // The branch law as a differential equation, dT/dx = σ(v − s(T−T₀)/(span·Tc))^α on each branch
 // (Peyret et al. eqs 10, 26, 27), followed in steps. In the branch's own scale it is one equation
@@ -11,15 +11,15 @@ namespace mindahl {
 // and a step of T is the same step of u. A branch that is left and taken up again goes on from
 // where it was left: that is return-point memory.
 
-Evaluator PrepareEuler(const FrictionModel& model, const BranchLaw& law,
+Evaluator PrepareEuler(const models::FrictionModel& model, const models::BranchLaw& law,
                        const Resolution& resolution);
-Evaluator PrepareRk4(const FrictionModel& model, const BranchLaw& law,
+Evaluator PrepareRk4(const models::FrictionModel& model, const models::BranchLaw& law,
                      const Resolution& resolution);
-Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
+Evaluator PrepareDopri5(const models::FrictionModel& model, const models::BranchLaw& law,
                         const Resolution& resolution);
-Evaluator PrepareBackwardEuler(const FrictionModel& model, const BranchLaw& law,
+Evaluator PrepareBackwardEuler(const models::FrictionModel& model, const models::BranchLaw& law,
                                const Resolution& resolution);
-Evaluator PrepareExponential(const FrictionModel& model, const BranchLaw& law,
+Evaluator PrepareExponential(const models::FrictionModel& model, const models::BranchLaw& law,
                              const Resolution& resolution);
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

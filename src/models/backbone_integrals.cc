@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mindahl::backbone {
+namespace mindahl::models::backbone {
 namespace {
 
 using Shape = GeneralShape<long double>;
@@ -108,4 +108,4 @@ long double MasingLoopEnergy(const SplitDisplacement& y, long double shape_expon
   return 4 * (2 * slip - shape_exponent * y.high * force) / (2 - shape_exponent);
 }
 
-}  // namespace mindahl::backbone
+}  // namespace mindahl::models::backbone

@@ -8,7 +8,7 @@
 #include "mindahl/models/backbone_integrals.h"
 #include "models/representable.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 void Validate(const BranchLaw& law) {
   RequirePositive("tangential stiffness [N/m]", law.tangential_stiffness);
@@ -82,4 +82,4 @@ BackboneGradient DifferentiateBackbone(const BranchLaw& law, double x) {
           static_cast<double>(scale * (phi.force - phi.elastic))};
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 // In the order of Waveform.
@@ -158,4 +158,4 @@ Excitation MakeExcitation(const ExcitationOptions& options) {
   return excitation;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

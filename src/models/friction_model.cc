@@ -8,7 +8,7 @@
 
 #include "mindahl/models/backbone.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 constexpr double kMindlinExponent = 1.0 / 3.0;
@@ -158,4 +158,4 @@ const FrictionModel* FindFrictionModel(std::string_view name) {
   return model == kModels.end() ? nullptr : &*model;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

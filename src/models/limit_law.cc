@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 void Require(const BranchLaw& law, std::span<const double> displacement, std::span<double> force) {
@@ -61,4 +61,4 @@ const LimitLaw* FindLimitLaw(std::string_view name) {
   return law == kLaws.end() ? nullptr : &*law;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

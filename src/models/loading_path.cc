@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 void RequireWithinReach(std::string_view quantity, double value) {
@@ -183,4 +183,4 @@ LoadingPath MakeEnvelopePath(std::span<const double> displacement,
   return path;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

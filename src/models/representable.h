@@ -6,7 +6,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// `value` rounded to double.
 /// @throws InvalidArgument where it exceeds the largest double
@@ -20,4 +20,4 @@ inline double Representable(std::string_view quantity, long double value) {
   return static_cast<double>(value);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -14,7 +14,7 @@
 #include "mindahl/models/backbone.h"
 #include "models/scaled_branches.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 /// What forces over Tc depend on: ln(σ/Tc), α, δ₀ and, with a spring, ln c, c = Tc/k_r its travel
@@ -350,4 +350,4 @@ void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
                        displacement, force, gradient);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -13,7 +13,7 @@
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// A branch ready for evaluation: t(δ) = force + height·sgn(e)·φ(rate·|e|), e = δ − origin.
 template <typename Real>
@@ -195,4 +195,4 @@ void EvaluateRun(const ScaledBranch<Real>& branch, const Shape& shape, Real slip
 /// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
 inline double ForceLimit(const FrictionModel& model) { return model.bounded ? 1.0 : 2.0; }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -7,7 +7,7 @@
 #include "mindahl/models/backbone_integrals.h"
 #include "models/representable.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 void Require(const BranchLaw& law, double amplitude) {
@@ -54,4 +54,4 @@ double GrossSlipEnergyRatio(double shape_exponent) {
   return shape_exponent >= 1 ? 1.0 : shape_exponent / (2 - shape_exponent);
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -11,7 +11,7 @@
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/loading_path.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 BranchLaw ReferenceLaw(const LoadDependentLaw& law) {
@@ -205,4 +205,4 @@ void EvaluateForceUnderLoad(const LoadDependentLaw& law, std::span<const double>
   });
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

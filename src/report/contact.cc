@@ -8,11 +8,14 @@
 #include <string_view>
 
 namespace mindahl::report {
+
+using identification::FitResult;
+
 namespace {
 
 /// As the contact module takes it: infinite where the fit leaves a parameter open.
-UncertainValue Uncertain(const ParameterEstimate& estimate) {
-  const bool known = estimate.status == ParameterStatus::kFixed;
+contact::UncertainValue Uncertain(const identification::ParameterEstimate& estimate) {
+  const bool known = estimate.status == identification::ParameterStatus::kFixed;
   return {estimate.value,
           estimate.standard_error.value_or(known ? 0.0 : std::numeric_limits<double>::infinity())};
 }
@@ -29,20 +32,22 @@ double Correlation(const FitResult& fit, std::string_view first, std::string_vie
 
 }  // namespace
 
-std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit, const KnownContact& known) {
-  const ParameterEstimate* slip_force = fit.Find("slip_force");
+std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit,
+                                                 const contact::KnownContact& known) {
+  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
   if (!known.normal_load || slip_force == nullptr ||
-      slip_force->identifiability == Identifiability::kIdentifiable) {
+      slip_force->identifiability == identification::Identifiability::kIdentifiable) {
     return std::nullopt;
   }
   return fmt::format("needs an identifiable slip force; from this loop it is at least {:.3g}",
                      slip_force->lower95.value_or(0.0) / known.normal_load->value);
 }
 
-IdentifiedContact IdentifyFittedContact(const FitResult& fit, const KnownContact& known) {
-  IdentifiedContact contact =
-      IdentifyContact(Uncertain(*fit.Find("sigma")), Uncertain(*fit.Find("slip_force")), known,
-                      Correlation(fit, "sigma", "slip_force"));
+contact::IdentifiedContact IdentifyFittedContact(const FitResult& fit,
+                                                 const contact::KnownContact& known) {
+  contact::IdentifiedContact contact =
+      contact::IdentifyContact(Uncertain(*fit.Find("sigma")), Uncertain(*fit.Find("slip_force")),
+                               known, Correlation(fit, "sigma", "slip_force"));
   if (const std::optional<std::string> why = WhyFrictionIsWithheld(fit, known)) {
     contact.friction_coefficient.reset();
     contact.unidentified.push_back("friction coefficient " + *why);
@@ -50,11 +55,11 @@ IdentifiedContact IdentifyFittedContact(const FitResult& fit, const KnownContact
   return contact;
 }
 
-std::optional<double> MeanNormalLoad(std::span<const Record> records,
-                                     const std::optional<Interval>& window) {
+std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
+                                     const std::optional<identification::Interval>& window) {
   double sum = 0.0;
   double count = 0.0;
-  for (const Record& record : records) {
+  for (const loop::Record& record : records) {
     if (record.normal_load.empty()) return std::nullopt;
     for (const double load : record.normal_load) {
       if (window && (load < window->lower || load > window->upper)) continue;

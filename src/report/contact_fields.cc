@@ -9,11 +9,15 @@
 #include "report/propagated_fields.h"
 
 namespace mindahl::report {
+
+using contact::ContactQuantity;
+using contact::PropagatedValue;
+
 namespace {
 
 std::string WhyNotIdentified(const Report& report, ContactQuantity quantity) {
   if (report.failed()) return WhyFailed(report);
-  return fmt::format("needs {}", fmt::join(MissingInputs(report.known, quantity), ", "));
+  return fmt::format("needs {}", fmt::join(contact::MissingInputs(report.known, quantity), ", "));
 }
 
 template <ContactQuantity kQuantity>
@@ -21,8 +25,8 @@ std::string WhyNotIdentified(const Report& report) {
   return WhyNotIdentified(report, kQuantity);
 }
 
-const std::vector<Field<HertzPrediction>>& HertzFields() {
-  using Item = HertzPrediction;
+const std::vector<Field<contact::HertzPrediction>>& HertzFields() {
+  using Item = contact::HertzPrediction;
   static const std::vector<Field<Item>> fields = [] {
     std::vector<Field<Item>> rows;
     const auto of_inputs = [&](const std::string& name, const char* unit, const char* label,

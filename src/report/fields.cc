@@ -8,6 +8,9 @@
 #include "report/names.h"
 
 namespace mindahl::report {
+
+using identification::RecordFit;
+
 namespace {
 
 /// The sum over the records of what one of them has.
@@ -28,7 +31,7 @@ std::function<Value(const Report&)> OneARecord(double RecordFit::*member) {
   };
 }
 
-Value UnitOf(const std::optional<ChosenColumn>& column) {
+Value UnitOf(const std::optional<io::ChosenColumn>& column) {
   return column ? Text(column->unit) : Value{};
 }
 
@@ -46,7 +49,7 @@ void AddInputFields(FieldTable& table) {
       {"input.samples", "", "samples read, those that do not count too",
        [](const Report& report) {
          std::size_t samples = 0;
-         for (const RecordFile& input : report.records) samples += input.record.size();
+         for (const io::RecordFile& input : report.records) samples += input.record.size();
          return Count(samples);
        }},
       {"input.cycles", "", "complete cycles, of all files",

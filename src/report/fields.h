@@ -16,7 +16,7 @@ struct ContactField {
   std::string_view unit;
   std::string_view label;
   std::string_view formula;
-  std::optional<PropagatedValue> (*get)(const Report&);
+  std::optional<contact::PropagatedValue> (*get)(const Report&);
   std::string (*why_null)(const Report&);
 };
 

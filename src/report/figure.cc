@@ -10,6 +10,10 @@
 #include "report/requirements.h"
 
 namespace mindahl::report {
+
+using identification::ParameterEstimate;
+using io::PlotStyle;
+
 namespace {
 
 struct LengthAxis {
@@ -25,7 +29,7 @@ LengthAxis AxisFor(double extent) {
   return {"m", 1.0};
 }
 
-bool IsUnderLoad(const Report& report, const Record& record, std::size_t sample) {
+bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t sample) {
   if (!report.load_window) return true;
   const double load = record.normal_load[sample];
   return load >= report.load_window->lower && load <= report.load_window->upper;
@@ -33,16 +37,16 @@ bool IsUnderLoad(const Report& report, const Record& record, std::size_t sample)
 
 }  // namespace
 
-Plot ToPlot(const Report& report) {
+io::Plot ToPlot(const Report& report) {
   RequireFitted(report, "a figure");
-  Plot plot;
+  io::Plot plot;
   const ParameterEstimate& sigma = *report.fit.Find("sigma");
   const ParameterEstimate& alpha = *report.fit.Find("alpha");
   const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
   plot.title = fmt::format("{}: σ = {:.4g} N/m, α = {:.4g}, Tc = {:.4g} N", report.fit.model->name,
                            sigma.value, alpha.value, slip_force.value);
   double extent = 0.0;
-  for (const RecordFit& fit : report.fit.records) {
+  for (const identification::RecordFit& fit : report.fit.records) {
     extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
   }
   const LengthAxis axis = AxisFor(extent);
@@ -50,13 +54,13 @@ Plot ToPlot(const Report& report) {
     for (double& value : values) value *= axis.per_metre;
     return values;
   };
-  PlotPanel loop{.x_label = "", .y_label = "force [N]", .series = {}, .height = 2.5};
-  PlotPanel residual{.x_label = fmt::format("displacement [{}]", axis.unit),
-                     .y_label = "fitted − measured [N]",
-                     .series = {}};
+  io::PlotPanel loop{.x_label = "", .y_label = "force [N]", .series = {}, .height = 2.5};
+  io::PlotPanel residual{.x_label = fmt::format("displacement [{}]", axis.unit),
+                         .y_label = "fitted − measured [N]",
+                         .series = {}};
   for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
-    const RecordFit& fit = report.fit.records[r];
-    const Record& record = report.records[r].record;
+    const identification::RecordFit& fit = report.fit.records[r];
+    const loop::Record& record = report.records[r].record;
     const std::string suffix =
         report.files.size() > 1 ? fmt::format(" {}", report.files[r]) : std::string();
     loop.series.push_back(
@@ -64,7 +68,8 @@ Plot ToPlot(const Report& report) {
     loop.series.push_back(
         {"fitted" + suffix, scaled(record.displacement), fit.fitted_force, PlotStyle::kLine});
     // What the load window leaves out would squeeze the rest together.
-    PlotSeries& shown = residual.series.emplace_back(PlotSeries{"", {}, {}, PlotStyle::kPoints});
+    io::PlotSeries& shown =
+        residual.series.emplace_back(io::PlotSeries{"", {}, {}, PlotStyle::kPoints});
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (!IsUnderLoad(report, record, i)) continue;
       shown.x.push_back(axis.per_metre * record.displacement[i]);

@@ -2,6 +2,9 @@
 #include "report/names.h"
 
 namespace mindahl::report {
+
+using loop::LoopMeasures;
+
 namespace {
 
 std::function<Value(const Report&)> Measured(double LoopMeasures::*member) {

@@ -5,10 +5,15 @@
 #include "report/propagated_fields.h"
 
 namespace mindahl::report {
+
+using contact::UncertainValue;
+using identification::Interval;
+using identification::MindlinTest;
+
 namespace {
 
-const std::vector<Field<BranchShape>>& BranchFields() {
-  using Item = BranchShape;
+const std::vector<Field<identification::BranchShape>>& BranchFields() {
+  using Item = identification::BranchShape;
   const auto why = [](const Item&) { return std::string("this branch alone does not tell it"); };
   static const std::vector<Field<Item>> fields = {
       {"branch", "", "virgin, unloading or reloading",
@@ -62,7 +67,7 @@ Value StiffnessTests(const Report& report) {
 }
 
 std::string WhyAlphaNotTested(const Report& report) {
-  return report.fit.Find("alpha")->status == ParameterStatus::kFixed
+  return report.fit.Find("alpha")->status == identification::ParameterStatus::kFixed
              ? "alpha was held, so alpha = 1/3 is not tested"
              : "alpha has no standard error: it is at a bound or undetermined";
 }

@@ -13,18 +13,18 @@ double TwoSided(const boost::math::students_t& distribution, double z) {
 
 }  // namespace
 
-AlphaTest TestAlpha(const FitResult& fit) {
+AlphaTest TestAlpha(const identification::FitResult& fit) {
   AlphaTest test;
-  const ParameterEstimate& alpha = *fit.Find("alpha");
-  if (alpha.status == ParameterStatus::kFixed) return test;
-  test.minus_third = alpha.value - kMindlinShapeExponent;
+  const identification::ParameterEstimate& alpha = *fit.Find("alpha");
+  if (alpha.status == identification::ParameterStatus::kFixed) return test;
+  test.minus_third = alpha.value - contact::kMindlinShapeExponent;
   if (!alpha.standard_error || !(*alpha.standard_error > 0)) return test;
   test.z = *test.minus_third / *alpha.standard_error;
   test.p_value = TwoSided(boost::math::students_t(fit.residuals.degrees_of_freedom), *test.z);
   return test;
 }
 
-StiffnessTest TestStiffness(std::string_view radius, const PropagatedValue& ratio,
+StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
                             double degrees_of_freedom) {
   StiffnessTest test;
   test.radius = radius;
@@ -41,7 +41,8 @@ StiffnessTest TestStiffness(std::string_view radius, const PropagatedValue& rati
   return test;
 }
 
-std::vector<StiffnessTest> TestStiffness(const FitResult& fit, const IdentifiedContact& contact) {
+std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
+                                         const contact::IdentifiedContact& contact) {
   std::vector<StiffnessTest> tests;
   const double degrees_of_freedom = fit.residuals.degrees_of_freedom;
   if (contact.hertz) {

@@ -2,6 +2,9 @@
 
 namespace mindahl::report {
 
+using identification::Identifiability;
+using identification::ParameterStatus;
+
 std::string_view Name(ParameterStatus status) {
   switch (status) {
     case ParameterStatus::kFree:
@@ -30,8 +33,8 @@ std::string_view Name(Identifiability identifiability) {
   return "";
 }
 
-std::string_view Name(InitialState state) {
-  return state == InitialState::kVirgin ? "virgin" : "steady";
+std::string_view Name(models::InitialState state) {
+  return state == models::InitialState::kVirgin ? "virgin" : "steady";
 }
 
 std::string_view Name(SlipRegime regime) {

@@ -8,9 +8,9 @@
 namespace mindahl::report {
 
 // How the reports call what the library has as enumerations.
-std::string_view Name(ParameterStatus status);
-std::string_view Name(Identifiability identifiability);
-std::string_view Name(InitialState state);
+std::string_view Name(identification::ParameterStatus status);
+std::string_view Name(identification::Identifiability identifiability);
+std::string_view Name(models::InitialState state);
 std::string_view Name(SlipRegime regime);
 
 }  // namespace mindahl::report

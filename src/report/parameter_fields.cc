@@ -6,6 +6,10 @@
 #include "report/names.h"
 
 namespace mindahl::report {
+
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+
 namespace {
 
 struct ReportedParameter {
@@ -75,7 +79,7 @@ Value Parameters(const Report& report) {
 }
 
 Value Correlations(const Report& report) {
-  const FitResult& fit = report.fit;
+  const identification::FitResult& fit = report.fit;
   const std::size_t count = fit.parameters.size();
   const auto undefined = [&](std::size_t i) {
     return !std::isfinite(fit.correlation[i * count + i]);

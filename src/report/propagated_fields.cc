@@ -2,6 +2,8 @@
 
 namespace mindahl::report {
 
+using contact::PropagatedValue;
+
 const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   using Item = PropagatedValue;
   static const std::vector<Field<Item>> fields = {

@@ -19,7 +19,7 @@ void Require(const ReportInput& input) {
   RequireSameSize("names of files", input.files.size(), "records of the fit", records);
   RequireSameSize("records", input.records.size(), "records of the fit", records);
   for (std::size_t r = 0; r < records; ++r) {
-    const Record& record = input.records[r].record;
+    const loop::Record& record = input.records[r].record;
     if (!input.fit.parameters.empty()) {
       RequireSameSize("samples", record.size(), "residuals of the fit",
                       input.fit.records[r].residual.size());
@@ -32,13 +32,13 @@ void Require(const ReportInput& input) {
 }
 
 /// The sentences are the fit's own until it gives findings: then Sentence(finding, fit) of each.
-std::vector<Warning> FitWarnings(const FitResult& fit) {
+std::vector<Warning> FitWarnings(const identification::FitResult& fit) {
   std::vector<Warning> warnings;
-  for (const FitWarning& warning : fit.warnings) {
+  for (const identification::FitWarning& warning : fit.warnings) {
     warnings.push_back({warning.code, warning.message});
   }
   if (fit.parameters.empty()) {
-    Finding failure;
+    identification::Finding failure;
     failure.code = "fit_failed";
     warnings.push_back({"fit_failed", Sentence(failure, fit)});
   }

@@ -1,6 +1,12 @@
 #include "report/field_table.h"
 
 namespace mindahl::report {
+
+using identification::RecordFit;
+using identification::ResidualStatistics;
+using identification::StrokeBin;
+using identification::StrokeResiduals;
+
 namespace {
 
 Field<Report> Residual(const char* name, const char* unit, const char* label,

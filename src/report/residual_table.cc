@@ -20,7 +20,7 @@ std::string ResidualsCsv(const Report& report) {
     to.insert(to.end(), from.begin(), from.end());
   };
   for (std::size_t r = 0; r < report.records.size(); ++r) {
-    const Record& record = report.records[r].record;
+    const loop::Record& record = report.records[r].record;
     file.insert(file.end(), record.size(), static_cast<double>(r + 1));
     append(time, record.time);
     append(displacement, record.displacement);
@@ -29,15 +29,15 @@ std::string ResidualsCsv(const Report& report) {
     append(residual, report.fit.records[r].residual);
   }
   const bool timed = std::ranges::none_of(
-      report.records, [](const RecordFile& input) { return input.record.time.empty(); });
-  std::vector<CsvColumn> columns;
+      report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
+  std::vector<io::CsvColumn> columns;
   if (report.records.size() > 1) columns.push_back({"file", file});
   if (timed) columns.push_back({"time [s]", time});
   columns.push_back({"displacement [m]", displacement});
   columns.push_back({"force [N]", force});
   columns.push_back({"fitted_force [N]", fitted});
   columns.push_back({"residual [N]", residual});
-  return CsvText(columns);
+  return io::CsvText(columns);
 }
 
 }  // namespace mindahl::report

@@ -1,6 +1,9 @@
 #include "report/field_table.h"
 
 namespace mindahl::report {
+
+using identification::ModelScore;
+
 namespace {
 
 std::string WhyNoScore(const ModelScore&) { return "this model has no fit to the record"; }
@@ -42,8 +45,8 @@ const std::vector<Field<ModelScore>>& ScoreFields() {
   return fields;
 }
 
-const std::vector<Field<ModelSelection>>& SelectionFields() {
-  using Item = ModelSelection;
+const std::vector<Field<identification::ModelSelection>>& SelectionFields() {
+  using Item = identification::ModelSelection;
   static const std::vector<Field<Item>> fields = {
       {"chosen", "", "the reported one: its place in models",
        [](const Item& item) { return Count(item.chosen); }},

@@ -9,6 +9,10 @@
 #include <stdexcept>
 
 namespace mindahl::report {
+
+using identification::Finding;
+using identification::FitResult;
+
 namespace {
 
 double Needed(const Finding& finding, std::string_view name) {

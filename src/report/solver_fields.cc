@@ -3,6 +3,10 @@
 #include "report/field_table.h"
 
 namespace mindahl::report {
+
+using identification::StartReport;
+using models::BranchLaw;
+
 namespace {
 
 std::vector<Field<StartReport>> LawFields(const std::string& prefix, const char* where,

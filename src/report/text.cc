@@ -13,6 +13,11 @@
 #include "report/requirements.h"
 
 namespace mindahl::report {
+
+using contact::PropagatedValue;
+using identification::FitResult;
+using identification::RecordFit;
+
 namespace {
 
 std::string Significant(double value) { return fmt::format("{:.6g}", value); }
@@ -48,7 +53,7 @@ std::string Wrapped(std::string_view text, std::size_t indent) {
   return wrapped + '\n';
 }
 
-std::string Words(Identifiability identifiability) {
+std::string Words(identification::Identifiability identifiability) {
   std::string words(Name(identifiability));
   std::ranges::replace(words, '_', ' ');
   return words;
@@ -63,13 +68,13 @@ std::string ParameterTable(const FitResult& fit) {
                         interval, verdict);
   };
   row("parameter", "unit", "value", "std error", "95 % interval", "verdict");
-  for (const ParameterEstimate& estimate : fit.parameters) {
-    if (estimate.status == ParameterStatus::kFixed) {
+  for (const identification::ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.status == identification::ParameterStatus::kFixed) {
       row(estimate.name, estimate.unit, Significant(estimate.value), "-", "-", "fixed");
       continue;
     }
     std::string verdict = Words(estimate.identifiability);
-    if (estimate.status != ParameterStatus::kFree) verdict += ", at bound";
+    if (estimate.status != identification::ParameterStatus::kFree) verdict += ", at bound";
     row(estimate.name, estimate.unit, Significant(estimate.value),
         estimate.standard_error ? fmt::format("{:.2g}", *estimate.standard_error) : "-",
         fmt::format("{} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
@@ -77,7 +82,7 @@ std::string ParameterTable(const FitResult& fit) {
   return text;
 }
 
-std::string ErrorText(const UncertainValue& value) {
+std::string ErrorText(const contact::UncertainValue& value) {
   return std::isfinite(value.standard_error) ? fmt::format("± {:.2g}", value.standard_error)
                                              : "± open";
 }
@@ -89,7 +94,7 @@ std::string SharesText(const PropagatedValue& value) {
                      100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
 }
 
-std::string HertzText(const HertzPrediction& hertz) {
+std::string HertzText(const contact::HertzPrediction& hertz) {
   std::string text = "  Hertz and Mindlin predict from materials, radii and load:\n";
   const auto line = [&](const char* name, const PropagatedValue& value, const char* unit,
                         const PropagatedValue& ratio) {
@@ -105,7 +110,7 @@ std::string HertzText(const HertzPrediction& hertz) {
 }
 
 std::string ContactText(const Report& report) {
-  const IdentifiedContact& contact = report.contact;
+  const contact::IdentifiedContact& contact = report.contact;
   std::string text =
       "  G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a compliance: many texts write G* for its inverse\n";
   for (const ContactField& field : ContactFields()) {
@@ -127,14 +132,14 @@ std::string ContactText(const Report& report) {
 
 std::string BranchShapesText(const FitResult& fit) {
   std::string text;
-  for (const BranchShape& shape : fit.branch_shapes) {
+  for (const identification::BranchShape& shape : fit.branch_shapes) {
     text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "  α branch by branch: " : ", ",
                         shape.branch, shape.shape_exponent, shape.standard_error);
   }
   return text.empty() ? text : Wrapped(text, 4);
 }
 
-std::string SelectionText(const ModelSelection& selection) {
+std::string SelectionText(const identification::ModelSelection& selection) {
   std::string text =
       fmt::format("models compared on {:.0f} effective samples", selection.effective_samples);
   text += selection.held_out_cycles > 0
@@ -143,7 +148,7 @@ std::string SelectionText(const ModelSelection& selection) {
   text += fmt::format("  {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}\n", "model", "free", "rms [N]",
                       "dAICc", "weight", "held-out rms [N]");
   for (std::size_t i = 0; i < selection.scores.size(); ++i) {
-    const ModelScore& score = selection.scores[i];
+    const identification::ModelScore& score = selection.scores[i];
     const bool listed =
         std::ranges::find(selection.indistinguishable, i) != selection.indistinguishable.end();
     const std::string name = fmt::format("{}{}", score.model->name, score.rig ? " + rig" : "");
@@ -243,7 +248,7 @@ std::string ToText(const Report& report) {
   for (const Warning& warning : report.fit_warnings) {
     if (warning.code == "no_model_fits") text += "\n" + Wrapped(warning.message, 2);
   }
-  const ResidualStatistics& residuals = fit.residuals;
+  const identification::ResidualStatistics& residuals = fit.residuals;
   text += fmt::format(
       "\nresiduals: rms {:.4g} N ({:.3g} % of Tc), largest {:.4g} N, R² {:.6f}, Durbin-Watson "
       "{:.2f},\n           {:.0f} effective samples of {}\n",
@@ -264,7 +269,7 @@ std::string ToText(const Report& report) {
   if (fit.outliers > 0) {
     text += fmt::format("           {} outliers count less than half\n", fit.outliers);
   }
-  const LoopMeasures& measures = widest.measures;
+  const loop::LoopMeasures& measures = widest.measures;
   text += fmt::format("\nloop: X = {:.5g} m, T* = {:.5g} N, {}\n", measures.amplitude,
                       measures.peak_force, SlipText(loop));
   text += fmt::format(
@@ -272,11 +277,11 @@ std::string ToText(const Report& report) {
       measures.energy_per_cycle ? fmt::format("{:.5g} J", *measures.energy_per_cycle) : "not",
       loop.model_energy);
   if (loop.energy_ratio) {
-    text += fmt::format(
-        "      energy ratio {:.4g}{}\n", *loop.energy_ratio,
-        loop.gross_slip_displacement
-            ? fmt::format(", gross slip from {:.4g}", GrossSlipEnergyRatio(fit.law.shape_exponent))
-            : "");
+    text += fmt::format("      energy ratio {:.4g}{}\n", *loop.energy_ratio,
+                        loop.gross_slip_displacement
+                            ? fmt::format(", gross slip from {:.4g}",
+                                          models::GrossSlipEnergyRatio(fit.law.shape_exponent))
+                            : "");
   }
   text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report);
   text += "\nis it Mindlin's contact?\n" + MappingText(report);

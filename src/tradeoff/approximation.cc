@@ -9,7 +9,13 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/limit_law.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
+
+using methods::Method;
+using methods::Resolution;
+using models::BranchLaw;
+using models::FrictionModel;
+
 namespace {
 
 constexpr std::array kSubsteps = {1, 2, 4, 8, 16, 32, 64};
@@ -43,13 +49,13 @@ std::vector<Resolution> Resolutions(const Method& method) {
 }
 
 const FrictionModel& RequireModel(std::string_view name) {
-  const FrictionModel* model = FindFrictionModel(name);
+  const FrictionModel* model = models::FindFrictionModel(name);
   if (model == nullptr) throw InvalidArgument(fmt::format("there is no model '{}'", name));
   return *model;
 }
 
 const Method& RequireMethod(std::string_view name) {
-  const Method* method = FindMethod(name);
+  const Method* method = methods::FindMethod(name);
   if (method == nullptr) throw InvalidArgument(fmt::format("there is no method '{}'", name));
   return *method;
 }
@@ -80,15 +86,15 @@ std::string Describe(const Approximation& approximation) {
 
 BranchLaw LawOf(const Approximation& approximation, const BranchLaw& law) {
   BranchLaw result = law;
-  const FrictionModel* model = FindFrictionModel(approximation.model);
+  const FrictionModel* model = models::FindFrictionModel(approximation.model);
   if (model != nullptr && model->shape_exponent) result.shape_exponent = *model->shape_exponent;
   return result;
 }
 
-Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
-  if (const LimitLaw* limit = FindLimitLaw(approximation.model)) {
+methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
+  if (const models::LimitLaw* limit = models::FindLimitLaw(approximation.model)) {
     Validate(law);
-    return [limit, law](const Drive& drive, std::span<double> force) {
+    return [limit, law](const methods::Drive& drive, std::span<double> force) {
       limit->evaluate_force(law, drive.displacement, force);
     };
   }
@@ -97,8 +103,9 @@ Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
 }
 
 std::string ExactModel(const BranchLaw& law) {
-  for (const FrictionModel& model : FrictionModels()) {
-    if (model.memory == Memory::kReturnPoint && model.shape_exponent == law.shape_exponent) {
+  for (const FrictionModel& model : models::FrictionModels()) {
+    if (model.memory == models::Memory::kReturnPoint &&
+        model.shape_exponent == law.shape_exponent) {
       return std::string(model.name);
     }
   }
@@ -107,7 +114,8 @@ std::string ExactModel(const BranchLaw& law) {
 
 std::vector<Approximation> ModelLadder(const BranchLaw& law) {
   std::vector<Approximation> ladder;
-  for (const LimitLaw& limit : LimitLaws()) ladder.push_back({std::string(limit.name), ""});
+  for (const models::LimitLaw& limit : models::LimitLaws())
+    ladder.push_back({std::string(limit.name), ""});
   for (const std::string_view model : {"jenkins", "simplified-dahl", "dahl", "mindlin"}) {
     ladder.push_back({std::string(model), "exact"});
   }
@@ -120,7 +128,7 @@ std::vector<Approximation> ModelLadder(const BranchLaw& law) {
 
 std::vector<Approximation> MethodLadder(const BranchLaw& law) {
   std::vector<Approximation> ladder;
-  for (const Method& method : Methods()) {
+  for (const Method& method : methods::Methods()) {
     for (const Resolution& resolution : Resolutions(method)) {
       ladder.push_back({ExactModel(law), std::string(method.name), resolution});
     }
@@ -136,4 +144,4 @@ std::vector<Approximation> AllApproximations(const BranchLaw& law) {
   return all;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

@@ -6,14 +6,14 @@
 
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 
 std::vector<double> CyclesPassed(std::span<const double> displacement) {
   constexpr double kQuarter = 0.25;
   constexpr double kHalf = 0.5;
   std::vector<double> way = {0.0};  // the contact is unloaded there, wherever samples begin
   way.insert(way.end(), displacement.begin(), displacement.end());
-  const std::vector<std::size_t> reversals = FindReversals(way, 0.0);
+  const std::vector<std::size_t> reversals = loop::FindReversals(way, 0.0);
   std::vector<double> extremes = {0.0};
   for (const std::size_t reversal : reversals) extremes.push_back(way[reversal]);
   // The last swing is not over: it is taken to be as long as the one before, or twice the first,
@@ -37,4 +37,4 @@ std::vector<double> CyclesPassed(std::span<const double> displacement) {
   return cycles;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

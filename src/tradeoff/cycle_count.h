@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 
 /// Cycles passed at each sample of a drive from the unloaded contact: a quarter to the first
 /// reversal, half a cycle from one to the next, in proportion to the displacement between.
 std::vector<double> CyclesPassed(std::span<const double> displacement);
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

@@ -6,14 +6,17 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
+
+using models::BranchLaw;
+
 namespace {
 
 constexpr double kLambdasPerDecade = 12;
 constexpr double kBoundTolerance = 1e-3;  // relative, of λ
 
 void Validate(const BranchLaw& law, const ModelRegionOptions& options) {
-  mindahl::Validate(law);
+  models::Validate(law);
   if (law.shape_exponent >= 1) {
     ThrowInvalid("shape exponent [-]", law.shape_exponent,
                  "must be < 1: lambda counts gross-slip displacements");
@@ -47,7 +50,7 @@ DenseCycles MakeDenseCycles(const BranchLaw& law, double amplitude, std::size_t 
   dense.displacement.push_back(0.0);
   const auto sweep = [&](double from, double to) {
     const double length = std::abs(to - from);
-    const double curved = std::min(length, 2 * GrossSlipDisplacement(law));
+    const double curved = std::min(length, 2 * models::GrossSlipDisplacement(law));
     constexpr double kNearest = 1e-6;  // of the curved part: a force that jumps has jumped there
     std::vector<double> distances = {kNearest * curved};
     for (int i = 1; i <= kSteps; ++i)
@@ -76,14 +79,14 @@ DenseCycles MakeDenseCycles(const BranchLaw& law, double amplitude, std::size_t 
 
 Scene MakeScene(const BranchLaw& law, double lambda, std::size_t cycles) {
   Scene scene;
-  scene.dense = MakeDenseCycles(law, lambda * GrossSlipDisplacement(law), cycles);
+  scene.dense = MakeDenseCycles(law, lambda * models::GrossSlipDisplacement(law), cycles);
   scene.reference = MakeReferenceResponse(law, {.displacement = scene.dense.displacement});
   return scene;
 }
 
 /// Errors of each cycle: of the force, the first from the virgin loading on; of the energy, that of
 /// the loop from +X to +X.
-std::vector<Precision> ErrorsByCycle(const Scene& scene, const Evaluator& evaluate,
+std::vector<Precision> ErrorsByCycle(const Scene& scene, const methods::Evaluator& evaluate,
                                      std::size_t cycles) {
   const DenseCycles& dense = scene.dense;
   std::vector<double> force(dense.displacement.size());
@@ -129,7 +132,7 @@ std::vector<ModelRegion> FindModelRegions(const BranchLaw& law, const ModelRegio
   };
   std::vector<ModelRegion> regions;
   for (const Approximation& approximation : ModelLadder(law)) {
-    const Evaluator evaluate = Prepare(approximation, law);
+    const methods::Evaluator evaluate = Prepare(approximation, law);
     std::map<double, std::vector<Precision>> known;
     const auto errors_at = [&](double lambda) -> const std::vector<Precision>& {
       auto found = known.find(lambda);
@@ -173,4 +176,4 @@ std::vector<ModelRegion> FindModelRegions(const BranchLaw& law, const ModelRegio
   return regions;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

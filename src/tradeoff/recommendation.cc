@@ -7,7 +7,7 @@
 #include "mindahl/core/error.h"
 #include "tradeoff/cycle_count.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 namespace {
 
 /// Costs this near each other are equal to the clock.
@@ -68,7 +68,7 @@ std::optional<std::size_t> MostPrecise(const std::vector<Candidate>& candidates,
 
 }  // namespace
 
-Recommendation Recommend(const BranchLaw& law, const Drive& drive,
+Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& drive,
                          const RecommendOptions& options) {
   Validate(options);
   const ReferenceResponse reference = MakeReferenceResponse(law, drive);
@@ -114,4 +114,4 @@ Recommendation Recommend(const BranchLaw& law, const Drive& drive,
   return result;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

@@ -9,7 +9,11 @@
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/backbone_integrals.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
+
+using methods::Drive;
+using models::BranchLaw;
+
 namespace {
 
 /// The extrema that a Masing contact remembers, each with the force there.
@@ -57,10 +61,12 @@ class RememberedExtrema {
 
   /// φ of a share of x, with its sign.
   [[nodiscard]] long double Backbone(double x, long double share) const {
-    const auto y = backbone::Normalize(law_.tangential_stiffness, std::abs(x), law_.slip_force);
-    const auto at = backbone::Reduce({y.high * share, y.low * share},
-                                     static_cast<long double>(law_.shape_exponent));
-    const long double force = backbone::GeneralShape<long double>{law_.shape_exponent}.Force(at);
+    const auto y =
+        models::backbone::Normalize(law_.tangential_stiffness, std::abs(x), law_.slip_force);
+    const auto at = models::backbone::Reduce({y.high * share, y.low * share},
+                                             static_cast<long double>(law_.shape_exponent));
+    const long double force =
+        models::backbone::GeneralShape<long double>{law_.shape_exponent}.Force(at);
     return x < 0 ? -force : force;
   }
 
@@ -186,7 +192,8 @@ CostFloor MeasureCostFloor(const Drive& drive) {
   return floor;
 }
 
-double MeasureCost(const Evaluator& evaluate, const Drive& drive, std::span<double> force) {
+double MeasureCost(const methods::Evaluator& evaluate, const Drive& drive,
+                   std::span<double> force) {
   return MeasureCost(force.size(), [&] {
     evaluate(drive, force);
     Keep(force);
@@ -220,4 +227,4 @@ std::vector<bool> ParetoFront(std::span<const WorkPrecision> points, Criterion c
   return on_front;
 }
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

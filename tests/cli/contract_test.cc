@@ -14,7 +14,7 @@
 #include "report/fields.h"
 
 // docs/contract.md against the program: it names every option, key and code, and none besides.
-namespace mindahl {
+namespace mindahl::cli {
 namespace {
 
 using nlohmann::json;
@@ -222,4 +222,4 @@ TEST(Contract, DocumentsEveryKeyOfTheOtherCommands) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::cli

@@ -13,7 +13,7 @@
 #include "io/temporary_directory.h"
 
 // fit: the JSON that scripts rely on, files in every unit and format, outputs, exit status.
-namespace mindahl {
+namespace mindahl::cli {
 namespace {
 
 using nlohmann::json;
@@ -433,4 +433,4 @@ TEST(FitCommand, JointFitNumbersTheOffsetsOfItsRecords) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::cli

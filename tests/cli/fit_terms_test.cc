@@ -15,7 +15,7 @@
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
 // between models, and what the report says of each.
-namespace mindahl {
+namespace mindahl::cli {
 namespace {
 
 using nlohmann::json;
@@ -464,4 +464,4 @@ TEST(FitCommand, LoadOptionsWithoutALoadNameTheColumnOption) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::cli

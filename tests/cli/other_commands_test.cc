@@ -10,7 +10,7 @@
 #include "io/temporary_directory.h"
 
 // simulate, contact and validate.
-namespace mindahl {
+namespace mindahl::cli {
 namespace {
 
 using nlohmann::json;
@@ -286,4 +286,4 @@ TEST(Validate, PrintsATableAndTheVerdict) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::cli

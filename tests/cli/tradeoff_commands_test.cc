@@ -12,7 +12,7 @@
 #include "io/temporary_directory.h"
 
 // simulate --method, tradeoff and recommend.
-namespace mindahl {
+namespace mindahl::cli {
 namespace {
 
 using nlohmann::json;
@@ -265,4 +265,4 @@ TEST(Recommend, RefusesAToleranceThatIsNone) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::cli

@@ -12,8 +12,10 @@
 
 // What is known of the contact, with its standard uncertainty: how it is read, and what becomes of
 // it in every command that takes it.
-namespace mindahl {
+namespace mindahl::cli {
 namespace {
+
+using namespace contact;
 
 using cli::ParseUncertainValue;
 using nlohmann::json;
@@ -353,4 +355,4 @@ TEST(Simulate, RefusesAnUncertaintyOfParametersThatAreNoMeasurement) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::cli

@@ -9,7 +9,7 @@
 #include "io/temporary_directory.h"
 
 // Help, exit status and messages, of good usage and bad.
-namespace mindahl {
+namespace mindahl::cli {
 namespace {
 
 using ::testing::HasSubstr;
@@ -290,4 +290,4 @@ TEST_F(Config, RefusesWhatItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::cli

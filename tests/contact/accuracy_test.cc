@@ -14,7 +14,7 @@
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
@@ -100,4 +100,4 @@ TEST(ContactAccuracy, RefusesWhatNoDoubleHolds) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::contact

@@ -10,7 +10,7 @@
 #include "message_of.h"
 #include "printed_equations.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 using printed::ErrorInUlps;
@@ -397,4 +397,4 @@ TEST(MindlinInput, RefusesFrictionlessAndUnloadedContacts) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::contact

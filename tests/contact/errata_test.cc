@@ -11,7 +11,7 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "printed_equations.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 using printed::Real;
@@ -184,4 +184,4 @@ TEST(Errata, SlipAnnulusNeverExceedsTheContactItIsPartOf) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::contact

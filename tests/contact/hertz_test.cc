@@ -8,7 +8,7 @@
 
 #include "message_of.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -196,4 +196,4 @@ TEST(HertzInput, NamesTheQuantityThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::contact

@@ -15,7 +15,7 @@
 
 #include "message_of.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -685,4 +685,4 @@ TEST(IdentifyContactInput, NamesTheKnowledgeThatIsInvalidEvenWhereItIsNotNeeded)
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::contact

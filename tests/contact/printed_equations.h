@@ -14,7 +14,7 @@ inline Real TwoThirdsPower(const Real& x) { return x > 0 ? Real(pow(x, Real(2) /
 inline Real ThreeHalvesPower(const Real& x) { return x > 0 ? Real(x * sqrt(x)) : Real(0); }
 
 struct Contact {
-  explicit Contact(const MindlinContact& contact)
+  explicit Contact(const contact::MindlinContact& contact)
       : contact_radius(contact.contact_radius),
         tangential_compliance(contact.tangential_compliance),
         slip_force(contact.slip_force) {}

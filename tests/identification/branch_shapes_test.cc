@@ -12,8 +12,11 @@
 #include "recovery/recovered.h"
 
 // Whether one shape fits all branches, and whether it is Mindlin's.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -225,4 +228,4 @@ TEST(MindlinTest, ContactOfASmallerExponentIsToldFromARigWhereTheNoiseAllows) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -12,8 +12,11 @@
 #include "recovery/recovered.h"
 
 // What noise of the displacement does to a fit, and what the fit says of it.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -170,4 +173,4 @@ TEST(DisplacementNoise, GivesTheSameResultEveryTime) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

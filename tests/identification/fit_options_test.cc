@@ -13,8 +13,11 @@
 #include "recovery/recovered.h"
 
 // What Fit accepts, what it refuses with which words, and what each option does.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -258,4 +261,4 @@ TEST(FitOptions, WrongForceSenseIsAFailedFitAndNotACrash) {
 TEST(FitOptions, DefaultResultHasNotConverged) { EXPECT_FALSE(FitResult{}.converged); }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

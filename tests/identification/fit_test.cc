@@ -12,8 +12,11 @@
 #include "recovery/recovered.h"
 
 // What a fit reports beside the parameters: state, drift, correlation, residuals, verdicts.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -208,4 +211,4 @@ TEST(Fit, OpenIntervalStillHoldsItsOwnValue) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

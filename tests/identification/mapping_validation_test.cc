@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 TEST(MappingValidation, NoiseFreeLoopsReturnTheContactAtEveryAmplitude) {
@@ -76,4 +76,4 @@ TEST(MappingValidation, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -11,8 +11,11 @@
 #include "recovery/recovered.h"
 
 // Records that no choice of parameters follows, and what the fit then says of them.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -115,4 +118,4 @@ TEST(Misfit, GoodFitIsNotBlamed) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -14,8 +14,11 @@
 #include "support/measured.h"
 
 // Which model SelectModel finds behind records of known contacts, and when it says that it cannot.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using ::testing::Contains;
 using testing::Cycling;
@@ -317,4 +320,4 @@ TEST(ModelSelection, TheTribometerDoesNotTellAFreeShapeFromASoftRig) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

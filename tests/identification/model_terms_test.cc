@@ -14,8 +14,11 @@
 
 // What a fit may add to the contact - a rig's spring, a sloped plateau, drift, a varying load - and
 // what it may leave out.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -275,4 +278,4 @@ TEST(ModelTerms, StartsBeyondTheGridAreDrawnAndReachTheSameResult) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -12,8 +12,11 @@
 #include "recovery/recovered.h"
 
 // The noise of a loop as an autoregressive process, and the standard errors that follow from it.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -255,4 +258,4 @@ TEST(NoiseModel, StandardErrorsAreTheScatterOfLoopsWithCorrelatedNoise) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
 
 using ::testing::HasSubstr;
@@ -89,4 +89,4 @@ TEST(ResidualStatistics, NoSampleIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -13,8 +13,10 @@
 #include "recovery/recovered.h"
 
 // What comes back in every stroke, told from noise.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
 
 using testing::Cycling;
 using testing::Generator;
@@ -196,4 +198,4 @@ TEST(ResidualStructure, SamplesThatDoNotCountChangeNothing) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

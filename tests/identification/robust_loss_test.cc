@@ -12,8 +12,11 @@
 #include "recovery/recovered.h"
 
 // Outliers must not move the parameters, and expecting them must cost little where there are none.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -159,4 +162,4 @@ TEST(RobustLoss, WithoutOutliersLittleIsLost) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

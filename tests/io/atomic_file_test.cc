@@ -11,7 +11,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 mode_t Permissions(const std::filesystem::path& path) {
@@ -150,4 +150,4 @@ TEST(AtomicFile, LeavesOldFileAndNothingElseWhenWritingFails) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::io

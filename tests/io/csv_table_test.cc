@@ -11,7 +11,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -346,4 +346,4 @@ TEST(CsvTable, NamesUnreadableFileAndReason) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::io

@@ -13,7 +13,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 /// Sets an environment variable for one test.
@@ -307,4 +307,4 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::io

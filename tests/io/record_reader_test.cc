@@ -10,7 +10,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl {
+namespace mindahl::io {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -382,4 +382,4 @@ TEST_F(MeasuredRecord, BandBrakeIsReadByItsHeader) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::io

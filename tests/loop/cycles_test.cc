@@ -14,7 +14,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 using testing::Generator;
@@ -315,4 +315,4 @@ TEST(CycleEnergies, RefuseAnEnergyThatNoDoubleHolds) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::loop

@@ -12,7 +12,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 using testing::Generator;
@@ -187,4 +187,4 @@ TEST(MoveReversals, DropsOneThatTheRecordBeginsAt) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::loop

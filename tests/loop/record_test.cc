@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 std::string MessageOf(const Record& record) {
@@ -39,4 +39,4 @@ TEST(Record, NamesTheSampleThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::loop

@@ -13,7 +13,7 @@
 #include "../support/measured.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 namespace {
 
 using testing::Generator;
@@ -318,4 +318,4 @@ TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::loop

@@ -11,8 +11,10 @@
 #include "mindahl/core/error.h"
 #include "responses.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 namespace {
+
+using namespace models;
 
 using testing::Displacements;
 using testing::LargestDifference;
@@ -187,4 +189,4 @@ TEST(Iwan, RefusesNoElementAndSizesThatDiffer) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::methods

@@ -13,8 +13,10 @@
 #include "mindahl/models/response.h"
 #include "responses.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 namespace {
+
+using namespace models;
 
 using testing::Displacements;
 using testing::LargestDifference;
@@ -124,4 +126,4 @@ TEST(Envelope, IsOnlyLookedAtByModelsThatReferToTheirSteadyLoop) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::methods

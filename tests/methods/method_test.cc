@@ -13,8 +13,10 @@
 #include "mindahl/core/error.h"
 #include "responses.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 namespace {
+
+using namespace models;
 
 using testing::DefinedForce;
 using testing::Displacements;
@@ -309,4 +311,4 @@ TEST(Method, IsFoundByItsNameOnly) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::methods

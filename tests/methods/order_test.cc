@@ -9,8 +9,10 @@
 
 #include "responses.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 namespace {
+
+using namespace models;
 
 using testing::Displacements;
 using testing::LargestDifference;
@@ -196,4 +198,4 @@ TEST(Table, IsExactForTheHyperbolaItIsSpacedBy) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::methods

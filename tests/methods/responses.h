@@ -18,10 +18,11 @@
 namespace mindahl::testing {
 
 inline std::vector<double> RespondBy(std::string_view method, std::string_view model,
-                                     const BranchLaw& law, const Drive& drive,
-                                     const Resolution& resolution = {}) {
+                                     const models::BranchLaw& law, const methods::Drive& drive,
+                                     const methods::Resolution& resolution = {}) {
   std::vector<double> force(drive.displacement.size());
-  Prepare(*FindMethod(method), *FindFrictionModel(model), law, resolution)(drive, force);
+  Prepare(*methods::FindMethod(method), *models::FindFrictionModel(model), law, resolution)(drive,
+                                                                                            force);
   return force;
 }
 
@@ -31,7 +32,8 @@ using Extended = boost::multiprecision::cpp_bin_float_double_extended;
 
 /// Masing forces at every sample, each from the whole past: quadratic in the samples.
 template <typename Real>
-std::vector<double> DefinedForce(const BranchLaw& law, std::span<const double> displacement) {
+std::vector<double> DefinedForce(const models::BranchLaw& law,
+                                 std::span<const double> displacement) {
   const reference::Law<Real> exact{Real(law.tangential_stiffness), Real(law.shape_exponent),
                                    Real(law.slip_force)};
   std::vector<Real> past;
@@ -59,12 +61,12 @@ inline double Largest(std::span<const double> values) {
   return largest;
 }
 
-inline std::vector<double> Displacements(const ExcitationOptions& options) {
-  return MakeExcitation(options).displacement;
+inline std::vector<double> Displacements(const models::ExcitationOptions& options) {
+  return models::MakeExcitation(options).displacement;
 }
 
 /// δc, and Tc/σ for α >= 1, which has none.
-inline double ReferenceDisplacement(const BranchLaw& law) {
+inline double ReferenceDisplacement(const models::BranchLaw& law) {
   return law.shape_exponent < 1 ? GrossSlipDisplacement(law)
                                 : law.slip_force / law.tangential_stiffness;
 }

@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -149,4 +149,4 @@ TEST(BranchLaw, ValidationNamesParameterUnitValueAndRule) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

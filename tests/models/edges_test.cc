@@ -16,7 +16,7 @@
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 using ::testing::HasSubstr;
@@ -272,4 +272,4 @@ TEST(Edges, ExcitationsRefuseWhatNoDoubleHolds) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -15,7 +15,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 TEST(Excitation, SineIsExactAtZerosAndExtremesAndRepeatsBitForBit) {
@@ -299,4 +299,4 @@ TEST(Excitation, RandomDoesNotRepeatTheNumbersOfTheNoise) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

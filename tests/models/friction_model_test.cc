@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 TEST(FrictionModels, AreFoundByTheNamesOfTheCommandLine) {
@@ -86,4 +86,4 @@ TEST(FrictionModels, SteadyPeakDerivativesAreThoseOfThePeak) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -18,7 +18,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 using testing::Generator;
@@ -301,4 +301,4 @@ TEST(Gradient, NeedsARowOfAllColumnsASample) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 using ::testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(LimitLaw, RefusesWhatItCannotServe) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -10,8 +10,10 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
+
+using namespace loop;
 
 using testing::Generator;
 using testing::History;
@@ -273,4 +275,4 @@ TEST(LoadingPath, NamesTheSampleThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -17,7 +17,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 using testing::Generator;
@@ -399,4 +399,4 @@ TEST(EvaluateForce, RejectsSizesThatDiffer) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

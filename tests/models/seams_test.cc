@@ -15,7 +15,7 @@
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 using testing::History;
@@ -233,4 +233,4 @@ TEST(Seams, AreNotSeenBySinglePrecision) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -11,7 +11,7 @@
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 using testing::History;
@@ -201,4 +201,4 @@ TEST(SteadyLoop, GrossSlipStartsAtTheFrettingCommunitysRatio) {
 
 void PrintTo(const FrictionModel& model, std::ostream* out) { *out << model.name; }
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -17,7 +17,7 @@
 #include "../support/worst.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::models {
 namespace {
 
 using testing::Generator;
@@ -695,4 +695,4 @@ TEST(VariableLoad, RefusesALawByItsParameter) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -12,8 +12,12 @@
 // Mindlin's contact must come back from any correct source of its loops: the equations for an
 // imposed displacement, those for an imposed force, and an ensemble of spring-slider elements that
 // knows neither.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace contact;
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -233,4 +237,4 @@ TEST(MindlinSource, ContactsFromAtomicToTectonicScaleAreAllTheSameToTheFit) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -8,8 +8,11 @@
 
 // Every identifiable model, and every way in which a correct record may be cut, shifted, mirrored
 // or sampled.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -281,4 +284,4 @@ TEST(UnitInvariance, MirroredShiftedAndRescaledNoisyRecordsGiveTheSameFit) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

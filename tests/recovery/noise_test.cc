@@ -13,8 +13,11 @@
 
 // What the fit says of itself when the record is noisy or says little: intervals that hold the
 // truth as often as they state, and verdicts that do not claim what the record does not show.
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace loop;
+using namespace models;
 
 using testing::Cycling;
 using testing::FitOne;
@@ -296,4 +299,4 @@ TEST(Noise, JointFitOfRecordsWithTheirOwnOffsetsSharesTheContact) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -47,15 +47,15 @@ inline History Cycling(Wave wave, double amplitude, double cycles, int samples_p
   return history;
 }
 
-inline Record MakeRecord(History displacement, std::vector<double> force) {
-  Record record;
+inline loop::Record MakeRecord(History displacement, std::vector<double> force) {
+  loop::Record record;
   record.displacement = std::move(displacement);
   record.force = std::move(force);
   return record;
 }
 
 /// The samples from `begin` on.
-inline Record From(Record record, std::size_t begin) {
+inline loop::Record From(loop::Record record, std::size_t begin) {
   const auto cut = [begin](std::vector<double>& column) {
     if (!column.empty()) column.erase(column.begin(), column.begin() + static_cast<long>(begin));
   };
@@ -66,39 +66,41 @@ inline Record From(Record record, std::size_t begin) {
   return record;
 }
 
-inline Record Shifted(Record record, double displacement, double force) {
+inline loop::Record Shifted(loop::Record record, double displacement, double force) {
   for (double& x : record.displacement) x += displacement;
   for (double& f : record.force) f += force;
   return record;
 }
 
-inline Record Scaled(Record record, double displacement, double force) {
+inline loop::Record Scaled(loop::Record record, double displacement, double force) {
   for (double& x : record.displacement) x *= displacement;
   for (double& f : record.force) f *= force;
   return record;
 }
 
-inline Record WithForceNoise(Record record, double standard_deviation, Generator& generator) {
+inline loop::Record WithForceNoise(loop::Record record, double standard_deviation,
+                                   Generator& generator) {
   for (double& force : record.force) force += standard_deviation * Normal(generator);
   return record;
 }
 
 /// A Masing contact in series with a rig's spring [N/m], moved together to 1.5 times gross slip.
-inline Record SprungLoop(const BranchLaw& law, double stiffness) {
+inline loop::Record SprungLoop(const models::BranchLaw& law, double stiffness) {
   const double reach = 1.5 * GrossSlipDisplacement(law, {stiffness});
   const History displacement = Cycling(Wave::kSine, reach, 2.0, 200);
   std::vector<double> force(displacement.size());
-  const FrictionModel& model = Model("mindlin-dahl");
-  EvaluateForce(model, law, PathOf(model, displacement), displacement, force, {stiffness});
+  const models::FrictionModel& model = Model("mindlin-dahl");
+  models::EvaluateForce(model, law, PathOf(model, displacement), displacement, force, {stiffness});
   return MakeRecord(displacement, force);
 }
 
-inline FitResult FitOne(const Record& record, const FitOptions& options = {}) {
-  return Fit({&record, 1}, options);
+inline identification::FitResult FitOne(const loop::Record& record,
+                                        const identification::FitOptions& options = {}) {
+  return identification::Fit({&record, 1}, options);
 }
 
 /// Largest of the relative errors of σ, α and Tc; of an α below 0.1 that over 0.1.
-inline double WorstError(const FitResult& fit, const BranchLaw& truth) {
+inline double WorstError(const identification::FitResult& fit, const models::BranchLaw& truth) {
   const double sigma = std::abs(fit.law.tangential_stiffness / truth.tangential_stiffness - 1);
   const double alpha =
       std::abs(fit.law.shape_exponent - truth.shape_exponent) / std::max(truth.shape_exponent, 0.1);
@@ -107,8 +109,8 @@ inline double WorstError(const FitResult& fit, const BranchLaw& truth) {
   return std::isfinite(sigma + alpha + slip_force) ? worst : HUGE_VAL;
 }
 
-inline ::testing::AssertionResult Recovers(const FitResult& fit, const BranchLaw& truth,
-                                           double tolerance) {
+inline ::testing::AssertionResult Recovers(const identification::FitResult& fit,
+                                           const models::BranchLaw& truth, double tolerance) {
   const double worst = WorstError(fit, truth);
   if (fit.converged && worst <= tolerance) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure()
@@ -117,7 +119,7 @@ inline ::testing::AssertionResult Recovers(const FitResult& fit, const BranchLaw
          << truth.tangential_stiffness << ", alpha " << fit.law.shape_exponent << " of "
          << truth.shape_exponent << ", slip force " << fit.law.slip_force << " of "
          << truth.slip_force << "; rms over Tc " << fit.residuals.normalized_rms << ", "
-         << (fit.initial_state == InitialState::kVirgin ? "virgin" : "steady");
+         << (fit.initial_state == models::InitialState::kVirgin ? "virgin" : "steady");
 }
 
 }  // namespace mindahl::testing

@@ -10,8 +10,12 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "recovered.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 namespace {
+
+using namespace contact;
+using namespace loop;
+using namespace models;
 
 constexpr MindlinContact kContact{2.7e-3, 4.42e-11, 30.0};
 
@@ -127,4 +131,4 @@ TEST(TurningPoints, KeepDahlsOwnLawExactToo) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::identification

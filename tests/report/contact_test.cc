@@ -13,8 +13,12 @@
 #include "report/made_report.h"
 
 // From a fit to the contact, by rules that hold for every caller of the library.
-namespace mindahl {
+namespace mindahl::report {
 namespace {
+
+using namespace contact;
+using namespace loop;
+using namespace identification;
 
 using report::IdentifyFittedContact;
 using report::MeanNormalLoad;
@@ -112,4 +116,4 @@ TEST(MeanNormalLoad, IsThatOfTheSamplesInTheWindow) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::report

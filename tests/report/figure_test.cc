@@ -11,8 +11,11 @@
 #include "mindahl/core/error.h"
 #include "report/made_report.h"
 
-namespace mindahl {
+namespace mindahl::report {
 namespace {
+
+using namespace loop;
+using namespace io;
 
 using report::ToPlot;
 using ::testing::ElementsAre;
@@ -83,4 +86,4 @@ TEST(Figure, OfAFitThatFailedIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::report

@@ -11,8 +11,10 @@
 #include "report/made_report.h"
 
 // The JSON from the library's side. tests/cli walks that of many runs of the program.
-namespace mindahl {
+namespace mindahl::report {
 namespace {
+
+using namespace contact;
 
 using nlohmann::json;
 using report::MakeReport;
@@ -88,4 +90,4 @@ TEST(MakeReport, RefusesWhatDoesNotBelongTogether) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::report

@@ -10,8 +10,12 @@
 
 // The steady loop of a fitted law: its energy and whether it slips, with the rig's travel taken
 // off.
-namespace mindahl {
+namespace mindahl::report {
 namespace {
+
+using namespace loop;
+using namespace models;
+using namespace identification;
 
 using report::DescribeLoop;
 using report::LoopDescription;
@@ -98,4 +102,4 @@ TEST(LoopDescription, EnergyRatioUsesTheMeasuredEnergyWhereThereIsOne) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::report

@@ -16,23 +16,23 @@ namespace mindahl::testing {
 inline constexpr double kSigma = 4e7;       // [N/m]
 inline constexpr double kSlipForce = 40.0;  // [N]
 
-inline ParameterEstimate MadeParameter(const char* name, const char* unit, double value,
-                                       double standard_error) {
-  ParameterEstimate estimate;
+inline identification::ParameterEstimate MadeParameter(const char* name, const char* unit,
+                                                       double value, double standard_error) {
+  identification::ParameterEstimate estimate;
   estimate.name = name;
   estimate.unit = unit;
   estimate.value = value;
   estimate.standard_error = standard_error;
   estimate.lower95 = value - 2 * standard_error;
   estimate.upper95 = value + 2 * standard_error;
-  estimate.status = ParameterStatus::kFree;
-  estimate.identifiability = Identifiability::kIdentifiable;
+  estimate.status = identification::ParameterStatus::kFree;
+  estimate.identifiability = identification::Identifiability::kIdentifiable;
   return estimate;
 }
 
 /// A record of one steady cycle between ±amplitude [m], samples of one made force.
-inline Record MadeRecord(double amplitude, std::size_t samples = 9) {
-  Record record;
+inline loop::Record MadeRecord(double amplitude, std::size_t samples = 9) {
+  loop::Record record;
   for (std::size_t i = 0; i < samples; ++i) {
     const double phase = 2 * M_PI * static_cast<double>(i) / static_cast<double>(samples - 1);
     record.displacement.push_back(amplitude * std::cos(phase));
@@ -42,8 +42,8 @@ inline Record MadeRecord(double amplitude, std::size_t samples = 9) {
   return record;
 }
 
-inline RecordFit MadeRecordFit(const Record& record, double amplitude) {
-  RecordFit fit;
+inline identification::RecordFit MadeRecordFit(const loop::Record& record, double amplitude) {
+  identification::RecordFit fit;
   fit.measures.amplitude = amplitude;
   fit.measures.peak_force = 10.0;
   fit.measures.cycles = 1;
@@ -56,12 +56,13 @@ inline RecordFit MadeRecordFit(const Record& record, double amplitude) {
 }
 
 /// σ, α and Tc are known to 1 %, and their errors are uncorrelated.
-inline FitResult MadeFit(const std::vector<Record>& records, double amplitude,
-                         const BranchLaw& law = {kSigma, 1.0 / 3, kSlipForce}) {
-  FitResult fit;
+inline identification::FitResult MadeFit(const std::vector<loop::Record>& records, double amplitude,
+                                         const models::BranchLaw& law = {kSigma, 1.0 / 3,
+                                                                         kSlipForce}) {
+  identification::FitResult fit;
   fit.converged = true;
   fit.termination = "made by hand";
-  fit.model = FindFrictionModel("mindlin-dahl");
+  fit.model = models::FindFrictionModel("mindlin-dahl");
   fit.law = law;
   fit.parameters = {
       MadeParameter("sigma", "N/m", law.tangential_stiffness, 0.01 * law.tangential_stiffness),
@@ -70,14 +71,15 @@ inline FitResult MadeFit(const std::vector<Record>& records, double amplitude,
   fit.correlation = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   fit.residuals.samples = 9;
   fit.residuals.degrees_of_freedom = 6;
-  for (const Record& record : records) fit.records.push_back(MadeRecordFit(record, amplitude));
+  for (const loop::Record& record : records)
+    fit.records.push_back(MadeRecordFit(record, amplitude));
   return fit;
 }
 
-inline report::ReportInput MadeInput(const std::vector<Record>& records, double amplitude) {
+inline report::ReportInput MadeInput(const std::vector<loop::Record>& records, double amplitude) {
   report::ReportInput input;
-  for (const Record& record : records) {
-    RecordFile file;
+  for (const loop::Record& record : records) {
+    io::RecordFile file;
     file.record = record;
     file.displacement.unit = "m";
     file.force.unit = "N";

@@ -10,8 +10,11 @@
 #include "report/made_report.h"
 
 // Is the fitted contact Mindlin's? Student's t with the degrees of freedom that each error has.
-namespace mindahl {
+namespace mindahl::report {
 namespace {
+
+using namespace contact;
+using namespace identification;
 
 using report::StiffnessTest;
 using report::TestAlpha;
@@ -86,4 +89,4 @@ TEST(AlphaTest, SaysNothingOfAHeldExponentAndNoZWithoutAnError) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::report

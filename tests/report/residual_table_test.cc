@@ -9,8 +9,10 @@
 #include "mindahl/core/error.h"
 #include "report/made_report.h"
 
-namespace mindahl {
+namespace mindahl::report {
 namespace {
+
+using namespace loop;
 
 using report::ResidualsCsv;
 using testing::MadeInput;
@@ -45,4 +47,4 @@ TEST(ResidualTable, OfAFitThatFailedIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::report

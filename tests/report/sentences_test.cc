@@ -15,8 +15,11 @@
 
 #include "report/made_report.h"
 
-namespace mindahl {
+namespace mindahl::report {
 namespace {
+
+using namespace models;
+using namespace identification;
 
 using report::FindingCodes;
 using report::Sentence;
@@ -166,4 +169,4 @@ TEST(FindingCodes, HaveALineInTheDocumentation) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::report

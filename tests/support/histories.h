@@ -64,20 +64,24 @@ inline History RandomHistory(Generator& generator) {
   return history;
 }
 
-inline LoadingPath PathOf(const FrictionModel& model, std::span<const double> displacement,
-                          const InitialContact& initial = {}, double gate = 0.0) {
-  return MakeLoadingPath(displacement, FindReversals(displacement, gate), model.memory, initial);
+inline models::LoadingPath PathOf(const models::FrictionModel& model,
+                                  std::span<const double> displacement,
+                                  const models::InitialContact& initial = {}, double gate = 0.0) {
+  return models::MakeLoadingPath(displacement, loop::FindReversals(displacement, gate),
+                                 model.memory, initial);
 }
 
 /// Force [N] at every sample.
-inline std::vector<double> Respond(const FrictionModel& model, const BranchLaw& law,
+inline std::vector<double> Respond(const models::FrictionModel& model, const models::BranchLaw& law,
                                    std::span<const double> displacement,
-                                   const InitialContact& initial = {}) {
+                                   const models::InitialContact& initial = {}) {
   std::vector<double> force(displacement.size());
-  EvaluateForce(model, law, PathOf(model, displacement, initial), displacement, force);
+  models::EvaluateForce(model, law, PathOf(model, displacement, initial), displacement, force);
   return force;
 }
 
-inline const FrictionModel& Model(std::string_view name) { return *FindFrictionModel(name); }
+inline const models::FrictionModel& Model(std::string_view name) {
+  return *models::FindFrictionModel(name);
+}
 
 }  // namespace mindahl::testing

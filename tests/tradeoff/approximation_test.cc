@@ -9,8 +9,11 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 namespace {
+
+using namespace models;
+using namespace methods;
 
 using ::testing::ElementsAre;
 
@@ -89,4 +92,4 @@ TEST(Ladder, HoldsEveryMethodAndEachWayOnce) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

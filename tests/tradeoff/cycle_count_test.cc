@@ -7,8 +7,10 @@
 
 #include "mindahl/models/excitation.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 namespace {
+
+using namespace models;
 
 using Cycles = std::vector<double>;
 
@@ -59,4 +61,4 @@ TEST(CyclesPassed, StandsStillWhereTheDriveDwells) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

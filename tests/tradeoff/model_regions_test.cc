@@ -12,8 +12,10 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 namespace {
+
+using namespace models;
 
 constexpr double kBounds = 2e-3;  // relative, of λ, as model_regions.h states
 
@@ -182,4 +184,4 @@ TEST(ModelRegions, RefuseWhatHasNoLambdaAndOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

@@ -14,8 +14,10 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 namespace {
+
+using namespace models;
 
 using testing::DefinedForce;
 using testing::Displacements;
@@ -196,4 +198,4 @@ TEST(Recommend, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

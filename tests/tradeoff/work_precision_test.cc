@@ -11,8 +11,11 @@
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 namespace {
+
+using namespace models;
+using namespace methods;
 
 using testing::DefinedForce;
 using testing::Displacements;
@@ -181,4 +184,4 @@ TEST(MeasureWorkPrecision, MeasuresEachInItsOrder) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

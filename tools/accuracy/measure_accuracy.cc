@@ -23,6 +23,8 @@
 namespace {
 
 using namespace mindahl;
+using namespace mindahl::loop;
+using namespace mindahl::models;
 
 constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
 

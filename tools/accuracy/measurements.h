@@ -38,7 +38,7 @@ struct ExactDahlLoop {
 };
 
 template <typename Real>
-Exact EvaluateExactly(const BranchLaw& law, const Real& x) {
+Exact EvaluateExactly(const models::BranchLaw& law, const Real& x) {
   const Real slip_force(law.slip_force);
   const Real stiffness(law.tangential_stiffness);
   const Real y = stiffness * x / slip_force;
@@ -55,14 +55,14 @@ Exact EvaluateExactly(const BranchLaw& law, const Real& x) {
           .loop_energy = rounded(exact.loop_energy * energy_unit)};
 }
 
-inline Exact EvaluateExactly(const BranchLaw& law, double x) {
+inline Exact EvaluateExactly(const models::BranchLaw& law, double x) {
   const bool tiny = law.shape_exponent > 0 && law.shape_exponent < 1e-30;
   return tiny ? EvaluateExactly(law, reference::Digits500(x))
               : EvaluateExactly(law, reference::Digits150(x));
 }
 
 /// Just short of slip, where ∂f/∂α may be largest; for α < 1.
-inline Exact EvaluateShortOfSlip(const BranchLaw& law) {
+inline Exact EvaluateShortOfSlip(const models::BranchLaw& law) {
   using Real = reference::Digits500;
   const Real slip =
       Real(law.slip_force) / (Real(law.tangential_stiffness) * (1 - Real(law.shape_exponent)));
@@ -70,7 +70,7 @@ inline Exact EvaluateShortOfSlip(const BranchLaw& law) {
 }
 
 template <typename Real>
-ExactDahlLoop EvaluateDahlExactly(const BranchLaw& law, double amplitude) {
+ExactDahlLoop EvaluateDahlExactly(const models::BranchLaw& law, double amplitude) {
   const Real slip_force(law.slip_force);
   const Real stiffness(law.tangential_stiffness);
   const auto loop = reference::EvaluateDahlLoop(Real(law.shape_exponent),
@@ -79,7 +79,7 @@ ExactDahlLoop EvaluateDahlExactly(const BranchLaw& law, double amplitude) {
           static_cast<long double>(Real(loop.energy * slip_force * slip_force / stiffness))};
 }
 
-inline ExactDahlLoop EvaluateDahlExactly(const BranchLaw& law, double amplitude) {
+inline ExactDahlLoop EvaluateDahlExactly(const models::BranchLaw& law, double amplitude) {
   const bool tiny = law.shape_exponent > 0 && law.shape_exponent < 1e-30;
   return tiny ? EvaluateDahlExactly<reference::Digits500>(law, amplitude)
               : EvaluateDahlExactly<reference::Digits150>(law, amplitude);
@@ -102,32 +102,34 @@ double RelativeError(Real value, long double reference) {
 
 /// One sample on the virgin curve through the library's public steps.
 template <typename Real>
-Real VirginForce(const BranchLaw& law, Real x) {
+Real VirginForce(const models::BranchLaw& law, Real x) {
   const double path_x = static_cast<double>(x);
-  const LoadingPath path = MakeLoadingPath({&path_x, 1}, {}, Memory::kReturnPoint, {});
+  const models::LoadingPath path =
+      models::MakeLoadingPath({&path_x, 1}, {}, models::Memory::kReturnPoint, {});
   Real force = 0;
-  EvaluateForce(*FindFrictionModel("mindlin-dahl"), law, path, std::span<const Real>(&x, 1),
-                std::span<Real>(&force, 1));
+  models::EvaluateForce(*models::FindFrictionModel("mindlin-dahl"), law, path,
+                        std::span<const Real>(&x, 1), std::span<Real>(&force, 1));
   return force;
 }
 
 struct VirginSample {
   double force = 0;
-  double gradient[kGradientColumns] = {};
+  double gradient[models::kGradientColumns] = {};
 };
 
-inline VirginSample VirginGradient(const BranchLaw& law, double x) {
-  const LoadingPath path = MakeLoadingPath({&x, 1}, {}, Memory::kReturnPoint, {});
+inline VirginSample VirginGradient(const models::BranchLaw& law, double x) {
+  const models::LoadingPath path =
+      models::MakeLoadingPath({&x, 1}, {}, models::Memory::kReturnPoint, {});
   VirginSample sample;
-  EvaluateForceAndGradient(*FindFrictionModel("mindlin-dahl"), law, path, {&x, 1},
-                           {&sample.force, 1}, sample.gradient);
+  models::EvaluateForceAndGradient(*models::FindFrictionModel("mindlin-dahl"), law, path, {&x, 1},
+                                   {&sample.force, 1}, sample.gradient);
   return sample;
 }
 
 /// The gradient along a history knows y to a few roundings only: near slip, for α < 1/2, that moves
 /// it by more than its bound. What it may be there lies between the exact values at x(1 ± 4ε).
-inline double GradientError(const BranchLaw& law, double x, double value, const Exact& exact,
-                            long double Exact::*member, long double scale) {
+inline double GradientError(const models::BranchLaw& law, double x, double value,
+                            const Exact& exact, long double Exact::*member, long double scale) {
   constexpr int kSteps = 8;  // of half an ε to either side
   constexpr double kNearSlip = 0.01;
   long double low = exact.*member;
@@ -153,76 +155,79 @@ struct Measurement {
   std::string function;
   std::string scale;   // what the error is relative to
   double bound = 0.0;  // [ε of the type], as in the docstring
-  std::function<double(const BranchLaw&, double x, const Exact&)> error;
+  std::function<double(const models::BranchLaw&, double x, const Exact&)> error;
 };
 
 /// In double, and with the public functions' split arithmetic, at every point of the box.
 inline std::vector<Measurement> Measurements() {
-  const FrictionModel& masing = *FindFrictionModel("mindlin-dahl");
+  const models::FrictionModel& masing = *models::FindFrictionModel("mindlin-dahl");
   return {
       {"BackboneForce", "value", 1.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(BackboneForce(law, x), exact.force);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::BackboneForce(law, x), exact.force);
        }},
       {"BackboneRemaining", "value", 1.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(BackboneRemaining(law, x), exact.remaining);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::BackboneRemaining(law, x), exact.remaining);
        }},
       {"BackboneSlope", "value", 1.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(BackboneSlope(law, x), exact.slope);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::BackboneSlope(law, x), exact.slope);
        }},
       {"BackboneWork", "value", 1.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(BackboneWork(law, x), exact.work);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::BackboneWork(law, x), exact.work);
        }},
       {"DifferentiateBackbone, ln σ", "value", 1.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(DifferentiateBackbone(law, x).log_stiffness, exact.per_log_stiffness);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::DifferentiateBackbone(law, x).log_stiffness,
+                              exact.per_log_stiffness);
        }},
       {"DifferentiateBackbone, α", "value", 1.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(DifferentiateBackbone(law, x).shape_exponent, exact.per_shape);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::DifferentiateBackbone(law, x).shape_exponent,
+                              exact.per_shape);
        }},
       {"DifferentiateBackbone, ln Tc", "f", 1.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return ErrorInEpsilons(DifferentiateBackbone(law, x).log_slip_force,
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return ErrorInEpsilons(models::DifferentiateBackbone(law, x).log_slip_force,
                                 exact.per_log_slip_force, exact.force);
        }},
       {"SteadyPeakForce, Masing", "value", 6.0,
-       [&masing](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(SteadyPeakForce(masing, law, x), exact.force);
+       [&masing](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::SteadyPeakForce(masing, law, x), exact.force);
        }},
       {"SteadyLoopEnergy, Masing", "value", 1.0,
-       [&masing](const BranchLaw& law, double x, const Exact& exact) {
-         return RelativeError(SteadyLoopEnergy(masing, law, x), exact.loop_energy);
+       [&masing](const models::BranchLaw& law, double x, const Exact& exact) {
+         return RelativeError(models::SteadyLoopEnergy(masing, law, x), exact.loop_energy);
        }},
       {"EvaluateForce", "value", 6.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(VirginForce(law, x), exact.force);
        }},
       {"…AndGradient, force", "value", 6.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
          return RelativeError(VirginGradient(law, x).force, exact.force);
        }},
       {"…AndGradient, ln σ", "Tc", 16.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return GradientError(law, x, VirginGradient(law, x).gradient[kPerLogStiffness], exact,
-                              &Exact::per_log_stiffness, law.slip_force);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerLogStiffness],
+                              exact, &Exact::per_log_stiffness, law.slip_force);
        }},
       {"…AndGradient, α", "Tc", 16.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return GradientError(law, x, VirginGradient(law, x).gradient[kPerShapeExponent], exact,
-                              &Exact::per_shape, law.slip_force);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerShapeExponent],
+                              exact, &Exact::per_shape, law.slip_force);
        }},
       {"…AndGradient, ln Tc", "Tc", 16.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return GradientError(law, x, VirginGradient(law, x).gradient[kPerLogSlipForce], exact,
-                              &Exact::per_log_slip_force, law.slip_force);
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return GradientError(law, x, VirginGradient(law, x).gradient[models::kPerLogSlipForce],
+                              exact, &Exact::per_log_slip_force, law.slip_force);
        }},
       {"…AndGradient, δ₀", "σ", 16.0,
-       [](const BranchLaw& law, double x, const Exact& exact) {
-         return GradientError(law, x, -VirginGradient(law, x).gradient[kPerUnloadedDisplacement],
+       [](const models::BranchLaw& law, double x, const Exact& exact) {
+         return GradientError(law, x,
+                              -VirginGradient(law, x).gradient[models::kPerUnloadedDisplacement],
                               exact, &Exact::slope, law.tangential_stiffness);
        }},
   };
@@ -233,7 +238,7 @@ template <typename Visit>
 void ForEveryPoint(Visit visit) {
   for (const double shape_exponent : reference::kBoxShapeExponents) {
     for (const reference::Scale& scale : reference::kBoxScales) {
-      const BranchLaw law{scale.stiffness, shape_exponent, scale.slip_force};
+      const models::BranchLaw law{scale.stiffness, shape_exponent, scale.slip_force};
       for (const double x : reference::BoxDisplacements(scale, shape_exponent)) visit(law, x);
     }
   }

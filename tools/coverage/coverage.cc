@@ -11,6 +11,11 @@
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::coverage {
+
+using identification::FitOptions;
+using loop::Record;
+using models::BranchLaw;
+
 namespace {
 
 constexpr std::array<std::string_view, Coverage::kParameters> kNames = {"sigma", "alpha",
@@ -39,19 +44,20 @@ constexpr double kDisplacementOffset = 2e-7;
 
 Record CleanRecord(const Scenario& scenario) {
   const BranchLaw law = LawOf(scenario);
-  const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
+  const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
   Record record;
-  record.displacement = MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
-                                        .cycles = static_cast<double>(scenario.cycles),
-                                        .samples_per_cycle = scenario.samples_per_cycle})
-                            .displacement;
+  record.displacement =
+      models::MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
+                              .cycles = static_cast<double>(scenario.cycles),
+                              .samples_per_cycle = scenario.samples_per_cycle})
+          .displacement;
   for (std::size_t i = 0; i < record.displacement.size(); ++i) {
     record.displacement[i] = record.displacement[i - i % scenario.dwell];
   }
   record.force.resize(record.displacement.size());
-  const LoadingPath path = MakeLoadingPath(
-      record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
-  EvaluateForce(model, law, path, record.displacement, record.force);
+  const models::LoadingPath path = models::MakeLoadingPath(
+      record.displacement, loop::FindReversals(record.displacement, 0.0), model.memory, {});
+  models::EvaluateForce(model, law, path, record.displacement, record.force);
   for (double& force : record.force) force += kForceOffset;
   for (double& displacement : record.displacement) displacement += kDisplacementOffset;
   return record;
@@ -59,8 +65,9 @@ Record CleanRecord(const Scenario& scenario) {
 
 double ForceNoise(const Scenario& scenario) {
   const BranchLaw law = LawOf(scenario);
-  return scenario.force_noise * SteadyPeakForce(*FindFrictionModel("mindlin-dahl"), law,
-                                                scenario.lambda * GrossSlipDisplacement(law));
+  return scenario.force_noise *
+         models::SteadyPeakForce(*models::FindFrictionModel("mindlin-dahl"), law,
+                                 scenario.lambda * GrossSlipDisplacement(law));
 }
 
 Record NoisyRecord(const Scenario& scenario, const Record& clean, std::uint64_t seed) {
@@ -96,7 +103,7 @@ Record NoisyRecord(const Scenario& scenario, const Record& clean, std::uint64_t 
 
 FitOptions OptionsOf(const Scenario& scenario) {
   FitOptions options;
-  options.initial_state = InitialState::kVirgin;
+  options.initial_state = models::InitialState::kVirgin;
   if (scenario.noise == Noise::kDisplacement && scenario.noise_is_known) {
     options.displacement_noise =
         scenario.displacement_noise * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
@@ -188,7 +195,7 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   FitOptions known = options;
   known.displacement_noise.reset();
   known.force_noise = ForceNoise(scenario);
-  const FitResult at_truth = Fit({&clean, 1}, known);
+  const identification::FitResult at_truth = identification::Fit({&clean, 1}, known);
   for (std::size_t k = 0; k < bound.size(); ++k) {
     bound[k] = at_truth.Find(kNames[k])->standard_error.value_or(0.0);
   }
@@ -201,10 +208,10 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   std::array<double, Coverage::kParameters> with_error{};
   for (std::size_t i = 0; i < loops; ++i) {
     const Record record = NoisyRecord(scenario, clean, first_seed + i);
-    const FitResult fit = Fit({&record, 1}, options);
+    const identification::FitResult fit = identification::Fit({&record, 1}, options);
     ++coverage.judged;
     for (std::size_t k = 0; k < truth.size(); ++k) {
-      const ParameterEstimate& estimate = *fit.Find(kNames[k]);
+      const identification::ParameterEstimate& estimate = *fit.Find(kNames[k]);
       const bool holds = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
                          (!estimate.upper95 || truth[k] <= *estimate.upper95);
       if (holds) ++coverage.covered[k];

@@ -13,6 +13,9 @@
 #include "responses.h"
 
 namespace mindahl::paper {
+
+using models::Excitation;
+
 namespace {
 
 /// [% of T*]. response.h: 5e-14·Tc along a path, of the least T*, 0.28·Tc where the growing sine
@@ -41,7 +44,7 @@ double ReloadingForce(double displacement, double peak, int sign) {
 
 void AddParameterChecks(std::vector<Check>& checks) {
   const auto stiffness = [](double radius) {
-    return MindlinTangentialStiffness(radius, kContact.tangential_compliance);
+    return contact::MindlinTangentialStiffness(radius, kContact.tangential_compliance);
   };
   checks.push_back(Check::AsPrinted("§3: σ = 8a/G* of the printed a = 0.0027 m [N/m]", "4.8869e8",
                                     stiffness(kContact.contact_radius)));
@@ -55,25 +58,25 @@ void AddEquationChecks(std::vector<Check>& checks) {
   constexpr double kRoundOff = 1e-14;  // some twenty roundings of forces near Tc, each 2e-16
   const double gross_slip = GrossSlipDisplacement(kContact);
   const double amplitude = kMicroSlip * gross_slip;
-  const double peak = MindlinVirginForce(kContact, amplitude);
+  const double peak = contact::MindlinVirginForce(kContact, amplitude);
   checks.push_back(Check::Within("eq. 15 as printed, T₂(−δ*)/T*: the wrong end", 1.0, kRoundOff,
                                  ReloadingForce(-amplitude, peak, +1) / peak));
   checks.push_back(Check::Within("eq. 15 with −δ, T₂(−δ*)/T*", -1.0, kRoundOff,
                                  ReloadingForce(-amplitude, peak, -1) / peak));
   const double inside = 0.3 * amplitude;
-  checks.push_back(Check::Within(
-      "eq. 15 with −δ, T₂(0.3δ*) over the library's", 1.0, kRoundOff,
-      ReloadingForce(inside, peak, -1) / MindlinReloadingForce(kContact, inside, amplitude)));
+  checks.push_back(Check::Within("eq. 15 with −δ, T₂(0.3δ*) over the library's", 1.0, kRoundOff,
+                                 ReloadingForce(inside, peak, -1) /
+                                     contact::MindlinReloadingForce(kContact, inside, amplitude)));
 
   // At δ = ¾δc eq. 16 has √(1/4) and T = (1 − 1/8)·Tc. A central difference of ±h errs by
   // h²·|f'''|/6 = h²·σ/(24·δc²·(1/4)^{3/2}), with h = 1e-4·δc 4e-9·σ.
   constexpr double kStep = 1e-4;
   constexpr double kCentralDifference = 1e-8;
-  const double slope = (MindlinVirginForce(kContact, (0.75 + kStep) * gross_slip) -
-                        MindlinVirginForce(kContact, (0.75 - kStep) * gross_slip)) /
+  const double slope = (contact::MindlinVirginForce(kContact, (0.75 + kStep) * gross_slip) -
+                        contact::MindlinVirginForce(kContact, (0.75 - kStep) * gross_slip)) /
                        (2 * kStep * gross_slip) / ExactLaw().tangential_stiffness;
   const double remaining =
-      1 - MindlinVirginForce(kContact, 0.75 * gross_slip) / kContact.slip_force;
+      1 - contact::MindlinVirginForce(kContact, 0.75 * gross_slip) / kContact.slip_force;
   checks.push_back(
       Check::Within("eq. 13: its slope at ¾δc, over σ", 0.5, kCentralDifference, slope));
   checks.push_back(
@@ -85,11 +88,12 @@ void AddEquationChecks(std::vector<Check>& checks) {
       3 * kContact.slip_force * kContact.tangential_compliance / (12 * kContact.contact_radius);
   checks.push_back(Check::AsPrinted("eq. 23 with 12a: δ/δc at the \"micro-slip\" λ = 0.8", "1.07",
                                     kMicroSlip * with_12a / gross_slip));
+  checks.push_back(Check::Within(
+      "eq. 23 with 12a: T/Tc there", 1.0, 0.0,
+      contact::MindlinVirginForce(kContact, kMicroSlip * with_12a) / kContact.slip_force));
   checks.push_back(
-      Check::Within("eq. 23 with 12a: T/Tc there", 1.0, 0.0,
-                    MindlinVirginForce(kContact, kMicroSlip * with_12a) / kContact.slip_force));
-  checks.push_back(Check::Within("eq. 23 with 16a: T/Tc at δc", 1.0, 0.0,
-                                 MindlinVirginForce(kContact, gross_slip) / kContact.slip_force));
+      Check::Within("eq. 23 with 16a: T/Tc at δc", 1.0, 0.0,
+                    contact::MindlinVirginForce(kContact, gross_slip) / kContact.slip_force));
 }
 
 /// ∮T dδ [J] over the last whole cycle, by trapezoids.
@@ -109,12 +113,13 @@ void AddEnergyChecks(std::vector<Check>& checks) {
   const Excitation sine = Sine(kMicroSlip, 5);
   const double amplitude = sine.envelope.front();
   const double loop = AreaOfLastCycle(sine, MindlinForce(sine));
-  const double work = BackboneWork(ExactLaw(), amplitude);
-  const double dissipated = 2 * work - amplitude * MindlinVirginForce(kContact, amplitude);
+  const double work = models::BackboneWork(ExactLaw(), amplitude);
+  const double dissipated = 2 * work - amplitude * contact::MindlinVirginForce(kContact, amplitude);
   checks.push_back(Check::Within("§2.3: 4 × dissipated part of the initial loading over loop area",
                                  1.0, kTrapezoids, 4 * dissipated / loop));
-  checks.push_back(Check::Within("Johnson 7.57 over loop area", 1.0, kTrapezoids,
-                                 MindlinEnergyPerCycleAtAmplitude(kContact, amplitude) / loop));
+  checks.push_back(
+      Check::Within("Johnson 7.57 over loop area", 1.0, kTrapezoids,
+                    contact::MindlinEnergyPerCycleAtAmplitude(kContact, amplitude) / loop));
   // With z = 1 − λ: work w = λ − ⅖(1 − z^{5/2}) in Tc·δc, loop 8w − 4λ(1 − z^{3/2}).
   checks.push_back(Check::AsPrinted(
       "§2.3 as printed: 4 × work of the initial loading over loop area", "4.742", 4 * work / loop));

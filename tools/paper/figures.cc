@@ -13,6 +13,11 @@
 #include "responses.h"
 
 namespace mindahl::paper {
+
+using io::PlotSeries;
+using io::PlotStyle;
+using models::Excitation;
+
 namespace {
 
 constexpr double kNanometres = 1e9;  // per metre
@@ -62,9 +67,9 @@ PlotSeries GrossSlip(const Excitation& excitation) {
   return DotsOnBothSides("gross slip ±δc", excitation.time, level);
 }
 
-PlotPanel Panel(std::string x_label, std::string y_label, std::vector<PlotSeries> series,
-                double height = 1.0) {
-  PlotPanel panel;
+io::PlotPanel Panel(std::string x_label, std::string y_label, std::vector<PlotSeries> series,
+                    double height = 1.0) {
+  io::PlotPanel panel;
   panel.x_label = std::move(x_label);
   panel.y_label = std::move(y_label);
   panel.series = std::move(series);
@@ -73,11 +78,11 @@ PlotPanel Panel(std::string x_label, std::string y_label, std::vector<PlotSeries
 }
 
 void Write(const std::filesystem::path& directory, int figure,
-           const std::vector<CsvColumn>& columns, Plot plot) {
+           const std::vector<io::CsvColumn>& columns, io::Plot plot) {
   const std::string stem = fmt::format("paper_fig{}", figure);
   plot.title = fmt::format("Fig. {}: {}", figure, plot.title);
-  WriteFileAtomically(directory / (stem + ".csv"), CsvText(columns));
-  WritePlot(plot, directory / (stem + ".png"));
+  io::WriteFileAtomically(directory / (stem + ".csv"), io::CsvText(columns));
+  io::WritePlot(plot, directory / (stem + ".png"));
 }
 
 void WriteSines(const std::filesystem::path& directory) {

@@ -11,12 +11,18 @@
 #include "mindahl/models/response.h"
 
 namespace mindahl::paper {
+
+using models::BranchLaw;
+using models::Excitation;
+using models::FrictionModel;
+using models::LoadingPath;
+
 namespace {
 
-const FrictionModel& Model(const char* name) { return *FindFrictionModel(name); }
+const FrictionModel& Model(const char* name) { return *models::FindFrictionModel(name); }
 
 /// Eq. 26 on the virgin curve, eq. 27 after it.
-BranchScale FullDahlScale(double signed_force, double peak, bool virgin) {
+models::BranchScale FullDahlScale(double signed_force, double peak, bool virgin) {
   const char* equation = virgin ? "mindlin-dahl" : "simplified-dahl";
   return Model(equation).scale(signed_force, peak, virgin);
 }
@@ -33,12 +39,12 @@ FrictionModel PrintedFullDahl() {
 std::vector<double> Evaluate(const FrictionModel& model, const BranchLaw& law,
                              const LoadingPath& path, const std::vector<double>& displacement) {
   std::vector<double> force(displacement.size());
-  EvaluateForce(model, law, path, displacement, force);
+  models::EvaluateForce(model, law, path, displacement, force);
   return force;
 }
 
 std::size_t FirstReversal(const std::vector<double>& displacement) {
-  return FindReversals(displacement, 0.0).front();
+  return loop::FindReversals(displacement, 0.0).front();
 }
 
 /// Amplitudes at which the law's T* is Mindlin's: the branch law depends on σx alone.
@@ -51,31 +57,33 @@ std::vector<double> AmplitudesOfMindlinsPeak(const BranchLaw& law, const Excitat
 
 /// Mindlin's loop between ±amplitude, on the branch that runs in the direction of `step`.
 double LoopForce(double displacement, double amplitude, double step) {
-  return step < 0 ? MindlinUnloadingForce(kContact, displacement, amplitude)
-                  : MindlinReloadingForce(kContact, displacement, amplitude);
+  return step < 0 ? contact::MindlinUnloadingForce(kContact, displacement, amplitude)
+                  : contact::MindlinReloadingForce(kContact, displacement, amplitude);
 }
 
 }  // namespace
 
 BranchLaw ExactLaw() {
-  const MindlinDahlParameters dahl = MapMindlinToDahl(kContact);
+  const contact::MindlinDahlParameters dahl = contact::MapMindlinToDahl(kContact);
   return {dahl.tangential_stiffness, dahl.shape_exponent, dahl.slip_force};
 }
 
-BranchLaw PrintedLaw() { return {kPrintedStiffness, kMindlinShapeExponent, kContact.slip_force}; }
+BranchLaw PrintedLaw() {
+  return {kPrintedStiffness, contact::kMindlinShapeExponent, kContact.slip_force};
+}
 
 Excitation Sine(double lambda, double cycles) {
-  return MakeExcitation({.amplitude = lambda * GrossSlipDisplacement(kContact),
-                         .cycles = cycles,
-                         .samples_per_cycle = kSamplesPerCycle});
+  return models::MakeExcitation({.amplitude = lambda * GrossSlipDisplacement(kContact),
+                                 .cycles = cycles,
+                                 .samples_per_cycle = kSamplesPerCycle});
 }
 
 Excitation GrowingSine(std::size_t samples_per_cycle) {
-  return MakeExcitation({.waveform = Waveform::kGrowingSine,
-                         .amplitude = kLastEnvelope * GrossSlipDisplacement(kContact),
-                         .cycles = kGrowingCycles,
-                         .samples_per_cycle = samples_per_cycle,
-                         .growth = kGrowth});
+  return models::MakeExcitation({.waveform = models::Waveform::kGrowingSine,
+                                 .amplitude = kLastEnvelope * GrossSlipDisplacement(kContact),
+                                 .cycles = kGrowingCycles,
+                                 .samples_per_cycle = samples_per_cycle,
+                                 .growth = kGrowth});
 }
 
 std::vector<double> MindlinForce(const Excitation& excitation) {
@@ -83,7 +91,7 @@ std::vector<double> MindlinForce(const Excitation& excitation) {
   const std::size_t first_reversal = FirstReversal(displacement);
   std::vector<double> force;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    force.push_back(i <= first_reversal ? MindlinVirginForce(kContact, displacement[i])
+    force.push_back(i <= first_reversal ? contact::MindlinVirginForce(kContact, displacement[i])
                                         : LoopForce(displacement[i], excitation.envelope[i],
                                                     displacement[i] - displacement[i - 1]));
   }
@@ -91,27 +99,28 @@ std::vector<double> MindlinForce(const Excitation& excitation) {
 }
 
 std::vector<double> FullDahlForce(const BranchLaw& law, const Excitation& excitation) {
-  LoadingPath path =
-      MakeEnvelopePath(excitation.displacement, AmplitudesOfMindlinsPeak(law, excitation), 0.0);
+  LoadingPath path = models::MakeEnvelopePath(excitation.displacement,
+                                              AmplitudesOfMindlinsPeak(law, excitation), 0.0);
   const std::size_t first_reversal = FirstReversal(excitation.displacement);
   for (std::size_t i = 0; i <= first_reversal; ++i) {
     path.branches[i].origin = 0.0;
     path.branches[i].parent = -1;
-    path.branches[i].start = BranchStart::kUnloaded;
+    path.branches[i].start = models::BranchStart::kUnloaded;
   }
   return Evaluate(PrintedFullDahl(), law, path, excitation.displacement);
 }
 
 std::vector<double> SimplifiedDahlForce(const BranchLaw& law, const Excitation& excitation) {
-  const LoadingPath path =
-      MakeEnvelopePath(excitation.displacement, AmplitudesOfMindlinsPeak(law, excitation), 0.0);
+  const LoadingPath path = models::MakeEnvelopePath(excitation.displacement,
+                                                    AmplitudesOfMindlinsPeak(law, excitation), 0.0);
   return Evaluate(Model("simplified-dahl"), law, path, excitation.displacement);
 }
 
 std::vector<double> RememberingForce(const char* model, const Excitation& excitation) {
   const std::vector<double>& displacement = excitation.displacement;
-  const LoadingPath path = MakeLoadingPath(displacement, FindReversals(displacement, 0.0),
-                                           Model(model).memory, InitialContact{});
+  const LoadingPath path =
+      models::MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0),
+                              Model(model).memory, models::InitialContact{});
   return Evaluate(Model(model), ExactLaw(), path, displacement);
 }
 
@@ -124,7 +133,7 @@ std::vector<double> RememberingMindlinForce(const Excitation& excitation) {
     const double step = i == 0 ? 0.0 : displacement[i] - displacement[i - 1];
     if (step * last_step < 0) last_extreme = std::abs(displacement[i - 1]);
     force.push_back(std::abs(displacement[i]) >= last_extreme
-                        ? MindlinVirginForce(kContact, displacement[i])
+                        ? contact::MindlinVirginForce(kContact, displacement[i])
                         : LoopForce(displacement[i], last_extreme, step));
     last_step = step;
   }
@@ -135,7 +144,7 @@ std::vector<double> PercentOfPeak(const Excitation& excitation, const std::vecto
                                   const std::vector<double>& reference) {
   std::vector<double> percent;
   for (std::size_t i = 0; i < force.size(); ++i) {
-    const double peak = MindlinVirginForce(kContact, excitation.envelope[i]);
+    const double peak = contact::MindlinVirginForce(kContact, excitation.envelope[i]);
     percent.push_back(100 * (force[i] - reference[i]) / peak);
   }
   return percent;

@@ -2,7 +2,7 @@
 
 #include "mindahl/contact/hertz.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 
 // Tangential contact of two spheres under a constant normal load (Cattaneo 1938, Mindlin 1949,
 // Mindlin & Deresiewicz 1953). Coulomb's law holds point by point: an annulus c < r < a slips, the
@@ -145,4 +145,4 @@ double MindlinEnergyPerCycle(const MindlinContact& contact, double peak_force);
 double MindlinEnergyPerCycleAtAmplitude(const MindlinContact& contact,
                                         double displacement_amplitude);
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

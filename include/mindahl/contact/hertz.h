@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace mindahl {
+namespace mindahl::contact {
 
 // Hertz contact of two elastic bodies of revolution: a circle of radius a carries the normal load N
 // under the pressure p(r) = p₀·√(1 − r²/a²). It holds while a is small against the radii, the
@@ -84,4 +84,4 @@ double HertzMaximumPressure(double normal_load, double contact_radius);
 /// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzApproach(double contact_radius, double equivalent_radius);
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

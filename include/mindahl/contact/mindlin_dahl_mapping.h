@@ -8,7 +8,7 @@
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
 
-namespace mindahl {
+namespace mindahl::contact {
 
 // The Mindlin-Dahl mapping (Peyret, Rosatello, Chevallier & Dion 2017, eq. 21). The virgin curve of
 // Cattaneo and Mindlin solves Dahl's equation dT/dδ = σ(1 − T/Tc)^α with
@@ -204,4 +204,4 @@ IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
                                   const UncertainValue& slip_force, const KnownContact& known,
                                   double correlation = 0.0);
 
-}  // namespace mindahl
+}  // namespace mindahl::contact

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// How much a finding matters to whoever uses the numbers.
 enum class Severity {
@@ -34,4 +34,4 @@ struct Finding {
   }
 };
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -17,7 +17,7 @@
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 struct Interval {
   double lower = 0.0;
@@ -33,10 +33,10 @@ enum class Loss { kNone, kHuber, kCauchy, kTukey };
 /// last three belong to a record each and are numbered from 1: force_offset_2.
 struct FitOptions {
   /// One of FrictionModels() that is not scaled_by_peak.
-  const FrictionModel* model = FindFrictionModel("mindlin-dahl");
+  const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
 
   /// Empty: both are fitted and the smaller AICc on effective samples is kept.
-  std::optional<InitialState> initial_state;
+  std::optional<models::InitialState> initial_state;
 
   /// Offsets of force and, for a virgin contact, of displacement are free parameters; otherwise 0.
   bool offsets = true;
@@ -142,16 +142,17 @@ struct MindlinTest {
   double p_value = 1.0;           ///< of F(1, degrees of freedom)
   /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
   /// ΔAICc < 4: then the record does not tell a contact of another shape from Mindlin's in a rig
-  /// that gives way. Looked for where α = 1/3 is rejected at 5 %, α is smaller and no rig is fitted.
+  /// that gives way. Looked for where α = 1/3 is rejected at 5 %, α is smaller and no rig is
+  /// fitted.
   std::optional<double> rig_stiffness;
 };
 
 /// A starting point and what the solver reached from it.
 struct StartReport {
   bool drawn = false;  ///< at random, not from the grid
-  BranchLaw start;
+  models::BranchLaw start;
   double initial_rms = 0.0;  ///< [N]
-  BranchLaw reached;
+  models::BranchLaw reached;
   double final_rms = 0.0;  ///< [N]
   bool converged = false;
 };
@@ -168,7 +169,7 @@ struct RecordFit {
   /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
   /// record is sampled so coarsely that it had to be fitted.
   std::vector<double> overshoot;
-  LoopMeasures measures;             ///< with the force in the displacement's sense
+  loop::LoopMeasures measures;       ///< with the force in the displacement's sense
   double displacement_noise = 0.0;   ///< [m] of the readings; 0 where they count as exact
   std::size_t left_out = 0;          ///< samples that do not count
   ResidualStructure structure;       ///< of the residuals, in the displacement's sense
@@ -181,11 +182,11 @@ struct FitResult {
   bool converged = false;
   std::string termination = "not run";
   int iterations = 0;
-  const FrictionModel* model = nullptr;
-  InitialState initial_state = InitialState::kVirgin;
+  const models::FrictionModel* model = nullptr;
+  models::InitialState initial_state = models::InitialState::kVirgin;
   int force_sense = 1;
-  BranchLaw law;             ///< the fitted σ, α, Tc
-  SeriesSpring rig;          ///< rigid where there is none
+  models::BranchLaw law;     ///< the fitted σ, α, Tc
+  models::SeriesSpring rig;  ///< rigid where there is none
   double force_noise = 0.0;  ///< [N], known or estimated
   std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
@@ -216,6 +217,6 @@ struct FitResult {
 /// @throws InvalidArgument for records or options that break a rule. A fit that fails is a result
 /// with
 ///         converged = false and the reason in `termination`.
-FitResult Fit(std::span<const Record> records, const FitOptions& options);
+FitResult Fit(std::span<const loop::Record> records, const FitOptions& options);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// A sweep that tests whether fits of Mindlin loops return σ = 8a/G* and α = 1/3.
 struct ValidationOptions {
@@ -61,4 +61,4 @@ struct ValidationReport {
 ValidationReport ValidateMapping(const ValidationOptions& options,
                                  const std::function<void(std::size_t)>& progress = {});
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -9,7 +9,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/record.h"
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// How the choice between models is made.
 struct SelectionOptions {
@@ -24,7 +24,7 @@ struct SelectionOptions {
 
 /// A model fitted to all samples that count, and what speaks for it. Pessimistic by default.
 struct ModelScore {
-  const FrictionModel* model = nullptr;
+  const models::FrictionModel* model = nullptr;
   bool rig = false;  ///< with a fitted spring in series
   std::size_t free_parameters = 0;
   double rms = 0.0;            ///< [N] of the samples that are scored
@@ -83,7 +83,7 @@ struct ModelSelection {
 ///                 another
 /// @throws InvalidArgument as Fit does, for folds < 2, or a largest ΔAICc that is negative
 /// Deterministic. Cost: 8 fits, and 8 a fold, which have one starting point.
-ModelSelection SelectModel(std::span<const Record> records, const FitOptions& options,
+ModelSelection SelectModel(std::span<const loop::Record> records, const FitOptions& options,
                            const SelectionOptions& selection = {});
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::identification {
 
 struct ResidualStatistics {
   double rms = 0.0;             ///< [N] √(Σr²/n)
@@ -28,4 +28,4 @@ ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residu
                                      std::span<const std::vector<double>> forces, double slip_force,
                                      std::size_t free_parameters);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

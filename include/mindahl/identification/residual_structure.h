@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::identification {
 
 /// Mean residual over a part of the stroke.
 struct StrokeBin {
@@ -41,4 +41,4 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
                                     std::span<const std::size_t> reversals,
                                     std::span<const double> residual);
 
-}  // namespace mindahl
+}  // namespace mindahl::identification

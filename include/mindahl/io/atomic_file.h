@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// Writes a whole file so that a reader finds the old content or the new, never a part: to a
 /// temporary name in the same directory, then by renaming. On failure nothing is left behind and an
@@ -16,4 +16,4 @@ namespace mindahl {
 /// Safe against a crash of the program, not of the machine: the disk is not told to synchronise.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

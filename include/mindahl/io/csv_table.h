@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// A delimited text file of columns, read whole: the numbers as doubles, and the text itself, to
 /// which messages go back. Positions in messages are `file:line:column`, with the 1-based physical
@@ -87,4 +87,4 @@ CsvTable ParseCsvTable(std::string text, std::string file);
 /// @throws InputError also when the file cannot be read
 CsvTable ReadCsvTable(const std::filesystem::path& path);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

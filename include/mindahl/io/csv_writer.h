@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// One column to write. The values must outlive the call that writes them.
 struct CsvColumn {
@@ -19,4 +19,4 @@ struct CsvColumn {
 /// @throws InvalidArgument when lengths differ, there is no column, or a value is infinite
 std::string CsvText(const std::vector<CsvColumn>& columns);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

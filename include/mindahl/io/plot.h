@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// Points are small dots for dense records. Markers are large, and of another shape in each series;
 /// they show few values one by one, alone or joined by a line.
@@ -52,4 +52,4 @@ struct Plot {
 /// @throws std::runtime_error with gnuplot's own words when it fails
 void WritePlot(const Plot& plot, const std::filesystem::path& path);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

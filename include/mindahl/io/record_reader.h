@@ -8,7 +8,7 @@
 
 #include "mindahl/loop/record.h"
 
-namespace mindahl {
+namespace mindahl::io {
 
 /// Which column of a file holds a quantity, and in what unit.
 struct ColumnChoice {
@@ -32,7 +32,7 @@ struct ChosenColumn {
 
 /// A record and where it came from.
 struct RecordFile {
-  Record record;
+  loop::Record record;
   ChosenColumn displacement;
   ChosenColumn force;
   std::optional<ChosenColumn> time;
@@ -86,4 +86,4 @@ struct LoadedPath {
 LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
                           const ColumnChoice& normal_load);
 
-}  // namespace mindahl
+}  // namespace mindahl::io

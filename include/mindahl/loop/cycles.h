@@ -7,7 +7,7 @@
 
 #include "mindahl/loop/record.h"
 
-namespace mindahl {
+namespace mindahl::loop {
 
 /// What a record shows before any model is fitted.
 struct LoopMeasures {
@@ -49,4 +49,4 @@ LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reve
 /// @throws InvalidArgument when the record is inconsistent
 int ForceSense(const Record& record, std::span<const std::size_t> reversals);
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

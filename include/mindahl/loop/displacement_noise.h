@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::loop {
 
 /// Standard deviation [m] of white noise on a smooth displacement, from the median of its absolute
 /// third differences, which a smooth drive hardly enters; of an encoder that counts in steps q, at
@@ -51,4 +51,4 @@ class DisplacementSmoother {
 std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
                                        std::span<const std::size_t> reversals);
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

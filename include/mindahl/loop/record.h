@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::loop {
 
 /// A measured or simulated hysteresis record in SI units, one entry a sample, in order of time.
 struct Record {
@@ -18,4 +18,4 @@ struct Record {
 /// @throws InvalidArgument when the lengths differ or a value is not finite (names the row).
 void Validate(const Record& record);
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::loop {
 
 /// Samples at which the direction of displacement reverses.
 ///
@@ -34,4 +34,4 @@ std::vector<std::size_t> FindReversals(std::span<const double> displacement, dou
 /// @returns [m], 0 when no inner loop looks like noise
 double EstimateReversalGate(std::span<const double> displacement);
 
-}  // namespace mindahl
+}  // namespace mindahl::loop

@@ -6,7 +6,7 @@
 
 #include "mindahl/models/branch_law.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 
 /// Jenkins elements in parallel, Iwan (1966): springs each with a Coulomb slider.
 struct IwanElements {
@@ -38,7 +38,8 @@ enum class IwanSpacing {
 /// exact.
 /// @param elements  >= 1
 /// @throws InvalidArgument for an invalid law or no element
-IwanElements MakeIwanElements(const BranchLaw& law, std::size_t elements, IwanSpacing spacing);
+IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements,
+                              IwanSpacing spacing);
 
 /// Force [N] along a displacement [m] of elements unloaded at 0: each keeps its force as its
 /// memory.
@@ -47,4 +48,4 @@ IwanElements MakeIwanElements(const BranchLaw& law, std::size_t elements, IwanSp
 void EvaluateIwanForce(const IwanElements& elements, std::span<const double> displacement,
                        std::span<double> force);
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

@@ -9,7 +9,7 @@
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
 
-namespace mindahl {
+namespace mindahl::methods {
 
 /// An imposed displacement [m]; the contact is unloaded at 0.
 struct Drive {
@@ -21,7 +21,7 @@ struct Drive {
 
 /// The loading path of a drive under a model's memory, every change of direction a reversal.
 /// @throws InvalidArgument as MakeLoadingPath and MakeEnvelopePath
-LoadingPath MakeDrivePath(const FrictionModel& model, const Drive& drive);
+models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Drive& drive);
 
 /// How finely a method resolves.
 struct Resolution {
@@ -54,7 +54,7 @@ struct Method {
   bool masing_only = false;  ///< serves only models whose memory is kReturnPoint
   /// Order of the error in 1/steps before gross slip; 0 when no step makes one.
   double order = 0.0;
-  Evaluator (*prepare)(const FrictionModel& model, const BranchLaw& law,
+  Evaluator (*prepare)(const models::FrictionModel& model, const models::BranchLaw& law,
                        const Resolution& resolution) = nullptr;
 };
 
@@ -78,7 +78,7 @@ const Method* FindMethod(std::string_view name);
 /// @param model  must outlive the evaluator
 /// @throws InvalidArgument for an invalid law or resolution, or a model that the method does not
 ///   serve, naming both
-Evaluator Prepare(const Method& method, const FrictionModel& model, const BranchLaw& law,
-                  const Resolution& resolution);
+Evaluator Prepare(const Method& method, const models::FrictionModel& model,
+                  const models::BranchLaw& law, const Resolution& resolution);
 
-}  // namespace mindahl
+}  // namespace mindahl::methods

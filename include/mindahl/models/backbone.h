@@ -20,7 +20,7 @@
 ///
 /// Errors, in ε = numeric_limits<Real>::epsilon(): φ relative 4 ε; u, φ' and the derivatives 4 ε of
 /// 1 (docs/accuracy.md).
-namespace mindahl::backbone {
+namespace mindahl::models::backbone {
 
 /// Largest α accepted: beyond it (1−α)·y could overflow.
 template <typename Real>
@@ -367,4 +367,4 @@ class InSeries<JenkinsShape<Real>> {
   Real total_slope_;
 };
 
-}  // namespace mindahl::backbone
+}  // namespace mindahl::models::backbone

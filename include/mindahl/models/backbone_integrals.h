@@ -5,7 +5,7 @@
 /// Integrals of the normalised branch law φ(y) (backbone.h), with y = σx/Tc >= 0 and α >= 0. In
 /// long double, whose spare digits (11 bits on x86-64) are what the closed forms lose by
 /// cancellation. Where long double has 53 bits they lose those of the result.
-namespace mindahl::backbone {
+namespace mindahl::models::backbone {
 
 /// y as the unevaluated sum of two numbers, the second below an ulp of the first: near slip
 /// z = 1 − βy cancels, and the rounding of y alone would decide its digits.
@@ -31,4 +31,4 @@ long double Work(const SplitDisplacement& y, long double shape_exponent);
 /// Relative error below 2⁻⁵⁴ (64-bit long double).
 long double MasingLoopEnergy(const SplitDisplacement& y, long double shape_exponent);
 
-}  // namespace mindahl::backbone
+}  // namespace mindahl::models::backbone

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// The three parameters that all models share: the branch law
 ///
@@ -52,4 +52,4 @@ struct BackboneGradient {
 };
 BackboneGradient DifferentiateBackbone(const BranchLaw& law, double x);
 
-}  // namespace mindahl
+}  // namespace mindahl::models

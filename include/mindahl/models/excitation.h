@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::models {
 
 enum class Waveform { kSine, kTriangle, kGrowingSine, kRandom, kNested };
 
@@ -57,4 +57,4 @@ struct Excitation {
 /// nested ones 6 ε for given extremes.
 Excitation MakeExcitation(const ExcitationOptions& options);
 
-}  // namespace mindahl
+}  // namespace mindahl::models

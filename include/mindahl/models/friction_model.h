@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// What of the past a branch depends on.
 enum class Memory {
@@ -57,4 +57,4 @@ std::span<const FrictionModel> FrictionModels();
 /// nullptr when there is no such model.
 const FrictionModel* FindFrictionModel(std::string_view name);
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -5,7 +5,7 @@
 
 #include "mindahl/models/branch_law.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// What the branch law tends to at either end of the amplitude: models without a history, for
 /// scenes that need no more. They cannot be fitted (each lacks a parameter) and dissipate nothing
@@ -29,4 +29,4 @@ std::span<const LimitLaw> LimitLaws();
 /// nullptr when there is no such law.
 const LimitLaw* FindLimitLaw(std::string_view name);
 
-}  // namespace mindahl
+}  // namespace mindahl::models

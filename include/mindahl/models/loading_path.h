@@ -7,7 +7,7 @@
 
 #include "mindahl/models/friction_model.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// What happened before the first sample.
 enum class InitialState {
@@ -89,4 +89,4 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
 LoadingPath MakeEnvelopePath(std::span<const double> displacement,
                              std::span<const double> amplitude, double unloaded_displacement);
 
-}  // namespace mindahl
+}  // namespace mindahl::models

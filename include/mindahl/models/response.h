@@ -8,7 +8,7 @@
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// A spring in series with the contact: what the rig itself gives way. Displacements are then those
 /// of both, δ = x + T/k_r with x the contact's, and T(δ) follows exactly the same rules, each
@@ -80,4 +80,4 @@ void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,
                               std::span<double> force, std::span<double> gradient,
                               const SeriesSpring& rig = {});
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -3,7 +3,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// T* [N]: force at the extremes of the steady loop between ±amplitude [m].
 /// @throws InvalidArgument for an invalid law or amplitude
@@ -26,4 +26,4 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
 /// α >= 1, where slip is only approached. Relative error below 1 ε.
 double GrossSlipEnergyRatio(double shape_exponent);
 
-}  // namespace mindahl
+}  // namespace mindahl::models

@@ -4,7 +4,7 @@
 
 #include "mindahl/models/branch_law.h"
 
-namespace mindahl {
+namespace mindahl::models {
 
 /// Friction under a normal load N that varies along the path.
 ///
@@ -55,4 +55,4 @@ BranchLaw BranchLawAtLoad(const LoadDependentLaw& law, double normal_load);
 void EvaluateForceUnderLoad(const LoadDependentLaw& law, std::span<const double> displacement,
                             std::span<const double> normal_load, std::span<double> force);
 
-}  // namespace mindahl
+}  // namespace mindahl::models

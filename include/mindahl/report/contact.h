@@ -16,15 +16,17 @@ namespace mindahl::report {
 ///  - no μ from a slip force that is not identifiable: `unidentified` then has the lower limit.
 /// @param fit  one that did not fail
 /// @throws InvalidArgument as IdentifyContact()
-IdentifiedContact IdentifyFittedContact(const FitResult& fit, const KnownContact& known);
+contact::IdentifiedContact IdentifyFittedContact(const identification::FitResult& fit,
+                                                 const contact::KnownContact& known);
 
 /// Why μ is withheld though the normal load is known: the slip force is not identifiable. Empty
 /// where it is not withheld.
-std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit, const KnownContact& known);
+std::optional<std::string> WhyFrictionIsWithheld(const identification::FitResult& fit,
+                                                 const contact::KnownContact& known);
 
 /// Mean measured normal load [N], which a steady test keeps to: of the samples in the window where
 /// there is one. Empty where a record has no load or no sample counts.
-std::optional<double> MeanNormalLoad(std::span<const Record> records,
-                                     const std::optional<Interval>& window = {});
+std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
+                                     const std::optional<identification::Interval>& window = {});
 
 }  // namespace mindahl::report

@@ -8,6 +8,6 @@ namespace mindahl::report {
 /// Measured and fitted loop, with the residual along the displacement below: of samples in the load
 /// window where there is one.
 /// @throws InvalidArgument for a fit that failed
-Plot ToPlot(const Report& report);
+io::Plot ToPlot(const Report& report);
 
 }  // namespace mindahl::report

@@ -30,9 +30,9 @@ inline constexpr double kAsGoodAsSlip = 0.99;
 ///   X_c = X − T*(X_c)/k_r
 /// @param amplitude  [m] of contact and rig, finite, >= 0
 /// Relative error 1e-15; the amplitude itself for a rigid rig.
-double ContactAmplitude(const FitResult& fit, double amplitude);
+double ContactAmplitude(const identification::FitResult& fit, double amplitude);
 
 /// @param fit  one that did not fail
-LoopDescription DescribeLoop(const FitResult& fit);
+LoopDescription DescribeLoop(const identification::FitResult& fit);
 
 }  // namespace mindahl::report

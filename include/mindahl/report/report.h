@@ -16,20 +16,20 @@ namespace mindahl::report {
 
 /// What a report is made from.
 struct ReportInput {
-  std::vector<std::string> files;   ///< name of each record, as it is to be printed
-  std::vector<RecordFile> records;  ///< as they were read, those that were fitted
-  FitResult fit;
-  KnownContact known = {};  ///< of the contact, besides the fit
+  std::vector<std::string> files;       ///< name of each record, as it is to be printed
+  std::vector<io::RecordFile> records;  ///< as they were read, those that were fitted
+  identification::FitResult fit;
+  contact::KnownContact known = {};  ///< of the contact, besides the fit
   /// Normal loads [N] of the samples that counted, as the fit was told.
-  std::optional<Interval> load_window = {};
-  std::optional<ModelSelection> selection = {};  ///< where the model was chosen
+  std::optional<identification::Interval> load_window = {};
+  std::optional<identification::ModelSelection> selection = {};  ///< where the model was chosen
 };
 
 /// Everything that is said of a fit: what was given, and what follows from it. ToJson(), ToText(),
 /// ToPlot() and ResidualsCsv() write it.
 struct Report : ReportInput {
   std::optional<LoopDescription> loop;  ///< empty where the fit failed
-  IdentifiedContact contact;            ///< empty where the fit failed
+  contact::IdentifiedContact contact;   ///< empty where the fit failed
   AlphaTest alpha;
   std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit
   std::vector<Warning> fit_warnings;      ///< what the fit found

@@ -14,7 +14,7 @@ namespace mindahl::report {
 /// @param finding  with the numbers and parameters that its code has (docs/contract.md)
 /// @param fit      the fit that found it: the model's name and why the solver stopped are its own
 /// @throws std::logic_error for a code or kind without a sentence, and for a number that is missing
-std::string Sentence(const Finding& finding, const FitResult& fit);
+std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit);
 
 /// Every code that has a sentence.
 std::vector<std::string_view> FindingCodes();

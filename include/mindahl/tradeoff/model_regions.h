@@ -6,7 +6,7 @@
 
 #include "mindahl/tradeoff/work_precision.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 
 /// Amplitudes over the gross-slip displacement at which a model errs by no more than a tolerance.
 struct LambdaRange {
@@ -38,7 +38,7 @@ struct ModelRegionOptions {
 /// @param law  α < 1, since λ counts gross-slip displacements
 /// @throws InvalidArgument for an invalid law, α >= 1 or options out of range
 /// Takes about a second and 30 MB with the options' defaults.
-std::vector<ModelRegion> FindModelRegions(const BranchLaw& law,
+std::vector<ModelRegion> FindModelRegions(const models::BranchLaw& law,
                                           const ModelRegionOptions& options = {});
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

@@ -8,7 +8,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/tradeoff/work_precision.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 
 struct RecommendOptions {
   double tolerance = 0.01;  ///< largest error by the criterion [–], > 0
@@ -48,6 +48,7 @@ struct Recommendation {
 /// no finer.
 /// @throws InvalidArgument for options out of range, an invalid law or drive, or a transient that
 ///   leaves no sample
-Recommendation Recommend(const BranchLaw& law, const Drive& drive, const RecommendOptions& options);
+Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& drive,
+                         const RecommendOptions& options);
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff

@@ -9,7 +9,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/tradeoff/approximation.h"
 
-namespace mindahl {
+namespace mindahl::tradeoff {
 
 /// What a contact does along a drive, by another road than the library's kernels: at every sample
 /// the sum over the surviving extrema, T = sgn(e₀)f(|e₀|) + Σ 2·sgn(eₖ₊₁−eₖ)f(|eₖ₊₁−eₖ|/2), kept by
@@ -20,7 +20,7 @@ struct ReferenceResponse {
 };
 
 /// @throws InvalidArgument for an invalid law, an empty drive or a displacement that is not finite
-ReferenceResponse MakeReferenceResponse(const BranchLaw& law, const Drive& drive);
+ReferenceResponse MakeReferenceResponse(const models::BranchLaw& law, const methods::Drive& drive);
 
 /// Errors of a response, relative [–].
 struct Precision {
@@ -32,7 +32,7 @@ struct Precision {
 
 /// @param first  sample from which errors count
 /// @throws InvalidArgument when sizes differ or `first` is not a sample
-Precision Compare(const ReferenceResponse& reference, const Drive& drive,
+Precision Compare(const ReferenceResponse& reference, const methods::Drive& drive,
                   std::span<const double> force, std::size_t first = 0);
 
 /// What errors are judged by.
@@ -53,20 +53,22 @@ struct CostFloor {
   double memory = 0.0;      ///< reading a displacement and writing a force
   double arithmetic = 0.0;  ///< the same with one square root and one division between
 };
-CostFloor MeasureCostFloor(const Drive& drive);
+CostFloor MeasureCostFloor(const methods::Drive& drive);
 
 /// Cost [ns/sample] of an evaluation, the least of several runs.
 /// @param force  [N], written, one a sample
 /// Takes about 10 ms, or three runs where that is longer.
-double MeasureCost(const Evaluator& evaluate, const Drive& drive, std::span<double> force);
+double MeasureCost(const methods::Evaluator& evaluate, const methods::Drive& drive,
+                   std::span<double> force);
 
 /// Runs and times every approximation along the drive, one after the other in one process.
 /// @throws InvalidArgument as Prepare() and MakeReferenceResponse()
 /// Takes as long as MeasureCost() for each.
-std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Drive& drive,
+std::vector<WorkPrecision> MeasureWorkPrecision(const models::BranchLaw& law,
+                                                const methods::Drive& drive,
                                                 std::span<const Approximation> approximations);
 
 /// Which points no other beats both in cost and in error, of equals the first.
 std::vector<bool> ParetoFront(std::span<const WorkPrecision> points, Criterion criterion);
 
-}  // namespace mindahl
+}  // namespace mindahl::tradeoff
