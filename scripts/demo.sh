@@ -19,26 +19,26 @@ loop=data/mindlin_sphere_on_plane.csv
 
 results=$(mktemp -d)
 trap 'rm -rf "$results"' EXIT
-"$mindahl" fit "$loop" "${contact[@]}" --plot build/demo/loop.png >"$results/fit"
-"$mindahl" contact "${contact[@]}" --friction "$friction" >"$results/truth"
+"$mindahl" fit "$loop" "${contact[@]}" --plot build/demo/loop.png --json "$results/fit.json" >/dev/null
+"$mindahl" contact "${contact[@]}" --friction "$friction" --json "$results/truth.json" >/dev/null
 
 echo "Identified from $loop, beside the contact from which it was simulated:"
 echo
-awk '
-  function row(name, unit, value, error, truth) {
-    printf "%-24s %-4s %14s %14s %14.6g %10.3f %%\n", name, unit, value, error, truth,
-           100 * (value / truth - 1)
-  }
-  FNR == NR { truth[$1] = $2; next }
-  /Hertz and Mindlin predict/ { exit }
-  FNR == 1 {
-    printf "%-24s %-4s %14s %14s %14s %12s\n", "", "", "identified", "std. error", "truth", "difference"
-  }
-  $1 == "sigma" || $1 == "alpha" || $1 == "slip_force" { row($1, $2, $3, $4, truth[$1]) }
-  /friction coefficient/ { row("friction_coefficient", "-", $3, $5, truth["friction_coefficient"]) }
-  /contact radius  / { row("contact_radius", "m", $3, $5, truth["contact_radius"]) }
-  /equivalent radius  / { row("equivalent_radius", "m", $3, $5, truth["equivalent_radius"]) }
-  /maximum pressure  / { row("maximum_pressure", "Pa", $3, $5, truth["maximum_pressure"]) }
-' "$results/truth" "$results/fit"
+printf '%-24s %-4s %14s %14s %14s %12s\n' "" "" identified "std. error" truth difference
+jq --raw-output --slurp '
+  .[0] as $fit | .[1] as $truth
+  | (("sigma", "alpha", "slip_force") | ["parameters", .]),
+    (("friction_coefficient", "contact_radius", "equivalent_radius", "maximum_pressure")
+     | ["contact", .])
+  | . as $path
+  | ($fit | getpath($path)) as $found
+  | ($truth | getpath($path).value) as $true
+  | [$path[1], $found.unit, $found.value, $found.standard_error, $true,
+     100 * ($found.value / $true - 1)]
+  | @tsv' "$results/fit.json" "$results/truth.json" |
+  while IFS=$'\t' read -r name unit value error truth difference; do
+    printf '%-24s %-4s %14.6g %14.2g %14.6g %10.3f %%\n' \
+      "$name" "$unit" "$value" "$error" "$truth" "$difference"
+  done
 echo
 echo "The loop and the fit: build/demo/loop.png"

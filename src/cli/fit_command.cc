@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,9 +15,8 @@
 
 #include "cli/commands.h"
 #include "cli/contact_options.h"
-#include "cli/fit_report.h"
-#include "cli/json_output.h"
 #include "cli/output_path.h"
+#include "cli/text_output.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
@@ -24,6 +24,12 @@
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/report/contact.h"
+#include "mindahl/report/figure.h"
+#include "mindahl/report/json.h"
+#include "mindahl/report/report.h"
+#include "mindahl/report/residual_table.h"
+#include "mindahl/report/text.h"
 
 namespace mindahl::cli {
 
@@ -267,30 +273,20 @@ void RequireLoads(const FitCommandOptions& options, const std::optional<Interval
 }
 
 /// The measured normal load where it was not given: its mean, which a steady test keeps to.
-void UseMeasuredNormalLoad(ContactOptions& contact, const std::vector<RecordFile>& inputs,
+void UseMeasuredNormalLoad(ContactOptions& contact, std::span<const Record> records,
                            const std::optional<Interval>& window, Console& console) {
   if (contact.known.normal_load) return;
-  double sum = 0.0;
-  double count = 0.0;
-  for (const RecordFile& input : inputs) {
-    const std::vector<double>& load = input.record.normal_load;
-    if (load.empty()) return;
-    for (const double value : load) {
-      if (window && (value < window->lower || value > window->upper)) continue;
-      sum += value;
-      ++count;
-    }
-  }
-  const double mean = sum / count;
-  if (!(mean > 0)) {
+  const std::optional<double> mean = report::MeanNormalLoad(records, window);
+  if (!mean) return;
+  if (!(*mean > 0)) {
     console.err << fmt::format(
         "mindahl fit: note: the mean normal load is {:.4g} N, not positive: it is not used\n",
-        mean);
+        *mean);
     return;
   }
-  contact.known.normal_load = mean;
+  contact.known.normal_load = *mean;
   console.err << fmt::format("mindahl fit: note: normal load: the mean of its column, {:.6g} N\n",
-                             mean);
+                             *mean);
 }
 
 bool Established(const identification::FitResult& fit, bool strict) {
@@ -302,6 +298,25 @@ bool Established(const identification::FitResult& fit, bool strict) {
   });
 }
 
+void Write(const FitCommandOptions& options, const report::Report& report, Console& console) {
+  for (const report::Warning& warning : report.fit_warnings) {
+    if (warning.code == "fit_failed") continue;  // an error, below
+    console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
+  }
+  if (report.failed()) {  // no curve to draw, no residual to list
+    console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.termination);
+    if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
+    return;
+  }
+  // The plot first: it alone may still fail.
+  if (!options.plot_path.empty()) io::WritePlot(report::ToPlot(report), options.plot_path);
+  if (!options.residuals_path.empty()) {
+    io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
+  }
+  if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
+  if (options.json_path != "-") console.out << report::ToText(report);
+}
+
 void RunFit(FitCommandOptions options, Console& console) {
   Validate(options.contact);
   if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
@@ -310,9 +325,9 @@ void RunFit(FitCommandOptions options, Console& console) {
   const FitOptions fit_options = MakeFitOptions(options);
   std::vector<RecordFile> inputs = ReadInputs(options, console);
   RequireLoads(options, fit_options.load_window, inputs);
-  UseMeasuredNormalLoad(options.contact, inputs, fit_options.load_window, console);
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
+  UseMeasuredNormalLoad(options.contact, records, fit_options.load_window, console);
 
   std::optional<identification::ModelSelection> selection;
   identification::FitResult fit;
@@ -322,27 +337,14 @@ void RunFit(FitCommandOptions options, Console& console) {
   } else {
     fit = identification::Fit(records, fit_options);
   }
-  const bool failed = fit.parameters.empty();
   console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
-  FitReport report =
-      MakeFitReport(options.files, std::move(inputs), std::move(fit), options.contact.known);
-  report.selection = std::move(selection);
-  report.load_window = fit_options.load_window;
-  for (const identification::FitWarning& warning : report.fit.warnings) {
-    console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
-  }
-  if (failed) {  // no curve to draw, no residual to list
-    console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.termination);
-    if (!options.json_path.empty()) WriteJson(ToJson(report), options.json_path, console);
-    return;
-  }
-  // The plot first: it alone may still fail.
-  if (!options.plot_path.empty()) io::WritePlot(ToPlot(report), options.plot_path);
-  if (!options.residuals_path.empty()) {
-    io::WriteFileAtomically(options.residuals_path, ResidualsCsv(report));
-  }
-  if (!options.json_path.empty()) WriteJson(ToJson(report), options.json_path, console);
-  if (options.json_path != "-") console.out << ToText(report);
+  const report::Report report = report::MakeReport({.files = options.files,
+                                                    .records = std::move(inputs),
+                                                    .fit = std::move(fit),
+                                                    .known = options.contact.known,
+                                                    .load_window = fit_options.load_window,
+                                                    .selection = std::move(selection)});
+  Write(options, report, console);
 }
 
 void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "mindahl/io/atomic_file.h"
+#include "cli/text_output.h"
 
 namespace mindahl::cli {
 
@@ -14,12 +14,7 @@ nlohmann::ordered_json NumberOrNull(std::optional<double> value) {
 void WriteJson(const nlohmann::ordered_json& json, const std::string& path, Console& console) {
   // A file name need not be UTF-8; JSON must.
   const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  const std::string text = json.dump(2, ' ', /*ensure_ascii=*/false, replace) + "\n";
-  if (path == "-") {
-    console.out << text;
-  } else {
-    io::WriteFileAtomically(path, text);
-  }
+  WriteText(json.dump(2, ' ', /*ensure_ascii=*/false, replace) + "\n", path, console);
 }
 
 }  // namespace mindahl::cli

@@ -322,42 +322,34 @@ HertzPrediction Predict(const Quantity& stiffness, const Quantity& slip_force,
               Total({measured_gross_slip.value / gross_slip.value, inverse.change}, correlation)};
 }
 
+/// What gives the contact radius from the loop, where it is missing.
+std::string RadiusInputs(const KnownContact& known) {
+  return fmt::format("the tangential compliance (or what gives it: {})",
+                     fmt::join(MissingElasticConstants(known), ", "));
+}
+
 std::vector<std::string> Unidentified(const KnownContact& known, const Derived& derived,
                                       const IdentifiedContact& identified) {
   std::vector<std::string> unidentified;
-  const std::vector<std::string> missing_elastic = MissingElasticConstants(known);
-  std::vector<std::string> missing_load;
-  if (!known.normal_load) missing_load.emplace_back("the normal load");
-  // A radius from the loop takes G*, which takes the materials.
-  const bool radius_known = known.contact_radius || identified.contact_radius;
-  const std::string radius_inputs = fmt::format("the tangential compliance (or what gives it: {})",
-                                                fmt::join(missing_elastic, ", "));
-
+  const auto add = [&](std::string_view name, ContactQuantity quantity) {
+    unidentified.push_back(Needs(name, MissingInputs(known, quantity)));
+  };
   if (!identified.friction_coefficient) {
-    unidentified.push_back(Needs("friction coefficient", missing_load));
+    add("friction coefficient", ContactQuantity::kFrictionCoefficient);
   }
-  if (!radius_known) {
-    unidentified.push_back(Needs("contact radius", {radius_inputs}));
-    unidentified.push_back(Needs("tangential compliance", {"the contact radius"}));
+  if (!known.contact_radius && !identified.contact_radius) {
+    add("contact radius", ContactQuantity::kContactRadius);
+    add("tangential compliance", ContactQuantity::kTangentialCompliance);
   }
-  if (!identified.equivalent_radius) {
-    std::vector<std::string> inputs = missing_load;
-    // The elastic constants give the compliance too, and with it the contact radius.
-    Append(inputs, missing_elastic);
-    unidentified.push_back(Needs("equivalent radius", inputs));
-  }
-  if (!identified.maximum_pressure) {
-    std::vector<std::string> inputs = missing_load;
-    if (!radius_known) inputs.push_back("the contact radius or " + radius_inputs);
-    unidentified.push_back(Needs("maximum pressure", inputs));
-  }
+  if (!identified.equivalent_radius) add("equivalent radius", ContactQuantity::kEquivalentRadius);
+  if (!identified.maximum_pressure) add("maximum pressure", ContactQuantity::kMaximumPressure);
   if (known.contact_radius && !derived.tangential_compliance) {
     unidentified.push_back(
-        Needs("comparison of the stiffness with the given contact radius", {radius_inputs}));
+        Needs("comparison of the stiffness with the given contact radius", {RadiusInputs(known)}));
   }
   if (!identified.hertz) {
-    std::vector<std::string> inputs = missing_load;
-    Append(inputs, missing_elastic);
+    // The elastic constants give the compliance too, and with it the contact radius.
+    std::vector<std::string> inputs = MissingInputs(known, ContactQuantity::kEquivalentRadius);
     Append(inputs, MissingRadii(known));
     unidentified.push_back(Needs("Hertz prediction of the stiffness", inputs));
   }
@@ -365,6 +357,36 @@ std::vector<std::string> Unidentified(const KnownContact& known, const Derived& 
 }
 
 }  // namespace
+
+std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity) {
+  const std::vector<std::string> elastic = MissingElasticConstants(known);
+  const bool compliance_known = known.tangential_compliance || elastic.empty();
+  std::vector<std::string> missing;
+  const bool needs_load = quantity == ContactQuantity::kFrictionCoefficient ||
+                          quantity == ContactQuantity::kEquivalentRadius ||
+                          quantity == ContactQuantity::kMaximumPressure;
+  if (needs_load && !known.normal_load) missing.emplace_back("the normal load");
+  switch (quantity) {
+    case ContactQuantity::kFrictionCoefficient:
+      break;
+    case ContactQuantity::kContactRadius:
+      if (!compliance_known) missing.push_back(RadiusInputs(known));
+      break;
+    case ContactQuantity::kTangentialCompliance:
+      if (!known.contact_radius) missing.emplace_back("the contact radius");
+      break;
+    case ContactQuantity::kEquivalentRadius:
+      // The elastic constants give the compliance too, and with it the contact radius.
+      Append(missing, elastic);
+      break;
+    case ContactQuantity::kMaximumPressure:
+      if (!known.contact_radius && !compliance_known) {
+        missing.push_back("the contact radius or " + RadiusInputs(known));
+      }
+      break;
+  }
+  return missing;
+}
 
 MindlinDahlParameters MapMindlinToDahl(const MindlinContact& contact) {
   Validate(contact);

@@ -1,5 +1,6 @@
 cmake_minimum_required(VERSION 3.25)
-# Installs the build into a scratch prefix and builds and runs the examples of examples/ against it.
+# Installs the build into a scratch prefix and builds and runs the examples against it. The JSON that a user of
+# the library writes is that of the installed program, byte for byte.
 set(prefix ${BUILD_DIR}/installed_package/prefix)
 set(user ${BUILD_DIR}/installed_package/user)
 file(REMOVE_RECURSE ${BUILD_DIR}/installed_package)
@@ -22,3 +23,45 @@ run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${user} -G ${GENERATOR} -DCMAK
 run(${CMAKE_COMMAND} --build ${user})
 run(${user}/fit_record ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv)
 run(${user}/mass_on_contact)
+
+function(expect_same_json record)  # further arguments: the normal load
+  set(option "")
+  if(ARGN)
+    set(option --normal-load ${ARGN})
+  endif()
+  foreach(who user program)
+    if("${who}" STREQUAL "user")
+      set(command ${user}/fit_to_json ${record} ${ARGN})
+    else()
+      set(command ${prefix}/bin/mindahl fit ${record} ${option} --json -)
+    endif()
+    execute_process(COMMAND ${command} RESULT_VARIABLE status OUTPUT_FILE ${user}/${who}.json
+                    ERROR_VARIABLE messages)
+    if(NOT status EQUAL 0)
+      message(FATAL_ERROR "${command} exits with ${status}: ${messages}")
+    endif()
+  endforeach()
+  file(SIZE ${user}/user.json size)
+  if(size LESS 1000)
+    message(FATAL_ERROR "the JSON of ${record} has only ${size} bytes")
+  endif()
+  run(${CMAKE_COMMAND} -E compare_files ${user}/user.json ${user}/program.json)
+endfunction()
+
+# A record with a column of its load, too.
+set(loaded ${user}/loaded.csv)
+file(STRINGS ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv lines)
+set(text "")
+foreach(line IN LISTS lines)
+  if(text STREQUAL "")
+    string(APPEND text "${line},normal load [N]\n")
+  else()
+    string(APPEND text "${line},50.5\n")
+  endif()
+endforeach()
+file(WRITE ${loaded} "${text}")
+
+expect_same_json(${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv)
+expect_same_json(${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv 50)
+expect_same_json(${SOURCE_DIR}/data/far_from_slip.csv 80)
+expect_same_json(${loaded})

@@ -163,6 +163,19 @@ struct IdentifiedContact {
   std::vector<std::string> redundant;
 };
 
+/// What a fit and what is known besides it may identify.
+enum class ContactQuantity {
+  kFrictionCoefficient,
+  kContactRadius,
+  kTangentialCompliance,
+  kEquivalentRadius,
+  kMaximumPressure,
+};
+
+/// What would have to be known for IdentifyContact() to give a quantity and is not, in words: "the
+/// normal load". Empty where nothing is missing.
+std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity);
+
 /// The inverse mapping: from a fitted stiffness and slip force to the contact.
 ///
 /// Knowledge may be redundant. What is given directly wins over what follows from other inputs:

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/record.h"
+
+namespace mindahl::report {
+
+/// IdentifyContact() of a fit, with its errors and their correlation, and by the rules that
+/// keep it from saying what the record does not tell:
+///  - a parameter that was held is exact, one that the record leaves open has an infinite error;
+///  - no μ from a slip force that is not identifiable: `unidentified` then has the lower limit.
+/// @param fit  one that did not fail
+/// @throws InvalidArgument as IdentifyContact()
+contact::IdentifiedContact IdentifyFittedContact(const identification::FitResult& fit,
+                                                 const contact::KnownContact& known);
+
+/// Why μ is withheld though the normal load is known: the slip force is not identifiable. Empty
+/// where it is not withheld.
+std::optional<std::string> WhyFrictionIsWithheld(const identification::FitResult& fit,
+                                                 const contact::KnownContact& known);
+
+/// Mean measured normal load [N], which a steady test keeps to: of the samples in the window where
+/// there is one. Empty where a record has no load or no sample counts.
+std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
+                                     const std::optional<identification::Interval>& window = {});
+
+}  // namespace mindahl::report

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include "mindahl/identification/fit.h"
+
+namespace mindahl::report {
+
+enum class SlipRegime { kPartial, kGross };
+
+/// The steady loop of the fitted law at the amplitude of the widest record.
+struct LoopDescription {
+  double contact_amplitude = 0.0;  ///< X [m] of the contact alone, the rig's travel taken off
+  double model_energy = 0.0;       ///< W [J] per cycle
+  /// A = W/(4XT*) [-] with the measured X and T* and the measured W, or the model's where the
+  /// record closes no cycle; empty where X or T* is 0.
+  std::optional<double> energy_ratio;
+  /// δc [m] of the fitted law; empty for α >= 1, which only approaches the slip force.
+  std::optional<double> gross_slip_displacement;
+  double slip_force_share = 0.0;    ///< T*/Tc [-] of the law
+  double stick_radius_ratio = 0.0;  ///< c/a [-] of a Mindlin contact under T*; 0 in gross slip
+  SlipRegime regime = SlipRegime::kPartial;
+};
+
+/// From this share of Tc on a law with α >= 1 is said to slip as a whole, which it never quite
+/// does: no record tells 1 % of the force.
+inline constexpr double kAsGoodAsSlip = 0.99;
+
+/// The part of an amplitude [m] that is the contact's where a rig in series shares in it:
+///   X_c = X − T*(X_c)/k_r
+/// @param amplitude  [m] of contact and rig, finite, >= 0
+/// Relative error 1e-15; the amplitude itself for a rigid rig.
+double ContactAmplitude(const identification::FitResult& fit, double amplitude);
+
+/// @param fit  one that did not fail
+LoopDescription DescribeLoop(const identification::FitResult& fit);
+
+}  // namespace mindahl::report

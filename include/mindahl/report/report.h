@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/identification/model_selection.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/report/loop_description.h"
+#include "mindahl/report/mapping_tests.h"
+#include "mindahl/report/warning.h"
+
+namespace mindahl::report {
+
+/// What a report is made from.
+struct ReportInput {
+  std::vector<std::string> files;       ///< name of each record, as it is to be printed
+  std::vector<io::RecordFile> records;  ///< as they were read, those that were fitted
+  identification::FitResult fit;
+  contact::KnownContact known = {};  ///< of the contact, besides the fit
+  /// Normal loads [N] of the samples that counted, as the fit was told.
+  std::optional<identification::Interval> load_window = {};
+  std::optional<identification::ModelSelection> selection = {};  ///< where the model was chosen
+};
+
+/// Everything that is said of a fit: what was given, and what follows from it. ToJson(), ToText(),
+/// ToPlot() and ResidualsCsv() write it.
+struct Report : ReportInput {
+  std::optional<LoopDescription> loop;  ///< empty where the fit failed
+  contact::IdentifiedContact contact;   ///< empty where the fit failed
+  AlphaTest alpha;
+  std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit
+  std::vector<Warning> fit_warnings;      ///< what the fit found
+  std::vector<Warning> contact_warnings;  ///< what the translation into the contact found
+
+  /// A fit that failed has no parameter, residual, loop, contact or mapping.
+  [[nodiscard]] bool failed() const { return fit.parameters.empty(); }
+};
+
+/// Loop, contact and mapping from a fit.
+/// @param input  one name and one record for each record of the fit
+/// @throws InvalidArgument when their numbers differ or there is none, when the fit has no model,
+/// and
+///   as IdentifyFittedContact()
+Report MakeReport(ReportInput input);
+
+}  // namespace mindahl::report

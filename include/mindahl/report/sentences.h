@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit.h"
+
+namespace mindahl::report {
+
+/// A finding in words, without an end of line: what was found, what it means and, where something
+/// can be done, what to do.
+/// @param finding  with the numbers and parameters that its code has (docs/contract.md)
+/// @param fit      the fit that found it: the model's name and why the solver stopped are its own
+/// @throws std::logic_error for a code or kind without a sentence, and for a number that is missing
+std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit);
+
+/// Every code that has a sentence.
+std::vector<std::string_view> FindingCodes();
+
+}  // namespace mindahl::report

@@ -1,0 +1,74 @@
+#include "mindahl/report/contact.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+namespace mindahl::report {
+
+using identification::FitResult;
+
+namespace {
+
+/// As the contact module takes it: infinite where the fit leaves a parameter open.
+contact::UncertainValue Uncertain(const identification::ParameterEstimate& estimate) {
+  const bool known = estimate.status == identification::ParameterStatus::kFixed;
+  return {estimate.value,
+          estimate.standard_error.value_or(known ? 0.0 : std::numeric_limits<double>::infinity())};
+}
+
+/// Of the errors of two parameters; 0 where the fit does not say.
+double Correlation(const FitResult& fit, std::string_view first, std::string_view second) {
+  const std::size_t count = fit.parameters.size();
+  const auto place = [&](std::string_view name) {
+    return static_cast<std::size_t>(fit.Find(name) - fit.parameters.data());
+  };
+  const double correlation = fit.correlation[place(first) * count + place(second)];
+  return std::isfinite(correlation) ? std::clamp(correlation, -1.0, 1.0) : 0.0;
+}
+
+}  // namespace
+
+std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit,
+                                                 const contact::KnownContact& known) {
+  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
+  if (!known.normal_load || slip_force == nullptr ||
+      slip_force->identifiability == identification::Identifiability::kIdentifiable) {
+    return std::nullopt;
+  }
+  return fmt::format("needs an identifiable slip force; from this loop it is at least {:.3g}",
+                     slip_force->lower95.value_or(0.0) / known.normal_load->value);
+}
+
+contact::IdentifiedContact IdentifyFittedContact(const FitResult& fit,
+                                                 const contact::KnownContact& known) {
+  contact::IdentifiedContact contact =
+      contact::IdentifyContact(Uncertain(*fit.Find("sigma")), Uncertain(*fit.Find("slip_force")),
+                               known, Correlation(fit, "sigma", "slip_force"));
+  if (const std::optional<std::string> why = WhyFrictionIsWithheld(fit, known)) {
+    contact.friction_coefficient.reset();
+    contact.unidentified.push_back("friction coefficient " + *why);
+  }
+  return contact;
+}
+
+std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
+                                     const std::optional<identification::Interval>& window) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const loop::Record& record : records) {
+    if (record.normal_load.empty()) return std::nullopt;
+    for (const double load : record.normal_load) {
+      if (window && (load < window->lower || load > window->upper)) continue;
+      sum += load;
+      ++count;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+}  // namespace mindahl::report

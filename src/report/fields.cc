@@ -1,0 +1,123 @@
+#include "report/fields.h"
+
+#include <functional>
+#include <utility>
+
+#include "mindahl/core/version.h"
+#include "report/field_table.h"
+#include "report/names.h"
+
+namespace mindahl::report {
+
+using identification::RecordFit;
+
+namespace {
+
+/// The sum over the records of what one of them has.
+template <typename Get>
+std::function<Value(const Report&)> Sum(Get get) {
+  return [get](const Report& report) {
+    std::size_t sum = 0;
+    for (const RecordFit& record : report.fit.records) sum += get(record);
+    return Count(sum);
+  };
+}
+
+std::function<Value(const Report&)> OneARecord(double RecordFit::*member) {
+  return [member](const Report& report) {
+    Value::Array array;
+    for (const RecordFit& record : report.fit.records) array.push_back(Number(record.*member));
+    return Value{std::move(array)};
+  };
+}
+
+Value UnitOf(const std::optional<io::ChosenColumn>& column) {
+  return column ? Text(column->unit) : Value{};
+}
+
+void AddInputFields(FieldTable& table) {
+  table.Add({
+      {"schema", "", "name and version of this form",
+       [](const Report&) { return Text("mindahl.fit/1"); }},
+      {"version", "", "version of mindahl", [](const Report&) { return Text(Version()); }},
+      {"input.files", "", "names of the files, as they were given",
+       [](const Report& report) {
+         Value::Array files;
+         for (const std::string& file : report.files) files.push_back(Text(file));
+         return Value{std::move(files)};
+       }},
+      {"input.samples", "", "samples read, those that do not count too",
+       [](const Report& report) {
+         std::size_t samples = 0;
+         for (const io::RecordFile& input : report.records) samples += input.record.size();
+         return Count(samples);
+       }},
+      {"input.cycles", "", "complete cycles, of all files",
+       Sum([](const RecordFit& record) { return record.measures.cycles; })},
+      {"input.reversals", "", "turning points of the motion, of all files",
+       Sum([](const RecordFit& record) { return record.reversals.size(); })},
+      {"input.units.displacement", "", "unit of the column in the first file",
+       [](const Report& report) { return Text(report.records.front().displacement.unit); }},
+      {"input.units.force", "", "unit of the column in the first file",
+       [](const Report& report) { return Text(report.records.front().force.unit); }},
+      {"input.units.time", "", "likewise; absent where there is no such column",
+       [](const Report& report) { return UnitOf(report.records.front().time); }},
+      {"input.units.normal_load", "", "likewise; absent where there is no such column",
+       [](const Report& report) { return UnitOf(report.records.front().normal_load); }},
+      {"input.left_out", "", "samples that do not count",
+       Sum([](const RecordFit& record) { return record.left_out; })},
+      {"input.reversal_gate", "m", "one a file: excursions up to it are noise",
+       OneARecord(&RecordFit::reversal_gate)},
+      {"input.displacement_noise", "m", "one a file: standard deviation, given or estimated",
+       OneARecord(&RecordFit::displacement_noise)},
+      {"input.force_sign", "",
+       "same or opposite: the sign of the force for that of the displacement",
+       [](const Report& report) { return Text(report.fit.force_sense > 0 ? "same" : "opposite"); }},
+  });
+}
+
+FieldTable MakeTable() {
+  FieldTable table;
+  AddInputFields(table);
+  AddParameterFields(table);
+  AddResidualFields(table);
+  AddSelectionFields(table);
+  AddSolverFields(table);
+  AddLoopFields(table);
+  AddContactFields(table);
+  AddMappingFields(table);
+  // What a fit that failed has not is null for that reason.
+  for (Field<Report>& row : table.rows) {
+    row.why_null = [why = std::move(row.why_null)](const Report& report) {
+      if (report.failed()) return WhyFailed(report);
+      return why ? why(report) : std::string("not a finite number");
+    };
+  }
+  return table;
+}
+
+const FieldTable& Table() {
+  static const FieldTable table = MakeTable();
+  return table;
+}
+
+}  // namespace
+
+std::string WhyFailed(const Report& report) { return "the fit failed: " + report.fit.termination; }
+
+std::vector<FieldDescription> DescribeFields() {
+  std::vector<FieldDescription> descriptions;
+  for (const Field<Report>& row : Table().rows) {
+    descriptions.push_back({row.path, row.unit, row.label});
+  }
+  descriptions.insert(descriptions.end(), Table().items.begin(), Table().items.end());
+  descriptions.push_back({"nulls[].path", "", "where the null is"});
+  descriptions.push_back({"nulls[].why", "", "why it is one"});
+  descriptions.push_back({"warnings[].code", "", "stable, for scripts"});
+  descriptions.push_back({"warnings[].message", "", "for people"});
+  return descriptions;
+}
+
+Value::Object Document(const Report& report) { return Render(Table().rows, report); }
+
+}  // namespace mindahl::report

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/report/report.h"
+#include "report/value.h"
+
+namespace mindahl::report {
+
+/// A quantity of the contact that the fit and what is known besides it identify together.
+struct ContactField {
+  std::string_view key;
+  std::string_view unit;
+  std::string_view label;
+  std::string_view formula;
+  std::optional<contact::PropagatedValue> (*get)(const Report&);
+  std::string (*why_null)(const Report&);
+};
+
+/// In the order of the reports.
+const std::vector<ContactField>& ContactFields();
+
+/// What the documentation says of a field.
+struct FieldDescription {
+  std::string path;  ///< NAME and QUANTITY stand for what they are, [] for every place of a list
+  std::string unit;
+  std::string label;
+};
+
+/// Every field that a report may have.
+std::vector<FieldDescription> DescribeFields();
+
+/// The whole report as keys and values.
+Value::Object Document(const Report& report);
+
+}  // namespace mindahl::report

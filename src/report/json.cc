@@ -1,0 +1,56 @@
+#include "mindahl/report/json.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <variant>
+
+#include "report/fields.h"
+
+namespace mindahl::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json Convert(const Value& value);
+
+struct Converter {
+  Json operator()(const Value::Absent&) const { return nullptr; }
+  Json operator()(const Value::Null&) const { return nullptr; }
+  Json operator()(const Value::Array& array) const {
+    Json json = Json::array();
+    for (const Value& element : array) json.push_back(Convert(element));
+    return json;
+  }
+  Json operator()(const Value::Object& object) const {
+    Json json = Json::object();
+    for (const auto& [key, member] : object) json[key] = Convert(member);
+    return json;
+  }
+  template <typename Scalar>
+  Json operator()(const Scalar& scalar) const {
+    return scalar;
+  }
+};
+
+Json Convert(const Value& value) { return std::visit(Converter{}, value.content); }
+
+}  // namespace
+
+std::string ToJson(const Report& report) {
+  const Value::Object document = Document(report);
+  Json json = Converter{}(document);
+  json["nulls"] = Json::array();
+  for (const NullPlace& null : CollectNulls(document)) {
+    json["nulls"].push_back({{"path", null.path}, {"why", null.why}});
+  }
+  json["warnings"] = Json::array();
+  for (const std::vector<Warning>& warnings : {report.fit_warnings, report.contact_warnings}) {
+    for (const Warning& warning : warnings) {
+      json["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+    }
+  }
+  // A file name need not be UTF-8; JSON must.
+  return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace mindahl::report

@@ -1,0 +1,54 @@
+#include "report/field_table.h"
+#include "report/names.h"
+
+namespace mindahl::report {
+
+using loop::LoopMeasures;
+
+namespace {
+
+std::function<Value(const Report&)> Measured(double LoopMeasures::*member) {
+  return
+      [member](const Report& report) { return Number(report.fit.WidestRecord().measures.*member); };
+}
+
+/// Of the loop's description, where there is one.
+template <typename Get>
+std::function<Value(const Report&)> OfLoop(Get get) {
+  return [get](const Report& report) { return report.loop ? get(*report.loop) : Missing(); };
+}
+
+}  // namespace
+
+void AddLoopFields(FieldTable& table) {
+  table.Add({
+      {"loop.amplitude", "m", "X of the widest record", Measured(&LoopMeasures::amplitude)},
+      {"loop.centre", "m", "midway between the extremes of the displacement",
+       Measured(&LoopMeasures::centre)},
+      {"loop.peak_force", "N", "T* of the widest record", Measured(&LoopMeasures::peak_force)},
+      {"loop.energy_per_cycle_measured", "J", "W, mean over closed cycles",
+       [](const Report& report) {
+         return Number(report.fit.WidestRecord().measures.energy_per_cycle);
+       },
+       [](const Report&) { return std::string("the record closes no cycle"); }},
+      {"loop.energy_per_cycle_model", "J",
+       "W of the fitted law at the amplitude, the rig's travel taken off",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.model_energy); })},
+      {"loop.energy_ratio", "-", "W/(4XT*), the model's W where none was measured",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.energy_ratio); }),
+       [](const Report&) {
+         return std::string("needs a force that differs between the extremes of the displacement");
+       }},
+      {"loop.slip_regime", "", "partial or gross slip",
+       OfLoop([](const LoopDescription& loop) { return Text(Name(loop.regime)); })},
+      {"loop.gross_slip_displacement", "m", "δc of the fitted law",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_displacement); }),
+       [](const Report&) {
+         return std::string("with alpha >= 1 the force only approaches slip_force");
+       }},
+      {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.stick_radius_ratio); })},
+  });
+}
+
+}  // namespace mindahl::report

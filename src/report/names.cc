@@ -1,0 +1,44 @@
+#include "report/names.h"
+
+namespace mindahl::report {
+
+using identification::Identifiability;
+using identification::ParameterStatus;
+
+std::string_view Name(ParameterStatus status) {
+  switch (status) {
+    case ParameterStatus::kFree:
+      return "free";
+    case ParameterStatus::kFixed:
+      return "fixed";
+    case ParameterStatus::kAtLowerBound:
+      return "at_lower_bound";
+    case ParameterStatus::kAtUpperBound:
+      return "at_upper_bound";
+  }
+  return "";
+}
+
+std::string_view Name(Identifiability identifiability) {
+  switch (identifiability) {
+    case Identifiability::kIdentifiable:
+      return "identifiable";
+    case Identifiability::kBoundedBelow:
+      return "bounded_below";
+    case Identifiability::kBoundedAbove:
+      return "bounded_above";
+    case Identifiability::kNotIdentifiable:
+      return "not_identifiable";
+  }
+  return "";
+}
+
+std::string_view Name(models::InitialState state) {
+  return state == models::InitialState::kVirgin ? "virgin" : "steady";
+}
+
+std::string_view Name(SlipRegime regime) {
+  return regime == SlipRegime::kGross ? "gross" : "partial";
+}
+
+}  // namespace mindahl::report

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string_view>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/report/loop_description.h"
+
+namespace mindahl::report {
+
+// How the reports call what the library has as enumerations.
+std::string_view Name(identification::ParameterStatus status);
+std::string_view Name(identification::Identifiability identifiability);
+std::string_view Name(models::InitialState state);
+std::string_view Name(SlipRegime regime);
+
+}  // namespace mindahl::report

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "report/field_table.h"
+#include "report/names.h"
+
+namespace mindahl::report {
+
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+
+namespace {
+
+struct ReportedParameter {
+  const Report& report;
+  const ParameterEstimate& estimate;
+};
+
+std::string WhyNoError(const ReportedParameter& item) {
+  if (item.report.failed()) return WhyFailed(item.report);
+  switch (item.estimate.status) {
+    case ParameterStatus::kFixed:
+      return "held, not fitted";
+    case ParameterStatus::kAtLowerBound:
+    case ParameterStatus::kAtUpperBound:
+      return "at its bound, where the interval is one-sided";
+    case ParameterStatus::kFree:
+      break;
+  }
+  return "the record leaves it open";
+}
+
+std::string WhyOpen(const ReportedParameter& item) {
+  if (item.report.failed()) return WhyFailed(item.report);
+  return item.estimate.status == ParameterStatus::kFixed ? "held, not fitted"
+                                                         : "the record sets no limit there";
+}
+
+const std::vector<Field<ReportedParameter>>& ParameterFields() {
+  using Item = ReportedParameter;
+  static const std::vector<Field<Item>> fields = {
+      {"value", "of the parameter", "estimate",
+       [](const Item& item) { return Number(item.estimate.value); },
+       [](const Item& item) { return WhyFailed(item.report); }},
+      {"unit", "", "unit of value, error and interval",
+       [](const Item& item) { return Text(item.estimate.unit); }},
+      {"standard_error", "of the parameter", "standard error",
+       [](const Item& item) { return Number(item.estimate.standard_error); }, WhyNoError},
+      {"ci95[0]", "of the parameter", "lower end of the 95 % interval",
+       [](const Item& item) { return Number(item.estimate.lower95); }, WhyOpen},
+      {"ci95[1]", "of the parameter", "upper end of the 95 % interval",
+       [](const Item& item) { return Number(item.estimate.upper95); }, WhyOpen},
+      {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
+       [](const Item& item) { return Text(Name(item.estimate.status)); }},
+      {"identifiability", "", "identifiable, bounded_below, bounded_above or not_identifiable",
+       [](const Item& item) { return Text(Name(item.estimate.identifiability)); }},
+  };
+  return fields;
+}
+
+ParameterEstimate NotEstimated(const char* name, const char* unit) {
+  ParameterEstimate estimate;
+  estimate.name = name;
+  estimate.unit = unit;
+  estimate.value = NAN;
+  estimate.status = ParameterStatus::kFree;
+  return estimate;
+}
+
+Value Parameters(const Report& report) {
+  const std::vector<ParameterEstimate> missing = {
+      NotEstimated("sigma", "N/m"), NotEstimated("alpha", "-"), NotEstimated("slip_force", "N")};
+  Value::Object object;
+  for (const ParameterEstimate& estimate : report.failed() ? missing : report.fit.parameters) {
+    object.emplace_back(estimate.name, Value{Render(ParameterFields(), {report, estimate})});
+  }
+  return {std::move(object)};
+}
+
+Value Correlations(const Report& report) {
+  const identification::FitResult& fit = report.fit;
+  const std::size_t count = fit.parameters.size();
+  const auto undefined = [&](std::size_t i) {
+    return !std::isfinite(fit.correlation[i * count + i]);
+  };
+  Value::Object object;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (fit.parameters[i].status == ParameterStatus::kFixed) continue;
+    Value::Object row;
+    for (std::size_t j = 0; j < count; ++j) {
+      if (fit.parameters[j].status == ParameterStatus::kFixed) continue;
+      Value value = Number(fit.correlation[i * count + j]);
+      if (std::holds_alternative<Value::Null>(value.content)) {
+        value = Missing(fmt::format("{} is at a bound or undetermined",
+                                    fit.parameters[undefined(i) ? i : j].name));
+      }
+      row.emplace_back(fit.parameters[j].name, std::move(value));
+    }
+    object.emplace_back(fit.parameters[i].name, Value{std::move(row)});
+  }
+  return {std::move(object)};
+}
+
+}  // namespace
+
+void AddParameterFields(FieldTable& table) {
+  table.Add({
+      {"model", "", "name of the model",
+       [](const Report& report) { return Text(report.fit.model->name); }},
+      {"initial_state", "", "virgin or steady: the contact before the record",
+       [](const Report& report) { return Text(Name(report.fit.initial_state)); }},
+      {"parameters", "", "one member a parameter, by name", Parameters},
+      {"correlation", "-", "correlation of the errors of free parameters, by their names",
+       Correlations},
+  });
+  table.Describe("parameters.NAME.", ParameterFields());
+  table.items.push_back({"correlation.NAME.NAME", "-", "of the errors of two free parameters"});
+}
+
+}  // namespace mindahl::report

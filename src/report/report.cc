@@ -1,0 +1,76 @@
+#include "mindahl/report/report.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "mindahl/core/error.h"
+#include "mindahl/report/contact.h"
+#include "mindahl/report/sentences.h"
+
+namespace mindahl::report {
+namespace {
+
+void Require(const ReportInput& input) {
+  const std::size_t records = input.fit.records.size();
+  if (records == 0 || input.fit.model == nullptr) {
+    throw InvalidArgument("there is nothing to report: the fit has no record or no model");
+  }
+  RequireSameSize("names of files", input.files.size(), "records of the fit", records);
+  RequireSameSize("records", input.records.size(), "records of the fit", records);
+  for (std::size_t r = 0; r < records; ++r) {
+    const loop::Record& record = input.records[r].record;
+    if (!input.fit.parameters.empty()) {
+      RequireSameSize("samples", record.size(), "residuals of the fit",
+                      input.fit.records[r].residual.size());
+    }
+    if (input.load_window) {
+      RequireSameSize("normal loads, for the load window,", record.normal_load.size(), "samples",
+                      record.size());
+    }
+  }
+}
+
+/// The sentences are the fit's own until it gives findings: then Sentence(finding, fit) of each.
+std::vector<Warning> FitWarnings(const identification::FitResult& fit) {
+  std::vector<Warning> warnings;
+  for (const identification::FitWarning& warning : fit.warnings) {
+    warnings.push_back({warning.code, warning.message});
+  }
+  if (fit.parameters.empty()) {
+    identification::Finding failure;
+    failure.code = "fit_failed";
+    warnings.push_back({"fit_failed", Sentence(failure, fit)});
+  }
+  return warnings;
+}
+
+/// What was given and contradicts, or could not be used.
+std::vector<Warning> ContactWarnings(const Report& report) {
+  std::vector<Warning> warnings;
+  if (const auto why = WhyFrictionIsWithheld(report.fit, report.known)) {
+    warnings.push_back({"contact_not_identified", "contact: friction coefficient " + *why});
+  }
+  for (const std::string& sentence : report.contact.redundant) {
+    warnings.push_back({"contact_redundant", "contact: " + sentence});
+  }
+  return warnings;
+}
+
+}  // namespace
+
+Report MakeReport(ReportInput input) {
+  Require(input);
+  Report report;
+  static_cast<ReportInput&>(report) = std::move(input);
+  report.fit_warnings = FitWarnings(report.fit);
+  if (report.failed()) return report;
+  report.loop = DescribeLoop(report.fit);
+  report.alpha = TestAlpha(report.fit);
+  report.contact = IdentifyFittedContact(report.fit, report.known);
+  report.stiffness = TestStiffness(report.fit, report.contact);
+  report.contact_warnings = ContactWarnings(report);
+  return report;
+}
+
+}  // namespace mindahl::report

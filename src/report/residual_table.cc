@@ -1,0 +1,43 @@
+#include "mindahl/report/residual_table.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "mindahl/io/csv_writer.h"
+#include "report/requirements.h"
+
+namespace mindahl::report {
+
+std::string ResidualsCsv(const Report& report) {
+  RequireFitted(report, "a table of residuals");
+  std::vector<double> file;
+  std::vector<double> time;
+  std::vector<double> displacement;
+  std::vector<double> force;
+  std::vector<double> fitted;
+  std::vector<double> residual;
+  const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const loop::Record& record = report.records[r].record;
+    file.insert(file.end(), record.size(), static_cast<double>(r + 1));
+    append(time, record.time);
+    append(displacement, record.displacement);
+    append(force, record.force);
+    append(fitted, report.fit.records[r].fitted_force);
+    append(residual, report.fit.records[r].residual);
+  }
+  const bool timed = std::ranges::none_of(
+      report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
+  std::vector<io::CsvColumn> columns;
+  if (report.records.size() > 1) columns.push_back({"file", file});
+  if (timed) columns.push_back({"time [s]", time});
+  columns.push_back({"displacement [m]", displacement});
+  columns.push_back({"force [N]", force});
+  columns.push_back({"fitted_force [N]", fitted});
+  columns.push_back({"residual [N]", residual});
+  return io::CsvText(columns);
+}
+
+}  // namespace mindahl::report

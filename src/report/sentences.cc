@@ -1,0 +1,190 @@
+#include "mindahl/report/sentences.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+namespace mindahl::report {
+
+using identification::Finding;
+using identification::FitResult;
+
+namespace {
+
+double Needed(const Finding& finding, std::string_view name) {
+  if (const std::optional<double> number = finding.Number(name)) return *number;
+  throw std::logic_error(fmt::format("the finding '{}' has no number '{}'", finding.code, name));
+}
+
+[[noreturn]] void ThrowKind(const Finding& finding) {
+  throw std::logic_error(
+      fmt::format("the finding '{}' has no kind '{}'", finding.code, finding.kind));
+}
+
+// --- what the record does not tell
+
+std::string TurningPoints(const Finding& finding, const FitResult&) {
+  return fmt::format(
+      "the motion turns between samples, up to {:.3g} m beyond the outermost: the turning points "
+      "were fitted too; sample more densely",
+      Needed(finding, "overshoot"));
+}
+
+std::string ShapeOrRig(const Finding& finding, const FitResult&) {
+  return fmt::format(
+      "alpha: a rig of {:.4g} N/m in series and Mindlin's alpha = 1/3 fit as well as alpha = "
+      "{:.3g} "
+      "on a rigid rig: they are indistinguishable in this record, and sigma is that of contact and "
+      "rig together; measure the rig's stiffness and give --rig-stiffness",
+      Needed(finding, "rig_stiffness"), Needed(finding, "alpha"));
+}
+
+std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&) {
+  return fmt::format(
+      "slip_force: the loop (T* = {:.4g} N at X = {:.4g} m) does not approach gross slip and fits "
+      "any larger slip force as well; raise the amplitude until the force levels off",
+      Needed(finding, "peak_force"), Needed(finding, "amplitude"));
+}
+
+std::string TooWide(const char* parameter, const Finding& finding) {
+  return fmt::format(
+      "{}: the 95 % interval {:.3g} … {:.3g} is too wide to call it known; record more samples, "
+      "less noise or a larger amplitude",
+      parameter, Needed(finding, "lower"), Needed(finding, "upper"));
+}
+
+std::string AlphaNotIdentifiable(const Finding& finding, const FitResult&) {
+  if (finding.kind == "wide") return TooWide("alpha", finding);
+  if (finding.kind != "with_slip_force") ThrowKind(finding);
+  return "alpha: known only together with slip_force (the ratio alpha/slip_force enters the loop); "
+         "raise the amplitude until the force levels off, or fix one of them";
+}
+
+std::string SigmaNotIdentifiable(const Finding& finding, const FitResult&) {
+  if (finding.kind != "wide") ThrowKind(finding);
+  return TooWide("sigma", finding);
+}
+
+std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult&) {
+  if (finding.kind != "wide") ThrowKind(finding);
+  return TooWide("slip_force", finding);
+}
+
+std::string SigmaBoundedBelow(const Finding&, const FitResult&) {
+  return "sigma: a rigid contact (sigma without limit) fits as well; sample more densely after the "
+         "reversals, or lower the amplitude";
+}
+
+std::string UndeterminedParameter(const Finding& finding, const FitResult&) {
+  const bool one = finding.parameters.size() == 1;
+  return fmt::format("{}: the record does not depend on {}; fix {}, or record another amplitude",
+                     fmt::join(finding.parameters, ", "), one ? "it" : "any of them",
+                     one ? "it" : "them");
+}
+
+std::string UndeterminedCombination(const Finding& finding, const FitResult&) {
+  return fmt::format(
+      "the record determines only a combination of {}: fix one of them, or record a larger "
+      "amplitude",
+      fmt::join(finding.parameters, ", "));
+}
+
+// --- what the model misses
+
+struct MisfitKind {
+  std::string_view kind;
+  const char* words;
+};
+
+constexpr std::array<MisfitKind, 5> kMisfitKinds = {{
+    {"same_on_return", "the same on the way back: a force that depends on the position"},
+    {"mirrored_early",
+     "mirrored on the way back, after each reversal: backlash, or a stiffness that is not the "
+     "contact's"},
+    {"one_sided_early",
+     "after the reversal, unlike on the way back: backlash on one side, or a drive that is not "
+     "symmetric"},
+    {"mirrored", "mirrored on the way back: the shape of the loop is another one"},
+    {"asymmetric", "unlike in the two directions: friction that is not symmetric"},
+}};
+
+std::string WhereItRepeats(const Finding& finding) {
+  for (const MisfitKind& kind : kMisfitKinds) {
+    if (kind.kind != finding.kind) continue;
+    return fmt::format(
+        "{:.0f} % of the residuals' variance is repeatable: it comes back in every stroke, up to "
+        "{:.3g} N {:.0f} % of the way {}; {}",
+        100 * Needed(finding, "repeatable_share"), std::abs(Needed(finding, "largest")),
+        100 * Needed(finding, "position"), Needed(finding, "direction") > 0 ? "up" : "down",
+        kind.words);
+  }
+  ThrowKind(finding);
+}
+
+std::string NoModelFits(const Finding& finding, const FitResult& fit) {
+  return fmt::format(
+      "no parameters of {} follow this record (rms {:.3g} % of the force): {}. Tc and the energy "
+      "may still be of use, sigma and alpha not",
+      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding));
+}
+
+std::string SystematicResidual(const Finding& finding, const FitResult& fit) {
+  return fmt::format(
+      "{} leaves a repeatable residual (rms {:.3g} % of the force): {}. Intervals are widened for "
+      "it; compare with --model auto",
+      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding));
+}
+
+// --- what the solver did not reach
+
+std::string WeightsNotSettled(const Finding&, const FitResult&) {
+  return "the weights of the samples did not settle: the fit did not converge; try another --loss";
+}
+
+std::string FitFailed(const Finding&, const FitResult& fit) {
+  return fmt::format(
+      "the fit failed, so no parameter, residual, loop, contact or mapping value was computed: {}",
+      fit.termination);
+}
+
+struct Row {
+  std::string_view code;
+  std::string (*sentence)(const Finding&, const FitResult&);
+};
+
+constexpr std::array<Row, 13> kSentences = {{
+    {"turning_points_between_samples", TurningPoints},
+    {"shape_or_rig", ShapeOrRig},
+    {"slip_force_bounded_below", SlipForceBoundedBelow},
+    {"alpha_not_identifiable", AlphaNotIdentifiable},
+    {"sigma_not_identifiable", SigmaNotIdentifiable},
+    {"slip_force_not_identifiable", SlipForceNotIdentifiable},
+    {"sigma_bounded_below", SigmaBoundedBelow},
+    {"undetermined_parameter", UndeterminedParameter},
+    {"undetermined_combination", UndeterminedCombination},
+    {"no_model_fits", NoModelFits},
+    {"systematic_residual", SystematicResidual},
+    {"weights_not_settled", WeightsNotSettled},
+    {"fit_failed", FitFailed},
+}};
+
+}  // namespace
+
+std::string Sentence(const Finding& finding, const FitResult& fit) {
+  for (const Row& row : kSentences) {
+    if (row.code == finding.code) return row.sentence(finding, fit);
+  }
+  throw std::logic_error(fmt::format("the finding '{}' has no sentence", finding.code));
+}
+
+std::vector<std::string_view> FindingCodes() {
+  std::vector<std::string_view> codes;
+  for (const Row& row : kSentences) codes.push_back(row.code);
+  return codes;
+}
+
+}  // namespace mindahl::report

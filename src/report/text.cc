@@ -1,0 +1,291 @@
+#include "mindahl/report/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "mindahl/models/steady_loop.h"
+#include "report/fields.h"
+#include "report/names.h"
+#include "report/requirements.h"
+
+namespace mindahl::report {
+
+using contact::PropagatedValue;
+using identification::FitResult;
+using identification::RecordFit;
+
+namespace {
+
+std::string Significant(double value) { return fmt::format("{:.6g}", value); }
+
+std::string Bound(const std::optional<double>& value) {
+  return value ? fmt::format("{:.5g}", *value) : "open";
+}
+
+/// Breaks a sentence between words at 100 columns; lines after the first are indented.
+std::string Wrapped(std::string_view text, std::size_t indent) {
+  constexpr std::size_t kColumns = 100;
+  const auto width = [](std::string_view part) {
+    return static_cast<std::size_t>(std::ranges::count_if(part, [](char byte) {
+      return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: not a continuation
+    }));
+  };
+  std::string wrapped;
+  std::size_t column = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    // A word takes the blanks before it along.
+    const std::size_t letter = std::min(text.find_first_not_of(' ', begin), text.size());
+    const std::size_t end = std::min(text.find(' ', letter), text.size());
+    const std::string_view word = text.substr(begin, end - begin);
+    if (column > indent && column + width(word) > kColumns) {
+      wrapped += '\n' + std::string(indent, ' ') + std::string(text.substr(letter, end - letter));
+      column = indent + width(text.substr(letter, end - letter));
+    } else {
+      wrapped += word;
+      column += width(word);
+    }
+    begin = end;
+  }
+  return wrapped + '\n';
+}
+
+std::string Words(identification::Identifiability identifiability) {
+  std::string words(Name(identifiability));
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
+std::string ParameterTable(const FitResult& fit) {
+  std::string text;
+  const auto row = [&](std::string_view name, std::string_view unit, std::string_view value,
+                       std::string_view error, std::string_view interval,
+                       std::string_view verdict) {
+    text += fmt::format("{:<19} {:<4} {:>12} {:>9}  {:<24} {}\n", name, unit, value, error,
+                        interval, verdict);
+  };
+  row("parameter", "unit", "value", "std error", "95 % interval", "verdict");
+  for (const identification::ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.status == identification::ParameterStatus::kFixed) {
+      row(estimate.name, estimate.unit, Significant(estimate.value), "-", "-", "fixed");
+      continue;
+    }
+    std::string verdict = Words(estimate.identifiability);
+    if (estimate.status != identification::ParameterStatus::kFree) verdict += ", at bound";
+    row(estimate.name, estimate.unit, Significant(estimate.value),
+        estimate.standard_error ? fmt::format("{:.2g}", *estimate.standard_error) : "-",
+        fmt::format("{} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
+  }
+  return text;
+}
+
+std::string ErrorText(const contact::UncertainValue& value) {
+  return std::isfinite(value.standard_error) ? fmt::format("± {:.2g}", value.standard_error)
+                                             : "± open";
+}
+
+/// What to measure better; nothing where the inputs are exact and the fit alone is uncertain.
+std::string SharesText(const PropagatedValue& value) {
+  if (value.largest_input.empty()) return "";
+  return fmt::format("  {:<22} variance: fit {:.0f} %, inputs {:.0f} %, mostly the {}\n", "",
+                     100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
+}
+
+std::string HertzText(const contact::HertzPrediction& hertz) {
+  std::string text = "  Hertz and Mindlin predict from materials, radii and load:\n";
+  const auto line = [&](const char* name, const PropagatedValue& value, const char* unit,
+                        const PropagatedValue& ratio) {
+    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} measured/predicted {} {}\n", name,
+                        Significant(value.value), ErrorText(value), unit, Significant(ratio.value),
+                        ErrorText(ratio));
+  };
+  line("contact radius", hertz.contact_radius, "m", hertz.sigma_over_hertz_mindlin);
+  line("tangential stiffness", hertz.tangential_stiffness, "N/m", hertz.sigma_over_hertz_mindlin);
+  line("gross slip (α = 1/3)", hertz.gross_slip_displacement, "m",
+       hertz.gross_slip_displacement_ratio);
+  return text;
+}
+
+std::string ContactText(const Report& report) {
+  const contact::IdentifiedContact& contact = report.contact;
+  std::string text =
+      "  G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a compliance: many texts write G* for its inverse\n";
+  for (const ContactField& field : ContactFields()) {
+    const std::optional<PropagatedValue> value = field.get(report);
+    if (!value) continue;
+    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} {}\n", field.label, Significant(value->value),
+                        ErrorText(*value), field.unit == "-" ? "" : field.unit, field.formula);
+    text += SharesText(*value);
+  }
+  if (contact.hertz) text += HertzText(*contact.hertz);
+  for (const std::string& sentence : contact.redundant) {
+    text += Wrapped(fmt::format("  {}", sentence), 4);
+  }
+  for (const std::string& sentence : contact.unidentified) {
+    text += Wrapped(fmt::format("  not identified: {}", sentence), 18);
+  }
+  return text;
+}
+
+std::string BranchShapesText(const FitResult& fit) {
+  std::string text;
+  for (const identification::BranchShape& shape : fit.branch_shapes) {
+    text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "  α branch by branch: " : ", ",
+                        shape.branch, shape.shape_exponent, shape.standard_error);
+  }
+  return text.empty() ? text : Wrapped(text, 4);
+}
+
+std::string SelectionText(const identification::ModelSelection& selection) {
+  std::string text =
+      fmt::format("models compared on {:.0f} effective samples", selection.effective_samples);
+  text += selection.held_out_cycles > 0
+              ? fmt::format(", and by predicting {} held-out cycles:\n", selection.held_out_cycles)
+              : "; too few cycles to hold any out:\n";
+  text += fmt::format("  {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}\n", "model", "free", "rms [N]",
+                      "dAICc", "weight", "held-out rms [N]");
+  for (std::size_t i = 0; i < selection.scores.size(); ++i) {
+    const identification::ModelScore& score = selection.scores[i];
+    const bool listed =
+        std::ranges::find(selection.indistinguishable, i) != selection.indistinguishable.end();
+    const std::string name = fmt::format("{}{}", score.model->name, score.rig ? " + rig" : "");
+    text +=
+        fmt::format("{} {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}{}\n",
+                    i == selection.chosen ? "*"
+                    : listed              ? "="
+                                          : " ",
+                    name, score.free_parameters, fmt::format("{:.4g}", score.rms),
+                    std::isfinite(score.delta_aicc) ? fmt::format("{:.1f}", score.delta_aicc) : "-",
+                    fmt::format("{:.3f}", score.akaike_weight),
+                    score.held_out_rms ? fmt::format("{:.4g} ± {:.2g}", *score.held_out_rms,
+                                                     score.held_out_standard_error.value_or(0.0))
+                                       : "-",
+                    score.remark.empty() ? "" : "\n      " + score.remark);
+  }
+  return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
+}
+
+std::string SlipText(const LoopDescription& loop) {
+  if (loop.gross_slip_displacement) {
+    return fmt::format("{} slip (gross-slip displacement {:.5g} m)", Name(loop.regime),
+                       *loop.gross_slip_displacement);
+  }
+  return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
+                     100 * loop.slip_force_share);
+}
+
+std::string MappingText(const Report& report) {
+  std::string text;
+  const auto verdict = [](double p_value) {
+    return p_value < kSignificance ? "rejected" : "tenable";
+  };
+  const auto& mindlin = report.fit.mindlin_test;
+  // Of the two tests the likelihood ratio has the say: it needs no parabola.
+  if (report.alpha.z) {
+    text += fmt::format(
+        "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}{}\n", *report.alpha.minus_third,
+        *report.alpha.z, *report.alpha.p_value,
+        mindlin ? "" : fmt::format(": Mindlin's exponent is {}", verdict(*report.alpha.p_value)));
+  }
+  if (mindlin) {
+    const std::string rig = mindlin->rig_stiffness
+                                ? fmt::format(
+                                      " for a rigid rig, but tenable with a rig of {:.4g} "
+                                      "N/m in series: the record does not tell which",
+                                      *mindlin->rig_stiffness)
+                                : "";
+    text += Wrapped(
+        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}{}",
+                    mindlin->likelihood_ratio, mindlin->p_value, verdict(mindlin->p_value), rig),
+        6);
+  }
+  text += BranchShapesText(report.fit);
+  for (const StiffnessTest& test : report.stiffness) {
+    text += fmt::format("  σ/(8a/G*) = {:.6g} {}: 1 where Hertz and Mindlin hold\n",
+                        test.ratio.value, ErrorText(test.ratio));
+    if (test.z) {
+      text += fmt::format(
+          "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, p = {:.3g}: "
+          "{}\n",
+          test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
+          test.interval95->upper, *test.z, *test.p_value, verdict(*test.p_value));
+    }
+    text += SharesText(test.ratio);
+  }
+  return text.empty() ? "  not tested: alpha is held, and no radius is known besides the fit\n"
+                      : text;
+}
+
+}  // namespace
+
+std::string ToText(const Report& report) {
+  RequireFitted(report, "a text");
+  const FitResult& fit = report.fit;
+  const LoopDescription& loop = *report.loop;
+  const RecordFit& widest = fit.WidestRecord();
+  std::size_t samples = 0;
+  std::size_t reversals = 0;
+  std::size_t cycles = 0;
+  std::size_t left_out = 0;
+  for (const RecordFit& record : fit.records) {
+    samples += record.residual.size();
+    reversals += record.reversals.size();
+    cycles += record.measures.cycles;
+    left_out += record.left_out;
+  }
+  std::string text = report.selection ? SelectionText(*report.selection) : std::string();
+  text += fmt::format(
+      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} m), {} cycles; force {} the "
+      "displacement's sense\n",
+      fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
+      samples, reversals, widest.reversal_gate, cycles, fit.force_sense > 0 ? "in" : "against");
+  if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
+  if (left_out > 0) text += fmt::format("{} samples left out of the fit\n", left_out);
+  text += "\n" + ParameterTable(fit);
+  for (const Warning& warning : report.fit_warnings) {
+    if (warning.code == "no_model_fits") text += "\n" + Wrapped(warning.message, 2);
+  }
+  const identification::ResidualStatistics& residuals = fit.residuals;
+  text += fmt::format(
+      "\nresiduals: rms {:.4g} N ({:.3g} % of Tc), largest {:.4g} N, R² {:.6f}, Durbin-Watson "
+      "{:.2f},\n           {:.0f} effective samples of {}\n",
+      residuals.rms, 100 * residuals.normalized_rms, residuals.max_abs, residuals.r_squared,
+      residuals.durbin_watson, residuals.effective_samples, samples - left_out);
+  double repeatable = 0.0;
+  for (const RecordFit& record : fit.records) {
+    repeatable = std::max(repeatable, record.structure.repeatable_share);
+  }
+  if (repeatable > 0) {
+    text += fmt::format("           {:.0f} % of their variance comes back in every stroke\n",
+                        100 * repeatable);
+  }
+  if (widest.displacement_noise > 0) {
+    text += fmt::format("           noise of the displacement {:.3g} m, weighed in\n",
+                        widest.displacement_noise);
+  }
+  if (fit.outliers > 0) {
+    text += fmt::format("           {} outliers count less than half\n", fit.outliers);
+  }
+  const loop::LoopMeasures& measures = widest.measures;
+  text += fmt::format("\nloop: X = {:.5g} m, T* = {:.5g} N, {}\n", measures.amplitude,
+                      measures.peak_force, SlipText(loop));
+  text += fmt::format(
+      "      energy per cycle {} measured, {:.5g} J model\n",
+      measures.energy_per_cycle ? fmt::format("{:.5g} J", *measures.energy_per_cycle) : "not",
+      loop.model_energy);
+  if (loop.energy_ratio) {
+    text += fmt::format("      energy ratio {:.4g}{}\n", *loop.energy_ratio,
+                        loop.gross_slip_displacement
+                            ? fmt::format(", gross slip from {:.4g}",
+                                          models::GrossSlipEnergyRatio(fit.law.shape_exponent))
+                            : "");
+  }
+  text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report);
+  text += "\nis it Mindlin's contact?\n" + MappingText(report);
+  return text;
+}
+
+}  // namespace mindahl::report

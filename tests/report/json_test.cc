@@ -1,0 +1,93 @@
+#include "mindahl/report/json.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "report/made_report.h"
+
+// The JSON from the library's side. tests/cli walks that of many runs of the program.
+namespace mindahl::report {
+namespace {
+
+using namespace contact;
+
+using nlohmann::json;
+using report::MakeReport;
+using report::ToJson;
+using testing::FailedInput;
+using testing::MadeInput;
+
+json Parsed(report::ReportInput input) { return json::parse(ToJson(MakeReport(std::move(input)))); }
+
+TEST(Json, HasTheNumbersOfTheFit) {
+  const json fit = Parsed(MadeInput());
+  EXPECT_EQ(fit["parameters"]["sigma"]["value"], testing::kSigma);
+  EXPECT_EQ(fit["parameters"]["sigma"]["standard_error"], 0.01 * testing::kSigma);
+  EXPECT_EQ(fit["parameters"]["sigma"]["ci95"][1], 1.02 * testing::kSigma);
+  EXPECT_EQ(fit["input"]["files"][0], "loop_1.csv");
+  EXPECT_EQ(fit["input"]["samples"], 9);
+  EXPECT_EQ(fit["loop"]["amplitude"], testing::kMadeAmplitude);
+}
+
+TEST(Json, OfAnOpenIntervalNamesItsEnd) {
+  report::ReportInput input = MadeInput();
+  input.fit.parameters[2].upper95.reset();
+  const json fit = Parsed(std::move(input));
+  EXPECT_TRUE(fit["parameters"]["slip_force"]["ci95"][1].is_null());
+  const json expected = {{"path", "parameters.slip_force.ci95[1]"},
+                         {"why", "the record sets no limit there"}};
+  EXPECT_THAT(fit["nulls"], ::testing::Contains(expected));
+}
+
+TEST(Json, OfAFitThatFailedIsNullForThatReason) {
+  const json fit = Parsed(FailedInput());
+  ASSERT_EQ(fit["warnings"].size(), 1u);
+  EXPECT_EQ(fit["warnings"][0]["code"], "fit_failed");
+  std::size_t of_the_fit = 0;
+  for (const json& null : fit["nulls"]) {
+    of_the_fit += null["why"] == "the fit failed: no start led anywhere" ? 1 : 0;
+  }
+  // All but the normal load, which was not given.
+  EXPECT_EQ(of_the_fit + 1, fit["nulls"].size());
+}
+
+TEST(Json, EndsWithAnEndOfLine) { EXPECT_EQ(ToJson(MakeReport(MadeInput())).back(), '\n'); }
+
+TEST(Json, WarnsOfWhatTheFitFoundFirst) {
+  report::ReportInput input = MadeInput();
+  input.fit.warnings.push_back({"shape_or_rig", "one or the other"});
+  input.known.contact_radius = 2e-4;
+  input.known.normal_load = 50.0;
+  for (KnownBody* body : {&input.known.body_1, &input.known.body_2}) {
+    *body = {.youngs_modulus = 2e11, .poisson_ratio = 0.3, .radius = 0.1};
+  }
+  const json warnings = Parsed(std::move(input))["warnings"];
+  ASSERT_GE(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0]["code"], "shape_or_rig");
+  EXPECT_EQ(warnings[0]["message"], "one or the other");
+  EXPECT_EQ(warnings[1]["code"], "contact_redundant");
+}
+
+TEST(MakeReport, RefusesWhatDoesNotBelongTogether) {
+  report::ReportInput unnamed = MadeInput();
+  unnamed.files.clear();
+  EXPECT_THROW(MakeReport(std::move(unnamed)), InvalidArgument);
+  report::ReportInput without_record = MadeInput();
+  without_record.records.clear();
+  EXPECT_THROW(MakeReport(std::move(without_record)), InvalidArgument);
+  report::ReportInput other_record = MadeInput();
+  other_record.records[0].record = testing::MadeRecord(1e-6, 5);
+  EXPECT_THROW(MakeReport(std::move(other_record)), InvalidArgument);
+  report::ReportInput unloaded = MadeInput();
+  unloaded.load_window = {1, 2};
+  EXPECT_THROW(MakeReport(std::move(unloaded)), InvalidArgument);
+  EXPECT_THROW(MakeReport({}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::report

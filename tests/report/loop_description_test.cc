@@ -1,0 +1,105 @@
+#include "mindahl/report/loop_description.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "mindahl/models/steady_loop.h"
+#include "report/made_report.h"
+
+// The steady loop of a fitted law: its energy and whether it slips, with the rig's travel taken
+// off.
+namespace mindahl::report {
+namespace {
+
+using namespace loop;
+using namespace models;
+using namespace identification;
+
+using report::DescribeLoop;
+using report::LoopDescription;
+using report::SlipRegime;
+using testing::kSigma;
+using testing::kSlipForce;
+using testing::MadeFit;
+using testing::MadeRecord;
+
+// Bisection ends at 1e-15 of the amplitude; the energy varies up to three times as fast.
+constexpr double kBisection = 1e-14;
+
+const BranchLaw kMindlin = {kSigma, 1.0 / 3, kSlipForce};
+
+LoopDescription Describe(const BranchLaw& law, double amplitude,
+                         double rig = std::numeric_limits<double>::infinity()) {
+  FitResult fit = MadeFit({MadeRecord(amplitude)}, amplitude, law);
+  fit.rig.stiffness = rig;
+  return DescribeLoop(fit);
+}
+
+TEST(LoopDescription, TakesTheTravelOfTheRigOffTheAmplitude) {
+  const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
+  for (const double contact : {0.4e-6, 1.2e-6, 1.5e-6, 2.5e-6}) {
+    SCOPED_TRACE(contact);
+    const double rig = 3e7;
+    // δ = x + T/k_r at the extreme of the loop.
+    const double whole = contact + SteadyPeakForce(model, kMindlin, contact) / rig;
+    const LoopDescription loop = Describe(kMindlin, whole, rig);
+    EXPECT_NEAR(loop.contact_amplitude / contact, 1, kBisection);
+    // A spring keeps no energy: the loop of contact and rig has that of the contact.
+    EXPECT_NEAR(loop.model_energy / SteadyLoopEnergy(model, kMindlin, contact), 1, 4 * kBisection);
+    EXPECT_LT(loop.model_energy, 0.9 * SteadyLoopEnergy(model, kMindlin, whole))
+        << "or the rig's travel would not show";
+  }
+}
+
+TEST(LoopDescription, JudgesTheSlipByTheContactsOwnAmplitude) {
+  // δc = 1.5 µm; a rig of 3e7 N/m gives way by Tc/k_r = 1.33 µm under Tc.
+  EXPECT_EQ(Describe(kMindlin, 1.6e-6).regime, SlipRegime::kGross);
+  EXPECT_EQ(Describe(kMindlin, 1.6e-6, 3e7).regime, SlipRegime::kPartial);
+  EXPECT_EQ(Describe(kMindlin, 2.7e-6, 3e7).regime, SlipRegime::kPartial);
+  EXPECT_EQ(Describe(kMindlin, 2.9e-6, 3e7).regime, SlipRegime::kGross);
+}
+
+TEST(LoopDescription, RigidRigTakesNothing) {
+  EXPECT_EQ(Describe(kMindlin, 1.1e-6).contact_amplitude, 1.1e-6);
+}
+
+TEST(LoopDescription, StickRadiusIsThatOfMindlinsContact) {
+  // c/a = (1 − T/Tc)^{1/3}, and T/Tc = 1 − (1 − X/δc)^{3/2}: c/a = √(1 − X/δc).
+  const double epsilon = std::numeric_limits<double>::epsilon();
+  EXPECT_NEAR(Describe(kMindlin, 0.6e-6).stick_radius_ratio, std::sqrt(1 - 0.6 / 1.5), 8 * epsilon);
+  EXPECT_EQ(Describe(kMindlin, 1.6e-6).stick_radius_ratio, 0.0);
+}
+
+// A law with α = 1 has T = Tc(1 − e^{−σX/Tc}), so that a share s is reached at X = −ln(1 − s)·Tc/σ.
+double AmplitudeOfShare(double share) { return -std::log1p(-share) * kSlipForce / kSigma; }
+
+TEST(LoopDescription, LawThatOnlyApproachesSlipSlipsFromNinetyNinePerCentOn) {
+  const BranchLaw dahl = {kSigma, 1.0, kSlipForce};
+  for (const double share : {0.5, 0.9, 0.95, 0.985, 0.9899}) {
+    EXPECT_EQ(Describe(dahl, AmplitudeOfShare(share)).regime, SlipRegime::kPartial) << share;
+  }
+  for (const double share : {0.9901, 0.995, 0.9999}) {
+    EXPECT_EQ(Describe(dahl, AmplitudeOfShare(share)).regime, SlipRegime::kGross) << share;
+  }
+  EXPECT_FALSE(Describe(dahl, AmplitudeOfShare(0.995)).gross_slip_displacement);
+  constexpr double kRounding = 1e-14;
+  EXPECT_NEAR(Describe(dahl, AmplitudeOfShare(0.95)).slip_force_share, 0.95, kRounding);
+}
+
+TEST(LoopDescription, EnergyRatioUsesTheMeasuredEnergyWhereThereIsOne) {
+  FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
+  const LoopMeasures& measures = fit.records[0].measures;
+  constexpr double kRounding = 1e-15;
+  EXPECT_NEAR(*DescribeLoop(fit).energy_ratio,
+              DescribeLoop(fit).model_energy / (4 * measures.amplitude * measures.peak_force),
+              kRounding);
+  fit.records[0].measures.energy_per_cycle = 8e-6;
+  EXPECT_NEAR(*DescribeLoop(fit).energy_ratio, 8e-6 / (4 * 1e-6 * measures.peak_force), kRounding);
+  fit.records[0].measures.peak_force = 0;
+  EXPECT_FALSE(DescribeLoop(fit).energy_ratio);
+}
+
+}  // namespace
+}  // namespace mindahl::report
