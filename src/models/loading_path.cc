@@ -52,7 +52,8 @@ std::int8_t FirstDirection(std::span<const double> displacement,
 /// they close. The only state is the stack: the origins on it are the surviving extrema.
 class OpenBranches {
  public:
-  OpenBranches(LoadingPath& path, Memory memory) : path_(path), memory_(memory) {}
+  OpenBranches(LoadingPath& path, Memory memory)
+      : path_(path), open_(path.open), memory_(memory) {}
 
   void Open(Branch branch) {
     branch.parent = open_.empty() ? -1 : open_.back();
@@ -97,8 +98,8 @@ class OpenBranches {
   }
 
   LoadingPath& path_;
+  std::vector<std::int32_t>& open_;
   Memory memory_;
-  std::vector<std::int32_t> open_;
   std::int8_t direction_ = 1;  // of the motion; the virgin curve is run both ways
 };
 
@@ -142,9 +143,18 @@ void OpenInitialBranches(OpenBranches& open, std::span<const double> displacemen
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial) {
+  LoadingPath path;
+  MakeLoadingPath(displacement, reversals, memory, initial, path);
+  return path;
+}
+
+void MakeLoadingPath(std::span<const double> displacement, std::span<const std::size_t> reversals,
+                     Memory memory, const InitialContact& initial, LoadingPath& path) {
   RequireDisplacements(displacement);
   RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
-  LoadingPath path;
+  path.branches.clear();
+  path.runs.clear();
+  path.open.clear();
   constexpr std::size_t kInitialBranches = 3;
   path.branches.reserve(reversals.size() + kInitialBranches);
   OpenBranches open(path, memory);
@@ -159,7 +169,6 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
       ++next_reversal;
     }
   }
-  return path;
 }
 
 LoadingPath MakeEnvelopePath(std::span<const double> displacement,
