@@ -21,6 +21,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
@@ -36,10 +37,13 @@ namespace mindahl::cli {
 using identification::FitOptions;
 using identification::Interval;
 using identification::Loss;
+using identification::Term;
 using io::RecordFile;
 using loop::Record;
 
 namespace {
+
+constexpr std::string_view kFitIt = "fit";
 
 struct FitCommandOptions {
   std::vector<std::string> files;
@@ -49,10 +53,8 @@ struct FitCommandOptions {
   std::string initial_state = "auto";
   std::string force_sign = "auto";
   std::string offsets = "on";
-  bool drift = false;
-  bool plateau_slope = false;
+  std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
   bool follow_load = false;
-  std::string rig_stiffness;
   std::string load_window;
   std::size_t skip_cycles = 0;
   std::string loss = "none";
@@ -129,33 +131,34 @@ std::map<std::string, Interval> ParseBounds(const std::vector<std::string>& text
   return bounds;
 }
 
-/// "fit", or a stiffness that is known.
-void ApplyRigStiffness(const std::string& text, FitOptions& fit) {
-  if (text.empty()) return;
-  if (text == "fit") {
-    if (fit.fixed.contains("rig_stiffness")) {
-      throw InputError("--rig-stiffness fit contradicts --fix rig_stiffness: give one of the two");
+/// What was asked of a term: to be fitted, or a value that is known.
+void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
+  const std::string name(term.name);
+  if (text == kFitIt) {
+    if (fit.fixed.contains(name)) {
+      throw InputError(fmt::format("{} {} contradicts --fix {}: give one of the two", term.option,
+                                   term.argument.empty() ? "" : kFitIt, name));
     }
-    fit.fit_rig_stiffness = true;
+    fit.terms.push_back(name);
     return;
   }
-  const double stiffness = ParseNumber(text, "--rig-stiffness", "a stiffness in N/m, or fit");
-  RequirePositive("--rig-stiffness [N/m]", stiffness);
-  if (!fit.fixed.emplace("rig_stiffness", stiffness).second) {
-    throw InputError("--rig-stiffness and --fix rig_stiffness say the same: give one of the two");
+  const double value = ParseNumber(text, term.option, fmt::format("a number in {}, or fit", term.unit));
+  if (term.positive) RequirePositive(fmt::format("{} [{}]", term.option, term.unit), value);
+  if (!fit.fixed.emplace(name, value).second) {
+    throw InputError(
+        fmt::format("{} and --fix {} say the same: give one of the two", term.option, name));
   }
 }
 
 /// A start or a bound of a term that the fit does not have would be taken without a word.
-void RequireTerm(std::string_view option, std::string_view name, bool has_rig,
+void RequireTerm(std::string_view option, std::string_view name, bool is_automatic,
                  const FitOptions& fit) {
-  const char* remedy = name == "rig_stiffness" && !has_rig             ? "--rig-stiffness fit"
-                       : name == "plateau_slope" && !fit.plateau_slope ? "--plateau-slope"
-                       : name.starts_with("force_drift") && !fit.drift ? "--drift"
-                                                                       : nullptr;
-  if (remedy == nullptr) return;
-  throw InputError(
-      fmt::format("{}: {} is not fitted, so this has no effect: add {}", option, name, remedy));
+  const Term* term = identification::FindTerm(identification::TermNameOf(name));
+  if (term == nullptr || term->option.empty()) return;
+  const bool is_tried = is_automatic && term->name == "rig_stiffness";
+  if (is_tried || std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
+  throw InputError(fmt::format("{}: {} is not fitted, so this has no effect: add {}{}", option, name,
+                               term->option, term->argument.empty() ? "" : " fit"));
 }
 
 Loss FindLoss(std::string_view name) {
@@ -172,34 +175,35 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
   if (options.model != kAutomatic) fit.model = models::FindFrictionModel(options.model);
   if (options.initial_state == "virgin") fit.initial_state = models::InitialState::kVirgin;
   if (options.initial_state == "steady") fit.initial_state = models::InitialState::kSteady;
-  if (options.force_sign == "same") fit.force_sense = 1;
-  if (options.force_sign == "opposite") fit.force_sense = -1;
+  loop::PreparationOptions& preparation = fit.preparation;
+  if (options.force_sign == "same") preparation.force_sense = 1;
+  if (options.force_sign == "opposite") preparation.force_sense = -1;
   fit.offsets = options.offsets == "on";
-  fit.drift = options.drift;
-  fit.plateau_slope = options.plateau_slope;
   fit.follow_load = options.follow_load;
   if (!options.load_window.empty()) {
-    fit.load_window = ParseInterval(options.load_window, "--load-window", "LO:HI in newtons");
+    preparation.load_window = ParseInterval(options.load_window, "--load-window", "LO:HI in newtons");
   }
-  fit.skip_cycles = options.skip_cycles;
+  preparation.skip_cycles = options.skip_cycles;
   fit.loss = FindLoss(options.loss);
   fit.starts = options.starts;
   fit.seed = options.seed;
   if (options.displacement_noise) {
     RequireNonNegative("--displacement-noise [m]", *options.displacement_noise);
   }
-  fit.displacement_noise = options.displacement_noise;
+  preparation.displacement_noise = options.displacement_noise;
   if (options.force_noise) RequirePositive("--force-noise [N]", *options.force_noise);
   fit.force_noise = options.force_noise;
   if (options.reversal_gate) RequireNonNegative("--reversal-gate [m]", *options.reversal_gate);
-  fit.reversal_gate = options.reversal_gate;
+  preparation.reversal_gate = options.reversal_gate;
   fit.fixed = ParseAssignments(options.fix, "--fix");
-  ApplyRigStiffness(options.rig_stiffness, fit);
+  for (const auto& [name, text] : options.terms) {
+    ApplyTerm(*identification::FindTerm(name), text, fit);
+  }
   fit.start = ParseAssignments(options.start, "--start");
   fit.bounds = ParseBounds(options.bound);
-  const bool has_rig = fit.fit_rig_stiffness || options.model == kAutomatic;
-  for (const auto& [name, value] : fit.start) RequireTerm("--start", name, has_rig, fit);
-  for (const auto& [name, interval] : fit.bounds) RequireTerm("--bound", name, has_rig, fit);
+  const bool is_automatic = options.model == kAutomatic;
+  for (const auto& [name, value] : fit.start) RequireTerm("--start", name, is_automatic, fit);
+  for (const auto& [name, interval] : fit.bounds) RequireTerm("--bound", name, is_automatic, fit);
   return fit;
 }
 
@@ -324,10 +328,10 @@ void RunFit(FitCommandOptions options, Console& console) {
   if (!options.plot_path.empty()) RequireOutputPath("--plot", options.plot_path);
   const FitOptions fit_options = MakeFitOptions(options);
   std::vector<RecordFile> inputs = ReadInputs(options, console);
-  RequireLoads(options, fit_options.load_window, inputs);
+  RequireLoads(options, fit_options.preparation.load_window, inputs);
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
-  UseMeasuredNormalLoad(options.contact, records, fit_options.load_window, console);
+  UseMeasuredNormalLoad(options.contact, records, fit_options.preparation.load_window, console);
 
   std::optional<identification::ModelSelection> selection;
   identification::FitResult fit;
@@ -342,7 +346,7 @@ void RunFit(FitCommandOptions options, Console& console) {
                                                     .records = std::move(inputs),
                                                     .fit = std::move(fit),
                                                     .known = options.contact.known,
-                                                    .load_window = fit_options.load_window,
+                                                    .load_window = fit_options.preparation.load_window,
                                                     .selection = std::move(selection)});
   Write(options, report, console);
 }
@@ -383,6 +387,38 @@ void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {
       ->group(group);
 }
 
+void AddTermOptions(CLI::App& command, FitCommandOptions& options, const std::string& group) {
+  for (const Term& term : identification::Terms()) {
+    if (term.option.empty()) continue;
+    const std::string option(term.option);
+    const std::string help(term.help);
+    if (term.argument.empty()) {
+      command.add_flag_callback(
+          option, [&options, &term] { options.terms[term.name] = kFitIt; }, help)
+          ->group(group);
+    } else {
+      command
+          .add_option_function<std::string>(
+              option, [&options, &term](const std::string& text) { options.terms[term.name] = text; },
+              help)
+          ->type_name(std::string(term.argument))
+          ->group(group);
+    }
+  }
+}
+
+std::string DescribeParameters() {
+  std::string contact;
+  std::string record;
+  for (const Term& term : identification::Terms()) {
+    std::string& list = term.scope == identification::Scope::kContact ? contact : record;
+    list += fmt::format("{}{} [{}]", list.empty() ? "" : ", ", term.name, term.unit);
+  }
+  return fmt::format(
+      "hold a parameter: {}, {}; with several files the latter are numbered, force_offset_2",
+      contact, record);
+}
+
 void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
   const std::string group = "Model";
   std::vector<std::string> models;
@@ -417,28 +453,13 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"on", "off"}))
       ->group(group);
-  command.add_flag("--drift", options.drift, "fit a force drift linear in time [N/s]")
-      ->group(group);
-  command
-      .add_option("--rig-stiffness", options.rig_stiffness,
-                  "stiffness of the rig in series with the contact [N/m], or fit; default rigid")
-      ->type_name("K|fit")
-      ->group(group);
-  command
-      .add_flag("--plateau-slope", options.plateau_slope,
-                "fit a force that grows with the displacement beside the contact's [N/m]")
-      ->group(group);
+  AddTermOptions(command, options, group);
   command
       .add_flag("--follow-load", options.follow_load,
                 "the force follows the measured normal load, T N/mean N: a load that varies by "
                 "some per cent")
       ->group(group);
-  command
-      .add_option(
-          "--fix", options.fix,
-          "hold a parameter: sigma [N/m], alpha [-], slip_force [N], rig_stiffness [N/m], "
-          "plateau_slope [N/m], force_offset [N], displacement_offset [m], force_drift [N/s]; with "
-          "several files the last three are numbered, force_offset_2")
+  command.add_option("--fix", options.fix, DescribeParameters())
       ->type_name("NAME=VALUE")
       ->group(group);
   command.add_option("--start", options.start, "start from a value instead of the data's")

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/random/mersenne_twister.hpp>
-#include <boost/random/normal_distribution.hpp>
-#include <boost/random/uniform_real_distribution.hpp>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 
+#include "core/draws.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
@@ -37,14 +36,14 @@ struct Case {
 class CaseGenerator {
  public:
   explicit CaseGenerator(const ValidationOptions& options)
-      : options_(options), engine_(options.seed) {}
+      : options_(options), draws_(options.seed) {}
 
   Case Next(std::size_t index) {
     Case drawn;
-    drawn.friction_coefficient = Uniform(0.05, 1.2);
-    drawn.normal_load = LogUniform(1e-6, 1e5);
-    drawn.contact.contact_radius = LogUniform(1e-8, 3e-2);
-    drawn.contact.tangential_compliance = LogUniform(1e-12, 1e-8);
+    drawn.friction_coefficient = draws_.Uniform(0.05, 1.2);
+    drawn.normal_load = draws_.LogUniform(1e-6, 1e5);
+    drawn.contact.contact_radius = draws_.LogUniform(1e-8, 3e-2);
+    drawn.contact.tangential_compliance = draws_.LogUniform(1e-12, 1e-8);
     drawn.contact.slip_force =
         contact::GrossSlipForce(drawn.friction_coefficient, drawn.normal_load);
     drawn.lambda = options_.lambdas[index % options_.lambdas.size()];
@@ -58,19 +57,11 @@ class CaseGenerator {
     return drawn;
   }
 
-  double Normal() { return normal_(engine_); }
+  double Normal() { return draws_.Normal(); }
 
  private:
-  double Uniform(double lower, double upper) {
-    return boost::random::uniform_real_distribution<double>(lower, upper)(engine_);
-  }
-  double LogUniform(double lower, double upper) {
-    return std::exp(Uniform(std::log(lower), std::log(upper)));
-  }
-
   const ValidationOptions& options_;
-  boost::random::mt19937_64 engine_;
-  boost::random::normal_distribution<double> normal_;
+  Draws draws_;
 };
 
 /// The loop by Mindlin's equations 13 to 15, phase by phase.
@@ -131,10 +122,8 @@ Errors Compare(const FitResult& fit, const MindlinDahlParameters& truth) {
 }
 
 double Median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::ranges::sort(values);
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+  return values.empty() ? 0.0
+                        : boost::math::statistics::median(values.begin(), values.end());
 }
 
 double Largest(const std::vector<double>& values) {

@@ -9,31 +9,19 @@
 #include <tuple>
 #include <utility>
 
-#include "identification/parameter_layout.h"
-#include "identification/robust_scale.h"
-#include "identification/sample_weights.h"
-#include "identification/scaled_records.h"
+#include "identification/inference/evidence.h"
+#include "identification/inference/reweighting.h"
+#include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
-#include "mindahl/identification/residual_statistics.h"
 
 namespace mindahl::identification {
 
-using loop::Record;
+using loop::RecordView;
 
 namespace {
 
-/// Twice the log-likelihood that a candidate must gain on a simpler one to be another: ten times
-/// what the solver may leave.
-constexpr double kNoGain = 1e-2;
-
-/// Below it a shape exponent is that of Jenkins' element, if the fit is as good.
-constexpr double kNoShape = 0.01;
-
-/// Correlation at which two parameters are called known only together.
-constexpr double kTogether = 0.99;
-
-/// One vector a record, one entry a sample.
-using SampleMask = std::vector<std::vector<bool>>;
+/// One vector a record, one entry a sample, 1 where it counts.
+using SampleMask = std::vector<std::vector<unsigned char>>;
 
 struct ScoredSamples {
   SampleMask mask;
@@ -54,7 +42,7 @@ struct MeanOverCycles {
   double standard_error = 0.0;
 };
 
-bool IsFitted(const FitResult& fit) { return !fit.records.front().residual.empty(); }
+bool IsFitted(const FitResult& fit) { return !fit.parameters.empty(); }
 
 std::vector<std::size_t> Positions(std::size_t count) {
   std::vector<std::size_t> positions(count);
@@ -86,6 +74,12 @@ std::vector<ModelScore> ListCandidates(const FitOptions& options) {
   return scores;
 }
 
+FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
+  options.model = score.model;
+  if (score.rig) options.terms.emplace_back("rig_stiffness");
+  return options;
+}
+
 std::size_t CountFree(const FitResult& fit) {
   auto count = static_cast<std::size_t>(
       std::ranges::count_if(fit.parameters, [](const ParameterEstimate& parameter) {
@@ -95,24 +89,17 @@ std::size_t CountFree(const FitResult& fit) {
   return count;
 }
 
-/// Records as a fit saw them, with weight 0 for what the options leave out.
-ScaledRecords ScaleAsFitted(std::span<const Record> records, const FitOptions& options,
-                            const FitResult& fit) {
-  std::vector<std::vector<std::size_t>> reversals;
-  for (const RecordFit& record : fit.records) reversals.push_back(record.reversals);
-  ScaledRecords data = Scale(records, reversals, fit.force_sense);
-  LeaveOut(data, records, reversals, options);
-  return data;
-}
-
-ScoredSamples CountedSamples(const ScaledRecords& data) {
+ScoredSamples CountedSamples(const FitResult& fit, std::span<const RecordView> records) {
   ScoredSamples samples;
-  samples.rounding = kRoundingRms * data.force;
-  samples.count = data.weighted_samples();
-  for (const ScaledRecord& record : data.records) {
-    std::vector<bool>& mask = samples.mask.emplace_back();
-    for (const double weight : record.root_weight) mask.push_back(weight > 0);
+  double half_range = 0.0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const std::vector<unsigned char>& counts = fit.records[r].counts;
+    samples.mask.emplace_back(counts);
+    samples.count += counts.size() - fit.records[r].left_out;
+    const auto [lowest, highest] = std::ranges::minmax(records[r].force);
+    half_range = std::max(half_range, highest / 2 - lowest / 2);
   }
+  samples.rounding = kRoundingRms * half_range;
   return samples;
 }
 
@@ -122,7 +109,7 @@ std::vector<std::vector<double>> ScoredResiduals(const FitResult& fit, const Sam
   for (std::size_t r = 0; r < mask.size(); ++r) {
     std::vector<double>& series = residuals.emplace_back();
     for (std::size_t i = 0; i < mask[r].size(); ++i) {
-      if (mask[r][i]) series.push_back(fit.records[r].residual[i]);
+      if (mask[r][i] != 0) series.push_back(fit.records[r].residual[i]);
     }
   }
   return residuals;
@@ -143,7 +130,7 @@ double RobustScale(const FitResult& fit, const SampleMask& mask) {
   for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
     residuals.insert(residuals.end(), series.begin(), series.end());
   }
-  return mindahl::identification::RobustScale(std::move(residuals));
+  return identification::RobustScale(std::move(residuals));
 }
 
 /// The fit that a measure of its residuals is least for.
@@ -161,29 +148,17 @@ void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
   const double limit = kOutlier * std::max(RobustScale(best, samples.mask), samples.rounding);
   for (std::size_t r = 0; r < samples.mask.size(); ++r) {
     for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
-      if (!samples.mask[r][i] || std::abs(best.records[r].residual[i]) <= limit) continue;
-      samples.mask[r][i] = false;
+      if (samples.mask[r][i] == 0 || std::abs(best.records[r].residual[i]) <= limit) continue;
+      samples.mask[r][i] = 0;
       --samples.count;
     }
   }
 }
 
-double EffectiveSamples(const FitResult& fit, const SampleMask& mask) {
-  const std::vector<std::vector<double>> residuals = ScoredResiduals(fit, mask);
-  // Only the autocorrelation is asked for: forces and slip force do not enter it.
-  return DescribeResiduals(residuals, residuals, 1.0, 0).effective_samples;
-}
-
-/// n_eff·ln(rms²), rounding errors aside.
-double Deviance(double rms, double effective_samples, double rounding) {
-  return 2 * effective_samples * std::log(std::max(rms, rounding));
-}
-
-double CorrectedAkaike(const ModelScore& score, double deviance, std::size_t samples) {
-  const auto parameters = static_cast<double>(score.free_parameters + 1);
-  return deviance + 2 * parameters +
-         2 * parameters * (parameters + 1) /
-             std::max(static_cast<double>(samples) - parameters - 1, 1.0);
+/// Sum of squares [–], in units of rounding, whose own is what Evidence takes for nothing.
+double SumOfSquares(double rms, const ScoredSamples& samples) {
+  const double in_units = kRoundingRms * rms / samples.rounding;
+  return static_cast<double>(samples.count) * in_units * in_units;
 }
 
 void WeighCandidates(std::vector<ModelScore>& scores) {
@@ -213,7 +188,7 @@ std::vector<Cycle> ClosedCycles(const FitResult& fit, const SampleMask& mask,
     std::vector<Cycle> closed;
     for (std::size_t j = first; j + 2 < reversals.size(); j += 2) {
       Cycle cycle{.record = r, .begin = reversals[j], .end = reversals[j + 2]};
-      for (std::size_t i = cycle.begin; i < cycle.end; ++i) cycle.samples += mask[r][i] ? 1 : 0;
+      for (std::size_t i = cycle.begin; i < cycle.end; ++i) cycle.samples += mask[r][i];
       if (cycle.samples > 0) closed.push_back(cycle);
     }
     if (closed.size() >= 2) cycles.insert(cycles.end(), closed.begin(), closed.end());
@@ -223,9 +198,9 @@ std::vector<Cycle> ClosedCycles(const FitResult& fit, const SampleMask& mask,
 
 /// Those that the options hold out, and the cycles of one fold: every so many, so that slow changes
 /// of the contact are in every fold.
-SampleMask HeldOut(std::span<const Record> records, const FitOptions& options,
+std::vector<std::vector<bool>> HeldOut(std::span<const RecordView> records, const FitOptions& options,
                    std::span<const Cycle> cycles, std::size_t fold, std::size_t folds) {
-  SampleMask mask = options.held_out;
+  std::vector<std::vector<bool>> mask = options.preparation.held_out;
   mask.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) mask[r].resize(records[r].size(), false);
   for (std::size_t c = fold; c < cycles.size(); c += folds) {
@@ -239,9 +214,9 @@ SampleMask HeldOut(std::span<const Record> records, const FitOptions& options,
 /// Options under which the fit is found again from where it is.
 FitOptions Continued(const FitResult& fit, bool rig, FitOptions options) {
   options.model = fit.model;
-  options.fit_rig_stiffness = rig;
+  if (rig) options.terms.emplace_back("rig_stiffness");
   options.initial_state = fit.initial_state;
-  options.force_sense = fit.force_sense;
+  options.preparation.force_sense = fit.force_sense;
   options.starts = 1;
   for (const ParameterEstimate& parameter : fit.parameters) {
     if (parameter.status == ParameterStatus::kFixed) continue;
@@ -253,22 +228,23 @@ FitOptions Continued(const FitResult& fit, bool rig, FitOptions options) {
 }
 
 /// Mean square error [N²] of each cycle's prediction; empty where a fit failed.
-std::vector<double> PredictCycles(std::span<const Record> records, const FitOptions& options,
+std::vector<double> PredictCycles(std::span<const RecordView> records, const FitOptions& options,
                                   const FitResult& full, bool rig, const ScoredSamples& samples,
                                   std::span<const Cycle> cycles, std::size_t folds) {
   std::vector<double> mean_square(cycles.size(), 0.0);
   FitOptions partial = Continued(full, rig, options);
   for (std::size_t fold = 0; fold < folds; ++fold) {
-    partial.held_out = HeldOut(records, options, cycles, fold, folds);
+    partial.preparation.held_out = HeldOut(records, options, cycles, fold, folds);
     auto left = static_cast<double>(samples.count);
     for (std::size_t c = fold; c < cycles.size(); c += folds) left -= cycles[c].samples;
     if (left < static_cast<double>(CountFree(full))) return {};
-    const FitResult fit = Fit(records, partial);
+    Fitter fitter(partial);
+    const FitResult& fit = fitter.Fit(records, Depth::kEstimate);
     if (!fit.converged) return {};
     for (std::size_t c = fold; c < cycles.size(); c += folds) {
       const Cycle& cycle = cycles[c];
       for (std::size_t i = cycle.begin; i < cycle.end; ++i) {
-        if (!samples.mask[cycle.record][i]) continue;
+        if (samples.mask[cycle.record][i] == 0) continue;
         const double error = fit.records[cycle.record].residual[i];
         mean_square[c] += error * error / cycle.samples;
       }
@@ -325,35 +301,32 @@ double CorrelationOf(const FitResult& fit, std::string_view first, std::string_v
 }
 
 /// What the fit alone has to say.
-/// @param layout  of the candidate, for the bounds
-void RemarkOnFit(ModelScore& score, const FitResult& fit, const ParameterLayout& layout) {
-  constexpr double kNearBound = 1e-4;  // of the way between the bounds: the solver stops short
+void RemarkOnFit(ModelScore& score, const FitResult& fit, const Thresholds& thresholds) {
   if (!fit.converged) AddRemark(score, "not converged: " + fit.termination);
-  for (const ScaledParameter& parameter : layout.parameters()) {
-    const ParameterEstimate* estimate = fit.Find(parameter.name);
-    if (parameter.fixed || estimate == nullptr) continue;
-    const double theta = parameter.ToTheta(estimate->value);
-    const double near = kNearBound * (parameter.upper - parameter.lower);
-    if (theta < parameter.lower + near || theta > parameter.upper - near) {
-      score.at_bound = true;
-      AddRemark(score, parameter.name + " at its bound");
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.status != ParameterStatus::kAtLowerBound &&
+        estimate.status != ParameterStatus::kAtUpperBound) {
+      continue;
     }
+    score.at_bound = true;
+    AddRemark(score, estimate.name + " at its bound");
   }
-  if (std::abs(CorrelationOf(fit, "alpha", "rig_stiffness")) > kTogether) {
+  if (std::abs(CorrelationOf(fit, "alpha", "rig_stiffness")) > thresholds.known_together) {
     AddRemark(score, "alpha and rig_stiffness are known only together");
   }
 }
 
 /// Marks candidates that are simpler ones in disguise.
 void FindRedundant(std::vector<ModelScore>& scores, std::span<const FitResult> fits,
-                   double effective_samples, double rounding) {
+                   const Evidence& evidence, const ScoredSamples& samples,
+                   const Thresholds& thresholds) {
   const auto gains_nothing_on = [&](const ModelScore& score, std::string_view model, bool rig) {
     const auto simpler = std::ranges::find_if(scores, [&](const ModelScore& other) {
       return other.model->name == model && other.rig == rig && other.converged;
     });
-    return simpler != scores.end() && Deviance(simpler->rms, effective_samples, rounding) -
-                                              Deviance(score.rms, effective_samples, rounding) <
-                                          kNoGain;
+    return simpler != scores.end() &&
+           evidence.LikelihoodRatio(SumOfSquares(simpler->rms, samples),
+                                    SumOfSquares(score.rms, samples)) < thresholds.redundant_gain;
   };
   for (std::size_t i = 0; i < scores.size(); ++i) {
     ModelScore& score = scores[i];
@@ -362,7 +335,7 @@ void FindRedundant(std::vector<ModelScore>& scores, std::span<const FitResult> f
       score.redundant = true;
       AddRemark(score, "rig not needed: the fit is the same without");
     }
-    if (score.at_bound && !score.model->shape_exponent && fits[i].law.shape_exponent < kNoShape &&
+    if (score.at_bound && !score.model->shape_exponent && fits[i].law.shape_exponent < thresholds.jenkins_shape &&
         gains_nothing_on(score, "jenkins", score.rig)) {
       score.redundant = true;
       AddRemark(score, "the same as jenkins");
@@ -435,7 +408,13 @@ std::string Judge(const ModelSelection& selection, const SelectionOptions& optio
 
 }  // namespace
 
-ModelSelection SelectModel(std::span<const Record> records, const FitOptions& options,
+ModelSelection SelectModel(std::span<const loop::Record> records, const FitOptions& options,
+                           const SelectionOptions& selection) {
+  const std::vector<RecordView> views(records.begin(), records.end());
+  return SelectModel(views, options, selection);
+}
+
+ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions& options,
                            const SelectionOptions& selection) {
   if (selection.folds < 2) {
     ThrowInvalid("folds [-]", static_cast<double>(selection.folds), "must be >= 2");
@@ -446,38 +425,37 @@ ModelSelection SelectModel(std::span<const Record> records, const FitOptions& op
   result.scores = ListCandidates(options);
   std::vector<FitResult> fits;
   for (ModelScore& score : result.scores) {
-    FitOptions candidate = options;
-    candidate.model = score.model;
-    candidate.fit_rig_stiffness = score.rig;
-    const FitResult& fit = fits.emplace_back(Fit(records, candidate));
+    Fitter fitter(OptionsOf(score, options));
+    const FitResult& fit = fits.emplace_back(fitter.Fit(records, Depth::kIntervals));
     score.converged = fit.converged;
     score.free_parameters = CountFree(fit);
     score.rms = score.aicc = std::numeric_limits<double>::infinity();
-    const ScaledRecords data = ScaleAsFitted(records, candidate, fit);
-    RemarkOnFit(score, fit, ParameterLayout(data, candidate, fit.initial_state));
+    RemarkOnFit(score, fit, options.thresholds);
   }
   if (std::ranges::none_of(fits, IsFitted)) {
-    result.fit = fits.front();
+    result.fit = std::move(fits.front());
     result.verdict = Judge(result, selection, {});
     return result;
   }
 
-  ScoredSamples samples = CountedSamples(ScaleAsFitted(records, options, fits.front()));
+  ScoredSamples samples = CountedSamples(fits.front(), records);
   if (options.loss != Loss::kNone) LeaveOutOutliers(samples, fits);
   const FitResult& best_fit =
       Best(fits, [&](const FitResult& fit) { return Rms(fit, samples.mask); });
-  result.effective_samples = EffectiveSamples(best_fit, samples.mask);
+  result.effective_samples =
+      std::min(best_fit.residuals.effective_samples, static_cast<double>(samples.count));
+  const Evidence evidence(samples.count, result.effective_samples);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     ModelScore& score = result.scores[i];
     if (!IsFitted(fits[i])) continue;
     score.rms = Rms(fits[i], samples.mask);
-    score.aicc = CorrectedAkaike(
-        score, Deviance(score.rms, result.effective_samples, samples.rounding), samples.count);
+    score.aicc = evidence.Aicc(SumOfSquares(score.rms, samples), score.free_parameters);
   }
   WeighCandidates(result.scores);
-  FindRedundant(result.scores, fits, result.effective_samples, samples.rounding);
+  FindRedundant(result.scores, fits, evidence, samples, options.thresholds);
 
-  const std::vector<Cycle> cycles = ClosedCycles(best_fit, samples.mask, options.skip_cycles);
+  const std::vector<Cycle> cycles =
+      ClosedCycles(best_fit, samples.mask, options.preparation.skip_cycles);
   result.held_out_cycles = cycles.size();
   result.folds = std::min(selection.folds, cycles.size());
   std::vector<std::vector<double>> predictions(fits.size());
@@ -517,7 +495,8 @@ ModelSelection SelectModel(std::span<const Record> records, const FitOptions& op
     });
     result.chosen = result.indistinguishable.front();
   }
-  result.fit = std::move(fits[result.chosen]);
+  Fitter chosen(OptionsOf(result.scores[result.chosen], options));
+  result.fit = chosen.Fit(records, Depth::kFull);
   result.verdict = Judge(result, selection, ranking);
   return result;
 }

@@ -1,22 +1,27 @@
 #include "mindahl/loop/cycles.h"
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "loop/scratch.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
 namespace {
 
 /// The reversals, with the record's first and last sample where they lie at an extreme.
-std::vector<std::size_t> TurningPoints(std::span<const double> displacement,
-                                       std::span<const std::size_t> reversals) {
+std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement,
+                                            std::span<const std::size_t> reversals,
+                                            std::pmr::memory_resource* scratch) {
   constexpr double kAtExtreme = 0.02;  // of the range
-  std::vector<std::size_t> points(reversals.begin(), reversals.end());
+  std::pmr::vector<std::size_t> points(scratch);
+  points.reserve(reversals.size() + 2);
+  points.assign(reversals.begin(), reversals.end());
   if (points.empty()) return points;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const double tolerance = kAtExtreme * (highest - lowest);
@@ -65,11 +70,11 @@ std::pair<double, double> MovingMeanRange(std::span<const double> force) {
   return {least / static_cast<double>(width), greatest / static_cast<double>(width)};
 }
 
-Swing MeasureSwing(const Record& record, std::size_t first, std::size_t last) {
+Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last) {
   const std::size_t count = last - first + 1;
   const auto displacement =
-      std::ranges::minmax(std::span(record.displacement).subspan(first, count));
-  const auto [least, greatest] = MovingMeanRange(std::span(record.force).subspan(first, count));
+      std::ranges::minmax(record.displacement.subspan(first, count));
+  const auto [least, greatest] = MovingMeanRange(record.force.subspan(first, count));
   const bool rising = record.displacement[last] > record.displacement[first];
   return {.rising = rising,
           .lowest = displacement.min,
@@ -83,9 +88,14 @@ Swing MeasureSwing(const Record& record, std::size_t first, std::size_t last) {
 /// The swings that reach at least three quarters as far as the widest: not nested loops, run-in or
 /// run-out.
 /// Without two turning points the whole record is one.
-std::vector<Swing> MainSwings(const Record& record, std::span<const std::size_t> points) {
-  if (points.size() < 2) return {MeasureSwing(record, 0, record.size() - 1)};
-  std::vector<Swing> swings;
+std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std::size_t> points,
+                                   std::pmr::memory_resource* scratch) {
+  std::pmr::vector<Swing> swings(scratch);
+  if (points.size() < 2) {
+    swings.push_back(MeasureSwing(record, 0, record.size() - 1));
+    return swings;
+  }
+  swings.reserve(points.size());
   double widest = 0.0;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {
     swings.push_back(MeasureSwing(record, points[k], points[k + 1]));
@@ -102,18 +112,20 @@ double MeanOf(std::span<const Swing> swings, double Swing::*member) {
   return sum / static_cast<double>(swings.size());
 }
 
-double Median(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : values[middle - 1] / 2 + values[middle] / 2;
+/// Reorders the values.
+double Median(std::span<double> values) {
+  return boost::math::statistics::median(values.begin(), values.end());
 }
 
 /// What swings of one direction usually reach, for the direction that reaches further as `compare`
 /// has it. Medians: a spike in one swing must not make the peak force.
 template <typename Compare>
-double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compare compare) {
-  std::vector<double> rising;
-  std::vector<double> falling;
+double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compare compare,
+                    std::pmr::memory_resource* scratch) {
+  std::pmr::vector<double> rising(scratch);
+  std::pmr::vector<double> falling(scratch);
+  rising.reserve(swings.size());
+  falling.reserve(swings.size());
   for (const Swing& swing : swings) (swing.rising ? rising : falling).push_back(swing.*member);
   if (rising.empty()) return Median(falling);
   if (falling.empty()) return Median(rising);
@@ -126,12 +138,13 @@ double Mean(std::span<const double> values) {
 
 int SignOf(double value) { return (value > 0) - (value < 0); }
 
-}  // namespace
-
-std::vector<double> CycleEnergies(const Record& record, std::span<const std::size_t> reversals) {
-  std::vector<double> energies;
-  const auto& x = record.displacement;
-  const std::vector<std::size_t> points = TurningPoints(x, reversals);
+std::pmr::vector<double> CycleEnergies(const RecordView& record,
+                                       std::span<const std::size_t> reversals,
+                                       std::pmr::memory_resource* scratch) {
+  std::pmr::vector<double> energies(scratch);
+  const std::span<const double> x = record.displacement;
+  const std::pmr::vector<std::size_t> points = TurningPoints(x, reversals, scratch);
+  energies.reserve(points.size());
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
     const std::size_t first = points[k];
     const std::size_t last = points[k + 2];
@@ -155,14 +168,38 @@ std::vector<double> CycleEnergies(const Record& record, std::span<const std::siz
   return energies;
 }
 
-LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reversals) {
+}  // namespace
+
+std::vector<double> CycleEnergies(const RecordView& record,
+                                  std::span<const std::size_t> reversals) {
+  const std::pmr::vector<double> energies =
+      CycleEnergies(record, reversals, std::pmr::get_default_resource());
+  return {energies.begin(), energies.end()};
+}
+
+LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals) {
+  return MeasureLoop(record, reversals, std::pmr::get_default_resource());
+}
+
+int ForceSense(const RecordView& record, std::span<const std::size_t> reversals) {
+  return ForceSense(record, reversals, std::pmr::get_default_resource());
+}
+
+LoopMeasures InSense(LoopMeasures measures, int force_sense) {
+  measures.centre_force *= force_sense;
+  if (measures.energy_per_cycle) *measures.energy_per_cycle *= force_sense;
+  return measures;
+}
+
+LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
+                         std::pmr::memory_resource* scratch) {
   Validate(record);
   if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
-  const auto& x = record.displacement;
+  const std::span<const double> x = record.displacement;
   LoopMeasures measures;
 
-  const std::vector<std::size_t> points = TurningPoints(x, reversals);
-  const std::vector<Swing> swings = MainSwings(record, points);
+  const std::pmr::vector<std::size_t> points = TurningPoints(x, reversals, scratch);
+  const std::pmr::vector<Swing> swings = MainSwings(record, points, scratch);
   const double highest = MeanOf(swings, &Swing::highest);
   const double lowest = MeanOf(swings, &Swing::lowest);
   measures.amplitude = (highest - lowest) / 2;
@@ -171,9 +208,9 @@ LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reve
   const double lower_end = MeanOf(swings, &Swing::lower_end_force);
   const double upper_end = MeanOf(swings, &Swing::upper_end_force);
   const double greatest_force =
-      std::max({lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>())});
+      std::max({lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>(), scratch)});
   const double least_force =
-      std::min({lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>())});
+      std::min({lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>(), scratch)});
   measures.peak_force = (greatest_force - least_force) / 2;
   measures.centre_force = least_force + measures.peak_force;
 
@@ -182,19 +219,20 @@ LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reve
     measures.cycles =
         static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 + kShortOfACycle);
   }
-  const std::vector<double> energies = CycleEnergies(record, reversals);
+  const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
   if (!energies.empty()) measures.energy_per_cycle = Mean(energies);
   return measures;
 }
 
-int ForceSense(const Record& record, std::span<const std::size_t> reversals) {
+int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
+               std::pmr::memory_resource* scratch) {
   Validate(record);
   if (record.size() == 0) return 0;
   constexpr double kThin = 0.01;  // energy over that of the rectangle round the loop, 4XT*
   const auto displacement = std::ranges::minmax(record.displacement);
   const auto force = std::ranges::minmax(record.force);
   const double rectangle = (displacement.max - displacement.min) * (force.max - force.min);
-  const std::vector<double> energies = CycleEnergies(record, reversals);
+  const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
   if (!energies.empty() && std::abs(Mean(energies)) > kThin * rectangle) {
     return SignOf(Mean(energies));
   }

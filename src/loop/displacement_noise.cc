@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <iterator>
-#include <set>
 
+#include "loop/scratch.h"
 #include "loop/smallest_step.h"
 #include "mindahl/core/error.h"
 
@@ -26,7 +27,8 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   if (!(step > kFinest * (highest - lowest))) return false;
   std::size_t whole = 0;
   std::size_t rest = 1;  // samples
-  std::set<std::size_t> rests;
+  std::array<std::size_t, kFewestRests> rests{};  // different ones
+  std::size_t known_rests = 0;
   bool is_even = true;
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = std::abs(displacement[i] - displacement[i - 1]) / step;
@@ -36,13 +38,16 @@ bool IsQuantised(std::span<const double> displacement, double step) {
     if (steps == 0) {
       ++rest;
     } else {
-      rests.insert(rest);
+      const auto end = rests.begin() + static_cast<std::ptrdiff_t>(known_rests);
+      if (known_rests < kFewestRests && std::find(rests.begin(), end, rest) == end) {
+        rests[known_rests++] = rest;
+      }
       rest = 1;
     }
   }
   const auto pairs = static_cast<double>(displacement.size() - 1);
   if (static_cast<double>(whole) < kMost * pairs) return false;
-  return is_even ? rests.size() >= kFewestRests : rests.size() > 1;
+  return is_even ? known_rests == kFewestRests : known_rests > 1;
 }
 
 /// The value at t = 0 of the least-squares parabola through 2h + 1 samples is their sum with the
@@ -101,19 +106,22 @@ double EncoderStep(std::span<const double> displacement) {
 }
 
 double EstimateDisplacementNoise(std::span<const double> displacement) {
-  constexpr double kStandardDeviationPerMedian = 1.4826;  // of a normal variate's absolute value
-  std::vector<double> x;
+  return EstimateDisplacementNoise(displacement, std::pmr::get_default_resource());
+}
+
+double EstimateDisplacementNoise(std::span<const double> displacement,
+                                 std::pmr::memory_resource* scratch) {
+  constexpr double kStandardDeviationPerMedian = 1.482602218505602;  // 1/Φ⁻¹(3/4)
+  std::pmr::vector<double> x(scratch);
+  x.reserve(displacement.size());
   std::ranges::unique_copy(displacement, std::back_inserter(x));
   if (x.size() < 4) return 0.0;
-  std::vector<double> differences;
-  differences.reserve(x.size() - 3);
-  for (std::size_t i = 3; i < x.size(); ++i) {
-    differences.push_back(std::abs(x[i] - 3 * x[i - 1] + 3 * x[i - 2] - x[i - 3]));
+  for (std::size_t i = x.size() - 1; i >= 3; --i) {
+    x[i] = std::abs(x[i] - 3 * x[i - 1] + 3 * x[i - 2] - x[i - 3]);
   }
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::ranges::nth_element(differences, middle);
+  const double median = boost::math::statistics::median(x.begin() + 3, x.end());
   // The variance of a third difference is (1 + 9 + 9 + 1) times the noise's.
-  const double noise = kStandardDeviationPerMedian * *middle / std::sqrt(20.0);
+  const double noise = kStandardDeviationPerMedian * median / std::sqrt(20.0);
   return std::max(noise, EncoderStep(displacement) / std::sqrt(12.0));
 }
 

@@ -21,7 +21,7 @@ void RequireFiniteColumn(std::string_view quantity, std::span<const double> colu
 
 }  // namespace
 
-void Validate(const Record& record) {
+void Validate(const RecordView& record) {
   RequireSameSize("displacement", record.displacement.size(), "force", record.force.size());
   if (!record.time.empty()) {
     RequireSameSize("displacement", record.size(), "time", record.time.size());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "loop/scratch.h"
 #include "loop/smallest_step.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/displacement_noise.h"
@@ -18,10 +19,13 @@ struct InnerLoop {
 
 /// Four-point rainflow count: the middle two of four successive extremes form a closed inner loop
 /// when their range does not exceed either neighbour's (ASTM E1049 describes the equivalent rule).
-std::vector<InnerLoop> ClosedInnerLoops(std::span<const double> displacement,
-                                        std::span<const std::size_t> extremes) {
-  std::vector<InnerLoop> loops;
-  std::vector<std::size_t> open;
+std::pmr::vector<InnerLoop> ClosedInnerLoops(std::span<const double> displacement,
+                                             std::span<const std::size_t> extremes,
+                                             std::pmr::memory_resource* scratch) {
+  std::pmr::vector<InnerLoop> loops(scratch);
+  std::pmr::vector<std::size_t> open(scratch);
+  loops.reserve(extremes.size() / 2 + 1);
+  open.reserve(extremes.size());
   const auto range = [&](std::size_t i, std::size_t j) {
     return std::abs(displacement[open[i]] - displacement[open[j]]);
   };
@@ -41,9 +45,16 @@ std::vector<InnerLoop> ClosedInnerLoops(std::span<const double> displacement,
 }  // namespace
 
 std::vector<std::size_t> FindReversals(std::span<const double> displacement, double gate) {
+  std::pmr::vector<std::size_t> reversals;
+  FindReversals(displacement, gate, reversals);
+  return {reversals.begin(), reversals.end()};
+}
+
+void FindReversals(std::span<const double> displacement, double gate,
+                   std::pmr::vector<std::size_t>& reversals) {
   RequireNonNegative("reversal gate [m]", gate);
-  std::vector<std::size_t> reversals;
-  if (displacement.empty()) return reversals;
+  reversals.clear();
+  if (displacement.empty()) return;
 
   std::size_t highest = 0;
   std::size_t lowest = 0;
@@ -61,10 +72,14 @@ std::vector<std::size_t> FindReversals(std::span<const double> displacement, dou
       highest = i;
     }
   }
-  return reversals;
 }
 
 double EstimateReversalGate(std::span<const double> displacement) {
+  return EstimateReversalGate(displacement, std::pmr::get_default_resource());
+}
+
+double EstimateReversalGate(std::span<const double> displacement,
+                            std::pmr::memory_resource* scratch) {
   constexpr std::size_t kShort = 3;    // [samples] a drive takes longer to turn twice
   constexpr double kRough = 0.05;      // more "noise" than this share of the range is the drive
   constexpr double kSteps = 2.5;       // two of an encoder, and rounding
@@ -74,21 +89,24 @@ double EstimateReversalGate(std::span<const double> displacement) {
   constexpr double kWideGap = 10.0;    // ratio across the gap when few do,
   constexpr double kLargeShare = 0.1;  // and the drive's loops are this share of the range
 
-  const std::vector<std::size_t> extremes = FindReversals(displacement, 0.0);
+  std::pmr::vector<std::size_t> extremes(scratch);
+  FindReversals(displacement, 0.0, extremes);
   if (extremes.size() < 4) return 0.0;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const double full_range = highest - lowest;
-  const double noise = EstimateDisplacementNoise(displacement);
+  const double noise = EstimateDisplacementNoise(displacement, scratch);
   if (noise > kRough * full_range) return 0.0;
   // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
   const double reach = std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
   const double noise_range = std::max(2 * reach * noise, kSteps * SmallestStep(displacement));
 
   // The record's ends close loops too: without them a half cycle of noise stays open.
-  std::vector<std::size_t> turning_points = {0};
+  std::pmr::vector<std::size_t> turning_points(scratch);
+  turning_points.reserve(extremes.size() + 2);
+  turning_points.push_back(0);
   turning_points.insert(turning_points.end(), extremes.begin(), extremes.end());
   turning_points.push_back(displacement.size() - 1);
-  std::vector<InnerLoop> loops = ClosedInnerLoops(displacement, turning_points);
+  std::pmr::vector<InnerLoop> loops = ClosedInnerLoops(displacement, turning_points, scratch);
   std::ranges::sort(loops, {}, &InnerLoop::range);
 
   double gate = 0.0;

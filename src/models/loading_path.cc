@@ -22,8 +22,8 @@ void RequireDisplacements(std::span<const double> displacement) {
                  static_cast<double>(displacement.size()), "must be <= 2147483640");
   }
   for (std::size_t i = 0; i < displacement.size(); ++i) {
-    if (!models::IsWithinReach(displacement[i])) {
-      models::RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
+    if (!IsWithinReach(displacement[i])) {
+      RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
     }
   }
 }
@@ -45,7 +45,8 @@ std::int8_t FirstDirection(std::span<const double> displacement,
 /// stack: the origins on it are the surviving extrema.
 class OpenBranches {
  public:
-  OpenBranches(LoadingPath& path, Memory memory) : path_(path), memory_(memory) {}
+  OpenBranches(LoadingPath& path, Memory memory)
+      : path_(path), open_(path.open), memory_(memory) {}
 
   void Open(Branch branch) {
     branch.parent = open_.empty() ? -1 : open_.back();
@@ -68,15 +69,15 @@ class OpenBranches {
     const auto origin_of = [&](std::size_t i) {
       return path_.branches[static_cast<std::size_t>(open_[i])].origin;
     };
-    open_.resize(models::StillOpen(open_.size(), origin_of, direction_, displacement));
+    open_.resize(StillOpen(open_.size(), origin_of, direction_, displacement));
   }
 
   [[nodiscard]] std::int32_t Present() const { return open_.back(); }
 
  private:
   LoadingPath& path_;
+  std::vector<std::int32_t>& open_;
   Memory memory_;
-  std::vector<std::int32_t> open_;
   std::int8_t direction_ = 1;  // of the motion; the virgin curve is run both ways
 };
 
@@ -120,9 +121,18 @@ void OpenInitialBranches(OpenBranches& open, std::span<const double> displacemen
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial) {
-  RequireDisplacements(displacement);
-  models::RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
   LoadingPath path;
+  MakeLoadingPath(displacement, reversals, memory, initial, path);
+  return path;
+}
+
+void MakeLoadingPath(std::span<const double> displacement, std::span<const std::size_t> reversals,
+                     Memory memory, const InitialContact& initial, LoadingPath& path) {
+  RequireDisplacements(displacement);
+  RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
+  path.branches.clear();
+  path.runs.clear();
+  path.open.clear();
   constexpr std::size_t kInitialBranches = 3;
   path.branches.reserve(reversals.size() + kInitialBranches);
   OpenBranches open(path, memory);
@@ -137,14 +147,13 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
       ++next_reversal;
     }
   }
-  return path;
 }
 
 LoadingPath MakeEnvelopePath(std::span<const double> displacement,
                              std::span<const double> amplitude, double unloaded_displacement) {
   RequireDisplacements(displacement);
   RequireSameSize("displacement", displacement.size(), "amplitude", amplitude.size());
-  models::RequireWithinReach("unloaded displacement [m]", unloaded_displacement);
+  RequireWithinReach("unloaded displacement [m]", unloaded_displacement);
   LoadingPath path;
   double origin = unloaded_displacement;
   std::int8_t direction = 1;

@@ -163,9 +163,9 @@ class BranchScaling {
 
 /// @param shape  φ, as in backbone.h: has Force(y); or a SprungShape of it
 template <typename Shape>
-ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
-                             const Shape& shape) {
-  ScaledBranches scaled;
+void ScaleBranches(const BranchScaling& scaling, const LoadingPath& path, const Shape& shape,
+                   ScaledBranches& scaled) {
+  scaled.clear();
   scaled.reserve(path.branches.size());
   for (const Branch& branch : path.branches) {
     const double origin_force = scaling.OriginForce(branch, [&](std::size_t parent_index) {
@@ -176,7 +176,52 @@ ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& pa
     });
     scaled.push_back(scaling.Start(branch, origin_force));
   }
+}
+
+template <typename Shape>
+ScaledBranches ScaleBranches(const BranchScaling& scaling, const LoadingPath& path,
+                             const Shape& shape) {
+  ScaledBranches scaled;
+  ScaleBranches(scaling, path, shape, scaled);
   return scaled;
+}
+
+/// To single precision or none. What does not fit it is out of reach: a force that never comes, a
+/// branch that is vertical.
+template <typename Real>
+Real Narrow(double value) {
+  constexpr double kLargest = static_cast<double>(std::numeric_limits<Real>::max());
+  return static_cast<Real>(std::clamp(value, -kLargest, kLargest));
+}
+
+template <typename Real>
+ScaledBranch<Real> Narrow(const ScaledBranch<double>& branch) {
+  return {Narrow<Real>(branch.origin), Narrow<Real>(branch.force), Narrow<Real>(branch.height),
+          Narrow<Real>(branch.rate)};
+}
+
+/// @throws InvalidArgument always
+[[noreturn]] void ThrowBeyondReach(double displacement, double largest, double elastic_limit);
+
+/// For α <= 1 a force beyond the reach is Tc; for α > 1 it still grows there.
+template <typename Real>
+void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
+                  std::span<const Real> displacement) {
+  if (law.shape_exponent <= 1) return;
+  double farthest = 0.0;
+  for (const Real at : displacement)
+    farthest = std::max(farthest, std::abs(static_cast<double>(at)));
+  double steepest = 0.0;
+  double farthest_origin = 0.0;
+  for (const ScaledBranch<double>& branch : branches) {
+    steepest = std::max(steepest, branch.rate);
+    farthest_origin = std::max(farthest_origin, std::abs(branch.origin));
+  }
+  farthest += farthest_origin;
+  if (farthest > static_cast<double>(backbone::Reach(Narrow<Real>(steepest)))) {
+    ThrowBeyondReach(farthest, static_cast<double>(backbone::kLargestDisplacement<Real>),
+                     1 / steepest);
+  }
 }
 
 /// Forces of one run; the loop has no branch and no call, so that it vectorises where φ does.

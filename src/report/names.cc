@@ -25,8 +25,6 @@ std::string_view Name(Identifiability identifiability) {
       return "identifiable";
     case Identifiability::kBoundedBelow:
       return "bounded_below";
-    case Identifiability::kBoundedAbove:
-      return "bounded_above";
     case Identifiability::kNotIdentifiable:
       return "not_identifiable";
   }

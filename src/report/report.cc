@@ -31,16 +31,10 @@ void Require(const ReportInput& input) {
   }
 }
 
-/// The sentences are the fit's own until it gives findings: then Sentence(finding, fit) of each.
 std::vector<Warning> FitWarnings(const identification::FitResult& fit) {
   std::vector<Warning> warnings;
-  for (const identification::FitWarning& warning : fit.warnings) {
-    warnings.push_back({warning.code, warning.message});
-  }
-  if (fit.parameters.empty()) {
-    identification::Finding failure;
-    failure.code = "fit_failed";
-    warnings.push_back({"fit_failed", Sentence(failure, fit)});
+  for (const identification::Finding& finding : fit.findings) {
+    warnings.push_back({std::string(finding.code), Sentence(finding, fit)});
   }
   return warnings;
 }

@@ -57,8 +57,7 @@ const BranchShape* Find(const FitResult& fit, const std::string& branch) {
 }
 
 bool IsWarnedOf(const FitResult& fit, const std::string& code) {
-  return std::ranges::any_of(fit.warnings,
-                             [&](const FitWarning& warning) { return warning.code == code; });
+  return fit.FindFinding(code) != nullptr;
 }
 
 /// 27 normal estimates, one law: 4 standard errors are exceeded once in 600 such tests.

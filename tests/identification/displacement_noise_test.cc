@@ -112,7 +112,7 @@ void ExpectHonest(const Honesty& honesty) {
 TEST(DisplacementNoise, IntervalsHoldTheTruthWhereItIsKnown) {
   constexpr double kNoise = 0.02 * kReach;
   FitOptions options = Virgin();
-  options.displacement_noise = kNoise;
+  options.preparation.displacement_noise = kNoise;
   ExpectHonest(Measure(
       [](const Record& clean, Generator& generator) { return WithNoise(clean, kNoise, generator); },
       options));
@@ -135,7 +135,7 @@ TEST(DisplacementNoise, IntervalsHoldTheTruthWhereAnEncoderMakesIt) {
 TEST(DisplacementNoise, ThatIsKnownMakesNoReversal) {
   Generator generator(7);
   FitOptions options = Virgin();
-  options.displacement_noise = 0.01 * kReach;
+  options.preparation.displacement_noise = 0.01 * kReach;
   const FitResult fit = FitOne(WithNoise(Clean(), 0.01 * kReach, generator), options);
   EXPECT_EQ(fit.records[0].reversals.size(), kReversals);
   EXPECT_EQ(fit.records[0].displacement_noise, 0.01 * kReach);
@@ -157,7 +157,7 @@ TEST(DisplacementNoise, IsNoneInACleanRecord) {
 
 TEST(DisplacementNoise, AGateOnACleanRecordCostsNoMoreThanItsOwnNoiseEstimate) {
   FitOptions options = Virgin();
-  options.reversal_gate = 0.05 * kReach;
+  options.preparation.reversal_gate = 0.05 * kReach;
   // A sine of 200 samples has third differences of (2π/200)³ = 3e-5 of X: 1e-5 of noise at most,
   // and the parabolas agree to 2.5 of it.
   EXPECT_TRUE(testing::Recovers(FitOne(Clean(), options), kLaw, 1e-3));

@@ -53,11 +53,11 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "the model cannot be fitted: it must be told the amplitude"},
       {[](FitOptions& o) { o.model = &Model("simplified-dahl"); },
        "the model cannot be fitted: it must be told the amplitude"},
-      {[](FitOptions& o) { o.force_sense = 2; },
+      {[](FitOptions& o) { o.preparation.force_sense = 2; },
        "force sense [-] = 2 is invalid: must be +1 or -1"},
       {[](FitOptions& o) { o.force_noise = 0; },
        "force noise [N] = 0 is invalid: must be finite and > 0"},
-      {[](FitOptions& o) { o.reversal_gate = -1; },
+      {[](FitOptions& o) { o.preparation.reversal_gate = -1; },
        "reversal gate [m] = -1 is invalid: must be finite and >= 0"},
       {[](FitOptions& o) { o.max_iterations = 0; },
        "maximum iterations [-] = 0 is invalid: must be >= 1"},
@@ -251,7 +251,7 @@ TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
 
 TEST(FitOptions, WrongForceSenseIsAFailedFitAndNotACrash) {
   FitOptions options;
-  options.force_sense = -1;
+  options.preparation.force_sense = -1;
   const FitResult fit = FitOne(Loop(), options);
   EXPECT_FALSE(fit.converged);
   EXPECT_TRUE(fit.parameters.empty());

@@ -207,7 +207,7 @@ TEST(ModelSelection, CyclesThatAreSkippedAreNeitherScoredNorHeldOut) {
   // 1.75 of 4.3 cycles end with the fourth reversal.
   for (std::size_t i = 0; i < 105; ++i) record.force[i] += 20;
   FitOptions options;
-  options.skip_cycles = 2;
+  options.preparation.skip_cycles = 2;
   const ModelSelection selection = Select({record}, options);
   EXPECT_EQ(selection.held_out_cycles, 2u);
   EXPECT_LT(selection.scores[selection.chosen].rms, 2 * kQuiet * kMindlin.slip_force);
@@ -262,25 +262,25 @@ TEST(ModelSelection, OptionsThatBreakARuleAreNamed) {
   EXPECT_EQ(refusal({}, {.largest_delta = -1}),
             "largest ΔAICc [-] = -1 is invalid: must be finite and >= 0");
   FitOptions options;
-  options.held_out = {{}, {}};
+  options.preparation.held_out = {{}, {}};
   EXPECT_EQ(refusal(options, {}), "held-out masks has 2 values and records has 1: must be equal");
-  options.held_out = {{true}};
+  options.preparation.held_out = {{true}};
   EXPECT_THAT(refusal(options, {}), HasSubstr("held-out mask has 1 values and samples has 91"));
-  options.held_out = {std::vector<bool>(record.size(), true)};
+  options.preparation.held_out = {std::vector<bool>(record.size(), true)};
   EXPECT_THAT(refusal(options, {}), HasSubstr("nothing is left of record 1"));
 }
 
 TEST(HeldOutSamples, DoNotCountButMakeHistory) {
   const Record record = Measure({.cycles = 2.3, .noise = 0.0}, 0);
   FitOptions options;
-  options.held_out = {std::vector<bool>(record.size(), false)};
+  options.preparation.held_out = {std::vector<bool>(record.size(), false)};
   Record spoiled = record;
   // The two reversals in it make the history of what follows.
   for (std::size_t i = 10; i < 60; ++i) {
-    options.held_out[0][i] = true;
+    options.preparation.held_out[0][i] = true;
     spoiled.force[i] = -record.force[i];
   }
-  options.force_sense = 1;
+  options.preparation.force_sense = 1;
   const FitResult fit = testing::FitOne(spoiled, options);
   EXPECT_TRUE(testing::Recovers(fit, kMindlin, testing::kNoiseFree));
   EXPECT_EQ(fit.records.front().left_out, 50u);

@@ -65,7 +65,7 @@ TEST(ModelTerms, KnownRigStiffnessLeavesTheContactsOwnParameters) {
 
 TEST(ModelTerms, RigStiffnessIsRecoveredWithAGivenShapeAndWithAFreeOne) {
   FitOptions options;
-  options.fit_rig_stiffness = true;
+  options.terms.emplace_back("rig_stiffness");
   for (const bool held : {true, false}) {
     if (held) options.fixed["alpha"] = 1.0 / 3;
     if (!held) options.fixed.clear();
@@ -80,7 +80,7 @@ TEST(ModelTerms, StiffnessOfContactAndRigTogetherIsKnownBetterThanEither) {
   // 1/σ_app = 1/σ + 1/k_r is the slope after each reversal.
   constexpr double kTogether = 1 / (1 / kMindlin.tangential_stiffness + 1 / kRig);
   FitOptions options;
-  options.fit_rig_stiffness = true;
+  options.terms.emplace_back("rig_stiffness");
   options.fixed["alpha"] = 1.0 / 3;
   Generator generator(21);
   constexpr int kLoops = 20;
@@ -114,7 +114,7 @@ TEST(ModelTerms, PlateauSlopeIsRecovered) {
     record.force[i] += kSlope * record.displacement[i];
   }
   FitOptions options;
-  options.plateau_slope = true;
+  options.terms.emplace_back("plateau_slope");
   const FitResult fit = FitOne(record, options);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
   EXPECT_NEAR(fit.Find("plateau_slope")->value, kSlope, kNoiseFree * kLaw.tangential_stiffness);
@@ -129,7 +129,7 @@ TEST(ModelTerms, DriftIsRecovered) {
     record.force[i] += 3.0 + kDrift * record.time[i];
   }
   FitOptions options;
-  options.drift = true;
+  options.terms.emplace_back("force_drift");
   const FitResult fit = FitOne(record, options);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
   EXPECT_NEAR(fit.Find("force_drift")->value, kDrift, kNoiseFree * kLaw.slip_force);
@@ -178,12 +178,12 @@ TEST(ModelTerms, SamplesOutsideTheLoadWindowStillMakeHistory) {
   FitOptions options;
   options.initial_state = InitialState::kVirgin;
   options.fixed["displacement_offset"] = 0.0;  // the samples that showed it are left out
-  options.load_window = {99.0, 101.0};
+  options.preparation.load_window = {99.0, 101.0};
   const FitResult fit = FitOne(record, options);
   EXPECT_EQ(fit.records[0].left_out, wide);
   EXPECT_EQ(fit.residuals.samples, record.size() - wide);
   EXPECT_TRUE(Recovers(fit, kLaw, 1e-6));  // the inner loops do not slip: a worse condition
-  options.load_window.reset();
+  options.preparation.load_window.reset();
   EXPECT_FALSE(Recovers(FitOne(record, options), kLaw, 0.02)) << "it matters";
 }
 
@@ -193,22 +193,22 @@ TEST(ModelTerms, CyclesThatAreSkippedMayBeCorrupted) {
   for (std::size_t i = 0; i < first_cycle; ++i)
     record.force[i] = 50 * std::cos(0.9 * static_cast<double>(i));
   FitOptions options;
-  options.skip_cycles = 1;
-  options.force_sense = 1;
+  options.preparation.skip_cycles = 1;
+  options.preparation.force_sense = 1;
   const FitResult fit = FitOne(record, options);
   EXPECT_EQ(fit.records[0].left_out, first_cycle);
   EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
-  options.skip_cycles = 0;
+  options.preparation.skip_cycles = 0;
   EXPECT_FALSE(Recovers(FitOne(record, options), kLaw, 0.02)) << "it matters";
 }
 
 TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
   FitOptions options;
-  options.displacement_noise = -1e-9;
+  options.preparation.displacement_noise = -1e-9;
   EXPECT_EQ(RefusalOf(Loop(), options),
             "displacement noise [m] = -1e-09 is invalid: must be finite and >= 0");
   options = {};
-  options.load_window = {90.0, 110.0};
+  options.preparation.load_window = {90.0, 110.0};
   EXPECT_EQ(RefusalOf(Loop(), options), "the load window needs a normal load in every record");
   Record loaded = Loop();
   loaded.normal_load.assign(loaded.size(), 200.0);
@@ -219,10 +219,10 @@ TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
   loaded.normal_load.assign(loaded.size(), 0.0);
   EXPECT_THAT(RefusalOf(loaded, options), HasSubstr("mean normal load [N] = 0 is invalid"));
   options = {};
-  options.skip_cycles = 2;
+  options.preparation.skip_cycles = 2;
   EXPECT_THAT(RefusalOf(Loop(1.2), options), HasSubstr("nothing is left of record 1"));
   options = {};
-  options.held_out = {{true, false}};
+  options.preparation.held_out = {{true, false}};
   EXPECT_THAT(RefusalOf(Loop(), options), HasSubstr("held-out mask"));
   options = {};
   options.fixed["rig_stiffness"] = -1.0;

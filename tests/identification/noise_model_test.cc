@@ -1,11 +1,13 @@
-#include "identification/noise_model.h"
+#include "identification/inference/noise.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,30 @@ using testing::Uniform;
 using testing::Wave;
 
 constexpr std::size_t kSamples = 5000;
+
+/// Of records whose samples all count.
+Autocorrelation EstimateNoise(const std::vector<std::vector<double>>& records,
+                              std::vector<std::vector<unsigned char>> counts = {}) {
+  std::vector<std::span<const double>> series;
+  std::vector<std::span<const unsigned char>> masks;
+  for (const std::vector<double>& record : records) series.emplace_back(record);
+  if (counts.empty()) {
+    for (const std::vector<double>& record : records) counts.emplace_back(record.size(), 1);
+  }
+  for (const std::vector<unsigned char>& mask : counts) masks.emplace_back(mask);
+  return EstimateAutocorrelation(series, masks);
+}
+
+/// The process with these coefficients and correlations ρ₀ … ρ_p.
+Autocorrelation Process(const std::vector<double>& coefficients,
+                        const std::vector<double>& correlations, double innovation_share) {
+  Autocorrelation process;
+  process.order = coefficients.size();
+  std::ranges::copy(coefficients, process.coefficients.begin());
+  std::copy_n(correlations.begin(), coefficients.size() + 1, process.correlations.begin());
+  process.innovation_share = innovation_share;
+  return process;
+}
 
 /// A series of the process, stationary from its first sample on.
 std::vector<double> Autoregressive(const std::vector<double>& coefficients, std::size_t samples,
@@ -73,8 +99,8 @@ TEST(NoiseModel, FirstOrderProcessIsRecoveredWithinItsSamplingError) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Generator generator(seed);
     const std::vector<std::vector<double>> series = {Autoregressive({kRho}, kSamples, generator)};
-    const NoiseModel noise = EstimateNoise(series);
-    ASSERT_EQ(noise.coefficients.size(), 1U) << seed;
+    const Autocorrelation noise = EstimateNoise(series);
+    ASSERT_EQ(noise.order, 1U) << seed;
     EXPECT_NEAR(noise.coefficients[0], kRho, kSurely * error) << seed;
     EXPECT_NEAR(noise.innovation_share, 1 - kRho * kRho, kSurely * 2 * kRho * error) << seed;
   }
@@ -89,8 +115,8 @@ TEST(NoiseModel, SecondOrderProcessIsRecoveredWithinItsSamplingError) {
     Generator generator(seed);
     const std::vector<std::vector<double>> series = {
         Autoregressive({kFirst, kSecond}, kSamples, generator)};
-    const NoiseModel noise = EstimateNoise(series);
-    ASSERT_EQ(noise.coefficients.size(), 2U) << seed;
+    const Autocorrelation noise = EstimateNoise(series);
+    ASSERT_EQ(noise.order, 2U) << seed;
     EXPECT_NEAR(noise.coefficients[0], kFirst, kSurely * error) << seed;
     EXPECT_NEAR(noise.coefficients[1], kSecond, kSurely * error) << seed;
     EXPECT_NEAR(noise.innovation_share, SecondOrderShare(kFirst, kSecond), 0.03) << seed;
@@ -105,8 +131,8 @@ TEST(NoiseModel, WhiteNoiseHasOrderZero) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Generator generator(static_cast<std::uint64_t>(seed));
     const std::vector<std::vector<double>> series = {Autoregressive({}, 300, generator)};
-    const NoiseModel noise = EstimateNoise(series);
-    if (!noise.coefficients.empty()) continue;
+    const Autocorrelation noise = EstimateNoise(series);
+    if (noise.order > 0) continue;
     ++white;
     EXPECT_EQ(noise.innovation_share, 1.0);
     EXPECT_EQ(noise.SquaredCorrelations(), 1.0);
@@ -122,22 +148,26 @@ TEST(NoiseModel, SamplesThatDoNotCountLeaveTheProcessAsItIs) {
   // that both count are a quarter where they are scattered.
   const double error = std::sqrt((1 - kRho * kRho) / kSamples);
   constexpr double kFewerPairs = 4.0;
-  std::vector<double> in_one_run = Autoregressive({kRho}, kSamples, generator);
-  std::vector<double> scattered = in_one_run;
+  const std::vector<double> series = Autoregressive({kRho}, kSamples, generator);
+  std::vector<unsigned char> in_one_run(kSamples, 1);
+  std::vector<unsigned char> scattered(kSamples, 1);
   for (std::size_t i = 0; i < kSamples; ++i) {
-    if (i < kSamples / 2) in_one_run[i] = 0.0;
-    if (Uniform(generator, 0, 1) < 0.5) scattered[i] = 0.0;
+    if (i < kSamples / 2) in_one_run[i] = 0;
+    if (Uniform(generator, 0, 1) < 0.5) scattered[i] = 0;
   }
-  for (const std::vector<double>& series : {in_one_run, scattered}) {
-    const std::vector<std::vector<double>> records = {series};
-    const NoiseModel noise = EstimateNoise(records);
-    ASSERT_FALSE(noise.coefficients.empty());
+  for (const std::vector<unsigned char>& counts : {in_one_run, scattered}) {
+    // What does not count may be anything.
+    std::vector<double> spoilt = series;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      if (counts[i] == 0) spoilt[i] = 1e6;
+    }
+    const Autocorrelation noise = EstimateNoise({spoilt}, {counts});
+    ASSERT_GT(noise.order, 0U);
     // Higher orders may come with scattered samples: what counts is the correlation they make.
     double correlation = noise.coefficients[0];
-    if (noise.coefficients.size() > 1) {
-      NoiseModel model = noise;
+    if (noise.order > 1) {
       correlation =
-          std::sqrt((model.SquaredCorrelations() - 1) / (model.SquaredCorrelations() + 1));
+          std::sqrt((noise.SquaredCorrelations() - 1) / (noise.SquaredCorrelations() + 1));
     }
     EXPECT_NEAR(correlation, kRho, kSurely * kFewerPairs * error);
   }
@@ -145,22 +175,22 @@ TEST(NoiseModel, SamplesThatDoNotCountLeaveTheProcessAsItIs) {
 
 TEST(NoiseModel, RecordsOfZerosOrOfTooFewSamplesAreWhite) {
   const std::vector<std::vector<double>> nothing = {{}, {0.0, 0.0, 0.0}};
-  EXPECT_TRUE(EstimateNoise(nothing).coefficients.empty());
+  EXPECT_TRUE(EstimateNoise(nothing).order == 0);
   const std::vector<std::vector<double>> few = {{1.0, 1.0, 1.0, 1.0}};
-  EXPECT_TRUE(EstimateNoise(few).coefficients.empty());
+  EXPECT_TRUE(EstimateNoise(few).order == 0);
 }
 
 TEST(NoiseModel, SquaredCorrelationsAreThoseOfTheProcess) {
   constexpr double kForgotten = 1e-7;  // what the sum over lags leaves off, relative
   for (const double rho : {-0.6, 0.3, 0.9, 0.99}) {
-    const NoiseModel noise{{rho}, 1 - rho * rho};
+    const Autocorrelation noise = Process({rho}, {1.0, rho}, 1 - rho * rho);
     const double exact = (1 + rho * rho) / (1 - rho * rho);
     EXPECT_NEAR(noise.SquaredCorrelations(), exact, kForgotten * exact) << rho;
   }
   double exact = 1.0;
   const std::vector<double> rho = SecondOrderCorrelations(1.2, -0.5, 400);
   for (std::size_t k = 1; k < rho.size(); ++k) exact += 2 * rho[k] * rho[k];
-  const NoiseModel noise{{1.2, -0.5}, SecondOrderShare(1.2, -0.5)};
+  const Autocorrelation noise = Process({1.2, -0.5}, rho, SecondOrderShare(1.2, -0.5));
   EXPECT_NEAR(noise.SquaredCorrelations(), exact, kForgotten * exact);
 }
 
@@ -171,6 +201,14 @@ TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
   Generator generator(9);
   std::vector<double> jacobian;
   for (std::size_t i = 0; i < kRows * kColumns; ++i) jacobian.push_back(Normal(generator));
+  std::vector<std::vector<double>> values(kColumns);
+  std::vector<std::span<const double>> columns;
+  for (std::size_t column = 0; column < kColumns; ++column) {
+    for (std::size_t i = 0; i < kRows; ++i) {
+      values[column].push_back(jacobian[i * kColumns + column]);
+    }
+    columns.emplace_back(values[column]);
+  }
   // JᵀRJ with every R_ij = ρ_|i−j| written out.
   const auto explicit_form = [&](const std::vector<double>& rho) {
     std::vector<double> form(kColumns * kColumns, 0.0);
@@ -191,8 +229,10 @@ TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
     double second;
   };
   for (const auto& [first, second] : {Case{0.9, 0.0}, {1.2, -0.5}, {-0.7, 0.0}, {0.999, 0.0}}) {
-    const NoiseModel noise{{first, second}, SecondOrderShare(first, second)};
-    const std::vector<double> form = noise.Quadratic(jacobian, kColumns);
+    const Autocorrelation noise = Process({first, second},
+                                          SecondOrderCorrelations(first, second, 3),
+                                          SecondOrderShare(first, second));
+    const std::vector<double> form = noise.Quadratic(columns);
     const std::vector<double> exact = explicit_form(SecondOrderCorrelations(first, second, kRows));
     ASSERT_EQ(form.size(), exact.size());
     for (std::size_t k = 0; k < exact.size(); ++k) {
@@ -202,7 +242,7 @@ TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
   }
   std::vector<double> uncorrelated(kRows, 0.0);
   uncorrelated[0] = 1.0;
-  const std::vector<double> white = NoiseModel{}.Quadratic(jacobian, kColumns);
+  const std::vector<double> white = Autocorrelation{}.Quadratic(columns);
   const std::vector<double> exact = explicit_form(uncorrelated);
   for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(white[k], exact[k], 1e-12);
 }

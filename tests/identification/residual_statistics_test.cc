@@ -20,39 +20,19 @@ constexpr double kRounding = 1e-15;
 TEST(ResidualStatistics, AreThoseComputedByHand) {
   // r = 1, 2, −1, 0: Σr² = 6, Σ(Δr)² = 1 + 9 + 1 = 11; forces 0, 4, 8, 4: mean 4, Σ(T − 4)² = 32.
   const ResidualStatistics s =
-      DescribeResiduals(Series{{1, 2, -1, 0}}, Series{{0, 4, 8, 4}}, 10.0, 2);
+      DescribeResiduals(Series{{1, 2, -1, 0}}, Series{{0, 4, 8, 4}}, 10.0);
   EXPECT_EQ(s.samples, 4u);
   EXPECT_NEAR(s.rms, std::sqrt(6.0 / 4), kRounding);
   EXPECT_EQ(s.max_abs, 2.0);
   EXPECT_NEAR(s.normalized_rms, std::sqrt(6.0 / 4) / 10, kRounding);
   EXPECT_NEAR(s.r_squared, 1 - 6.0 / 32, kRounding);
   EXPECT_NEAR(s.durbin_watson, 11.0 / 6, kRounding);
-  // ρ = 1 − DW/2 = 1/12, n(1 − ρ)/(1 + ρ) = 4·11/13
-  EXPECT_NEAR(s.effective_samples, 44.0 / 13, 4 * kRounding);
-  EXPECT_NEAR(s.degrees_of_freedom, 44.0 / 13 - 2, 4 * kRounding);
-}
-
-TEST(ResidualStatistics, AlternatingResidualsCountAsIndependent) {
-  // ρ < 0 would promise more samples than there are.
-  const ResidualStatistics s =
-      DescribeResiduals(Series{{1, -1, 1, -1}}, Series{{1, 2, 3, 4}}, 1.0, 1);
-  EXPECT_EQ(s.durbin_watson, 3.0);  // 3·4/4
-  EXPECT_EQ(s.effective_samples, 4.0);
-  EXPECT_EQ(s.degrees_of_freedom, 3.0);
-}
-
-TEST(ResidualStatistics, ConstantResidualLeavesOneEffectiveSample) {
-  const ResidualStatistics s =
-      DescribeResiduals(Series{{2, 2, 2, 2, 2}}, Series{{1, 2, 3, 4, 5}}, 1.0, 3);
-  EXPECT_EQ(s.durbin_watson, 0.0);
-  EXPECT_EQ(s.effective_samples, 1.0);
-  EXPECT_EQ(s.degrees_of_freedom, 1.0);
 }
 
 TEST(ResidualStatistics, DifferencesAreTakenWithinARecordOnly) {
   // Across the join 1 → −1 the difference would add 4.
   const ResidualStatistics s =
-      DescribeResiduals(Series{{1, 1}, {-1, -1}}, Series{{0, 1}, {2, 3}}, 1.0, 0);
+      DescribeResiduals(Series{{1, 1}, {-1, -1}}, Series{{0, 1}, {2, 3}}, 1.0);
   EXPECT_EQ(s.samples, 4u);
   EXPECT_EQ(s.durbin_watson, 0.0);
   // Forces 0 … 3 over both records: mean 3/2, Σ = 5.
@@ -60,27 +40,26 @@ TEST(ResidualStatistics, DifferencesAreTakenWithinARecordOnly) {
 }
 
 TEST(ResidualStatistics, PerfectFitIsWhite) {
-  const ResidualStatistics s = DescribeResiduals(Series{{0, 0, 0}}, Series{{1, 2, 3}}, 2.0, 1);
+  const ResidualStatistics s = DescribeResiduals(Series{{0, 0, 0}}, Series{{1, 2, 3}}, 2.0);
   EXPECT_EQ(s.rms, 0.0);
   EXPECT_EQ(s.r_squared, 1.0);
   EXPECT_EQ(s.durbin_watson, 2.0);
-  EXPECT_EQ(s.effective_samples, 3.0);
 }
 
 TEST(ResidualStatistics, ConstantForceExplainsNothing) {
-  const ResidualStatistics s = DescribeResiduals(Series{{1, -1}}, Series{{5, 5}}, 5.0, 0);
+  const ResidualStatistics s = DescribeResiduals(Series{{1, -1}}, Series{{5, 5}}, 5.0);
   EXPECT_EQ(s.r_squared, 0.0);
 }
 
 TEST(ResidualStatistics, SizesThatDifferAreRefused) {
-  EXPECT_THROW(DescribeResiduals(Series{{1}}, Series{{1}, {2}}, 1.0, 0), InvalidArgument);
-  EXPECT_THROW(DescribeResiduals(Series{{1, 2}}, Series{{1}}, 1.0, 0), InvalidArgument);
+  EXPECT_THROW(DescribeResiduals(Series{{1}}, Series{{1}, {2}}, 1.0), InvalidArgument);
+  EXPECT_THROW(DescribeResiduals(Series{{1, 2}}, Series{{1}}, 1.0), InvalidArgument);
 }
 
 TEST(ResidualStatistics, NoSampleIsRefused) {
   for (const Series& none : {Series{}, Series{{}}}) {
     try {
-      DescribeResiduals(none, none, 1.0, 0);
+      DescribeResiduals(none, none, 1.0);
       ADD_FAILURE() << "accepted";
     } catch (const InvalidArgument& error) {
       EXPECT_THAT(error.what(), HasSubstr("there must be samples"));

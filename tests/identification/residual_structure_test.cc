@@ -26,8 +26,14 @@ using testing::Wave;
 
 constexpr std::size_t kBins = 20;
 
+ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual,
+                              const std::vector<unsigned char>& counts) {
+  return DescribeStructure(displacement, FindReversals(displacement, 0.0), residual, counts);
+}
+
 ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual) {
-  return DescribeStructure(displacement, FindReversals(displacement, 0.0), residual);
+  return StructureOf(displacement, residual,
+                     std::vector<unsigned char>(displacement.size(), 1));
 }
 
 /// Residuals from displacement and direction of motion, +1 or −1, which the sample ends.
@@ -182,10 +188,13 @@ TEST(ResidualStructure, SamplesThatDoNotCountChangeNothing) {
       displacement, [](double x, int direction) { return direction * (1 + std::sin(3 * x)); });
   for (double& value : residual) value += 0.3 * Normal(generator);
   const ResidualStructure all = StructureOf(displacement, residual);
+  std::vector<unsigned char> counts(residual.size(), 1);
   for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (i < kReversal || i % 3 == 1) residual[i] = 0.0;
+    if (i >= kReversal && i % 3 != 1) continue;
+    counts[i] = 0;
+    residual[i] = 1e3;  // what does not count may be anything
   }
-  const ResidualStructure rest = StructureOf(displacement, residual);
+  const ResidualStructure rest = StructureOf(displacement, residual, counts);
   EXPECT_EQ(all.strokes, 10U);
   EXPECT_EQ(rest.directions[0].strokes, 4U);  // not the one of which only the reversal counts
   EXPECT_EQ(rest.directions[1].strokes, 5U);

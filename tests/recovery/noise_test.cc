@@ -44,8 +44,7 @@ bool Holds(const ParameterEstimate& estimate, double truth) {
 }
 
 bool IsWarnedOf(const FitResult& fit, const std::string& code) {
-  return std::ranges::any_of(fit.warnings,
-                             [&](const FitWarning& warning) { return warning.code == code; });
+  return fit.FindFinding(code) != nullptr;
 }
 
 /// Nothing of a result may be NaN or infinite where it is stated.
@@ -187,7 +186,7 @@ TEST(Noise, CleanGrossSlipLoopHasAnIdentifiableSlipForce) {
   for (const char* name : {"sigma", "alpha", "slip_force"}) {
     EXPECT_EQ(fit.Find(name)->identifiability, Identifiability::kIdentifiable) << name;
   }
-  EXPECT_THAT(fit.warnings, IsEmpty());
+  EXPECT_THAT(fit.findings, IsEmpty());
 }
 
 TEST(Noise, GearboxThatNeverSlipsHasNoIdentifiableSlipForce) {
@@ -251,7 +250,7 @@ TEST(Noise, SingularJacobiansEndInVerdictsAndNotInFailures) {
         FitOptions options;
         options.model = &Model(model);
         options.initial_state = state;
-        options.force_sense = 1;
+        options.preparation.force_sense = 1;
         const FitResult fit = FitOne(c.record, options);
         ExpectFinite(fit);
         const bool all_known =

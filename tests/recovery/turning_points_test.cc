@@ -40,8 +40,7 @@ Record LoopWithMissedExtremes(double lambda, int samples_per_cycle, double direc
 }
 
 bool Warns(const FitResult& fit, const std::string& code) {
-  return std::ranges::any_of(fit.warnings,
-                             [&](const FitWarning& warning) { return warning.code == code; });
+  return fit.FindFinding(code) != nullptr;
 }
 
 TEST(TurningPoints, MissedBetweenSamplesAreFoundAndTheContactIsRecovered) {

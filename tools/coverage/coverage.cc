@@ -105,7 +105,7 @@ FitOptions OptionsOf(const Scenario& scenario) {
   FitOptions options;
   options.initial_state = models::InitialState::kVirgin;
   if (scenario.noise == Noise::kDisplacement && scenario.noise_is_known) {
-    options.displacement_noise =
+    options.preparation.displacement_noise =
         scenario.displacement_noise * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
   }
   return options;
@@ -193,7 +193,7 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   // The bound of Cramér and Rao for white noise of the force: the parabola at the truth.
   std::array<double, Coverage::kParameters> bound{};
   FitOptions known = options;
-  known.displacement_noise.reset();
+  known.preparation.displacement_noise.reset();
   known.force_noise = ForceNoise(scenario);
   const identification::FitResult at_truth = identification::Fit({&clean, 1}, known);
   for (std::size_t k = 0; k < bound.size(); ++k) {

@@ -20,10 +20,10 @@ enum class Severity {
 struct Finding {
   std::string_view code;
   Severity severity = Severity::kWarning;
-  std::vector<std::string> parameters;  ///< those that it is about; may be empty
+  std::vector<std::string> parameters = {};  ///< those that it is about; may be empty
   /// What was found, by name, in SI.
-  std::vector<std::pair<std::string_view, double>> numbers;
-  std::string_view kind;  ///< which of several forms it takes; empty where there is one only
+  std::vector<std::pair<std::string_view, double>> numbers = {};
+  std::string_view kind = {};  ///< which of several forms it takes; empty where there is one only
 
   /// Empty when the finding has no such number.
   [[nodiscard]] std::optional<double> Number(std::string_view name) const {

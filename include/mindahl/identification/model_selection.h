@@ -60,11 +60,10 @@ struct ModelSelection {
 /// law) to the same records, each without and with a spring of the rig in series, and chooses one.
 ///
 /// *Criterion*, for k free parameters and the variance of the noise:
-///   AICc = n_eff·ln(rms²) + 2k + 2k(k+1)/(n − k − 1),      n_eff = n·(1−ρ)/(1+ρ)
+///   AICc = n_eff·ln(rms²) + 2k + 2k(k+1)/(n − k − 1),      n_eff: ResidualStatistics
 /// Akaike (1974) and Hurvich & Tsai (1989) but for n_eff, which weighs the likelihood: residuals
-/// with lag-one autocorrelation ρ >= 0 carry less information. n_eff is that of the candidate with
-/// the least rms, for all: a poor model's residuals hang together, which
-/// must not count in its favour. Differences of rms below the rounding of the data are none.
+/// that are autocorrelated, or repeat in every stroke, carry less information. n_eff is that of the candidate with the least
+/// rms, for all: a poor model's residuals are autocorrelated, which must not count in its favour. Differences of rms below the rounding of the data are none.
 ///
 /// *Prediction.* Whole cycles, from one reversal to the next but one, are dealt to the folds in
 /// turn; each fold is predicted by fits to the rest that start from the full fit, the samples held
@@ -78,11 +77,14 @@ struct ModelSelection {
 ///
 /// With a robust loss, samples that the best candidate puts beyond 4.685 robust standard deviations
 /// are not scored in any.
-/// @param options  of every fit; `model` and `fit_rig_stiffness` are set here. A fixed rig
+/// @param options  of every fit; `model` and the term rig_stiffness are set here. A fixed rig
 ///                 stiffness belongs to all candidates; a fixed α leaves out models that prescribe
 ///                 another
 /// @throws InvalidArgument as Fit does, for folds < 2, or a largest ΔAICc that is negative
-/// Deterministic. Cost: 8 fits, and 8 a fold, which have one starting point.
+/// Deterministic. Cost: 8 fits at Depth::kIntervals, 8 a fold at Depth::kEstimate from where these
+/// are, and the chosen one at Depth::kFull.
+ModelSelection SelectModel(std::span<const loop::RecordView> records, const FitOptions& options,
+                           const SelectionOptions& selection = {});
 ModelSelection SelectModel(std::span<const loop::Record> records, const FitOptions& options,
                            const SelectionOptions& selection = {});
 

@@ -12,7 +12,8 @@ struct ResidualStatistics {
   double normalized_rms = 0.0;  ///< [–] rms over Tc
   double r_squared = 0.0;       ///< [–] 1 − Σr²/Σ(T − mean)²
   double durbin_watson = 0.0;  ///< [–] Σ(rᵢ − rᵢ₋₁)²/Σr²: 2 when white, → 0 when correlated
-  /// n·(1 − ρ)/(1 + ρ) with ρ = 1 − DW/2 the lag-one autocorrelation, where positive
+  /// As many independent residuals as say the same: n/(1 + 2Σρ²), ρ the correlations of an
+  /// autoregressive process (Bartlett 1946), over the strokes in which a share of them repeats
   double effective_samples = 0.0;
   double degrees_of_freedom = 0.0;  ///< effective samples less the free parameters, at least 1
   std::size_t samples = 0;
@@ -22,10 +23,10 @@ struct ResidualStatistics {
 /// record
 /// @param forces      [N] measured, of the same sizes
 /// @param slip_force  [N] Tc
-/// @param free_parameters  number estimated
 /// @throws InvalidArgument when sizes differ or there is no sample
+/// Effective samples and degrees of freedom are left to who knows the noise: 0.
 ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residuals,
-                                     std::span<const std::vector<double>> forces, double slip_force,
-                                     std::size_t free_parameters);
+                                     std::span<const std::vector<double>> forces,
+                                     double slip_force);
 
 }  // namespace mindahl::identification

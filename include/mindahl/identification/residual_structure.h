@@ -17,7 +17,7 @@ struct StrokeBin {
 /// The strokes of one direction.
 struct StrokeResiduals {
   int direction = 1;        ///< +1 where the displacement grows
-  std::size_t strokes = 0;  ///< that count, at least three quarters as long as the longest
+  std::size_t strokes = 0;  ///< that count and are long enough
   double mean = 0.0;        ///< [N]
   double rms = 0.0;         ///< [N]
   std::vector<StrokeBin> bins;
@@ -27,18 +27,26 @@ struct StrokeResiduals {
 struct ResidualStructure {
   std::array<StrokeResiduals, 2> directions;  ///< growing, then falling displacement
   /// Share of the residuals' variance that comes back at the same place of every stroke: 0 for
-  /// noise, 1 for what the model cannot follow. 0 where an F test at 0.1 % finds nothing, or a
+  /// noise, 1 for what the model cannot follow. 0 where an F test finds nothing, or a
   /// direction has one stroke only.
   double repeatable_share = 0.0;
   std::size_t strokes = 0;  ///< of the direction that has more
 };
 
+struct ResidualStructureOptions {
+  double main_stroke = 0.75;    ///< of the longest: shorter ones are not looked at
+  double repeat_chance = 1e-3;  ///< at which white noise passes for repeatable
+};
+
 /// One-way analysis of variance of residuals over 20 parts of each stroke.
 /// @param displacement  [m]
 /// @param reversals     as from FindReversals
-/// @param residual      [N], same size as displacement; an exact 0 does not count
+/// @param residual      [N], same size as displacement
+/// @param counts        of each sample, 0 where it does not count; the same size
 ResidualStructure DescribeStructure(std::span<const double> displacement,
                                     std::span<const std::size_t> reversals,
-                                    std::span<const double> residual);
+                                    std::span<const double> residual,
+                                    std::span<const unsigned char> counts,
+                                    const ResidualStructureOptions& options = {});
 
 }  // namespace mindahl::identification

@@ -35,11 +35,11 @@ struct LoopMeasures {
 /// @throws InvalidArgument where an energy exceeds the largest double
 /// Summed in long double: where it has 64 bits the error is below 1 ε of the result plus n·2⁻⁶² of
 /// Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the first of the cycle's n samples.
-std::vector<double> CycleEnergies(const Record& record, std::span<const std::size_t> reversals);
+std::vector<double> CycleEnergies(const RecordView& record, std::span<const std::size_t> reversals);
 
 /// @param reversals  as from FindReversals on the same record
 /// @throws InvalidArgument when the record is empty or inconsistent
-LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reversals);
+LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals);
 
 /// +1 when the force has the displacement's sense, −1 when it opposes it (a load cell on the other
 /// body). Decided by the sign of the mean energy of the closed cycles, which an offset in either
@@ -47,6 +47,6 @@ LoopMeasures MeasureLoop(const Record& record, std::span<const std::size_t> reve
 /// noise decide (under 1 % of the rectangle round it), by the sign of the covariance of force and
 /// displacement. 0 when neither has a sign (constant force or displacement).
 /// @throws InvalidArgument when the record is inconsistent
-int ForceSense(const Record& record, std::span<const std::size_t> reversals);
+int ForceSense(const RecordView& record, std::span<const std::size_t> reversals);
 
 }  // namespace mindahl::loop

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 namespace mindahl::loop {
@@ -15,7 +16,30 @@ struct Record {
   [[nodiscard]] std::size_t size() const { return displacement.size(); }
 };
 
+/// A record somewhere in memory: what every stage takes. Columns as in Record.
+struct RecordView {
+  std::span<const double> displacement;
+  std::span<const double> force;
+  std::span<const double> time;
+  std::span<const double> normal_load;
+
+  RecordView() = default;
+  /// Of arrays of one size each; empty where not recorded.
+  RecordView(std::span<const double> displacement_column, std::span<const double> force_column,
+             std::span<const double> time_column = {},
+             std::span<const double> normal_load_column = {})
+      : displacement(displacement_column),
+        force(force_column),
+        time(time_column),
+        normal_load(normal_load_column) {}
+  /// Of a record, which must outlive the view.
+  RecordView(const Record& record)  // NOLINT(google-explicit-constructor): every Record is one
+      : RecordView(record.displacement, record.force, record.time, record.normal_load) {}
+
+  [[nodiscard]] std::size_t size() const { return displacement.size(); }
+};
+
 /// @throws InvalidArgument when the lengths differ or a value is not finite (names the row).
-void Validate(const Record& record);
+void Validate(const RecordView& record);
 
 }  // namespace mindahl::loop

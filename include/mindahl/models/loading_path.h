@@ -54,7 +54,8 @@ struct BranchRun {
 /// its branches, so origin forces are found in one pass.
 struct LoadingPath {
   std::vector<Branch> branches;
-  std::vector<BranchRun> runs;  ///< contiguous, covering all samples in order
+  std::vector<BranchRun> runs;     ///< contiguous, covering all samples in order
+  std::vector<std::int32_t> open;  ///< branches still open after the last sample, oldest first
 };
 
 /// The contact's past, where it is not in the record.
@@ -82,6 +83,10 @@ struct InitialContact {
 LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial);
+
+/// The same into a path whose memory is used again.
+void MakeLoadingPath(std::span<const double> displacement, std::span<const std::size_t> reversals,
+                     Memory memory, const InitialContact& initial, LoadingPath& path);
 
 /// Path of a model without memory whose steady amplitude changes along the way: every sample is a
 /// branch of its own, from the last, with the amplitude X given for it.

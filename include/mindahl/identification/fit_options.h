@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/identification/thresholds.h"
+#include "mindahl/loop/preparation.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+
+namespace mindahl::identification {
+
+using loop::Interval;
+
+/// What large residuals count: as they are, or less (reweighting.h has the constants).
+enum class Loss { kNone, kHuber, kCauchy, kTukey };
+
+/// What to fit and how. Parameters are called as Terms() calls them; with several records those of
+/// a record are numbered from 1: force_offset_2.
+struct FitOptions {
+  /// One of FrictionModels() that is not scaled_by_peak.
+  const models::FrictionModel* model = models::FindFrictionModel("mindlin-dahl");
+
+  /// Empty: both are fitted and the smaller AICc on effective samples is kept.
+  std::optional<models::InitialState> initial_state;
+
+  /// How the records are read, and which samples count.
+  loop::PreparationOptions preparation;
+
+  /// Offsets of force and, for a virgin contact, of displacement are free parameters; otherwise 0.
+  bool offsets = true;
+
+  /// Terms that are fitted beside these, by name: rig_stiffness, plateau_slope, force_drift …
+  /// Fixing one gives it a known value.
+  std::vector<std::string> terms;
+
+  /// The force follows the measured normal load, T·N/mean N: σ, α and Tc are those at the mean
+  /// load. The displacement at which the contact slips is taken not to change: for loads that vary
+  /// by some per cent. Needs the load of every record.
+  bool follow_load = false;
+
+  /// Known standard deviation of the force noise [N]; empty: from the residuals.
+  std::optional<double> force_noise;
+
+  /// Its scale comes from the residuals, or is the known noise.
+  Loss loss = Loss::kNone;
+
+  std::map<std::string, double> fixed;     ///< parameter held at a value
+  std::map<std::string, double> start;     ///< replaces the starting value found from the data
+  std::map<std::string, Interval> bounds;  ///< replaces the default bounds
+
+  /// The solver stops when a step can lower the cost by function_tolerance · cost at the most …
+  double function_tolerance = 1e-10;
+  /// … or |Δθ| < parameter_tolerance · (|θ| + parameter_tolerance), θ non-dimensional …
+  double parameter_tolerance = 1e-13;
+  /// … or 20 steps together raise twice the log-likelihood by less than 1e-3 …
+  /// … or it has made this many steps: then the result is not converged.
+  int max_iterations = 500;
+
+  /// Starting points refined on all samples, best first: up to four of a look at the plane of σ/Tc
+  /// and α, and beyond them drawn at random.
+  std::size_t starts = 1;
+  std::uint64_t seed = 1;  ///< of those
+
+  Thresholds thresholds;
+};
+
+}  // namespace mindahl::identification

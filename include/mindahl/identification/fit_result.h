@@ -1,0 +1,128 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/finding.h"
+#include "mindahl/identification/residual_statistics.h"
+#include "mindahl/identification/residual_structure.h"
+#include "mindahl/loop/cycles.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::identification {
+
+/// How much of a fit is wanted; each depth has all of the one before.
+enum class Depth {
+  kEstimate,   ///< values, rms, convergence: for work that is done again and again
+  kIntervals,  ///< and noise, standard errors, intervals, correlations, residuals and verdicts from
+               ///< the parabola of the likelihood
+  kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α
+};
+
+enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
+
+/// In the order of precedence: of several the last holds.
+enum class Identifiability {
+  kIdentifiable,
+  kBoundedBelow,     ///< the data give only a lower limit
+  kNotIdentifiable,  ///< none, or only in combination with others
+};
+
+struct ParameterEstimate {
+  std::string name;
+  std::string unit;
+  double value = 0.0;
+  std::optional<double> standard_error;  ///< empty when fixed, at a bound or undetermined
+  std::optional<double> lower95;         ///< ends of the 95 % interval; empty where it is open
+  std::optional<double> upper95;
+  ParameterStatus status = ParameterStatus::kFixed;
+  Identifiability identifiability = Identifiability::kNotIdentifiable;
+};
+
+/// α as one kind of branch tells it, the other parameters shared: a departure from one law shows
+/// where it is. Linearised about the fit.
+struct BranchShape {
+  std::string branch;  ///< "virgin", "unloading" or "reloading"
+  std::size_t samples = 0;
+  double shape_exponent = 0.0;
+  double standard_error = 0.0;
+};
+
+/// α = 1/3 against the fitted α, the other parameters fitted again.
+struct MindlinTest {
+  double likelihood_ratio = 0.0;  ///< 2 ln Λ, for autocorrelated residuals
+  double p_value = 1.0;           ///< of F(1, degrees of freedom)
+  /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
+  /// ΔAICc: then the record does not tell a contact of another shape from Mindlin's in a rig that
+  /// gives way. Looked for where α = 1/3 is rejected, α is smaller and no rig is fitted.
+  std::optional<double> rig_stiffness;
+};
+
+/// A starting point and what the solver reached from it.
+struct StartReport {
+  bool drawn = false;  ///< at random, not from the look at the plane
+  models::BranchLaw start;
+  double initial_rms = 0.0;  ///< [N]
+  models::BranchLaw reached;
+  double final_rms = 0.0;  ///< [N]
+  bool converged = false;
+};
+
+/// One record as the fit sees it.
+struct RecordFit {
+  double reversal_gate = 0.0;          ///< [m]
+  std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
+  /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
+  /// record is sampled so coarsely that it had to be fitted.
+  std::vector<double> overshoot;
+  loop::LoopMeasures measures;        ///< with the force in the displacement's sense
+  double displacement_noise = 0.0;    ///< [m] of the readings; 0 where they count as exact
+  std::vector<unsigned char> counts;  ///< of each sample, 1 where it counts, else 0
+  std::size_t left_out = 0;           ///< samples that do not count
+  ResidualStructure structure;        ///< of the residuals, in the displacement's sense
+  std::vector<double> fitted_force;   ///< [N], in the file's sense, offsets included
+  std::vector<double> residual;       ///< fitted − measured [N]
+};
+
+/// Pessimistic by default: a result that nobody filled in has not converged. What a depth does not
+/// give is empty.
+struct FitResult {
+  Depth depth = Depth::kFull;
+  bool converged = false;
+  std::string termination = "not run";
+  int iterations = 0;
+  const models::FrictionModel* model = nullptr;
+  models::InitialState initial_state = models::InitialState::kVirgin;
+  int force_sense = 1;
+  models::BranchLaw law;     ///< the fitted σ, α, Tc
+  models::SeriesSpring rig;  ///< rigid where there is none
+  double rms = 0.0;          ///< [N] of the residuals that count, unweighted
+  double force_noise = 0.0;  ///< [N], known or estimated
+  std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
+  std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
+  std::vector<BranchShape> branch_shapes;   ///< α of each branch on its own; empty where it is held
+  std::vector<ParameterEstimate> parameters;
+  /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
+  std::vector<double> correlation;
+  ResidualStatistics residuals;
+  std::vector<StartReport> starts;
+  std::vector<RecordFit> records;
+  std::vector<Finding> findings;
+
+  /// nullptr when the fit has no such parameter.
+  [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
+
+  /// nullptr when nothing of the kind was found.
+  [[nodiscard]] const Finding* FindFinding(std::string_view code) const;
+
+  /// The record with the largest amplitude: the one that comes nearest to gross slip.
+  [[nodiscard]] const RecordFit& WidestRecord() const;
+};
+
+}  // namespace mindahl::identification

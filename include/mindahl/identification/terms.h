@@ -1,0 +1,74 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace mindahl::identification {
+
+/// Whose a parameter is: the contact's, shared by all records, or a record's own, numbered from 1
+/// where there are several (force_offset_2).
+enum class Scope { kContact, kRecord };
+
+/// How a parameter enters the force.
+enum class Entry {
+  kLaw,     ///< through the law or the path: the force is not linear in it
+  kLinear,  ///< as the factor of a column that the record gives
+};
+
+/// When a parameter is fitted.
+enum class Presence {
+  kAlways,    ///< unless it is fixed
+  kOffsets,   ///< with FitOptions::offsets; held at 0 otherwise, and reported
+  kReported,  ///< where asked for; held at 0 otherwise, and reported
+  kOnDemand,  ///< where asked for or fixed; otherwise not there
+};
+
+/// The units in which a fit works, for the records' numbers to be of order one.
+struct TermUnits {
+  double force = 1.0;                   ///< [N]
+  double length = 1.0;                  ///< [m]
+  double half_duration = 1.0;           ///< [s], or samples where the record has no time
+  double force_sense = 1.0;             ///< ±1: the force's sense in the file
+  double force_reference = 0.0;         ///< [N], what was taken off the record's force
+  double displacement_reference = 0.0;  ///< [m], likewise
+};
+
+/// A sample in those units, force in the displacement's sense.
+struct TermSample {
+  double displacement = 0.0;
+  double time = 0.0;      ///< −1 … 1 over the record
+  double velocity = 0.0;  ///< of the displacement, per unit of that time; 0 where there is no time
+};
+
+/// A parameter of a fit: all that layout, solver, command line, help and documents need to know of
+/// it. A new one is a row of the table in terms.cc.
+///   value = scale·exp(θ) where positive,  else  value = reference + scale·θ
+struct Term {
+  std::string_view name;
+  std::string_view unit;
+  std::string_view meaning;  ///< one line, for tables of the documents
+  Scope scope = Scope::kContact;
+  Entry entry = Entry::kLaw;
+  Presence presence = Presence::kAlways;
+  bool positive = false;
+  double lowest = 0.0;  ///< default bounds, in units of the data
+  double highest = 0.0;
+  double (*scale)(const TermUnits&) = nullptr;
+  double (*reference)(const TermUnits&) = nullptr;   ///< none: 0
+  double (*column)(const TermSample&) = nullptr;     ///< of a linear one; none: the model's force
+  bool needs_time = false;
+  std::string_view option = {};    ///< of the command line that asks for it; empty: none
+  std::string_view argument = {};  ///< its argument; empty: a flag
+  std::string_view help = {};
+};
+
+/// All parameters, in the order in which they are reported: the contact's, then a record's.
+std::span<const Term> Terms();
+
+/// nullptr when there is none of that name, which is without a record's number.
+const Term* FindTerm(std::string_view name);
+
+/// The name without a record's number: force_offset for force_offset_2.
+std::string_view TermNameOf(std::string_view parameter);
+
+}  // namespace mindahl::identification

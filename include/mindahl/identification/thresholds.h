@@ -1,0 +1,49 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace mindahl::identification {
+
+/// Where a fit changes what it says: every number on which a verdict, a finding or the choice of a
+/// method rests. ThresholdTable() has the unit and the reason of each, and a test that notices when
+/// one is moved by a factor of two. What only bounds the work of a solver is not here.
+struct Thresholds {
+  double significance = 0.05;
+  double indistinguishable = 4.0;
+  double rigid_beside_rig = 30.0;
+  double poor_misfit = 0.02;
+  double failing_misfit = 0.1;
+  double repeats_when_poor = 0.3;
+  double repeats_when_failing = 0.1;
+  double repeat_chance = 1e-3;
+  double main_stroke = 0.75;
+  double same_directions = 0.6;
+  double early_in_stroke = 0.25;
+  double widest_ratio = 9.0;
+  double widest_shape = 1.0;
+  double open_slip_force = 25.0;
+  double parabola_error = 0.1;
+  double parabola_departure = 0.15;
+  double parabola_mobilised = 0.9;
+  double rigid_error = 0.3;
+  double turning_point_chance = 1e-6;
+  double force_noise_share = 0.8;
+  double most_absorbed = 0.5;
+  double redundant_gain = 0.01;
+  double jenkins_shape = 0.01;
+  double known_together = 0.99;
+};
+
+struct ThresholdRow {
+  std::string_view name;
+  double Thresholds::*value;
+  std::string_view unit;
+  std::string_view meaning;
+  std::string_view reason;
+};
+
+/// One row a member of Thresholds, in their order.
+std::span<const ThresholdRow> ThresholdTable();
+
+}  // namespace mindahl::identification

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/cycles.h"
+#include "mindahl/loop/displacement_noise.h"
+#include "mindahl/loop/record.h"
+
+namespace mindahl::loop {
+
+/// A closed range of values.
+struct Interval {
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+/// How records are read before any model is asked.
+struct PreparationOptions {
+  /// Excursions up to this [m] are noise and make no reversal. Empty: EstimateReversalGate, and at
+  /// least what a known displacement noise reaches, 2√(2 ln n) standard deviations.
+  std::optional<double> reversal_gate;
+
+  /// +1: force and displacement have the same sign, −1: opposite (a load cell on the other body).
+  /// Empty: decided by the sign of the loop's energy.
+  std::optional<int> force_sense;
+
+  /// Known standard deviation of the displacement noise [m], white. Empty: estimated where the
+  /// record shows it by its gate or by an encoder's steps of 1e-3 of its half range, else 0. A
+  /// noisy displacement is smoothed (DisplacementSmoother), since noise in the argument of a curved
+  /// law is a bias.
+  std::optional<double> displacement_noise;
+
+  /// Samples under another load [N] do not count; they still make history.
+  std::optional<Interval> load_window;
+
+  /// Cycles at the start of each record that do not count; they still make history.
+  std::size_t skip_cycles = 0;
+
+  /// Samples that do not count, one vector a record, each empty or one entry a sample; they still
+  /// make history.
+  std::vector<std::vector<bool>> held_out;
+};
+
+/// One record as every later stage sees it.
+struct PreparedRecord {
+  explicit PreparedRecord(const RecordView& view, std::pmr::memory_resource* memory)
+      : record(view), reversals(memory), counts(memory), smoothed(memory) {}
+
+  RecordView record;           ///< as measured; must outlive this
+  double reversal_gate = 0.0;  ///< [m]
+  std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
+  LoopMeasures measures;                    ///< with the force in the displacement's sense
+  double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
+  double displacement_noise = 0.0;          ///< [m]; 0 where readings count as exact
+  std::pmr::vector<unsigned char> counts;   ///< of each sample, 1 where it counts, else 0
+  std::size_t left_out = 0;                 ///< samples that do not count
+  std::pmr::vector<double> smoothed;        ///< [m]; empty where readings count as exact
+  /// Windows of the smoothing, for readings that are drawn again; empty likewise.
+  std::optional<DisplacementSmoother> smoother;
+
+  /// What the contact is taken to have followed [m].
+  [[nodiscard]] std::span<const double> displacement() const {
+    return smoothed.empty() ? record.displacement : std::span<const double>(smoothed);
+  }
+  [[nodiscard]] std::size_t size() const { return record.size(); }
+};
+
+struct PreparedRecords {
+  explicit PreparedRecords(std::pmr::memory_resource* memory) : records(memory) {}
+
+  std::pmr::vector<PreparedRecord> records;
+  int force_sense = 1;  ///< ±1, of all records
+
+  [[nodiscard]] std::size_t samples() const;
+  /// Samples that count.
+  [[nodiscard]] std::size_t counted() const;
+};
+
+/// Reversals, sense of force, smoothing and the mask of samples that count: what depends on no
+/// model.
+/// @param records  not empty; their memory must outlive the result
+/// @param memory   of the result and of scratch; must outlive it
+/// @throws InvalidArgument for records or options that break a rule, where a record has no normal
+///   load for a window, or nothing is left of one
+/// Nothing else is allocated unless a displacement is smoothed.
+PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options,
+                        std::pmr::memory_resource* memory);
+
+}  // namespace mindahl::loop

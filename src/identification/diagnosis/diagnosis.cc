@@ -1,0 +1,169 @@
+#include "identification/diagnosis/diagnosis.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+namespace mindahl::identification {
+namespace {
+
+struct Peak {
+  int direction = 1;
+  StrokeBin bin;
+};
+
+Peak LargestBin(const ResidualStructure& structure) {
+  Peak peak;
+  for (const StrokeResiduals& direction : structure.directions) {
+    for (const StrokeBin& bin : direction.bins) {
+      if (std::abs(bin.mean) > std::abs(peak.bin.mean)) peak = {direction.direction, bin};
+    }
+  }
+  return peak;
+}
+
+/// Correlation between the residuals of the two directions, over the same part of the stroke since
+/// the reversal, or at the same displacement.
+double Correlation(const ResidualStructure& structure, bool at_same_displacement) {
+  const auto& up = structure.directions[0].bins;
+  const auto& down = structure.directions[1].bins;
+  if (up.size() != down.size() || up.empty()) return 0.0;
+  double product = 0.0;
+  double up_squares = 0.0;
+  double down_squares = 0.0;
+  for (std::size_t i = 0; i < up.size(); ++i) {
+    const double other = down[at_same_displacement ? down.size() - 1 - i : i].mean;
+    product += up[i].mean * other;
+    up_squares += up[i].mean * up[i].mean;
+    down_squares += other * other;
+  }
+  return up_squares > 0 && down_squares > 0 ? product / std::sqrt(up_squares * down_squares) : 0.0;
+}
+
+std::string_view KindOf(const ResidualStructure& structure, const Peak& peak,
+                        const Thresholds& thresholds) {
+  // A force of position is the same on the way back; one of direction turns its sign.
+  if (Correlation(structure, /*at_same_displacement=*/true) > thresholds.same_directions) {
+    return "same_on_return";
+  }
+  const bool mirrored =
+      Correlation(structure, /*at_same_displacement=*/false) < -thresholds.same_directions;
+  if (peak.bin.position < thresholds.early_in_stroke) {
+    return mirrored ? "mirrored_early" : "one_sided_early";
+  }
+  return mirrored ? "mirrored" : "asymmetric";
+}
+
+}  // namespace
+
+std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local) {
+  if (local.null.empty()) return std::nullopt;
+  Finding finding;
+  for (std::size_t k = 0; k < local.columns.size(); ++k) {
+    if (!local.determined[k]) {
+      finding.parameters.push_back(problem.parameters.NameOf(local.columns[k]));
+    }
+  }
+  // As many directions as names: each of them is one of its own.
+  finding.code = local.null.size() >= finding.parameters.size() ? "undetermined_parameter"
+                                                                : "undetermined_combination";
+  return finding;
+}
+
+std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile) {
+  std::vector<Finding> findings;
+  if (!profile.open_above) return findings;
+  const loop::LoopMeasures& measures = result.WidestRecord().measures;
+  findings.push_back({.code = "slip_force_bounded_below",
+                      .parameters = {"slip_force"},
+                      .numbers = {{"peak_force", measures.peak_force},
+                                  {"amplitude", measures.amplitude}}});
+  if (result.Find("alpha")->status != ParameterStatus::kFixed) {
+    findings.push_back({.code = "alpha_not_identifiable",
+                        .parameters = {"alpha"},
+                        .kind = "with_slip_force"});
+  }
+  return findings;
+}
+
+Finding FoundOpenStiffness() {
+  return {.code = "sigma_bounded_below", .parameters = {"sigma"}};
+}
+
+std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {
+      {{"sigma", "sigma_not_identifiable"},
+       {"alpha", "alpha_not_identifiable"},
+       {"slip_force", "slip_force_not_identifiable"}}};
+  std::vector<Finding> findings;
+  for (const auto& [name, code] : kNames) {
+    const ParameterEstimate& estimate = *result.Find(name);
+    if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
+      continue;
+    }
+    const bool is_named = std::ranges::any_of(result.findings, [&](const Finding& finding) {
+      return std::ranges::find(finding.parameters, name) != finding.parameters.end();
+    });
+    if (is_named) continue;
+    const double lower = *estimate.lower95;
+    const double upper = *estimate.upper95;
+    const bool wide = name == "alpha"
+                          ? upper - lower > thresholds.widest_shape * std::max(1.0, estimate.value)
+                          : upper > thresholds.widest_ratio * lower;
+    if (!wide) continue;
+    findings.push_back({.code = code,
+                        .parameters = {std::string(name)},
+                        .numbers = {{"lower", lower}, {"upper", upper}},
+                        .kind = "wide"});
+  }
+  return findings;
+}
+
+std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
+  // Where the slip force is open it says nothing of how well the loop is followed.
+  const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);
+  if (!(force > 0)) return std::nullopt;
+  const double misfit = result.residuals.rms / force;
+  if (!(misfit > thresholds.poor_misfit)) return std::nullopt;
+  const bool fails = misfit > thresholds.failing_misfit;
+  for (const RecordFit& record : result.records) {
+    const ResidualStructure& structure = record.structure;
+    if (structure.repeatable_share <
+        (fails ? thresholds.repeats_when_failing : thresholds.repeats_when_poor)) {
+      continue;
+    }
+    const Peak peak = LargestBin(structure);
+    return Finding{.code = fails ? "no_model_fits" : "systematic_residual",
+                   .parameters = fails ? std::vector<std::string>{"sigma", "alpha"}
+                                       : std::vector<std::string>{},
+                   .numbers = {{"misfit", misfit},
+                               {"repeatable_share", structure.repeatable_share},
+                               {"largest", std::abs(peak.bin.mean)},
+                               {"position", peak.bin.position},
+                               {"direction", peak.direction}},
+                   .kind = KindOf(structure, peak, thresholds)};
+  }
+  return std::nullopt;
+}
+
+Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
+                            const Thresholds& thresholds) {
+  Finding finding{.code = "shape_or_rig",
+                  .numbers = {{"rig_stiffness", alternative.rig_stiffness},
+                              {"alpha", result.law.shape_exponent}}};
+  // A contact that is rigid beside the rig is Jenkins' element again: the same curve, no other α.
+  if (alternative.tangential_stiffness < thresholds.rigid_beside_rig * alternative.rig_stiffness) {
+    finding.parameters = {"alpha"};
+  }
+  return finding;
+}
+
+Finding FoundTurningPoints(double longest_overshoot) {
+  return {.code = "turning_points_between_samples",
+          .severity = Severity::kNote,
+          .numbers = {{"overshoot", longest_overshoot}}};
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identification/inference/local.h"
+#include "identification/inference/profile.h"
+#include "identification/inference/shape_tests.h"
+#include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
+
+/// What is to be said of a fit, as data: pure functions of what the stages before found. None of
+/// them decides on a verdict.
+namespace mindahl::identification {
+
+/// Parameters on which, alone or combined, the records do not depend.
+std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local);
+
+/// A slip force, and α with it, that the loop leaves open above.
+std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile);
+
+Finding FoundOpenStiffness();
+
+/// Intervals too wide to call a parameter known, of those that no other finding names.
+std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
+
+/// Residuals that come back at the same place of every stroke, and are more than noise could
+/// explain: where they are, and what kind of friction or rig leaves such a trace.
+std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds);
+
+/// Another shape, or a rig in series.
+Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
+                            const Thresholds& thresholds);
+
+Finding FoundTurningPoints(double longest_overshoot);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,537 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "identification/diagnosis/diagnosis.h"
+#include "identification/inference/displacement_errors.h"
+#include "identification/inference/estimates.h"
+#include "identification/inference/evidence.h"
+#include "identification/inference/noise.h"
+#include "identification/inference/profile.h"
+#include "identification/inference/reweighting.h"
+#include "identification/inference/shape_tests.h"
+#include "identification/inference/turning_point_test.h"
+#include "identification/judge/judge.h"
+#include "identification/problem/problem.h"
+#include "identification/problem/scaled_records.h"
+#include "identification/solve/search.h"
+#include "mindahl/core/arena.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/preparation.h"
+
+namespace mindahl::identification {
+namespace {
+
+using loop::RecordView;
+using models::InitialState;
+
+void RequireOptions(const FitOptions& options) {
+  if (options.model == nullptr || options.model->scaled_by_peak) {
+    throw InvalidArgument("the model cannot be fitted: it must be told the amplitude");
+  }
+  if (options.force_noise) RequirePositive("force noise [N]", *options.force_noise);
+  if (options.max_iterations < 1) {
+    ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
+  }
+  if (options.starts < 1) ThrowInvalid("starts [-]", 0, "must be >= 1");
+}
+
+void RequireEnoughSamples(const Problem& problem) {
+  const std::size_t free = problem.parameters.free().size();
+  if (problem.data->counted >= free) return;
+  throw InvalidArgument(std::to_string(problem.data->counted) + " samples are too few for " +
+                        std::to_string(free) + " free parameters: record more or fix some");
+}
+
+/// What is known of a fit while it is made.
+struct Attempt {
+  const FitOptions& options;
+  const loop::PreparedRecords& prepared;
+  ScaledRecords& data;
+  const ScaledRecords& thin;
+  SearchBuffers& buffers;
+  std::pmr::memory_resource* memory;
+};
+
+/// Residuals of the solution that count, weighted.
+void Evaluate(const Problem& problem, const Solution& solution, Response& response,
+              std::span<double> residual) {
+  response.Bind(problem);
+  Predict(problem, solution.theta, response, residual);
+  std::size_t k = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
+      residual[k] = record.root_weight[i] * (residual[k] - record.force[i]);
+    }
+  }
+}
+
+/// Autocorrelation of residuals of all samples; those that `passes` refuses tell nothing.
+template <typename Passes>
+Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
+                                  std::pmr::memory_resource* memory, Passes passes) {
+  std::pmr::vector<std::span<const double>> series(memory);
+  std::pmr::vector<std::pmr::vector<unsigned char>> masks(memory);
+  std::pmr::vector<std::span<const unsigned char>> counts(memory);
+  series.reserve(data.records.size());
+  masks.reserve(data.records.size());
+  counts.reserve(data.records.size());
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    series.push_back(residual.subspan(begin, record.size()));
+    std::pmr::vector<unsigned char>& mask = masks.emplace_back(record.counts);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (!passes(begin + i)) mask[i] = 0;
+    }
+    counts.emplace_back(mask);
+    begin += record.size();
+  }
+  return EstimateAutocorrelation(series, counts);
+}
+
+bool EverySample(std::size_t /*sample*/) { return true; }
+
+/// As many independent samples as tell the variance of a solution's residuals.
+double EffectiveSamples(const Attempt& attempt, const Candidate& candidate) {
+  std::pmr::vector<double> residual(candidate.problem.size(), attempt.memory);
+  Evaluate(candidate.problem, *candidate.solution, attempt.buffers.response, residual);
+  return static_cast<double>(attempt.data.counted) /
+         AutocorrelationOf(attempt.data, residual, attempt.memory, EverySample)
+             .SquaredCorrelations();
+}
+
+/// The past that the options name; nothing where both have to be tried.
+std::optional<InitialState> GivenState(const Attempt& attempt) {
+  if (attempt.options.initial_state) return attempt.options.initial_state;
+  const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [](const auto& fixed) {
+    return fixed.first.starts_with("displacement_offset");
+  });
+  if (unloaded_is_given) return InitialState::kVirgin;
+  const bool any_reversal = std::ranges::any_of(
+      attempt.data.records, [](const ScaledRecord& record) { return !record.reversals.empty(); });
+  if (!any_reversal) return InitialState::kVirgin;
+  return std::nullopt;
+}
+
+/// Fits from the past that the options name, or from the one that Akaike's criterion prefers.
+Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second,
+                       std::vector<Descent>* descents) {
+  const FitOptions& options = attempt.options;
+  const auto make = [&](InitialState state, Solution& solution) {
+    Candidate candidate(attempt.data, options, state, attempt.memory);
+    candidate.solution = &solution;
+    RequireEnoughSamples(candidate.problem);
+    return candidate;
+  };
+  const auto find_starts = [&](Candidate& candidate) {
+    return FindStartsOf(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
+  };
+  if (const std::optional<InitialState> given = GivenState(attempt)) {
+    Candidate candidate = make(*given, first);
+    find_starts(candidate);
+    Descend(candidate, options, attempt.buffers, descents);
+    return candidate;
+  }
+  Candidate virgin = make(InitialState::kVirgin, first);
+  Candidate steady = make(InitialState::kSteady, second);
+  const double virgin_cost = find_starts(virgin);
+  const double steady_cost = find_starts(steady);
+  // A rms twice as large on the thinned record is not made good on the whole one: its n_eff·ln 4
+  // is beyond the parameter that the two differ by, however few samples are left of it.
+  constexpr double kClearlyWorse = 4.0;
+  if (steady_cost > kClearlyWorse * virgin_cost) {
+    Descend(virgin, options, attempt.buffers, descents);
+    if (virgin.solution->converged) return virgin;
+  } else if (virgin_cost > kClearlyWorse * steady_cost) {
+    Descend(steady, options, attempt.buffers, descents);
+    if (steady.solution->converged) return steady;
+  }
+  std::vector<Descent> virgin_descents;
+  std::vector<Descent> steady_descents;
+  Descend(virgin, options, attempt.buffers, descents != nullptr ? &virgin_descents : nullptr);
+  Descend(steady, options, attempt.buffers, descents != nullptr ? &steady_descents : nullptr);
+  const Candidate& better =
+      virgin.solution->sum_of_squares < steady.solution->sum_of_squares ? virgin : steady;
+  bool is_virgin = true;
+  if (std::isfinite(better.solution->sum_of_squares)) {  // else neither was even started
+    const Evidence evidence(attempt.data.counted, EffectiveSamples(attempt, better));
+    const auto criterion = [&](const Candidate& candidate) {
+      return evidence.Aicc(candidate.solution->sum_of_squares,
+                           candidate.problem.parameters.free().size());
+    };
+    is_virgin = criterion(virgin) < criterion(steady);
+  }
+  if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;
+  return is_virgin ? std::move(virgin) : std::move(steady);
+}
+
+/// Fitted forces and residuals as the files have them, of every sample, and their rms.
+void FillForces(const Attempt& attempt, const Problem& problem, const Solution& solution,
+                FitResult& result) {
+  std::pmr::vector<double> force(problem.size(), attempt.memory);
+  attempt.buffers.response.Bind(problem);
+  Predict(problem, solution.theta, attempt.buffers.response, force);
+  const ScaledRecords& data = *problem.data;
+  double squares = 0.0;
+  std::size_t k = 0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    const std::span<const double> measured = attempt.prepared.records[r].record.force;
+    RecordFit& fit = result.records[r];
+    fit.residual.resize(measured.size());
+    fit.fitted_force.resize(measured.size());
+    std::size_t sample = 0;
+    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
+      if (!record.inserted.empty() && record.inserted[i] != 0) continue;
+      // The difference in units of the data: offsets of the file would cost its digits.
+      const double residual = data.sense * data.force * (force[k] - record.force[i]);
+      fit.residual[sample] = residual;
+      fit.fitted_force[sample] = measured[sample] + residual;
+      if (record.counts[i] != 0) squares += residual * residual;
+      ++sample;
+    }
+  }
+  result.rms = std::sqrt(squares / static_cast<double>(data.counted));
+}
+
+void FillRecords(const Attempt& attempt, FitResult& result) {
+  result.records.resize(attempt.prepared.records.size());
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const loop::PreparedRecord& prepared = attempt.prepared.records[r];
+    RecordFit& fit = result.records[r];
+    fit.reversal_gate = prepared.reversal_gate;
+    fit.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
+    fit.overshoot.clear();
+    fit.measures = prepared.measures;
+    fit.displacement_noise = prepared.displacement_noise;
+    fit.counts.assign(prepared.counts.begin(), prepared.counts.end());
+    fit.left_out = prepared.left_out;
+    fit.structure = {};
+    fit.fitted_force.clear();
+    fit.residual.clear();
+  }
+}
+
+void FillParameters(const Problem& problem, const Solution& solution, FitResult& result) {
+  const Parameters& parameters = problem.parameters;
+  result.parameters.resize(parameters.reported().size());
+  for (std::size_t k = 0; k < parameters.reported().size(); ++k) {
+    const std::size_t p = parameters.reported()[k];
+    ParameterEstimate& estimate = result.parameters[k];
+    parameters.NameOf(p, estimate.name);
+    estimate.unit.assign(parameters[p].term->unit);
+    estimate.value = parameters[p].ToValue(solution.theta[p]);
+    estimate.status = StatusOf(parameters[p], solution.side[p]);
+    estimate.standard_error.reset();
+    estimate.lower95.reset();
+    estimate.upper95.reset();
+    estimate.identifiability = Identifiability::kNotIdentifiable;
+  }
+  result.law = parameters.LawAt(solution.theta);
+  result.rig = parameters.RigAt(solution.theta);
+}
+
+/// Statistics of the residuals that count, as the files have them.
+void DescribeFit(const Problem& problem, const Noise& noise, FitResult& result) {
+  std::vector<std::vector<double>> residuals;
+  std::vector<std::vector<double>> forces;
+  for (const RecordFit& fit : result.records) {
+    std::vector<double>& residual = residuals.emplace_back();
+    std::vector<double>& force = forces.emplace_back();
+    for (std::size_t i = 0; i < fit.residual.size(); ++i) {
+      if (fit.counts[i] == 0) continue;
+      residual.push_back(fit.residual[i]);
+      force.push_back(fit.fitted_force[i] - fit.residual[i]);
+    }
+  }
+  result.residuals = DescribeResiduals(residuals, forces, result.law.slip_force);
+  result.residuals.effective_samples = noise.effective_samples();
+  Noise of_residuals = noise;
+  of_residuals.is_known = false;
+  result.residuals.degrees_of_freedom =
+      of_residuals.degrees_of_freedom(problem.parameters.free().size());
+}
+
+/// By how much the variance of estimates exceeds what the noise makes: a misfit that comes back in
+/// every stroke is not averaged away by more of them.
+double DescribeStructures(const Problem& problem, std::span<const double> residual,
+                          const Thresholds& thresholds, FitResult& result) {
+  double widening = 1.0;
+  std::size_t begin = 0;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const ScaledRecord& record = problem.data->records[r];
+    RecordFit& fit = result.records[r];
+    std::vector<double> newtons;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      newtons.push_back(residual[begin + i] * problem.data->force);
+    }
+    fit.structure = DescribeStructure(record.displacement, record.reversals, newtons,
+                                      record.counts,
+                                      {thresholds.main_stroke, thresholds.repeat_chance});
+    const auto repeats = static_cast<double>(std::max<std::size_t>(fit.structure.strokes, 1));
+    widening = std::max(widening, 1 + fit.structure.repeatable_share * (repeats - 1));
+    begin += record.size();
+  }
+  return widening;
+}
+
+/// What errors of the displacement do to the weighted residuals.
+DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
+                            const Solution& solution, const Noise& noise) {
+  if (!errors.any()) return {};
+  DisplacementEffect effect{errors.ForceErrors(problem, solution.theta),
+                            noise.variance * noise.repeating};
+  Eigen::Index row = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (const double weight : record.root_weight) effect.residuals.row(row++) *= weight;
+  }
+  return effect;
+}
+
+void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
+  if (finding) findings.push_back(std::move(*finding));
+}
+
+/// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
+void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution, Noise& noise,
+           const DisplacementErrors& displacement_errors, FitResult& result) {
+  const FitOptions& options = attempt.options;
+  SearchBuffers& buffers = attempt.buffers;
+  std::vector<double> residual(problem.size());
+  Evaluate(problem, solution, buffers.response, residual);
+  // Rounding errors are autocorrelated as they like: nothing is to be learnt from them.
+  const double rms =
+      std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
+  const bool only_rounding = rms < 10 * kRoundingRms;
+  if (!only_rounding) {
+    // Where most is the displacement's, residuals are autocorrelated as its errors are, and their
+    // draws know that already.
+    noise.autocorrelation = AutocorrelationOf(
+        *problem.data, residual, std::pmr::get_default_resource(), [&](std::size_t i) {
+          return noise.force_share.empty() ||
+                 noise.force_share[i] * noise.force_share[i] >= options.thresholds.force_noise_share;
+        });
+  }
+  const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
+  noise.repeating = only_rounding ? 1.0 : repeating;
+  DescribeFit(problem, noise, result);
+  const Estimates estimates(problem, solution, noise,
+                            EffectOf(displacement_errors, problem, solution, noise),
+                            options.thresholds, buffers.response);
+  const auto& reported = problem.parameters.reported();
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    estimates.Fill(reported[k], result.parameters[k]);
+    for (const std::size_t other : reported) {
+      result.correlation.push_back(estimates.Correlation(reported[k], other));
+    }
+  }
+  Append(result.findings, FindUndetermined(problem, estimates.local()));
+  if (result.depth == Depth::kFull) {
+    result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
+    const double peak_force = result.WidestRecord().measures.peak_force;
+    if (NeedsSlipForceProfile(problem, solution, noise, estimates,
+                              peak_force / result.law.slip_force, options, buffers)) {
+      const SlipForceProfile profile =
+          ProfileSlipForce(problem, solution, noise, estimates, options, buffers);
+      WidenByProfile(problem, profile, estimates.quantile(), peak_force, result);
+      for (Finding& finding : FindOpenSlipForce(result, profile)) {
+        result.findings.push_back(std::move(finding));
+      }
+    }
+    if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
+      ParameterEstimate& sigma = result.parameters[kStiffness];
+      sigma.upper95.reset();
+      sigma.standard_error.reset();
+      result.findings.push_back(FoundOpenStiffness());
+    }
+    result.mindlin_test = TestMindlin(problem, solution, noise, estimates, options, buffers);
+    if (result.mindlin_test) {
+      const std::optional<RigAlternative> rig =
+          TryRig(problem, attempt.thin, solution, *result.mindlin_test, noise, estimates, options,
+                 buffers);
+      if (rig) {
+        result.mindlin_test->rig_stiffness = rig->rig_stiffness;
+        result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
+      }
+    }
+  }
+  for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
+    result.findings.push_back(std::move(finding));
+  }
+  Append(result.findings, FindMisfit(result, options.thresholds));
+  Judge(result.parameters, result.findings);
+}
+
+void ReportStarts(const Problem& problem, const std::vector<Descent>& descents,
+                  FitResult& result) {
+  const auto rms = [&](double sum_of_squares) {
+    return problem.data->force *
+           std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted));
+  };
+  for (const Descent& descent : descents) {
+    result.starts.push_back({.drawn = descent.drawn,
+                             .start = problem.parameters.LawAt(descent.start),
+                             .initial_rms = rms(descent.start_cost),
+                             .reached = problem.parameters.LawAt(descent.solution.theta),
+                             .final_rms = rms(descent.solution.sum_of_squares),
+                             .converged = descent.solution.converged});
+  }
+}
+
+}  // namespace
+
+struct Fitter::State {
+  explicit State(FitOptions given) : options(std::move(given)) { RequireOptions(options); }
+
+  void Fit(std::span<const RecordView> records, Depth depth);
+
+  FitOptions options;
+  Arena arena;
+  SearchBuffers buffers;
+  Solution first;
+  Solution second;
+  std::vector<Descent> descents;
+  FitResult result;
+};
+
+void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
+  arena.Reset();
+  result.depth = depth;
+  result.converged = false;
+  result.termination.assign("not run");
+  result.iterations = 0;
+  result.model = options.model;
+  result.force_noise = 0.0;
+  result.outliers = 0;
+  result.rms = 0.0;
+  result.mindlin_test.reset();
+  result.branch_shapes.clear();
+  result.parameters.clear();
+  result.correlation.clear();
+  result.residuals = {};
+  result.starts.clear();
+  result.findings.clear();
+  descents.clear();
+
+  const loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);
+  ScaledRecords data = Scale(prepared, options.follow_load, &arena);
+  std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
+  const ScaledRecords thin = Thin(data, thin_reversals, &arena);
+  const Attempt attempt{options, prepared, data, thin, buffers, &arena};
+  result.force_sense = prepared.force_sense;
+  FillRecords(attempt, result);
+
+  const bool full = depth != Depth::kEstimate;
+  std::vector<Descent>* const recorded = full ? &descents : nullptr;
+  std::optional<Candidate> best(FitBestState(attempt, first, second, recorded));
+  const DisplacementErrors displacement_errors(prepared, data);
+  const bool is_weighted = options.loss != Loss::kNone || displacement_errors.any();
+  Noise noise;
+  bool settled = true;
+  std::optional<TurningPointFit> turned;
+  if (std::isfinite(best->solution->sum_of_squares)) {
+    if (is_weighted) {
+      const auto fit_with_weights = [&] {
+        settled = FitWithWeights(best->problem, data, options, displacement_errors, buffers.solver,
+                                 buffers.response, SolverOptionsOf(options), *best->solution, noise);
+      };
+      fit_with_weights();
+      // Outliers may have hidden the past and the valley: once more from all starts, as weighted.
+      if (options.loss != Loss::kNone) {
+        std::pmr::vector<std::pmr::vector<std::size_t>> reversals(&arena);
+        const ScaledRecords weighted_thin = Thin(data, reversals, &arena);
+        const Attempt weighted{options, prepared, data, weighted_thin, buffers, &arena};
+        descents.clear();
+        best.emplace(FitBestState(weighted, first, second, recorded));
+        fit_with_weights();
+      }
+    } else {
+      // A gate means noise in the displacement: its outermost samples are the noisiest, and say
+      // nothing of where the motion turned.
+      const bool gated = std::ranges::any_of(
+          prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
+      if (best->solution->converged && !gated) {
+        turned = FitTurningPointsIfNeeded(best->problem, *best->solution, options,
+                                          buffers.response);
+      }
+      if (turned) {
+        best->problem.data = &turned->records->data;
+        *best->solution = turned->solution;
+      }
+      noise = PlainNoise(*best->problem.data, options, best->solution->sum_of_squares,
+                         best->problem.parameters.free().size() +
+                             (turned ? turned->records->overshoot.size() : 0));
+    }
+  }
+  const Solution& solution = *best->solution;
+  result.initial_state = best->problem.state;
+  result.termination.assign(solution.termination);
+  result.iterations = solution.iterations;
+  result.converged = solution.converged;
+  if (full) ReportStarts(best->problem, descents, result);
+  if (!std::isfinite(solution.sum_of_squares)) {
+    result.converged = false;
+    result.findings.push_back({.code = "fit_failed", .severity = Severity::kFailure});
+    return;
+  }
+  if (!settled) {
+    result.converged = false;
+    result.termination.assign("The weights of the samples did not settle.");
+  }
+  result.force_noise = noise.force * data.force;
+  result.outliers = noise.outliers;
+  FillParameters(best->problem, solution, result);
+  FillForces(attempt, best->problem, solution, result);
+  if (turned) {
+    std::size_t k = 0;
+    double longest = 0.0;
+    for (std::size_t r = 0; r < data.records.size(); ++r) {
+      for (std::size_t j = 0; j < data.records[r].reversals.size(); ++j) {
+        const double overshoot = turned->records->overshoot[k++] * data.length;
+        result.records[r].overshoot.push_back(overshoot);
+        longest = std::max(longest, overshoot);
+      }
+    }
+    result.findings.push_back(FoundTurningPoints(longest));
+  }
+  if (full) Infer(attempt, best->problem, solution, noise, displacement_errors, result);
+}
+
+Fitter::Fitter(FitOptions options) : state_(std::make_unique<State>(std::move(options))) {}
+Fitter::Fitter(Fitter&&) noexcept = default;
+Fitter& Fitter::operator=(Fitter&&) noexcept = default;
+Fitter::~Fitter() = default;
+
+const FitOptions& Fitter::options() const { return state_->options; }
+
+const FitResult& Fitter::Fit(std::span<const RecordView> records, Depth depth) {
+  state_->Fit(records, depth);
+  return state_->result;
+}
+
+FitResult Fit(std::span<const loop::Record> records, const FitOptions& options, Depth depth) {
+  std::vector<RecordView> views(records.begin(), records.end());
+  Fitter fitter(options);
+  return fitter.Fit(views, depth);
+}
+
+const ParameterEstimate* FitResult::Find(std::string_view name) const {
+  const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+const Finding* FitResult::FindFinding(std::string_view code) const {
+  const auto found = std::ranges::find(findings, code, &Finding::code);
+  return found == findings.end() ? nullptr : &*found;
+}
+
+const RecordFit& FitResult::WidestRecord() const {
+  return *std::ranges::max_element(records, {},
+                                   [](const RecordFit& fit) { return fit.measures.amplitude; });
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <vector>
+
+#include "identification/problem/problem.h"
+#include "mindahl/loop/preparation.h"
+
+namespace mindahl::identification {
+
+/// What errors of the displacement do to the force of a model: readings of the smoothed record are
+/// drawn, with the noise or the encoder's phase that it was read with, smoothed and settled as the
+/// record was.
+///
+/// An error of a turning point goes along with the whole branch that starts there, one of an
+/// encoder with all turning points at that count, and smoothing ties neighbours together: no
+/// variance of a sample tells that, a drawn record has it all.
+class DisplacementErrors {
+ public:
+  /// @param data  the prepared records, scaled; must outlive this
+  DisplacementErrors(const loop::PreparedRecords& records, const ScaledRecords& data);
+
+  /// Is any record's displacement inexact?
+  [[nodiscard]] bool any() const { return !draws_.empty(); }
+
+  /// T(drawn) − T(as smoothed) of the problem's model at θ, in units of the data: one row a sample,
+  /// one column a drawn set of records. The same draws every time. Their mean is not taken off: the
+  /// outermost of several noisy samples lies a little too far out, and that too is an error.
+  [[nodiscard]] Eigen::MatrixXd ForceErrors(const Problem& problem,
+                                            std::span<const double> theta) const;
+
+ private:
+  struct Drawn {
+    std::vector<double> displacement;
+    std::vector<std::size_t> reversals;
+  };
+
+  const ScaledRecords& data_;
+  std::vector<std::vector<Drawn>> draws_;  // of all records each
+};
+
+}  // namespace mindahl::identification

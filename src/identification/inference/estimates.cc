@@ -1,0 +1,119 @@
+#include "identification/inference/estimates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "identification/inference/evidence.h"
+
+namespace mindahl::identification {
+
+ParameterStatus StatusOf(const Parameter& parameter, BoundSide side) {
+  if (parameter.fixed) return ParameterStatus::kFixed;
+  if (side == BoundSide::kInside) return ParameterStatus::kFree;
+  const bool mirrored = parameter.scale < 0;
+  return (side == BoundSide::kLower) != mirrored ? ParameterStatus::kAtLowerBound
+                                                 : ParameterStatus::kAtUpperBound;
+}
+
+Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
+                     const DisplacementEffect& displacement, const Thresholds& thresholds,
+                     Response& response)
+    : problem_(problem),
+      solution_(solution),
+      white_variance_(noise.variance),
+      variance_(noise.variance * noise.repeating) {
+  const std::vector<std::size_t> free(problem.parameters.free().begin(),
+                                      problem.parameters.free().end());
+  quantile_ = StudentQuantile95(noise.degrees_of_freedom(free.size()));
+  jacobian_ = JacobianAt(problem, solution.theta, response, free, residual_);
+  std::vector<std::size_t> inside;
+  std::vector<Eigen::Index> places;
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    if (solution.side[free[j]] != BoundSide::kInside) continue;
+    inside.push_back(free[j]);
+    places.push_back(static_cast<Eigen::Index>(j));
+  }
+  full_ = AnalyseJacobian(problem, free, jacobian_, noise, displacement);
+  conditional_ = inside.size() == free.size()
+                     ? full_
+                     : AnalyseJacobian(problem, inside, jacobian_(Eigen::all, places), noise,
+                                       displacement);
+  // Of correlated residuals a fit takes up more than its parameters' number, and leaves less than
+  // the noise's variance; where it takes up most, that is all that can be said.
+  if (noise.is_known || displacement.residuals.size() > 0) return;
+  const auto count = static_cast<double>(noise.samples);
+  const auto parameters = static_cast<double>(free.size());
+  const double absorbed = std::min(full_.absorbed, thresholds.most_absorbed * count);
+  if (absorbed > parameters) variance_ *= (count - parameters) / (count - absorbed);
+}
+
+const LocalUncertainty& Estimates::LocalOf(std::size_t parameter) const {
+  return solution_.side[parameter] == BoundSide::kInside ? conditional_ : full_;
+}
+
+double Estimates::ErrorOfTheta(std::size_t parameter) const {
+  if (problem_.parameters[parameter].fixed) return 0.0;
+  const LocalUncertainty& local = LocalOf(parameter);
+  const std::size_t j = local.PlaceOf(parameter);
+  if (j == local.columns.size() || !local.determined[j]) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const auto place = static_cast<Eigen::Index>(j);
+  return std::sqrt(local.factor(place, place) * variance_);
+}
+
+void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
+  const Parameter& parameter = problem_.parameters[p];
+  const double theta = solution_.theta[p];
+  const BoundSide side = solution_.side[p];
+  estimate.standard_error.reset();
+  estimate.lower95.reset();
+  estimate.upper95.reset();
+  if (parameter.fixed) return;
+  const double error = ErrorOfTheta(p);
+  if (!std::isfinite(error)) return;
+  double lower = 0.0;
+  double upper = 0.0;
+  if (side != BoundSide::kInside) {
+    // Half the normal law lies beyond the bound: the interval is one-sided, from the bound.
+    const double reach = (side == BoundSide::kLower ? 1 : -1) * kOneSidedQuantile95 * error;
+    lower = estimate.value;
+    upper = parameter.ToValue(theta + reach);
+  } else {
+    estimate.standard_error = parameter.term->positive ? estimate.value * error
+                                                       : std::abs(parameter.scale) * error;
+    lower = parameter.ToValue(theta - quantile_ * error);
+    upper = parameter.ToValue(theta + quantile_ * error);
+  }
+  estimate.lower95 = std::min(lower, upper);
+  estimate.upper95 = std::max(lower, upper);
+  if (p == kShape) estimate.lower95 = std::max(*estimate.lower95, 0.0);
+}
+
+double Estimates::Correlation(std::size_t row, std::size_t column) const {
+  const std::size_t i = conditional_.PlaceOf(row);
+  const std::size_t j = conditional_.PlaceOf(column);
+  const std::size_t none = conditional_.columns.size();
+  if (i == none || j == none || !conditional_.determined[i] || !conditional_.determined[j]) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  if (i == j) return 1.0;
+  const auto sign = [&](std::size_t p) {
+    return problem_.parameters[p].scale < 0 ? -1.0 : 1.0;  // the value falls where θ grows
+  };
+  const auto& factor = conditional_.factor;
+  const auto a = static_cast<Eigen::Index>(i);
+  const auto b = static_cast<Eigen::Index>(j);
+  return sign(row) * sign(column) * factor(a, b) / std::sqrt(factor(a, a) * factor(b, b));
+}
+
+double Estimates::WhiteShare(std::size_t parameter) const {
+  const std::size_t j = full_.PlaceOf(parameter);
+  if (j == full_.columns.size() || !full_.determined[j]) return 1.0;
+  const auto place = static_cast<Eigen::Index>(j);
+  return white_variance_ * full_.white_factor[place] / (variance_ * full_.factor(place, place));
+}
+
+}  // namespace mindahl::identification

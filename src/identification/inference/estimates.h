@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "identification/inference/local.h"
+#include "identification/inference/noise.h"
+#include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
+
+namespace mindahl::identification {
+
+/// Standard errors, intervals and correlations of one fit, from the likelihood's parabola at its
+/// maximum.
+class Estimates {
+ public:
+  /// @param problem       with `solution`, must outlive this
+  /// @param displacement  of the drawn errors, in units of the noise's variance
+  Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
+            const DisplacementEffect& displacement, const Thresholds& thresholds,
+            Response& response);
+
+  /// Fills an estimate; its identifiability is the judge's.
+  void Fill(std::size_t parameter, ParameterEstimate& estimate) const;
+
+  /// NaN where either parameter is fixed, at a bound or undetermined.
+  [[nodiscard]] double Correlation(std::size_t row, std::size_t column) const;
+
+  /// Standard error of θ; infinite where it is not determined, 0 where fixed.
+  [[nodiscard]] double ErrorOfTheta(std::size_t parameter) const;
+
+  /// Of all free parameters.
+  [[nodiscard]] const LocalUncertainty& local() const { return full_; }
+  /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
+  /// this share a likelihood ratio counts. 1 where it is not determined.
+  [[nodiscard]] double WhiteShare(std::size_t parameter) const;
+  /// Half width of a 95 % interval in standard errors.
+  [[nodiscard]] double quantile() const { return quantile_; }
+  /// The Jacobian by all free parameters at the solution, and the weighted residuals.
+  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
+  /// Of a residual, as errors are made from it.
+  [[nodiscard]] double variance() const { return variance_; }
+
+ private:
+  [[nodiscard]] const LocalUncertainty& LocalOf(std::size_t parameter) const;
+
+  const Problem& problem_;
+  const Solution& solution_;
+  double quantile_;
+  double white_variance_;
+  double variance_;
+  Eigen::MatrixXd jacobian_;
+  Eigen::VectorXd residual_;
+  LocalUncertainty conditional_;  // of the parameters inside their bounds, the others held there
+  LocalUncertainty full_;         // of all free parameters
+};
+
+ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);
+
+}  // namespace mindahl::identification

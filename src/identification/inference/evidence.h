@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+
+#include "identification/inference/noise.h"
+
+namespace mindahl::identification {
+
+/// What two fits to the same samples say of each other: the one comparison of fits there is.
+class Evidence {
+ public:
+  /// @param samples    that count
+  /// @param effective  as many independent ones as say the same, of what is compared
+  Evidence(std::size_t samples, double effective);
+
+  /// As all residuals together tell a variance.
+  explicit Evidence(const Noise& noise) : Evidence(noise.samples, noise.effective_samples()) {}
+
+  /// 2 ln Λ of the fit with the smaller sum of squares against the other: n_eff·ln(SS₀/SS₁), of
+  /// sums that are both no less than rounding errors leave.
+  [[nodiscard]] double LikelihoodRatio(double held, double free) const;
+
+  /// The same statistic where its distribution is asked for: F = (SS₀ − SS₁)/s²·n_eff/n of one more
+  /// parameter, s² the variance of a residual.
+  [[nodiscard]] double FStatistic(double held, double free, double variance) const;
+
+  /// Akaike's criterion with its small-sample term (Hurvich & Tsai 1989), for Gaussian residuals of
+  /// unknown variance. The effective samples weigh the likelihood only: a wrong law leaves a
+  /// handful of them, for which the small-sample term would outweigh any difference of two fits.
+  [[nodiscard]] double Aicc(double sum_of_squares, std::size_t parameters) const;
+
+ private:
+  [[nodiscard]] double Floored(double sum_of_squares) const;
+
+  double samples_;
+  double effective_;
+};
+
+/// P(F(1, ν) > f)
+double PValueOfF(double f, double degrees_of_freedom);
+
+/// P(χ²(k) > x) = chance at x
+double ChiSquaredQuantile(double degrees_of_freedom, double chance);
+
+/// Half width of a two-sided 95 % interval in standard errors, by Student.
+double StudentQuantile95(double degrees_of_freedom);
+
+/// Half a normal law lies within this many standard deviations with 95 %: Φ⁻¹(0.975).
+inline constexpr double kOneSidedQuantile95 = 1.959963984540054;
+
+}  // namespace mindahl::identification

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "identification/inference/noise.h"
+#include "identification/problem/problem.h"
+
+namespace mindahl::identification {
+
+/// What the Jacobian at the solution says about the free parameters, before any noise level is put
+/// in: covariance = variance of a residual × `factor`.
+struct LocalUncertainty {
+  std::vector<std::size_t> columns;  // positions in θ, those not held at a bound
+  /// columns²: (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ on the determined subspace, R the correlation of the residuals;
+  /// with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's share of the noise and E
+  /// the K drawn residuals
+  Eigen::MatrixXd factor;
+  Eigen::VectorXd white_factor;  // the diagonal of (JᵀJ)⁻¹: what white residuals would give
+  /// Residuals' worth of noise that the fit takes up, tr((JᵀJ)⁻¹JᵀRJ): the number of parameters
+  /// where the residuals are white, more where they are autocorrelated as the response is.
+  double absorbed = 0.0;
+  std::vector<bool> determined;           // of each column: no part in a direction without effect
+  std::vector<std::vector<double>> null;  // directions in θ without effect on the residual
+
+  /// Place of a parameter among the columns; columns.size() where it has none.
+  [[nodiscard]] std::size_t PlaceOf(std::size_t parameter) const;
+};
+
+/// The weighted Jacobian at θ, by columns; of a record whose turning points were fitted too, freed
+/// of what these explain.
+Eigen::MatrixXd JacobianAt(const Problem& problem, std::span<const double> theta,
+                           Response& response, std::span<const std::size_t> columns,
+                           Eigen::VectorXd& residual);
+
+/// What errors of the displacement add to a fit's uncertainty.
+struct DisplacementEffect {
+  Eigen::MatrixXd residuals;  // drawn, weighted: rows as the Jacobian's; none where exact
+  double variance = 1.0;      // of a residual, in whose units factors are
+};
+
+/// (JᵀRJ) of all records.
+Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
+                                  const Eigen::MatrixXd& jacobian);
+
+/// Singular value decomposition of the Jacobian, columns scaled to unit norm: never fails, and
+/// names the directions that the data leave open where it is rank deficient.
+/// @param columns  positions in θ to differentiate by
+LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t> columns,
+                                 Eigen::MatrixXd jacobian, const Noise& noise,
+                                 const DisplacementEffect& displacement);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,168 @@
+#include "identification/inference/noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mindahl::identification {
+namespace {
+
+constexpr std::size_t kHighestOrder = Autocorrelation::kHighestOrder;
+constexpr std::size_t kSamplesPerOrder = 10;
+/// What a filter remembers below this share of its largest output is rounding.
+constexpr double kForgotten = 1e-9;
+constexpr std::size_t kLongest = 100'000;  // samples that it is given to forget
+
+using Series = std::span<const double>;
+using Mask = std::span<const unsigned char>;
+using Autocovariances = std::array<double, kHighestOrder + 1>;
+
+/// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the share of lags
+/// that a series of this length has: without gaps that keeps the sequence positive definite.
+Autocovariances EstimateAutocovariances(std::span<const Series> residuals,
+                                        std::span<const Mask> counts, std::size_t order) {
+  std::size_t samples = 0;
+  for (const Series series : residuals) samples += series.size();
+  Autocovariances covariances{};
+  for (std::size_t lag = 0; lag <= order; ++lag) {
+    double sum = 0.0;
+    std::size_t pairs = 0;
+    std::size_t counting = 0;
+    for (std::size_t r = 0; r < residuals.size(); ++r) {
+      for (std::size_t i = lag; i < residuals[r].size(); ++i) {
+        ++pairs;
+        if (counts[r][i] == 0 || counts[r][i - lag] == 0) continue;
+        sum += residuals[r][i] * residuals[r][i - lag];
+        ++counting;
+      }
+    }
+    const double mean = counting > 0 ? sum / static_cast<double>(counting) : 0.0;
+    covariances[lag] =
+        mean * static_cast<double>(pairs) / static_cast<double>(std::max<std::size_t>(samples, 1));
+  }
+  return covariances;
+}
+
+double Dot(Series a, Series b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+Autocorrelation EstimateAutocorrelation(std::span<const Series> residuals,
+                                        std::span<const Mask> counts) {
+  Autocorrelation best;
+  std::size_t count = 0;
+  for (const Mask mask : counts) {
+    count += mask.size() - static_cast<std::size_t>(std::ranges::count(mask, 0));
+  }
+  const std::size_t highest = std::min(kHighestOrder, count / kSamplesPerOrder);
+  const Autocovariances covariance = EstimateAutocovariances(residuals, counts, highest);
+  if (!(covariance[0] > 0)) return best;
+
+  // Levinson and Durbin: each order from the one before.
+  const auto samples = static_cast<double>(count);
+  std::array<double, kHighestOrder> coefficients{};
+  double variance = covariance[0];
+  double best_criterion = 0.0;  // of order 0, by how much others are better
+  for (std::size_t order = 1; order <= highest; ++order) {
+    double numerator = covariance[order];
+    for (std::size_t k = 1; k < order; ++k) {
+      numerator -= coefficients[k - 1] * covariance[order - k];
+    }
+    const double reflection = numerator / variance;
+    std::array<double, kHighestOrder> next{};
+    for (std::size_t k = 1; k < order; ++k) {
+      next[k - 1] = coefficients[k - 1] - reflection * coefficients[order - k - 1];
+    }
+    next[order - 1] = reflection;
+    coefficients = next;
+    variance *= 1 - reflection * reflection;
+    if (!(variance > 0)) break;
+    const double criterion = samples * std::log(variance / covariance[0]) +
+                             static_cast<double>(order) * std::log(samples);
+    if (criterion < best_criterion) {
+      best_criterion = criterion;
+      best.order = order;
+      best.coefficients = coefficients;
+      best.innovation_share = variance / covariance[0];
+    }
+  }
+  // Yule and Walker's process has the correlations that it was made from, to its order.
+  for (std::size_t lag = 0; lag <= best.order; ++lag) {
+    best.correlations[lag] = covariance[lag] / covariance[0];
+  }
+  return best;
+}
+
+double Autocorrelation::SquaredCorrelations() const {
+  double sum = 1.0;
+  if (order == 0) return sum;
+  std::array<double, kHighestOrder> recent{};  // ρ, newest first
+  for (std::size_t lag = 1; lag <= order; ++lag) {
+    sum += 2 * correlations[lag] * correlations[lag];
+    recent[order - lag] = correlations[lag];
+  }
+  // Beyond the order ρ obeys the recursion of r itself.
+  for (std::size_t lag = order + 1; lag < kLongest; ++lag) {
+    double value = 0.0;
+    double largest = 0.0;
+    for (std::size_t k = 0; k < order; ++k) value += coefficients[k] * recent[k];
+    for (std::size_t k = order - 1; k > 0; --k) recent[k] = recent[k - 1];
+    recent[0] = value;
+    sum += 2 * value * value;
+    for (std::size_t k = 0; k < order; ++k) largest = std::max(largest, std::abs(recent[k]));
+    if (largest < kForgotten) break;
+  }
+  return sum;
+}
+
+std::vector<double> Autocorrelation::Quadratic(std::span<const Series> columns) const {
+  const std::size_t count = columns.size();
+  std::vector<double> result(count * count);
+  if (count == 0) return result;
+  std::vector<std::vector<double>> filtered(order == 0 ? 0 : count);  // backwards in time
+  const std::size_t rows = columns.front().size();
+  double largest = 0.0;
+  const auto filter = [&](std::size_t i) {
+    double recent = 0.0;  // the largest of the last outputs
+    for (std::size_t c = 0; c < count; ++c) {
+      std::vector<double>& out = filtered[c];
+      double value = i < rows ? columns[c][rows - 1 - i] : 0.0;
+      for (std::size_t k = 0; k < order && k < i; ++k) value += coefficients[k] * out[i - 1 - k];
+      out.push_back(value);
+      largest = std::max(largest, std::abs(value));
+      for (std::size_t k = 0; k < order && k <= i; ++k) {
+        recent = std::max(recent, std::abs(out[i - k]));
+      }
+    }
+    return recent;
+  };
+  if (order > 0) {
+    for (std::size_t i = 0; i < rows + kLongest; ++i) {
+      if (filter(i) < kForgotten * largest && i >= rows) break;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double sum = filtered.empty() ? Dot(columns[i], columns[j])
+                                          : innovation_share * Dot(filtered[i], filtered[j]);
+      result[i * count + j] = result[j * count + i] = sum;
+    }
+  }
+  return result;
+}
+
+double Noise::effective_samples() const {
+  const double independent = autocorrelation.SquaredCorrelations() * repeating;
+  return std::max(static_cast<double>(samples) / independent, 1.0);
+}
+
+double Noise::degrees_of_freedom(std::size_t parameters) const {
+  constexpr double kKnown = 1e6;
+  if (is_known) return kKnown;
+  return std::max(effective_samples() - static_cast<double>(parameters), 1.0);
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace mindahl::identification {
+
+/// The autocorrelation of a fit's residuals: an autoregressive process, the same for all records,
+///   r_t = Σ φ_k r_{t−k} + ε_t,  k = 1 … p
+/// found by Yule and Walker's equations (which make it stable), its order by Schwarz's criterion.
+/// Loops leave residuals that are never white: what a model misses is smooth along the loop.
+struct Autocorrelation {
+  static constexpr std::size_t kHighestOrder = 12;
+
+  std::size_t order = 0;  // p; 0 when the residuals are white
+  std::array<double, kHighestOrder> coefficients{};      // φ₁ … φ_p
+  std::array<double, kHighestOrder + 1> correlations{};  // ρ₀ … ρ_p, the sample's
+  double innovation_share = 1.0;                         // variance of ε over that of r
+
+  /// 1 + 2Σρ_k² over all lags: as many correlated residuals tell a variance as well as one
+  /// independent one does (Bartlett 1946).
+  [[nodiscard]] double SquaredCorrelations() const;
+
+  /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it: the
+  /// columns are filtered backwards by 1/φ, on into the past until they have died away.
+  /// @param columns  of one record, in order of time, all of one size
+  /// @returns columns², relative error below 1e-8
+  [[nodiscard]] std::vector<double> Quadratic(
+      std::span<const std::span<const double>> columns) const;
+};
+
+/// @param residuals  one series a record
+/// @param counts     of each sample, 0 where it tells nothing; of the same sizes
+Autocorrelation EstimateAutocorrelation(std::span<const std::span<const double>> residuals,
+                                        std::span<const std::span<const unsigned char>> counts);
+
+/// The one account of the noise of a fit, in units of the data: whoever states an error, compares
+/// two fits or counts samples asks it.
+struct Noise {
+  double variance = 0.0;  // of a weighted residual
+  bool is_known = false;  // it was given, not estimated
+  double force = 0.0;     // standard deviation of the force's own
+  Autocorrelation autocorrelation;
+  double repeating = 1.0;  // by how much a repeatable residual widens a variance
+  std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
+  std::size_t outliers = 0;         // samples at less than half their weight
+  std::size_t samples = 0;          // that count
+
+  /// As many independent residuals as say the same, at least 1: autocorrelated ones tell a variance
+  /// as n/(1 + 2Σρ²) do, and what comes back in every stroke is told once.
+  [[nodiscard]] double effective_samples() const;
+  /// Of the variance: effective samples less what was fitted, at least 1; practically infinite
+  /// where it is known.
+  [[nodiscard]] double degrees_of_freedom(std::size_t parameters) const;
+};
+
+}  // namespace mindahl::identification

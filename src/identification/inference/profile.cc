@@ -1,0 +1,208 @@
+#include "identification/inference/profile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace mindahl::identification {
+namespace {
+
+/// Tc over half the range of the force.
+constexpr std::array kGrid = {0.9, 0.95, 1.0, 1.03, 1.1, 1.25, 1.5, 2.0, 3.0, 6.0, 20.0};
+/// A barrier this many times the critical ratio high has no valley behind it.
+constexpr double kHopeless = 100.0;
+constexpr int kBisections = 6;
+constexpr double kRigid = 1e3;
+
+/// The likelihood with one parameter held, the others fitted again.
+class HeldParameter {
+ public:
+  HeldParameter(const Problem& problem, std::size_t parameter, const Solution& best,
+                const Noise& noise, const Estimates& estimates, const FitOptions& options,
+                SearchBuffers& buffers)
+      : problem_(problem),
+        parameter_(parameter),
+        best_(best),
+        variance_(noise.variance),
+        evidence_(noise.samples,
+                  static_cast<double>(noise.samples) * estimates.WhiteShare(parameter)),
+        options_(SolverOptionsOf(options)),
+        buffers_(buffers) {}
+
+  /// @returns F of the best fit against that with the parameter at θ, which is in solution()
+  double At(double theta, const std::vector<double>& start) {
+    const Problem held = problem_.WithFixed(parameter_, theta);
+    buffers_.solver.Bind(held, buffers_.response);
+    buffers_.solver.Solve(start, options_, solution_);
+    return evidence_.FStatistic(solution_.sum_of_squares, best_.sum_of_squares, variance_);
+  }
+  [[nodiscard]] const Solution& solution() const { return solution_; }
+
+ private:
+  const Problem& problem_;
+  std::size_t parameter_;
+  const Solution& best_;
+  double variance_;
+  Evidence evidence_;
+  SolverOptions options_;
+  SearchBuffers& buffers_;
+  Solution solution_;
+};
+
+/// α/Tc is what a loop far from slip determines: a start that keeps it.
+std::vector<double> Continue(const Parameters& parameters, const std::vector<double>& from,
+                             double log_slip_force) {
+  std::vector<double> start = from;
+  start[kSlipForce] = log_slip_force;
+  if (!parameters[kShape].fixed) start[kShape] *= std::exp(log_slip_force - from[kSlipForce]);
+  return start;
+}
+
+void Include(SlipForceProfile& profile, const std::vector<double>& theta) {
+  const auto include = [](Range& range, double value) {
+    range.lower = std::min(range.lower, value);
+    range.upper = std::max(range.upper, value);
+  };
+  include(profile.slip_force, theta[kSlipForce]);
+  include(profile.shape_exponent, theta[kShape]);
+  include(profile.stiffness, theta[kStiffness]);
+}
+
+/// Widens an interval to a likelihood range; its standard error follows where it was too small.
+void Widen(ParameterEstimate& estimate, const Parameter& parameter, const Range& range,
+           double quantile) {
+  if (!estimate.lower95 || !estimate.upper95) return;
+  estimate.lower95 = std::min(*estimate.lower95, parameter.ToValue(range.lower));
+  estimate.upper95 = std::max(*estimate.upper95, parameter.ToValue(range.upper));
+  if (estimate.standard_error) {
+    const double half_width = (*estimate.upper95 - *estimate.lower95) / 2;
+    estimate.standard_error = std::max(*estimate.standard_error, half_width / quantile);
+  }
+}
+
+}  // namespace
+
+bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
+                           const Estimates& estimates, double peak_share,
+                           const FitOptions& options, SearchBuffers& buffers) {
+  if (problem.parameters[kSlipForce].fixed) return false;
+  const Thresholds& thresholds = options.thresholds;
+  const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
+  const bool inside = best.side[kSlipForce] == BoundSide::kInside &&
+                      best.side[kStiffness] == BoundSide::kInside &&
+                      best.side[kShape] == BoundSide::kInside;
+  if (!inside || !(half <= thresholds.parabola_error) ||
+      !(peak_share >= thresholds.parabola_mobilised)) {
+    return true;
+  }
+  HeldParameter held(problem, kSlipForce, best, noise, estimates, options, buffers);
+  const double critical = estimates.quantile() * estimates.quantile();
+  for (const double side : {-1.0, 1.0}) {
+    const double theta = best.theta[kSlipForce] + side * half;
+    const double ratio = held.At(theta, best.theta);
+    if (!(std::abs(ratio / critical - 1) <= thresholds.parabola_departure)) return true;
+  }
+  return false;
+}
+
+SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, const Noise& noise,
+                                  const Estimates& estimates, const FitOptions& options,
+                                  SearchBuffers& buffers) {
+  SlipForceProfile profile;
+  const double fitted = best.theta[kSlipForce];
+  profile.slip_force = {fitted, fitted};
+  profile.shape_exponent = {best.theta[kShape], best.theta[kShape]};
+  profile.stiffness = {best.theta[kStiffness], best.theta[kStiffness]};
+  const Parameter& parameter = problem.parameters[kSlipForce];
+  const double critical = estimates.quantile() * estimates.quantile();  // of F(1, ν)
+  HeldParameter held(problem, kSlipForce, best, noise, estimates, options, buffers);
+
+  const auto walk = [&](bool upwards) {
+    std::vector<double> grid;
+    for (const double multiple : kGrid) {
+      const double theta = std::log(multiple);
+      const bool ahead = upwards ? theta > fitted : theta < fitted;
+      if (ahead && theta >= parameter.lower && theta <= parameter.upper) grid.push_back(theta);
+    }
+    if (!upwards) std::ranges::reverse(grid);
+    std::vector<double> last_theta = best.theta;
+    std::vector<double> accepted_theta = best.theta;  // the outermost accepted point
+    double rejected = 0.0;                            // the next point beyond it
+    bool any_rejected = false;
+    bool far_end_is_open = true;  // by the test of the verdict
+    for (const double theta : grid) {
+      const double value = held.At(theta, Continue(problem.parameters, last_theta, theta));
+      last_theta = held.solution().theta;
+      far_end_is_open = value < std::max(critical, options.thresholds.open_slip_force);
+      if (value < critical) {
+        Include(profile, last_theta);
+        accepted_theta = last_theta;
+        any_rejected = false;
+      } else {
+        if (!any_rejected) rejected = theta;
+        any_rejected = true;
+        if (value > kHopeless * critical) break;
+      }
+    }
+    const bool open =
+        far_end_is_open && upwards && (grid.empty() || parameter.upper >= std::log(kGrid.back()));
+    if (!any_rejected) return open;
+    double outside = rejected;
+    for (int i = 0; i < kBisections; ++i) {
+      const double middle = accepted_theta[kSlipForce] / 2 + outside / 2;
+      if (held.At(middle, Continue(problem.parameters, accepted_theta, middle)) < critical) {
+        Include(profile, held.solution().theta);
+        accepted_theta = held.solution().theta;
+      } else {
+        outside = middle;
+      }
+    }
+    return open;
+  };
+  walk(/*upwards=*/false);
+  profile.open_above = walk(/*upwards=*/true);
+  // α rises with Tc along the valley: where its bound ends the valley, the data do not.
+  const Parameter& shape = problem.parameters[kShape];
+  if (!shape.fixed && SideOf(shape, profile.shape_exponent.upper) == BoundSide::kUpper) {
+    profile.open_above = true;
+  }
+  return profile;
+}
+
+bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const Noise& noise,
+                          const Estimates& estimates, const FitOptions& options,
+                          SearchBuffers& buffers) {
+  if (problem.parameters[kStiffness].fixed) return false;
+  const double half = estimates.quantile() * estimates.ErrorOfTheta(kStiffness);
+  if (half <= options.thresholds.rigid_error && best.side[kStiffness] == BoundSide::kInside) {
+    return false;
+  }
+  HeldParameter held(problem, kStiffness, best, noise, estimates, options, buffers);
+  std::vector<double> start = best.theta;
+  start[kStiffness] += std::log(kRigid);
+  return held.At(start[kStiffness], start) < estimates.quantile() * estimates.quantile();
+}
+
+void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, double quantile,
+                    double peak_force, FitResult& result) {
+  const auto find = [&](std::string_view name) -> ParameterEstimate& {
+    return *std::ranges::find(result.parameters, name, &ParameterEstimate::name);
+  };
+  ParameterEstimate& alpha = find("alpha");
+  ParameterEstimate& slip_force = find("slip_force");
+  Widen(find("sigma"), problem.parameters[kStiffness], profile.stiffness, quantile);
+  Widen(alpha, problem.parameters[kShape], profile.shape_exponent, quantile);
+  Widen(slip_force, problem.parameters[kSlipForce], profile.slip_force, quantile);
+  if (!profile.open_above) return;
+  slip_force.upper95.reset();
+  slip_force.standard_error.reset();
+  // A contact that carried T* has at least that slip force, unless the fit is too poor to say.
+  slip_force.lower95 =
+      std::min(slip_force.value, std::max(slip_force.lower95.value_or(0.0), peak_force));
+  if (alpha.status == ParameterStatus::kFixed) return;
+  alpha.upper95.reset();
+  alpha.standard_error.reset();
+}
+
+}  // namespace mindahl::identification

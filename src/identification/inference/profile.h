@@ -1,0 +1,53 @@
+#pragma once
+
+#include "identification/inference/estimates.h"
+#include "identification/inference/evidence.h"
+#include "identification/solve/search.h"
+
+namespace mindahl::identification {
+
+/// Ends of the set of parameters that the data do not tell from the best fit.
+struct Range {
+  double lower = 0.0;  // of θ
+  double upper = 0.0;
+};
+
+/// The likelihood along the one direction in which hysteresis loops are badly determined.
+///
+/// Far from gross slip a loop depends on σ and α/Tc, and weakly on the rest (docs/theory.md §10):
+/// the likelihood is a long curved valley along which Tc, and α with it, may change many times at
+/// little cost. The Jacobian at the best fit sees its floor there and no further. So Tc is moved
+/// along a grid from the peak force to twenty times it, the others fitted again from the last
+/// point, and every parameter's range is collected over the points that a likelihood-ratio test
+/// does not reject.
+struct SlipForceProfile {
+  /// Not clearly rejected where Tc is twenty times the largest force, or α has reached its bound.
+  bool open_above = false;
+  Range slip_force;      // ln Tc
+  Range shape_exponent;  // α
+  Range stiffness;       // ln σ
+};
+
+/// May the parabola be wrong along Tc? It is asked where the loop stays away from slip, where Tc is
+/// badly known, and where its likelihood at the ends of the parabola's interval is another one.
+/// @param peak_share  T* of the record over Tc
+bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
+                           const Estimates& estimates, double peak_share,
+                           const FitOptions& options, SearchBuffers& buffers);
+
+SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, const Noise& noise,
+                                  const Estimates& estimates, const FitOptions& options,
+                                  SearchBuffers& buffers);
+
+/// Whether a rigid contact, σ a thousand times larger, passes the same test. Not asked where σ is
+/// known far too well for it.
+bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const Noise& noise,
+                          const Estimates& estimates, const FitOptions& options,
+                          SearchBuffers& buffers);
+
+/// Puts what a profile found into the intervals: the wider of both, and open ends.
+/// @param peak_force  T* [N]: a contact that carried it has at least that slip force
+void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, double quantile,
+                    double peak_force, FitResult& result);
+
+}  // namespace mindahl::identification

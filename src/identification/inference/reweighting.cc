@@ -1,0 +1,232 @@
+#include "identification/inference/reweighting.h"
+
+#include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace mindahl::identification {
+namespace {
+
+constexpr int kMostRounds = 50;
+constexpr double kSettled = 1e-4;  // rms change of the forces, over the noise: a valley has no end
+
+/// ψ(z)/z and ψ'(z).
+struct Influence {
+  double weight;
+  double slope;
+};
+
+Influence InfluenceOf(Loss loss, double z) {
+  constexpr double kHuber = 1.345;
+  constexpr double kCauchy = 2.385;
+  constexpr double kTukey = 4.685;
+  const double magnitude = std::abs(z);
+  switch (loss) {
+    case Loss::kNone:
+      break;
+    case Loss::kHuber:
+      if (magnitude <= kHuber) break;
+      return {kHuber / magnitude, 0.0};
+    case Loss::kCauchy: {
+      const double weight = 1 / (1 + (z / kCauchy) * (z / kCauchy));
+      return {weight, weight * weight * (1 - (z / kCauchy) * (z / kCauchy))};
+    }
+    case Loss::kTukey: {
+      if (magnitude >= kTukey) return {0.0, 0.0};
+      const double left = 1 - (z / kTukey) * (z / kTukey);
+      return {left * left, left * (1 - 5 * (z / kTukey) * (z / kTukey))};
+    }
+  }
+  return {1.0, 1.0};
+}
+
+/// Samples that count less the free parameters, at least 1.
+double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
+  return std::max(static_cast<double>(data.counted) - static_cast<double>(parameters), 1.0);
+}
+
+/// One round of weights, from residuals without weights.
+class Weighting {
+ public:
+  Weighting(const Problem& problem, ScaledRecords& data, const FitOptions& options,
+            const DisplacementErrors& displacement_errors)
+      : problem_(problem), data_(data), options_(options), errors_(displacement_errors) {
+    for (const ScaledRecord& record : data.records) {
+      counts_.insert(counts_.end(), record.counts.begin(), record.counts.end());
+    }
+    degrees_ = DegreesOfFreedom(data, problem.parameters.free().size());
+  }
+
+  /// @returns what the new weights stand for
+  Noise Update(Loss loss, std::span<const double> theta, Response& response) {
+    std::vector<double> residual(problem_.size());
+    response.Bind(problem_);
+    Predict(problem_, theta, response, residual);
+    std::vector<double> from_displacement(residual.size(), 0.0);  // variance
+    std::size_t i = 0;
+    for (const ScaledRecord& record : data_.records) {
+      for (const double force : record.force) residual[i++] -= force;
+    }
+    if (errors_.any()) {
+      const Eigen::MatrixXd drawn = errors_.ForceErrors(problem_, theta);
+      const auto draws = static_cast<double>(drawn.cols());
+      for (i = 0; i < residual.size(); ++i) {
+        from_displacement[i] = drawn.row(static_cast<Eigen::Index>(i)).squaredNorm() / draws;
+      }
+    }
+    Noise noise;
+    noise.samples = data_.counted;
+    noise.is_known = options_.force_noise.has_value();
+    noise.force = options_.force_noise ? *options_.force_noise / data_.force
+                                       : ForceNoise(residual, from_displacement, loss);
+    // Weighted residuals have the variance of those where the loop is flat.
+    const double unit = std::max(noise.force, kRoundingRms);
+    std::vector<double> standardised;
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+      const double deviation = std::sqrt(unit * unit + from_displacement[k]);
+      residual[k] /= deviation;
+      from_displacement[k] = unit / deviation;  // root weight by noise
+      if (counts_[k] != 0) standardised.push_back(residual[k]);
+    }
+    const double scale =
+        loss == Loss::kNone || options_.force_noise ? 1.0 : RobustScale(standardised);
+    SetWeights(residual, from_displacement, scale, loss, unit, noise);
+    if (errors_.any()) noise.force_share = from_displacement;
+    return noise;
+  }
+
+ private:
+  /// The likeliest σ_F, Σ (r²/s − 1)/s = 0 with s = σ_F² + σ_T²: samples with little noise from the
+  /// displacement tell it. Where outliers are expected, that for which the standardised residuals
+  /// have the median of normal ones. Bisection.
+  [[nodiscard]] double ForceNoise(const std::vector<double>& residual,
+                                  const std::vector<double>& from_displacement, Loss loss) const {
+    std::vector<double> standardised;
+    const auto excess = [&](double variance) {
+      standardised.clear();
+      for (std::size_t i = 0; i < residual.size(); ++i) {
+        if (counts_[i] != 0) {
+          standardised.push_back(residual[i] / std::sqrt(variance + from_displacement[i]));
+        }
+      }
+      if (loss != Loss::kNone) return RobustScale(standardised) - 1;
+      double squares = 0.0;
+      double precisions = 0.0;
+      std::size_t k = 0;
+      for (std::size_t i = 0; i < residual.size(); ++i) {
+        if (counts_[i] == 0) continue;
+        const double precision = 1 / (variance + from_displacement[i]);
+        squares += standardised[k] * standardised[k] * precision;
+        precisions += precision;
+        ++k;
+      }
+      return static_cast<double>(standardised.size()) / degrees_ * squares / precisions - 1;
+    };
+    double high = kRoundingRms * kRoundingRms;
+    for (const double r : residual) high = std::max(high, 2 * r * r);
+    double low = kRoundingRms * kRoundingRms;
+    if (!(excess(low) > 0)) return std::sqrt(low);
+    constexpr int kBisections = 60;
+    for (int k = 0; k < kBisections; ++k) {
+      const double middle = std::sqrt(low * high);
+      (excess(middle) > 0 ? low : high) = middle;
+    }
+    return std::sqrt(high);
+  }
+
+  void SetWeights(const std::vector<double>& standardised, const std::vector<double>& root_weight,
+                  double scale, Loss loss, double unit, Noise& noise) {
+    double influence_squares = 0.0;
+    double slopes = 0.0;
+    double weights = 0.0;
+    std::size_t i = 0;
+    for (ScaledRecord& record : data_.records) {
+      for (double& weight : record.root_weight) {
+        if (counts_[i] != 0) {
+          const double z = standardised[i] / scale;
+          const Influence influence = InfluenceOf(loss, z);
+          if (influence.weight < 0.5) ++noise.outliers;
+          influence_squares += influence.weight * influence.weight * z * z;
+          slopes += influence.slope;
+          weights += influence.weight;
+          weight = root_weight[i] * std::sqrt(influence.weight);
+        }
+        ++i;
+      }
+    }
+    // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹, where JᵀWJ is JᵀJ times the mean
+    // weight.
+    const auto count = static_cast<double>(data_.counted);
+    if (loss == Loss::kNone && (options_.force_noise || errors_.any())) {
+      noise.variance = unit * unit;
+      return;
+    }
+    const double variance = unit * unit * scale * scale;
+    noise.variance = variance * (influence_squares / degrees_) * (weights / count) /
+                     ((slopes / count) * (slopes / count));
+  }
+
+  const Problem& problem_;
+  ScaledRecords& data_;
+  const FitOptions& options_;
+  const DisplacementErrors& errors_;
+  std::vector<unsigned char> counts_;
+  double degrees_ = 1.0;
+};
+
+}  // namespace
+
+double RobustScale(std::vector<double> residuals) {
+  constexpr double kNormalDeviation = 1.482602218505602;  // σ over the median |r|, 1/Φ⁻¹(3/4)
+  return kNormalDeviation *
+         boost::math::statistics::median_absolute_deviation(residuals.begin(), residuals.end(), 0.0);
+}
+
+Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double sum_of_squares,
+                 std::size_t parameters) {
+  Noise noise;
+  noise.samples = data.counted;
+  noise.is_known = options.force_noise.has_value();
+  const double known = options.force_noise.value_or(0.0) / data.force;
+  noise.variance =
+      std::max(noise.is_known ? known * known
+                              : sum_of_squares / DegreesOfFreedom(data, parameters),
+               kRoundingRms * kRoundingRms);
+  noise.force = std::sqrt(noise.variance);
+  return noise;
+}
+
+bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
+                    const DisplacementErrors& displacement_errors, Solver& solver,
+                    Response& response, const SolverOptions& solver_options, Solution& solution,
+                    Noise& noise) {
+  Weighting weighting(problem, data, options, displacement_errors);
+  // Tukey's loss has several minima: it starts from Huber's, which has one.
+  constexpr int kHuberRounds = 10;
+  std::vector<double> last_force(problem.size());
+  response.Bind(problem);
+  Predict(problem, solution.theta, response, last_force);
+  std::vector<double> force(problem.size());
+  for (int round = 0; round < kMostRounds; ++round) {
+    const bool first_huber = options.loss != Loss::kNone && round < kHuberRounds;
+    noise = weighting.Update(first_huber ? Loss::kHuber : options.loss, solution.theta, response);
+    const std::vector<double> start = solution.theta;
+    solver.Bind(problem, response);
+    solver.Solve(start, solver_options, solution);
+    Predict(problem, solution.theta, response, force);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      squares += (force[i] - last_force[i]) * (force[i] - last_force[i]);
+    }
+    std::swap(force, last_force);
+    const double change = std::sqrt(squares / static_cast<double>(force.size()));
+    const bool settled = change < kSettled * std::max(noise.force, kRoundingRms);
+    if (settled && (!first_huber || options.loss == Loss::kHuber)) return true;
+    if (settled && first_huber) round = kHuberRounds - 1;
+  }
+  return false;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "identification/inference/estimates.h"
+#include "identification/solve/search.h"
+#include "mindahl/identification/fit_result.h"
+
+namespace mindahl::identification {
+
+/// α = 1/3 against the fitted α by the likelihood, which keeps to the valley along which α and Tc
+/// run away together, where a standard error of α means little. Empty where α is held.
+std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& best,
+                                       const Noise& noise, const Estimates& estimates,
+                                       const FitOptions& options, SearchBuffers& buffers);
+
+/// α = 1/3 in a rig that gives way.
+struct RigAlternative {
+  double rig_stiffness = 0.0;        // [N/m]
+  double tangential_stiffness = 0.0;  // σ of the contact [N/m]
+};
+
+/// A rig makes a loop more angular, as a smaller α does: where α = 1/3 is rejected for a rigid rig,
+/// one that gives way may bring it back.
+/// @returns empty where α = 1/3 is not rejected, α is the larger one, a rig is there already, or
+///   none helps
+std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords& thin,
+                                     const Solution& best, const MindlinTest& test,
+                                     const Noise& noise, const Estimates& estimates,
+                                     const FitOptions& options, SearchBuffers& buffers);
+
+/// α of the virgin, the unloading and the reloading branches on their own, by one linear
+/// least-squares step from the fit with a column for each in place of the one for α. Kinds of
+/// branch with fewer than ten samples that count are left to the others.
+/// @returns empty where α is held or at a bound, or only one kind of branch is there
+std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution& best,
+                                         const Noise& noise, const Estimates& estimates,
+                                         Response& response);
+
+}  // namespace mindahl::identification

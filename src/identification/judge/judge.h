@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+
+#include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit_result.h"
+
+namespace mindahl::identification {
+
+/// The verdict on each parameter, from estimates and findings alone: the worst that a finding which
+/// names it calls for (Identifiability is in the order of precedence), whatever their order.
+///
+/// | precedence | from | verdict |
+/// |---|---|---|
+/// | 1 | an estimate without error or interval, and the findings no_model_fits, undetermined_…,
+/// |   | …_not_identifiable, shape_or_rig | not identifiable |
+/// | 2 | slip_force_bounded_below, sigma_bounded_below, or an interval open above | bounded below |
+/// | 3 | nothing of it | identifiable |
+///
+/// What the user holds fixed is identifiable. A finding that names no parameter changes none.
+void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
+
+/// The verdict that a finding calls for on the parameters that it names.
+/// @throws std::logic_error for a code that has no row
+Identifiability VerdictOf(const Finding& finding);
+
+}  // namespace mindahl::identification

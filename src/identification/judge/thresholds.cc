@@ -1,0 +1,95 @@
+#include "mindahl/identification/thresholds.h"
+
+#include <array>
+
+namespace mindahl::identification {
+namespace {
+
+constexpr std::array kTable = {
+    ThresholdRow{"significance", &Thresholds::significance, "p",
+                 "Mindlin's exponent is rejected below it",
+                 "the usual two-sided convention; a rig is looked for on rejection only"},
+    ThresholdRow{"indistinguishable", &Thresholds::indistinguishable, "ΔAICc",
+                 "fits less apart are not told from each other",
+                 "an evidence of e² to 1; noise makes a superfluous parameter look better by more "
+                 "with a chance of P(χ²₁ > 6) = 1.4 %"},
+    ThresholdRow{"rigid_beside_rig", &Thresholds::rigid_beside_rig, "σ/k",
+                 "a contact that much stiffer than the rig is rigid",
+                 "3 % of the travel of stick is then the contact's: the loop is that of Jenkins' "
+                 "element, whatever α"},
+    ThresholdRow{"poor_misfit", &Thresholds::poor_misfit, "rms over min(Tc, T*)",
+                 "from here on a repeatable misfit is reported",
+                 "two per cent of the force are visible beside the loop's line in a plot"},
+    ThresholdRow{"failing_misfit", &Thresholds::failing_misfit, "rms over min(Tc, T*)",
+                 "from here on no parameters of the shape are believed",
+                 "the stick branch, on which σ and α rest, is itself some ten times as long"},
+    ThresholdRow{"repeats_when_poor", &Thresholds::repeats_when_poor, "share of variance",
+                 "of a poor misfit, what repeats from stroke to stroke to be called systematic",
+                 "noise of the same rms leaves 1 − 0.3 of the variance: the systematic part is then "
+                 "√(0.3/0.7) = 0.65 of it"},
+    ThresholdRow{"repeats_when_failing", &Thresholds::repeats_when_failing, "share of variance",
+                 "the same of a failing misfit",
+                 "a failing misfit with 10 % that repeat is 3 % of the force by itself: poor"},
+    ThresholdRow{"repeat_chance", &Thresholds::repeat_chance, "p",
+                 "chance at which white noise passes for repeatable",
+                 "one loop in a thousand, since its standard errors are then widened for nothing"},
+    ThresholdRow{"main_stroke", &Thresholds::main_stroke, "of the longest",
+                 "strokes at least so long are compared with each other",
+                 "shorter ones are nested loops, run-in or run-out; the same as for X and T*"},
+    ThresholdRow{"same_directions", &Thresholds::same_directions, "correlation",
+                 "two directions of the stroke have the same residual, or opposite ones",
+                 "20 places of a stroke: by chance beyond 0.6 once in 200"},
+    ThresholdRow{"early_in_stroke", &Thresholds::early_in_stroke, "of the stroke",
+                 "a residual that peaks before it follows the reversal",
+                 "stick ends there in a loop of twice gross slip"},
+    ThresholdRow{"widest_ratio", &Thresholds::widest_ratio, "upper over lower end",
+                 "of a 95 % interval of σ or Tc that still counts as known",
+                 "a factor of three either way: the order of magnitude"},
+    ThresholdRow{"widest_shape", &Thresholds::widest_shape, "α, or of α where that is larger",
+                 "width of a 95 % interval of α that still counts as known",
+                 "0 to 1 holds Jenkins', Mindlin's and Dahl's own law alike"},
+    ThresholdRow{"open_slip_force", &Thresholds::open_slip_force, "2 ln Λ",
+                 "a slip force twenty times the largest force that loses less is not excluded",
+                 "five standard errors: by the 95 % test alone one loop in twenty far from slip "
+                 "would pass for one that slips"},
+    ThresholdRow{"parabola_error", &Thresholds::parabola_error, "half interval of ln Tc",
+                 "beyond it the likelihood is profiled, not taken for a parabola",
+                 "exp(0.1) − 1 departs from 0.1 by a twentieth: the ends of the interval by the "
+                 "like"},
+    ThresholdRow{"parabola_departure", &Thresholds::parabola_departure, "share of 2 ln Λ",
+                 "departure from the parabola, at its 95 % ends of Tc, that asks for a profile",
+                 "15 % of 2 ln Λ are 7 % of the interval's width"},
+    ThresholdRow{"parabola_mobilised", &Thresholds::parabola_mobilised, "T* over Tc",
+                 "a loop that reaches less is always profiled",
+                 "below it the valley of α and Tc may be left by the parabola unseen"},
+    ThresholdRow{"rigid_error", &Thresholds::rigid_error, "half interval of ln σ",
+                 "a σ that is known worse is tried against a rigid contact",
+                 "by the parabola a contact a thousand times stiffer is then 45 standard errors "
+                 "away: beyond it the parabola is not trusted"},
+    ThresholdRow{"turning_point_chance", &Thresholds::turning_point_chance, "p",
+                 "chance at which turning points between samples are fitted for nothing",
+                 "they cost a parameter a reversal; a record that needs them shows it by far"},
+    ThresholdRow{"force_noise_share", &Thresholds::force_noise_share, "of a residual's variance",
+                 "samples with less are left out of the model of the force's noise",
+                 "where the displacement's noise prevails, residuals are as autocorrelated as its "
+                 "errors are, which are drawn apart"},
+    ThresholdRow{"most_absorbed", &Thresholds::most_absorbed, "of the samples",
+                 "of autocorrelated noise a fit is taken to absorb no more",
+                 "beyond it the residuals no longer tell the noise: its variance is at most doubled"},
+    ThresholdRow{"redundant_gain", &Thresholds::redundant_gain, "2 ln Λ",
+                 "a model that gains less on a simpler one is that one",
+                 "ten times what the solver may leave"},
+    ThresholdRow{"jenkins_shape", &Thresholds::jenkins_shape, "α",
+                 "at its bound and below, a shape exponent is that of Jenkins' element",
+                 "the branches depart by less than 1 % of Tc"},
+    ThresholdRow{"known_together", &Thresholds::known_together, "correlation",
+                 "from here on two parameters are known only together",
+                 "either alone is then 1/√(1 − 0.99²) = 7 times less certain than with the other "
+                 "known"},
+};
+
+}  // namespace
+
+std::span<const ThresholdRow> ThresholdTable() { return kTable; }
+
+}  // namespace mindahl::identification

@@ -1,0 +1,248 @@
+#include "identification/problem/parameters.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// A value from the user must be one that the model takes.
+void RequireInDomain(const Parameter& parameter, std::string_view name, double value) {
+  const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
+  if (parameter.term->positive) {
+    RequirePositive(quantity, value);
+  } else if (parameter.term->name == "alpha") {
+    RequireNonNegative(quantity, value);
+  } else {
+    RequireFinite(quantity, value);
+  }
+}
+
+bool IsAskedFor(const FitOptions& options, const Term& term) {
+  return std::ranges::find(options.terms, term.name) != options.terms.end();
+}
+
+void Hold(Parameter& parameter, double value) {
+  parameter.theta = parameter.ToTheta(value);
+  parameter.fixed = true;
+}
+
+Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord& data,
+                        const FitOptions& options) {
+  Parameter parameter{.term = &term, .record = record};
+  parameter.scale = term.scale(data.units);
+  if (term.reference != nullptr) parameter.reference = term.reference(data.units);
+  parameter.lower = term.positive ? std::log(term.lowest) : term.lowest;
+  parameter.upper = term.positive ? std::log(term.highest) : term.highest;
+  switch (term.presence) {
+    case Presence::kAlways:
+      break;
+    case Presence::kOffsets:
+      // A single loading curve looks the same wherever its origin is put: no offset can be told.
+      if (!options.offsets || data.reversals.empty()) Hold(parameter, 0.0);
+      break;
+    case Presence::kReported:
+      if (!IsAskedFor(options, term)) Hold(parameter, 0.0);
+      break;
+    case Presence::kOnDemand:
+      parameter.fixed = parameter.absent = !IsAskedFor(options, term);
+      break;
+  }
+  return parameter;
+}
+
+}  // namespace
+
+double Parameter::ToValue(double at_theta) const {
+  return term->positive ? scale * std::exp(at_theta) : reference + scale * at_theta;
+}
+
+double Parameter::ToTheta(double value) const {
+  return term->positive ? std::log(value / scale) : (value - reference) / scale;
+}
+
+BoundSide SideOf(double theta, double lower, double upper) {
+  constexpr double kAtBound = 1e-9;
+  const double tolerance = kAtBound * std::max(1.0, upper - lower);
+  if (theta - lower <= tolerance) return BoundSide::kLower;
+  if (upper - theta <= tolerance) return BoundSide::kUpper;
+  return BoundSide::kInside;
+}
+
+Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
+                       models::InitialState state, std::pmr::memory_resource* memory)
+    : parameters_(memory),
+      free_(memory),
+      reported_(memory),
+      records_(data.records.size()),
+      state_(state) {
+  parameters_.reserve(Terms().size() * records_);
+  for (const Term& term : Terms()) {
+    if (term.scope != Scope::kContact) continue;
+    parameters_.push_back(MakeParameter(term, 0, data.records.front(), options));
+  }
+  if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
+  for (std::size_t r = 0; r < records_; ++r) {
+    for (const Term& term : Terms()) {
+      if (term.scope != Scope::kRecord) continue;
+      Parameter& parameter =
+          parameters_.emplace_back(MakeParameter(term, r, data.records[r], options));
+      if (term.name == "displacement_offset" && state == models::InitialState::kSteady) {
+        Hold(parameter, parameter.reference);  // the centre of the loop
+      }
+    }
+  }
+  ApplyOptions(options);
+  Sort();
+}
+
+Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memory)
+    : parameters_(other.parameters_, memory),
+      free_(other.free_, memory),
+      reported_(other.reported_, memory),
+      records_(other.records_),
+      state_(other.state_) {}
+
+void Parameters::Sort() {
+  free_.clear();
+  reported_.clear();
+  free_.reserve(parameters_.size());
+  reported_.reserve(parameters_.size());
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    if (!parameters_[i].fixed) free_.push_back(i);
+    if (!parameters_[i].absent) reported_.push_back(i);
+  }
+}
+
+std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) const {
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Parameter& parameter = parameters_[i];
+    if (parameter.term->name != term) continue;
+    if (parameter.term->scope == Scope::kContact || parameter.record == record) return i;
+  }
+  return parameters_.size();
+}
+
+void Parameters::NameOf(std::size_t i, std::string& name) const {
+  const Parameter& parameter = parameters_[i];
+  name.assign(parameter.term->name);
+  if (parameter.term->scope == Scope::kRecord && records_ > 1) {
+    fmt::format_to(std::back_inserter(name), "_{}", parameter.record + 1);
+  }
+}
+
+std::string Parameters::NameOf(std::size_t i) const {
+  std::string name;
+  NameOf(i, name);
+  return name;
+}
+
+bool Parameters::IsCalled(std::size_t i, std::string_view name) const {
+  if (!name.starts_with(parameters_[i].term->name)) return false;
+  return NameOf(i) == name;
+}
+
+Parameter& Parameters::Find(std::string_view name) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    if (IsCalled(i, name)) return parameters_[i];
+    names.push_back(NameOf(i));
+  }
+  throw InvalidArgument(
+      fmt::format("parameter '{}' is unknown: must be one of {}", name, fmt::join(names, ", ")));
+}
+
+void Parameters::ApplyOptions(const FitOptions& options) {
+  for (const std::string& name : options.terms) {
+    const Term* term = FindTerm(name);
+    if (term == nullptr || (term->presence != Presence::kOnDemand &&
+                            term->presence != Presence::kReported)) {
+      throw InvalidArgument(fmt::format("'{}' is no term that can be asked for", name));
+    }
+  }
+  for (const auto& [name, interval] : options.bounds) {
+    Parameter& parameter = Find(name);
+    const bool positive = parameter.term->positive;
+    RequireInDomain(parameter, name, interval.upper);
+    RequireInDomain(parameter, name,
+                    positive && interval.lower == 0.0 ? interval.upper : interval.lower);
+    if (!(interval.lower < interval.upper)) {
+      throw InvalidArgument(fmt::format("bounds {}:{} of {} are invalid: the first must be smaller",
+                                        interval.lower, interval.upper, name));
+    }
+    const double lower = interval.lower == 0.0 && positive ? parameter.lower
+                                                           : parameter.ToTheta(interval.lower);
+    const double upper = parameter.ToTheta(interval.upper);
+    parameter.lower = std::min(lower, upper);
+    parameter.upper = std::max(lower, upper);
+    parameter.bounded_by_user = true;
+  }
+  for (const auto& [name, value] : options.fixed) {
+    Parameter& parameter = Find(name);
+    RequireInDomain(parameter, name, value);
+    if (name == "alpha" && options.model->shape_exponent &&
+        *options.model->shape_exponent != value) {
+      throw InvalidArgument(fmt::format(
+          "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
+          value, options.model->name, *options.model->shape_exponent));
+    }
+    if (parameter.term->name == "displacement_offset" && state_ == models::InitialState::kSteady) {
+      throw InvalidArgument(
+          fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
+                      "it for a virgin contact",
+                      name));
+    }
+    Hold(parameter, value);
+    parameter.absent = false;
+  }
+  for (const auto& [name, value] : options.start) {
+    const Parameter& parameter = Find(name);
+    RequireInDomain(parameter, name, value);
+    const double theta = parameter.ToTheta(value);
+    if (parameter.fixed || (theta >= parameter.lower && theta <= parameter.upper)) continue;
+    const double one_end = parameter.ToValue(parameter.lower);
+    const double other_end = parameter.ToValue(parameter.upper);
+    ThrowInvalid(fmt::format("start of {} [{}]", name, parameter.term->unit), value,
+                 fmt::format("must lie within its bounds {:.6g} … {:.6g}",
+                             std::min(one_end, other_end), std::max(one_end, other_end)));
+  }
+}
+
+bool Parameters::FindStart(const FitOptions& options, std::size_t i, double& theta) const {
+  for (const auto& [name, value] : options.start) {
+    if (!IsCalled(i, name)) continue;
+    theta = parameters_[i].ToTheta(value);
+    return true;
+  }
+  return false;
+}
+
+void Parameters::Fix(std::size_t i, double theta) {
+  parameters_[i].theta = theta;
+  parameters_[i].fixed = true;
+  Sort();
+}
+
+void Parameters::Release(std::size_t i) {
+  parameters_[i].fixed = false;
+  Sort();
+}
+
+models::BranchLaw Parameters::LawAt(std::span<const double> theta) const {
+  return {.tangential_stiffness = parameters_[kStiffness].ToValue(theta[kStiffness]),
+          .shape_exponent = theta[kShape],
+          .slip_force = parameters_[kSlipForce].ToValue(theta[kSlipForce])};
+}
+
+models::SeriesSpring Parameters::RigAt(std::span<const double> theta) const {
+  if (!has_rig()) return {};
+  return {.stiffness = parameters_[kRig].ToValue(theta[kRig])};
+}
+
+}  // namespace mindahl::identification

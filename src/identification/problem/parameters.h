@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identification/problem/scaled_records.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/terms.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::identification {
+
+/// A term of one fit, as the solver sees it: θ, non-dimensional and of order one.
+///   value = scale·exp(θ) where the term is positive,  else  value = reference + scale·θ
+struct Parameter {
+  const Term* term = nullptr;
+  std::size_t record = 0;
+  double reference = 0.0;
+  double scale = 1.0;
+  double theta = 0.0;  // where it is fixed
+  double lower = 0.0;  // of θ
+  double upper = 0.0;
+  bool fixed = false;
+  bool bounded_by_user = false;
+  bool absent = false;  // a term that was not asked for: not reported
+
+  [[nodiscard]] double ToValue(double at_theta) const;
+  [[nodiscard]] double ToTheta(double value) const;
+};
+
+/// Where a parameter lies between its bounds.
+enum class BoundSide { kInside, kLower, kUpper };
+
+/// The one definition of "at a bound": within 1e-9 of the way between the bounds, at least 1e-9.
+BoundSide SideOf(double theta, double lower, double upper);
+inline BoundSide SideOf(const Parameter& parameter, double theta) {
+  return SideOf(theta, parameter.lower, parameter.upper);
+}
+
+/// Positions of the parameters of the law, the same in every fit.
+inline constexpr std::size_t kStiffness = 0;
+inline constexpr std::size_t kShape = 1;
+inline constexpr std::size_t kSlipForce = 2;
+inline constexpr std::size_t kRig = 3;
+
+/// All parameters of a fit: the contact's in the order of Terms(), then each record's.
+class Parameters {
+ public:
+  /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
+  Parameters(const ScaledRecords& data, const FitOptions& options, models::InitialState state,
+             std::pmr::memory_resource* memory);
+
+  /// A copy in another memory.
+  Parameters(const Parameters& other, std::pmr::memory_resource* memory);
+
+  [[nodiscard]] std::size_t size() const { return parameters_.size(); }
+  [[nodiscard]] const Parameter& operator[](std::size_t i) const { return parameters_[i]; }
+  [[nodiscard]] auto begin() const { return parameters_.begin(); }
+  [[nodiscard]] auto end() const { return parameters_.end(); }
+
+  /// Positions of the free ones.
+  [[nodiscard]] const std::pmr::vector<std::size_t>& free() const { return free_; }
+  /// Positions of those that a result reports.
+  [[nodiscard]] const std::pmr::vector<std::size_t>& reported() const { return reported_; }
+  /// Of a record's term; size() where there is no such term.
+  [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
+  [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
+
+  /// The name in options and results, numbered where there are several records.
+  [[nodiscard]] std::string NameOf(std::size_t i) const;
+  void NameOf(std::size_t i, std::string& name) const;
+
+  /// Holds one more parameter at θ.
+  void Fix(std::size_t i, double theta);
+
+  /// Lets one more parameter go.
+  void Release(std::size_t i);
+
+  /// Writes θ where the options have a starting value.
+  bool FindStart(const FitOptions& options, std::size_t i, double& theta) const;
+
+  /// σ, α, Tc in SI.
+  [[nodiscard]] models::BranchLaw LawAt(std::span<const double> theta) const;
+  /// The spring in series with the contact, in SI; rigid where it is absent.
+  [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
+
+ private:
+  void ApplyOptions(const FitOptions& options);
+  void Sort();
+  [[nodiscard]] Parameter& Find(std::string_view name);
+  [[nodiscard]] bool IsCalled(std::size_t i, std::string_view name) const;
+
+  std::pmr::vector<Parameter> parameters_;
+  std::pmr::vector<std::size_t> free_;
+  std::pmr::vector<std::size_t> reported_;
+  std::size_t records_ = 1;
+  models::InitialState state_;
+};
+
+}  // namespace mindahl::identification

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "identification/problem/parameters.h"
+#include "identification/problem/scaled_records.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/normalized_response.h"
+
+namespace mindahl::identification {
+
+/// What is to be solved: records, a model, their past and the parameters. Nothing of it changes
+/// while it is solved.
+struct Problem {
+  const ScaledRecords* data;
+  const models::FrictionModel* model;
+  models::InitialState state;
+  Parameters parameters;
+
+  [[nodiscard]] std::size_t size() const { return data->samples(); }
+  [[nodiscard]] Problem WithFixed(std::size_t parameter, double theta) const {
+    Problem copy = *this;
+    copy.parameters.Fix(parameter, theta);
+    return copy;
+  }
+};
+
+/// What the normalized response t depends on, in units of the data.
+struct LawPoint {
+  double log_rate = 0.0;    // ln(σ/Tc)
+  double shape = 0.0;       // α
+  double log_travel = 0.0;  // ln(Tc/k) of the rig; ignored without one
+  std::span<const double> theta;  // of all parameters, for where each record is unloaded
+};
+
+/// The point of the law at θ.
+LawPoint PointAt(const Problem& problem, std::span<const double> theta);
+
+/// Derivatives of t, a column each of all samples; an empty one is not wanted.
+using ResponseColumns = models::NormalizedGradient;
+
+/// t = T/Tc of all samples, one record after the other, load ratios included. Keeps the loading
+/// paths, which depend on the point only where a contact is unloaded, and its buffers.
+class Response {
+ public:
+  void Bind(const Problem& problem);
+  void Evaluate(const LawPoint& at, std::span<double> t);
+  void Differentiate(const LawPoint& at, std::span<double> t, const ResponseColumns& columns);
+  /// Of one record, for those who move its turning points.
+  void DifferentiateByOrigins(const LawPoint& at, std::size_t record,
+                              models::OriginSensitivity& sensitivity);
+  /// The loading path of a record of the problem that is bound.
+  const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
+
+ private:
+  [[nodiscard]] models::NormalizedLaw LawAt(const LawPoint& at) const;
+
+  struct CachedPath {
+    models::LoadingPath path;
+    double unloaded = 0.0;
+    bool valid = false;
+  };
+
+  const Problem* problem_ = nullptr;
+  std::vector<CachedPath> paths_;
+  std::vector<std::size_t> unloaded_;  // position of each record's displacement_offset
+  models::NormalizedResponse response_;
+};
+
+/// The forces of the whole model at θ, of every sample [units of the data]; no weight.
+void Predict(const Problem& problem, std::span<const double> theta, Response& response,
+             std::span<double> force);
+
+/// The column of a linear parameter: of a record's, zero on the others; no weight.
+double ColumnAt(const Problem& problem, std::size_t parameter, std::size_t record,
+                std::size_t sample);
+
+/// Weighted residuals and their derivatives by the parameters at `columns`.
+/// @param residual  size() values
+/// @param jacobian  column-major, size() × columns.size()
+void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
+                   std::span<const std::size_t> columns, std::span<double> residual,
+                   std::span<double> jacobian);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,195 @@
+#include "identification/problem/scaled_records.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::identification {
+namespace {
+
+struct Range {
+  double middle;
+  double half;
+};
+
+Range RangeOf(std::span<const double> values) {
+  const auto [lowest, highest] = std::ranges::minmax(values);
+  const double half = highest / 2 - lowest / 2;
+  return {lowest + half, half};
+}
+
+/// Squares, products and ratios of displacements and forces must neither overflow nor vanish.
+void RequireScale(std::string_view quantity, double half_range) {
+  constexpr double kSmallest = 1e-100;
+  constexpr double kLargest = 1e100;
+  if (half_range < kSmallest || half_range > kLargest) {
+    ThrowInvalid(quantity, half_range, "must lie between 1e-100 and 1e100: choose other units");
+  }
+}
+
+/// Central differences, one-sided at the ends and where time stands still.
+void FillVelocity(ScaledRecord& record) {
+  const std::size_t last = record.size() - 1;
+  record.velocity.reserve(record.size());
+  for (std::size_t i = 0; i <= last; ++i) {
+    std::size_t before = i == 0 ? 0 : i - 1;
+    std::size_t after = std::min(i + 1, last);
+    while (before > 0 && !(record.time[after] > record.time[before])) --before;
+    while (after < last && !(record.time[after] > record.time[before])) ++after;
+    const double duration = record.time[after] - record.time[before];
+    const double way = record.displacement[after] - record.displacement[before];
+    record.velocity.push_back(duration > 0 ? way / duration : 0.0);
+  }
+}
+
+void FollowLoad(ScaledRecords& data, const loop::PreparedRecords& records) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const loop::PreparedRecord& record : records.records) {
+    if (record.record.normal_load.empty()) {
+      throw InvalidArgument("following the load needs a normal load in every record");
+    }
+    for (const double load : record.record.normal_load) sum += load;
+    count += static_cast<double>(record.size());
+  }
+  const double mean = sum / count;
+  RequirePositive("mean normal load [N]", mean);
+  for (std::size_t r = 0; r < records.records.size(); ++r) {
+    for (const double load : records.records[r].record.normal_load) {
+      data.records[r].load_ratio.push_back(load / mean);
+    }
+  }
+}
+
+/// Samples of a stroke that are kept, at growing shares of its way: (k/n)².
+constexpr std::size_t kKeptOfAStroke = 12;
+/// Strokes that are thinned so: more are thinned to their ends and one sample in between.
+constexpr std::size_t kDenseStrokes = 16;
+
+}  // namespace
+
+std::size_t ScaledRecords::samples() const {
+  std::size_t count = 0;
+  for (const ScaledRecord& record : records) count += record.size();
+  return count;
+}
+
+ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
+                    std::pmr::memory_resource* memory) {
+  ScaledRecords scaled(memory);
+  scaled.sense = records.force_sense;
+  scaled.length = 0.0;
+  scaled.force = 0.0;
+  scaled.counted = records.counted();
+  for (const loop::PreparedRecord& record : records.records) {
+    scaled.length = std::max(scaled.length, RangeOf(record.displacement()).half);
+    scaled.force = std::max(scaled.force, RangeOf(record.record.force).half);
+  }
+  if (!(scaled.length > 0)) {
+    throw InvalidArgument("the displacement never changes: a fit needs a moving contact");
+  }
+  if (!(scaled.force > 0)) {
+    throw InvalidArgument("the force never changes: a fit needs a loaded contact");
+  }
+  RequireScale("half range of the displacement [m]", scaled.length);
+  RequireScale("half range of the force [N]", scaled.force);
+  const double sense = scaled.sense;
+  scaled.records.reserve(records.records.size());
+  for (const loop::PreparedRecord& prepared : records.records) {
+    const std::span<const double> displacement = prepared.displacement();
+    const std::span<const double> force = prepared.record.force;
+    const std::span<const double> time = prepared.record.time;
+    const std::size_t size = prepared.size();
+    ScaledRecord& target = scaled.records.emplace_back(memory);
+    target.reversals = prepared.reversals;
+    const double first = time.empty() ? 0.0 : time.front();
+    const double last = time.empty() ? static_cast<double>(size - 1) : time.back();
+    target.units = {.force = scaled.force,
+                    .length = scaled.length,
+                    .half_duration = last > first ? (last - first) / 2 : 1.0,
+                    .force_sense = sense,
+                    .force_reference = sense * RangeOf(force).middle,
+                    .displacement_reference = RangeOf(displacement).middle};
+    target.displacement.reserve(size);
+    target.force.reserve(size);
+    target.time.reserve(size);
+    target.root_weight.reserve(size);
+    for (std::size_t i = 0; i < size; ++i) {
+      const double at = time.empty() ? static_cast<double>(i) : time[i];
+      target.displacement.push_back((displacement[i] - target.units.displacement_reference) /
+                                    scaled.length);
+      target.force.push_back((sense * force[i] - target.units.force_reference) / scaled.force);
+      target.time.push_back((at - first) / target.units.half_duration - 1);
+      target.root_weight.push_back(prepared.counts[i] != 0 ? 1.0 : 0.0);
+    }
+    target.counts.assign(prepared.counts.begin(), prepared.counts.end());
+    if (!time.empty()) FillVelocity(target);
+  }
+  if (follow_load) FollowLoad(scaled, records);
+  return scaled;
+}
+
+ScaledRecords Thin(const ScaledRecords& data,
+                   std::pmr::vector<std::pmr::vector<std::size_t>>& reversals,
+                   std::pmr::memory_resource* memory) {
+  ScaledRecords thin(memory);
+  thin.length = data.length;
+  thin.force = data.force;
+  thin.sense = data.sense;
+  thin.records.reserve(data.records.size());
+  reversals.clear();
+  reversals.reserve(data.records.size());
+  for (const ScaledRecord& record : data.records) {
+    ScaledRecord& target = thin.records.emplace_back(memory);
+    std::pmr::vector<std::size_t>& turns = reversals.emplace_back();
+    turns.reserve(record.reversals.size());
+    target.units = record.units;
+    const std::size_t strokes = record.reversals.size() + 1;
+    const std::size_t kept = strokes <= kDenseStrokes ? kKeptOfAStroke : 2;
+    const std::size_t most = std::min(record.size(), strokes * (kept + 1) + 1);
+    for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
+      column->reserve(most);
+    }
+    target.counts.reserve(most);
+    if (!record.velocity.empty()) target.velocity.reserve(most);
+    if (!record.load_ratio.empty()) target.load_ratio.reserve(most);
+    const auto keep = [&](std::size_t i) {
+      target.displacement.push_back(record.displacement[i]);
+      target.force.push_back(record.force[i]);
+      target.time.push_back(record.time[i]);
+      target.root_weight.push_back(record.root_weight[i]);
+      if (!record.velocity.empty()) target.velocity.push_back(record.velocity[i]);
+      if (!record.load_ratio.empty()) target.load_ratio.push_back(record.load_ratio[i]);
+      target.counts.push_back(record.counts[i]);
+      thin.counted += record.counts[i];
+    };
+    std::size_t begin = 0;
+    keep(0);
+    for (std::size_t stroke = 0; stroke < strokes; ++stroke) {
+      const bool turns_at_end = stroke < record.reversals.size();
+      const std::size_t end = turns_at_end ? record.reversals[stroke] : record.size() - 1;
+      const double way = record.displacement[end] - record.displacement[begin];
+      std::size_t next = 1;
+      for (std::size_t i = begin + 1; i < end && next < kept; ++i) {
+        const double share = (record.displacement[i] - record.displacement[begin]) / way;
+        const double wanted = static_cast<double>(next * next) / static_cast<double>(kept * kept);
+        if (!(share >= wanted)) continue;
+        keep(i);
+        while (next < kept && share * static_cast<double>(kept * kept) >=
+                                  static_cast<double>(next * next)) {
+          ++next;
+        }
+      }
+      if (end > begin) keep(end);
+      if (turns_at_end) turns.push_back(target.size() - 1);
+      begin = end;
+    }
+  }
+  // Turns are complete: their memory moves no more.
+  for (std::size_t r = 0; r < thin.records.size(); ++r) thin.records[r].reversals = reversals[r];
+  return thin;
+}
+
+}  // namespace mindahl::identification

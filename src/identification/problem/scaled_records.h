@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+#include "mindahl/identification/terms.h"
+#include "mindahl/loop/preparation.h"
+
+namespace mindahl::identification {
+
+/// A record in units of the data, with the force in the displacement's sense.
+struct ScaledRecord {
+  explicit ScaledRecord(std::pmr::memory_resource* memory)
+      : displacement(memory),
+        force(memory),
+        time(memory),
+        velocity(memory),
+        load_ratio(memory),
+        root_weight(memory),
+        counts(memory),
+        inserted(memory) {}
+
+  std::pmr::vector<double> displacement;  // (δ − displacement_reference)/length
+  std::pmr::vector<double> force;         // (sense·T − force_reference)/force unit
+  std::pmr::vector<double> time;          // −1 … 1 over the record; by sample where it has no time
+  std::pmr::vector<double> velocity;    // of the displacement in that time; empty where it has none
+  std::pmr::vector<double> load_ratio;  // N over its mean; empty where it is taken as constant
+  std::pmr::vector<double> root_weight;    // of each residual; 0 where the sample does not count
+  std::pmr::vector<unsigned char> counts;  // 1 where the sample counts, else 0
+  /// 1 for a turning point between the samples, which counts for nothing but makes history; empty
+  /// where there are none (turning_points.h).
+  std::pmr::vector<unsigned char> inserted;
+  std::span<const std::size_t> reversals;  // samples
+  TermUnits units;
+
+  [[nodiscard]] std::size_t size() const { return force.size(); }
+  [[nodiscard]] TermSample SampleAt(std::size_t i) const {
+    return {displacement[i], time[i], velocity.empty() ? 0.0 : velocity[i]};
+  }
+};
+
+/// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller
+/// differences between fits mean nothing.
+inline constexpr double kRoundingRms = 1e-13;
+
+/// All records in common units: what makes a fit independent of the units of its files.
+struct ScaledRecords {
+  explicit ScaledRecords(std::pmr::memory_resource* memory) : records(memory) {}
+
+  std::pmr::vector<ScaledRecord> records;
+  double length = 1.0;  // [m]: largest half range of displacement
+  double force = 1.0;   // [N]: largest half range of force
+  int sense = 1;
+  std::size_t counted = 0;  // samples that count
+
+  [[nodiscard]] std::size_t samples() const;
+};
+
+/// Every sample that counts does so alike.
+/// @param follow_load  the force is in proportion to the load, N over its mean
+/// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
+///   more than 1e100, and where a load that is to be followed is missing
+ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
+                    std::pmr::memory_resource* memory);
+
+/// The records by fewer samples: all reversals, and of each stroke some, densest at its start: the
+/// same history for a law that knows no rate, at a fraction of the cost.
+/// @param reversals  written: those of each record, by the samples that are left; must outlive the
+///                   result
+ScaledRecords Thin(const ScaledRecords& data,
+                   std::pmr::vector<std::pmr::vector<std::size_t>>& reversals,
+                   std::pmr::memory_resource* memory);
+
+}  // namespace mindahl::identification

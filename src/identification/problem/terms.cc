@@ -1,0 +1,125 @@
+#include "mindahl/identification/terms.h"
+
+#include <algorithm>
+#include <array>
+
+namespace mindahl::identification {
+namespace {
+
+// Default bounds, in units of the data (half ranges of displacement and force), lie far outside
+// what a record can tell: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a straight
+// line.
+constexpr double kLowestStiffness = 1e-6;
+constexpr double kHighestStiffness = 1e9;
+constexpr double kLowestSlipForce = 1e-3;
+constexpr double kHighestSlipForce = 1e4;
+constexpr double kHighestShapeExponent = 20.0;
+constexpr double kWidest = 10.0;
+
+double One(const TermUnits& /*units*/) { return 1.0; }
+double Force(const TermUnits& units) { return units.force; }
+double Length(const TermUnits& units) { return units.length; }
+double Stiffness(const TermUnits& units) { return units.force / units.length; }
+double ForceOfTheFile(const TermUnits& units) { return units.force_sense * units.force; }
+double ForceRateOfTheFile(const TermUnits& units) {
+  return units.force_sense * units.force / units.half_duration;
+}
+
+constexpr std::array kTerms = {
+    Term{.name = "sigma",
+         .unit = "N/m",
+         .meaning = "σ, tangential stiffness at the start of every branch",
+         .positive = true,
+         .lowest = kLowestStiffness,
+         .highest = kHighestStiffness,
+         .scale = Stiffness},
+    Term{.name = "alpha",
+         .unit = "-",
+         .meaning = "α, shape exponent",
+         .lowest = 0.0,
+         .highest = kHighestShapeExponent,
+         .scale = One},
+    Term{.name = "slip_force",
+         .unit = "N",
+         .meaning = "Tc",
+         .entry = Entry::kLinear,
+         .positive = true,
+         .lowest = kLowestSlipForce,
+         .highest = kHighestSlipForce,
+         .scale = Force},
+    Term{.name = "rig_stiffness",
+         .unit = "N/m",
+         .meaning = "of a spring in series, δ = x + T/k",
+         .presence = Presence::kOnDemand,
+         .positive = true,
+         .lowest = kLowestStiffness,
+         .highest = kHighestStiffness,
+         .scale = Stiffness,
+         .option = "--rig-stiffness",
+         .argument = "K|fit",
+         .help = "stiffness of the rig in series with the contact [N/m], or fit; default rigid"},
+    Term{.name = "plateau_slope",
+         .unit = "N/m",
+         .meaning = "of a force beside the contact's, slope·δ",
+         .entry = Entry::kLinear,
+         .presence = Presence::kOnDemand,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = Stiffness,
+         .column = [](const TermSample& sample) { return sample.displacement; },
+         .option = "--plateau-slope",
+         .help = "fit a force that grows with the displacement beside the contact's [N/m]"},
+    Term{.name = "force_offset",
+         .unit = "N",
+         .meaning = "added to the model's force; with a drift, at the record's middle",
+         .scope = Scope::kRecord,
+         .entry = Entry::kLinear,
+         .presence = Presence::kOffsets,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = ForceOfTheFile,
+         .reference = [](const TermUnits& units) {
+           return units.force_sense * units.force_reference;
+         },
+         .column = [](const TermSample& /*sample*/) { return 1.0; }},
+    Term{.name = "displacement_offset",
+         .unit = "m",
+         .meaning = "where a virgin contact is unloaded; for a steady loop its centre, taken from "
+                    "the data",
+         .scope = Scope::kRecord,
+         .presence = Presence::kOffsets,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = Length,
+         .reference = [](const TermUnits& units) { return units.displacement_reference; }},
+    Term{.name = "force_drift",
+         .unit = "N/s",
+         .meaning = "linear in time; N a sample where the record has no time",
+         .scope = Scope::kRecord,
+         .entry = Entry::kLinear,
+         .presence = Presence::kReported,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = ForceRateOfTheFile,
+         .column = [](const TermSample& sample) { return sample.time; },
+         .option = "--drift",
+         .help = "fit a force drift linear in time [N/s]"},
+};
+
+}  // namespace
+
+std::span<const Term> Terms() { return kTerms; }
+
+const Term* FindTerm(std::string_view name) {
+  const auto term = std::ranges::find(kTerms, name, &Term::name);
+  return term == kTerms.end() ? nullptr : &*term;
+}
+
+std::string_view TermNameOf(std::string_view parameter) {
+  const std::size_t digits = parameter.find_last_not_of("0123456789");
+  const bool numbered = digits != std::string_view::npos && digits + 1 < parameter.size() &&
+                        parameter[digits] == '_';
+  return numbered ? parameter.substr(0, digits) : parameter;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,47 @@
+#include "identification/solve/search.h"
+
+#include <limits>
+#include <utility>
+
+namespace mindahl::identification {
+
+SolverOptions SolverOptionsOf(const FitOptions& options) {
+  return {.function_tolerance = options.function_tolerance,
+          .parameter_tolerance = options.parameter_tolerance,
+          .max_iterations = options.max_iterations};
+}
+
+double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOptions& options,
+                    SearchBuffers& buffers, std::pmr::memory_resource* memory) {
+  const Problem problem{&thin, candidate.problem.model, candidate.problem.state,
+                        Parameters(candidate.problem.parameters, memory)};
+  candidate.starts =
+      FindStarts(problem, options, buffers.solver, buffers.response, buffers.scratch, memory);
+  return candidate.starts.empty() ? std::numeric_limits<double>::infinity()
+                                  : candidate.starts.front().cost;
+}
+
+void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
+             std::vector<Descent>* descents) {
+  Solution& best = *candidate.solution;
+  best.sum_of_squares = std::numeric_limits<double>::infinity();
+  best.converged = false;
+  best.iterations = 0;
+  best.termination = "no starting point has the force's sense";
+  if (candidate.starts.empty()) return;
+  buffers.solver.Bind(candidate.problem, buffers.response);
+  for (const StartingPoint& start : candidate.starts) {
+    buffers.solver.Solve(start.theta, SolverOptionsOf(options), buffers.scratch);
+    if (descents != nullptr) {
+      Descent& descent = descents->emplace_back();
+      descent.start.assign(start.theta.begin(), start.theta.end());
+      std::vector<double> theta = descent.start;
+      descent.start_cost = buffers.solver.CostAt(theta);
+      descent.drawn = start.drawn;
+      descent.solution = buffers.scratch;
+    }
+    if (buffers.scratch.sum_of_squares < best.sum_of_squares) std::swap(best, buffers.scratch);
+  }
+}
+
+}  // namespace mindahl::identification

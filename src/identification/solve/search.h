@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory_resource>
+#include <vector>
+
+#include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
+#include "identification/solve/starts.h"
+#include "mindahl/identification/fit_options.h"
+
+namespace mindahl::identification {
+
+/// What a search runs on; kept from one to the next.
+struct SearchBuffers {
+  Solver solver;
+  Response response;
+  Solution scratch;
+};
+
+/// What was reached from one starting point.
+struct Descent {
+  std::vector<double> start;  // θ
+  double start_cost = 0.0;    // on all samples
+  bool drawn = false;
+  Solution solution;
+};
+
+/// A problem, its best solution, and from where that was found.
+struct Candidate {
+  Candidate(const ScaledRecords& data, const FitOptions& options, models::InitialState state,
+            std::pmr::memory_resource* memory)
+      : problem{&data, options.model, state, Parameters(data, options, state, memory)},
+        starts(memory) {}
+
+  Problem problem;
+  std::pmr::vector<StartingPoint> starts;
+  Solution* solution = nullptr;  // of the caller's buffers
+};
+
+SolverOptions SolverOptionsOf(const FitOptions& options);
+
+/// Finds the candidate's starting points on the thinned records.
+/// @returns the least cost there; infinity where none has the sense of the force
+double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOptions& options,
+                    SearchBuffers& buffers, std::pmr::memory_resource* memory);
+
+/// Solves from each starting point and keeps the best solution.
+/// @param descents  every start is recorded here, unless null
+void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
+             std::vector<Descent>* descents);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,616 @@
+#include "identification/solve/solver.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace mindahl::identification {
+namespace {
+
+// Of σ/Tc and Tc/k in units of the data: a straight line, and a branch that is vertical; a rigid
+// rig, and one in which the contact is rigid.
+const double kLowestLogRate = std::log(1e-4);
+const double kHighestLogRate = std::log(1e9);
+const double kLowestLogTravel = std::log(1e-9);
+const double kHighestLogTravel = std::log(1e3);
+
+/// Four sums side by side: one would wait for itself.
+double Dot(std::span<const double> a, std::span<const double> b) {
+  std::array<double, 4> sum{};
+  const std::size_t whole = a.size() - a.size() % 4;
+  for (std::size_t i = 0; i < whole; i += 4) {
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+  }
+  for (std::size_t i = whole; i < a.size(); ++i) sum[0] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+void AddMultiple(std::span<double> to, double factor, std::span<const double> of) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * of[i];
+}
+
+/// Solves A·x = b in place by Cholesky's rule; false where A is not positive definite.
+bool SolveCholesky(std::span<double> a, std::span<double> x) {
+  const std::size_t n = x.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t k = 0; k < j; ++k) a[j * n + j] -= a[j * n + k] * a[j * n + k];
+    if (!(a[j * n + j] > 0)) return false;
+    a[j * n + j] = std::sqrt(a[j * n + j]);
+    for (std::size_t i = j + 1; i < n; ++i) {
+      for (std::size_t k = 0; k < j; ++k) a[i * n + j] -= a[i * n + k] * a[j * n + k];
+      a[i * n + j] /= a[j * n + j];
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < i; ++k) x[i] -= a[i * n + k] * x[k];
+    x[i] /= a[i * n + i];
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t k = i + 1; k < n; ++k) x[i] -= a[k * n + i] * x[k];
+    x[i] /= a[i * n + i];
+  }
+  return true;
+}
+
+}  // namespace
+
+void Solver::Bind(const Problem& problem, Response& response) {
+  problem_ = &problem;
+  response_ = &response;
+  response.Bind(problem);
+  samples_ = problem.size();
+  held_.assign(problem.parameters.size(), 0);
+  held_theta_.resize(problem.parameters.size());
+  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
+    held_theta_[p] = problem.parameters[p].theta;
+  }
+  weight_.resize(samples_);
+  measured_.resize(samples_);
+  response_values_.resize(samples_);
+  residual_.resize(samples_);
+  ChooseSearched();
+  const std::size_t count = searched_.size();
+  derivatives_.resize(std::max<std::size_t>(count, 1) * samples_);
+  hessian_.resize(count * count);
+  matrix_.resize(count * count);
+  for (std::vector<double>* buffer : {&gradient_, &step_, &trial_, &u_}) buffer->resize(count);
+  frozen_.resize(count);
+  OrthogonaliseColumns();
+}
+
+bool Solver::Searches(Role role) const {
+  return std::ranges::any_of(searched_, [&](const Searched& s) { return s.role == role; });
+}
+
+void Solver::ChooseSearched() {
+  const Parameters& parameters = problem_->parameters;
+  const Parameter& stiffness = parameters[kStiffness];
+  const Parameter& slip_force = parameters[kSlipForce];
+  const Parameter& rig = parameters[kRig];
+  const bool has_rig = parameters.has_rig();
+  const auto is_tied = [](const Parameter& parameter) {
+    return parameter.fixed || parameter.bounded_by_user;
+  };
+  searched_.clear();
+  slip_force_is_linear_ =
+      !slip_force.fixed && !is_tied(stiffness) && !(has_rig && is_tied(rig));
+  if (slip_force_is_linear_) {
+    searched_.push_back({Role::kLogRate, kStiffness, kLowestLogRate, kHighestLogRate});
+    if (has_rig) {
+      searched_.push_back({Role::kLogTravel, kRig, kLowestLogTravel, kHighestLogTravel});
+    }
+  } else {
+    if (!stiffness.fixed) {
+      searched_.push_back({Role::kLogStiffness, kStiffness, stiffness.lower, stiffness.upper});
+    }
+    if (!slip_force.fixed) {
+      searched_.push_back({Role::kLogSlipForce, kSlipForce, slip_force.lower, slip_force.upper});
+    }
+    if (has_rig && !rig.fixed) searched_.push_back({Role::kLogRig, kRig, rig.lower, rig.upper});
+  }
+  for (const std::size_t p : parameters.free()) {
+    const Parameter& parameter = parameters[p];
+    if (p == kShape) {
+      searched_.push_back({Role::kShapeExponent, p, parameter.lower, parameter.upper});
+    } else if (parameter.term->entry == Entry::kLaw && p > kRig) {
+      searched_.push_back({Role::kUnloaded, p, parameter.lower, parameter.upper});
+    }
+  }
+}
+
+/// The columns of the free linear parameters, weighted, by Gram and Schmidt's rule twice; what is
+/// measured, less what is held, freed of them.
+void Solver::OrthogonaliseColumns() {
+  const ScaledRecords& data = *problem_->data;
+  std::size_t row = 0;
+  for (const ScaledRecord& record : data.records) {
+    for (std::size_t i = 0; i < record.size(); ++i, ++row) {
+      weight_[row] = record.root_weight[i];
+      measured_[row] = record.root_weight[i] * record.force[i];
+    }
+  }
+  columns_.clear();
+  const Parameters& parameters = problem_->parameters;
+  // A record's own first: they keep to its rows.
+  for (const Scope scope : {Scope::kRecord, Scope::kContact}) {
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const Parameter& parameter = parameters[p];
+      if (parameter.term->column == nullptr || parameter.term->scope != scope) continue;
+      const bool is_held = parameter.fixed || held_[p] != 0;
+      if (is_held && held_theta_[p] == 0) continue;
+      const auto [begin, end] = scope == Scope::kRecord ? RowsOf(parameter.record)
+                                                        : std::pair(std::size_t{0}, samples_);
+      if (!is_held) columns_.push_back({p, begin, end, 0.0});
+      const std::size_t place = columns_.size() - 1;
+      if (!is_held && basis_.size() < columns_.size() * samples_) {
+        basis_.resize(columns_.size() * samples_);
+      }
+      if (!is_held) std::ranges::fill(Basis(place), 0.0);
+      std::size_t k = 0;
+      for (std::size_t r = 0; r < data.records.size(); ++r) {
+        for (std::size_t i = 0; i < data.records[r].size(); ++i, ++k) {
+          if (k < begin || k >= end) continue;
+          const double value = weight_[k] * ColumnAt(*problem_, p, r, i);
+          if (is_held) {
+            measured_[k] -= held_theta_[p] * value;
+          } else {
+            basis_[place * samples_ + k] = value;
+          }
+        }
+      }
+    }
+  }
+  const std::size_t count = columns_.size();
+  triangle_.assign(count * count, 0.0);
+  measured_projections_.resize(count);
+  response_projections_.resize(count);
+  for (std::size_t j = 0; j < count; ++j) {
+    const std::span<double> column = Basis(j);
+    const double norm = std::sqrt(Dot(column, column));
+    for (int round = 0; round < 2; ++round) {
+      for (std::size_t i = 0; i < j; ++i) {
+        const double share = Dot(Basis(i), column);
+        AddMultiple(column, -share, Basis(i));
+        triangle_[i * count + j] += share;
+      }
+    }
+    constexpr double kDependent = 1e-12;
+    const double left = std::sqrt(Dot(column, column));
+    columns_[j].diagonal = left > kDependent * norm ? left : 0.0;
+    for (double& value : column) value = columns_[j].diagonal > 0 ? value / left : 0.0;
+    if (j > 0 && columns_[j].begin == 0) columns_[j].end = samples_;
+  }
+  for (std::size_t j = 0; j < count; ++j) {
+    measured_projections_[j] = Dot(Basis(j), measured_);
+    AddMultiple(measured_, -measured_projections_[j], Basis(j));
+  }
+}
+
+void Solver::ProjectOut(std::span<double> column) const {
+  for (std::size_t j = 0; j < columns_.size(); ++j) {
+    const std::size_t begin = columns_[j].begin;
+    const std::size_t count = columns_[j].end - begin;
+    const std::span<const double> basis = Basis(j).subspan(begin, count);
+    const std::span<double> part = column.subspan(begin, count);
+    AddMultiple(part, -Dot(basis, part), basis);
+  }
+}
+
+LawPoint Solver::PointOf(std::span<const double> u) const {
+  double log_stiffness = held_theta_[kStiffness];
+  double log_slip_force = held_theta_[kSlipForce];
+  double log_rig = held_theta_[kRig];
+  LawPoint point{.shape = held_theta_[kShape], .theta = held_theta_};
+  double log_rate = 0.0;
+  double log_travel = 0.0;
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    switch (searched_[j].role) {
+      case Role::kLogRate:
+        log_rate = u[j];
+        break;
+      case Role::kLogTravel:
+        log_travel = u[j];
+        break;
+      case Role::kShapeExponent:
+        point.shape = u[j];
+        break;
+      case Role::kUnloaded:
+        break;  // in held_theta_
+      case Role::kLogStiffness:
+        log_stiffness = u[j];
+        break;
+      case Role::kLogSlipForce:
+        log_slip_force = u[j];
+        break;
+      case Role::kLogRig:
+        log_rig = u[j];
+        break;
+    }
+  }
+  point.log_rate = slip_force_is_linear_ ? log_rate : log_stiffness - log_slip_force;
+  point.log_travel = slip_force_is_linear_ ? log_travel : log_slip_force - log_rig;
+  return point;
+}
+
+void Solver::Load(std::span<const double> theta, std::span<double> u) {
+  for (std::size_t j = 0; j < searched_.size(); ++j) {
+    const Searched& s = searched_[j];
+    const double value = s.role == Role::kLogRate     ? theta[kStiffness] - theta[kSlipForce]
+                         : s.role == Role::kLogTravel ? theta[kSlipForce] - theta[kRig]
+                                                      : theta[s.parameter];
+    u[j] = std::clamp(value, s.lower, s.upper);
+  }
+}
+
+void Solver::Store(std::span<const double> u, std::span<double> theta) const {
+  const double log_slip_force = std::log(slip_force_);
+  theta[kSlipForce] = problem_->parameters[kSlipForce].fixed ? held_theta_[kSlipForce]
+                                                             : log_slip_force;
+  for (std::size_t j = 0; j < searched_.size(); ++j) {
+    const Searched& s = searched_[j];
+    theta[s.parameter] = s.role == Role::kLogRate     ? u[j] + log_slip_force
+                         : s.role == Role::kLogTravel ? log_slip_force - u[j]
+                                                      : u[j];
+  }
+  StoreLinear(slip_force_, theta);
+}
+
+/// R·b = Qᵀ(y − Tc·t)
+void Solver::StoreLinear(double slip_force, std::span<double> theta) const {
+  const std::size_t count = columns_.size();
+  for (std::size_t j = count; j-- > 0;) {
+    double right = measured_projections_[j] - slip_force * response_projections_[j];
+    for (std::size_t k = j + 1; k < count; ++k) {
+      right -= triangle_[j * count + k] * theta[columns_[k].parameter];
+    }
+    theta[columns_[j].parameter] = columns_[j].diagonal > 0 ? right / columns_[j].diagonal : 0.0;
+  }
+}
+
+/// From t, which is there without weights: projections, Tc and the residual.
+/// @returns the sum of squares
+double Solver::Regress(bool free_slip_force, double held_slip_force) {
+  for (std::size_t i = 0; i < samples_; ++i) response_values_[i] *= weight_[i];
+  for (std::size_t j = 0; j < columns_.size(); ++j) {
+    const std::size_t begin = columns_[j].begin;
+    const std::size_t count = columns_[j].end - begin;
+    const std::span<const double> basis = Basis(j).subspan(begin, count);
+    const std::span<double> part = std::span(response_values_).subspan(begin, count);
+    response_projections_[j] = Dot(basis, part);
+    AddMultiple(part, -response_projections_[j], basis);
+  }
+  slip_force_ = held_slip_force;
+  slip_force_is_free_ = false;
+  if (free_slip_force) {
+    const Parameter& parameter = problem_->parameters[kSlipForce];
+    const double square = Dot(response_values_, response_values_);
+    const double best = square > 0 ? Dot(response_values_, measured_) / square : 0.0;
+    slip_force_ = std::clamp(best, std::exp(parameter.lower), std::exp(parameter.upper));
+    slip_force_is_free_ = slip_force_ == best;
+    if (!(best > 0)) slip_force_ = std::exp(parameter.lower);
+  }
+  for (std::size_t i = 0; i < samples_; ++i) {
+    residual_[i] = slip_force_ * response_values_[i] - measured_[i];
+  }
+  return Dot(residual_, residual_);
+}
+
+/// A record's origin moves its own samples only.
+/// @param all  ∂t/∂δ₀ of every sample by its own record's, the first of the columns that take it
+void Solver::SplitByRecord(std::span<const double> all) {
+  for (std::size_t j = searched_.size(); j-- > 0;) {
+    if (searched_[j].role != Role::kUnloaded) continue;
+    const auto [begin, end] = RowsOf(problem_->parameters[searched_[j].parameter].record);
+    const std::span<double> column = Derivative(j);
+    for (std::size_t i = 0; i < samples_; ++i) column[i] = i >= begin && i < end ? all[i] : 0.0;
+  }
+}
+
+std::pair<std::size_t, std::size_t> Solver::RowsOf(std::size_t record) const {
+  std::size_t begin = 0;
+  for (std::size_t r = 0; r < record; ++r) begin += problem_->data->records[r].size();
+  return {begin, begin + problem_->data->records[record].size()};
+}
+
+double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    if (searched_[j].role == Role::kUnloaded) held_theta_[searched_[j].parameter] = u[j];
+  }
+  const LawPoint point = PointOf(u);
+  const bool has_rig = problem_->parameters.has_rig();
+  double log_slip_force = held_theta_[kSlipForce];
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    if (searched_[j].role == Role::kLogSlipForce) log_slip_force = u[j];
+  }
+  const double held = std::exp(log_slip_force);
+  if (!with_gradient) {
+    response_->Evaluate(point, response_values_);
+    return Regress(slip_force_is_linear_, held);
+  }
+  // The derivatives of t first, each in the place of one that needs it.
+  ResponseColumns columns;
+  const auto wants = [&](Role role) {
+    for (std::size_t j = 0; j < searched_.size(); ++j) {
+      if (searched_[j].role == role) return Derivative(j);
+    }
+    return std::span<double>();
+  };
+  const bool natural = !slip_force_is_linear_;
+  columns.log_rate = natural ? wants(Role::kLogStiffness) : wants(Role::kLogRate);
+  columns.shape_exponent = wants(Role::kShapeExponent);
+  columns.log_spring_travel = natural ? wants(Role::kLogRig) : wants(Role::kLogTravel);
+  const bool tied = natural && Searches(Role::kLogSlipForce);
+  if (tied && (columns.log_rate.empty() || (has_rig && columns.log_spring_travel.empty()))) {
+    // ∂T/∂ln Tc needs both; those that are not searched go into scratch behind the rest.
+    derivatives_.resize((searched_.size() + 2) * samples_);
+    columns.shape_exponent = wants(Role::kShapeExponent);  // the buffer has moved
+    columns.log_rate = wants(Role::kLogStiffness);
+    columns.log_spring_travel = wants(Role::kLogRig);
+    if (columns.log_rate.empty()) columns.log_rate = Derivative(searched_.size());
+    if (has_rig && columns.log_spring_travel.empty()) {
+      columns.log_spring_travel = Derivative(searched_.size() + 1);
+    }
+  }
+  for (std::size_t j = 0; j < searched_.size(); ++j) {
+    if (searched_[j].role == Role::kUnloaded && columns.unloaded_displacement.empty()) {
+      columns.unloaded_displacement = Derivative(j);
+    }
+  }
+  response_->Differentiate(point, response_values_, columns);
+  if (tied) {
+    const std::span<double> column = wants(Role::kLogSlipForce);
+    for (std::size_t i = 0; i < samples_; ++i) {
+      column[i] = response_values_[i] - columns.log_rate[i] +
+                  (has_rig ? columns.log_spring_travel[i] : 0.0);
+    }
+  }
+  if (natural && Searches(Role::kLogRig)) {
+    for (double& value : wants(Role::kLogRig)) value = -value;
+  }
+  if (!columns.unloaded_displacement.empty()) SplitByRecord(columns.unloaded_displacement);
+  return Regress(slip_force_is_linear_, held);
+}
+
+/// JᵀJ and Jᵀr of the derivatives of the projected residual.
+void Solver::Linearise(std::span<const double> u) {
+  const std::size_t count = u.size();
+  const double square =
+      slip_force_is_free_ ? Dot(response_values_, response_values_) : 0.0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const std::span<double> column = Derivative(j);
+    for (std::size_t i = 0; i < samples_; ++i) column[i] *= slip_force_ * weight_[i];
+    ProjectOut(column);
+    if (square > 0) {
+      AddMultiple(column, -Dot(response_values_, column) / square, response_values_);
+    }
+    gradient_[j] = Dot(column, residual_);
+    for (std::size_t k = 0; k <= j; ++k) {
+      hessian_[j * count + k] = hessian_[k * count + j] = Dot(column, Derivative(k));
+    }
+  }
+}
+
+/// (JᵀJ + μ·diag)·s = −Jᵀr over what is not frozen; false where it has no solution.
+bool Solver::Step(double damping, std::span<const unsigned char> frozen,
+                  std::span<double> step) const {
+  const std::size_t count = step.size();
+  for (std::size_t j = 0; j < count; ++j) {
+    const double own = hessian_[j * count + j];
+    const bool still = frozen[j] != 0 || !(own > 0);
+    step[j] = still ? 0.0 : -gradient_[j] / std::sqrt(own);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double other = hessian_[k * count + k];
+      const bool none = still || frozen[k] != 0 || !(other > 0);
+      matrix_[j * count + k] = j == k ? (still ? 1.0 : 1.0 + damping)
+                               : none ? 0.0
+                                      : hessian_[j * count + k] / std::sqrt(own * other);
+    }
+  }
+  if (!SolveCholesky(matrix_, step)) return false;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double own = hessian_[j * count + j];
+    if (own > 0) step[j] /= std::sqrt(own);
+  }
+  return true;
+}
+
+/// By how much the linearised sum of squares falls.
+double Solver::Predicted(std::span<const double> step) const {
+  const std::size_t count = step.size();
+  double change = 0.0;
+  for (std::size_t j = 0; j < count; ++j) {
+    change += 2 * gradient_[j] * step[j];
+    for (std::size_t k = 0; k < count; ++k) {
+      change += step[j] * hessian_[j * count + k] * step[k];
+    }
+  }
+  return -change;
+}
+
+void Solver::Search(std::span<double> u, const SolverOptions& options, Solution& solution) {
+  constexpr double kFirstDamping = 1e-3;
+  constexpr double kLeastDamping = 1e-12;
+  constexpr double kMostDamping = 1e16;
+  constexpr double kLastStep = 1e-6;  // of the cost: the step after it has nothing left to gain
+  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
+  constexpr int kSlowSteps = 20;          // ... in as many steps
+  const auto longest = [](Role role) {
+    return role == Role::kUnloaded ? 0.5 : role == Role::kShapeExponent ? 1.0 : 1.5;
+  };
+  const double floor = static_cast<double>(problem_->data->counted) * kRoundingRms * kRoundingRms;
+  double cost = Evaluate(u, /*with_gradient=*/true);
+  Linearise(u);
+  solution.converged = false;
+  solution.iterations = 0;
+  solution.termination = "The solver made its maximum number of iterations.";
+  if (!std::isfinite(cost)) {
+    solution.termination = "The residuals at the start are not finite.";
+    return;
+  }
+  double damping = kFirstDamping;
+  double growth = 2.0;
+  double cost_before = cost;  // kSlowSteps accepted steps ago
+  int accepted = 0;
+  while (solution.iterations < options.max_iterations) {
+    ++solution.iterations;
+    for (std::size_t j = 0; j < u.size(); ++j) {
+      const bool outward_below = u[j] <= searched_[j].lower && gradient_[j] > 0;
+      const bool outward_above = u[j] >= searched_[j].upper && gradient_[j] < 0;
+      frozen_[j] = outward_below || outward_above ? 1 : 0;
+    }
+    // What is left to gain, if the parabola is right.
+    const bool newton = Step(kLeastDamping, frozen_, step_);
+    const double left = newton ? Predicted(step_) : std::numeric_limits<double>::infinity();
+    if (newton && left <= options.function_tolerance * cost) {
+      solution.converged = true;
+      solution.termination = "No step can lower the cost by more than the function tolerance.";
+      break;
+    }
+    const bool last = newton && left <= kLastStep * cost && cost > floor;
+    if (!last && !Step(damping, frozen_, step_)) {
+      damping *= growth;
+      growth *= 2;
+      if (damping > kMostDamping) break;
+      continue;
+    }
+    double shortening = 1.0;
+    for (std::size_t j = 0; j < u.size(); ++j) {
+      const double limit = longest(searched_[j].role) *
+                           (searched_[j].role == Role::kShapeExponent ? std::max(1.0, u[j]) : 1.0);
+      if (std::abs(step_[j]) > limit) shortening = std::min(shortening, limit / std::abs(step_[j]));
+    }
+    bool moves = false;
+    for (std::size_t j = 0; j < u.size(); ++j) {
+      trial_[j] = std::clamp(u[j] + shortening * step_[j], searched_[j].lower, searched_[j].upper);
+      step_[j] = trial_[j] - u[j];
+      moves = moves || std::abs(step_[j]) > options.parameter_tolerance *
+                                                (std::abs(u[j]) + options.parameter_tolerance);
+    }
+    const double predicted = Predicted(step_);
+    if (!moves) {
+      solution.converged = true;
+      solution.termination = "No parameter moves by more than the parameter tolerance.";
+      break;
+    }
+    const double trial_cost = Evaluate(trial_, /*with_gradient=*/!last);
+    const bool better = trial_cost < cost;
+    if (last) {
+      // Taken or not, it could gain next to nothing.
+      if (better) {
+        std::ranges::copy(trial_, u.begin());
+        cost = trial_cost;
+      }
+      solution.converged = true;
+      solution.termination = "No step can lower the cost by more than the function tolerance.";
+      break;
+    }
+    const double gain = cost - trial_cost;
+    if (better) {
+      const double ratio = predicted > 0 ? gain / predicted : 0.0;
+      damping = std::max(damping * std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3)),
+                         kLeastDamping);
+      growth = 2.0;
+      std::ranges::copy(trial_, u.begin());
+      cost = trial_cost;
+      Linearise(u);
+      if (++accepted % kSlowSteps == 0) {
+        const double rise = static_cast<double>(problem_->data->counted) * (cost_before - cost) / cost_before;
+        if (rise < kSmallestGain) {
+          solution.converged = true;
+          solution.termination =
+              "Twenty steps together raised twice the log-likelihood by less than 1e-3.";
+          break;
+        }
+        cost_before = cost;
+      }
+      continue;
+    }
+    damping = std::max(damping, kFirstDamping * 1e-3) * growth;
+    growth *= 2;
+    if (damping > kMostDamping || !std::isfinite(growth)) {
+      solution.converged = true;
+      solution.termination = "No step lowers the cost.";
+      break;
+    }
+  }
+  solution.sum_of_squares = Evaluate(u, /*with_gradient=*/false);
+}
+
+void Solver::MarkSides(std::span<const double> u, Solution& solution) const {
+  const Parameters& parameters = problem_->parameters;
+  solution.side.assign(parameters.size(), BoundSide::kInside);
+  for (const std::size_t p : parameters.free()) {
+    const bool by_search = slip_force_is_linear_ && (p == kStiffness || p == kRig);
+    if (!by_search) solution.side[p] = SideOf(parameters[p], solution.theta[p]);
+  }
+  if (!slip_force_is_linear_) return;
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    const Searched& s = searched_[j];
+    const BoundSide side = SideOf(u[j], s.lower, s.upper);
+    if (s.role == Role::kLogRate && side == BoundSide::kUpper) solution.side[kStiffness] = side;
+    if (s.role == Role::kLogRate && side == BoundSide::kLower) {
+      solution.side[kSlipForce] = BoundSide::kUpper;  // a straight line
+    }
+    if (s.role == Role::kLogTravel && side != BoundSide::kInside) {
+      solution.side[kRig] = side == BoundSide::kLower ? BoundSide::kUpper : BoundSide::kLower;
+    }
+  }
+}
+
+double Solver::CostAt(std::span<double> theta) {
+  Load(theta, u_);
+  const double cost = Evaluate(u_, /*with_gradient=*/false);
+  Store(u_, theta);
+  return cost;
+}
+
+double Solver::CostAt(const LawPoint& at, std::span<double> theta) {
+  response_->Evaluate(at, response_values_);
+  const bool fixed = problem_->parameters[kSlipForce].fixed;
+  const double cost = Regress(!fixed, std::exp(held_theta_[kSlipForce]));
+  if (!fixed && !slip_force_is_free_) return std::numeric_limits<double>::infinity();
+  theta[kSlipForce] = std::log(slip_force_);
+  StoreLinear(slip_force_, theta);
+  return cost;
+}
+
+void Solver::Solve(std::span<const double> start, const SolverOptions& options,
+                   Solution& solution) {
+  solution.theta.assign(held_theta_.begin(), held_theta_.end());
+  const auto released = static_cast<bool>(std::ranges::count(held_, 1));
+  if (released) {
+    std::ranges::fill(held_, 0);
+    OrthogonaliseColumns();
+  }
+  Load(start, u_);
+  // Each pass holds one more linear parameter at the bound that it had passed.
+  for (std::size_t pass = 0; pass <= problem_->parameters.size(); ++pass) {
+    if (searched_.empty()) {
+      solution.sum_of_squares = Evaluate(u_, /*with_gradient=*/false);
+      solution.converged = std::isfinite(solution.sum_of_squares);
+      solution.termination = "Every parameter that is not linear is fixed.";
+    } else {
+      Search(u_, options, solution);
+    }
+    Store(u_, solution.theta);
+    bool any = false;
+    for (const Column& column : columns_) {
+      const Parameter& parameter = problem_->parameters[column.parameter];
+      double& theta = solution.theta[column.parameter];
+      if (theta >= parameter.lower && theta <= parameter.upper) continue;
+      theta = std::clamp(theta, parameter.lower, parameter.upper);
+      held_[column.parameter] = 1;
+      held_theta_[column.parameter] = theta;
+      any = true;
+      break;
+    }
+    if (!any) break;
+    OrthogonaliseColumns();
+  }
+  if (problem_->parameters.free().empty()) solution.termination = "every parameter is fixed";
+  solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
+  MarkSides(u_, solution);
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,287 @@
+#include "identification/solve/starts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/draws.h"
+
+namespace mindahl::identification {
+namespace {
+
+constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};  // σX/Tc
+/// Square roots and divisions only, but for Dahl's exponential and a soft knee.
+constexpr std::array kShapeExponents = {0.0, 1.0 / 3.0, 1.0, 2.5};
+constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
+
+constexpr double kHighestDrawnShape = 3.0;
+constexpr std::size_t kDrawsPerStart = 20;  // the regression refuses some of them
+
+/// A point of the plane and its cost.
+struct Look {
+  double cost = std::numeric_limits<double>::infinity();
+  double reach = 0.0;
+  double shape = 0.0;
+  double rig_ratio = 1.0;
+  std::size_t guess = 0;  // of where the contact was unloaded
+};
+
+class Plane {
+ public:
+  Plane(const Problem& problem, const FitOptions& options, Solver& solver,
+        std::pmr::memory_resource* memory)
+      : problem_(problem), options_(options), solver_(solver), theta_(memory), guesses_(memory) {
+    const Parameters& parameters = problem.parameters;
+    theta_.resize(parameters.size());
+    for (std::size_t p = 0; p < parameters.size(); ++p) theta_[p] = parameters[p].theta;
+    FindGuesses(memory);
+  }
+
+  [[nodiscard]] std::size_t guesses() const { return guesses_.size(); }
+
+  /// Writes the look's cost, and what it found into theta().
+  void At(Look& look) {
+    const Parameters& parameters = problem_.parameters;
+    const double log_reach = std::log(look.reach);
+    LawPoint point{.log_rate = log_reach, .shape = look.shape, .theta = theta_};
+    std::size_t record = 0;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      if (parameters[p].term->name != "displacement_offset") continue;
+      theta_[p] = guesses_[look.guess][record++];
+    }
+    if (parameters.has_rig()) {
+      // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
+      const Parameter& rig = parameters[kRig];
+      const double stiffness = rig.fixed ? std::exp(rig.theta)
+                                         : look.reach * (1 + look.rig_ratio) / look.rig_ratio;
+      const double softer = 1 / look.reach - 1 / stiffness;
+      const double contact = softer <= 0.1 / look.reach ? 10 * look.reach : 1 / softer;
+      point.log_rate = std::log(contact);
+      point.log_travel = -std::log(stiffness);
+    }
+    look.cost = solver_.CostAt(point, theta_);
+    if (!std::isfinite(look.cost)) return;
+    for (const std::size_t p : parameters.free()) {
+      // Columns far beyond their bounds make a straight line of any loop.
+      const bool is_column = parameters[p].term->column != nullptr;
+      if (is_column && (theta_[p] < parameters[p].lower || theta_[p] > parameters[p].upper)) {
+        look.cost = std::numeric_limits<double>::infinity();
+        return;
+      }
+    }
+    theta_[kShape] = look.shape;
+    if (!parameters[kStiffness].fixed) theta_[kStiffness] = point.log_rate + theta_[kSlipForce];
+    if (parameters.has_rig() && !parameters[kRig].fixed) {
+      theta_[kRig] = theta_[kSlipForce] - point.log_travel;
+    }
+    if (parameters[kStiffness].fixed && !parameters[kSlipForce].fixed) {
+      theta_[kSlipForce] = theta_[kStiffness] - point.log_rate;
+    }
+    for (const std::size_t p : parameters.free()) {
+      theta_[p] = std::clamp(theta_[p], parameters[p].lower, parameters[p].upper);
+    }
+  }
+
+  /// θ of the last look, with what the options have to say of starts.
+  [[nodiscard]] std::span<const double> theta() {
+    for (const std::size_t p : problem_.parameters.free()) {
+      problem_.parameters.FindStart(options_, p, theta_[p]);
+    }
+    return theta_;
+  }
+
+ private:
+  using Guess = std::pmr::vector<double>;  // one a record
+
+  void FindGuesses(std::pmr::memory_resource* memory) {
+    const Parameters& parameters = problem_.parameters;
+    const std::size_t records = problem_.data->records.size();
+    Guess fixed(memory);
+    Guess first(memory);
+    Guess centre(memory);
+    Guess zero(memory);
+    bool all_fixed = true;
+    for (std::size_t r = 0; r < records; ++r) {
+      const Parameter& offset = parameters[parameters.PositionOf("displacement_offset", r)];
+      all_fixed = all_fixed && offset.fixed;
+      fixed.push_back(offset.theta);
+      first.push_back(offset.fixed ? offset.theta
+                                   : problem_.data->records[r].displacement.front());
+      centre.push_back(offset.fixed ? offset.theta : 0.0);
+      zero.push_back(offset.fixed ? offset.theta : offset.ToTheta(0.0));
+    }
+    if (all_fixed) {
+      guesses_.push_back(std::move(fixed));
+      return;
+    }
+    const bool zero_is_near = std::ranges::all_of(zero, [](double x) { return std::abs(x) <= 1; });
+    const bool zero_is_new = zero_is_near && zero != first && zero != centre;
+    const bool centre_is_new = centre != first;
+    guesses_.push_back(std::move(first));
+    if (centre_is_new) guesses_.push_back(std::move(centre));
+    if (zero_is_new) guesses_.push_back(std::move(zero));
+  }
+
+  const Problem& problem_;
+  const FitOptions& options_;
+  Solver& solver_;
+  std::pmr::vector<double> theta_;
+  std::pmr::vector<Guess> guesses_;
+};
+
+void KeepBetter(Look& best, Plane& plane, Look look) {
+  // Where no slip is reached nothing depends on the reach: of equals the last, nearest to slip.
+  constexpr double kEqual = 1 + 1e-9;
+  plane.At(look);
+  if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = look;
+}
+
+/// Looks closer between the best point's neighbours. A Jenkins element that does not slip does not
+/// depend on its slip force: a start that is only near the slipping one has no way to it.
+void Refine(Look& best, Plane& plane) {
+  constexpr int kSubdivisions = 5;
+  constexpr int kRounds = 3;
+  double step = std::log(2.0);
+  for (int round = 0; round < kRounds; ++round) {
+    const Look middle = best;
+    for (int i = -kSubdivisions + 1; i < kSubdivisions; ++i) {
+      if (i == 0) continue;
+      Look look = middle;
+      look.reach = middle.reach * std::exp(step * i / kSubdivisions);
+      KeepBetter(best, plane, look);
+    }
+    step /= kSubdivisions;
+  }
+}
+
+/// The best looks of those that compete: of one α, or where α is held of one third of the reaches.
+std::array<Look, kShapeExponents.size()> LookAround(Plane& plane, const Parameters& parameters) {
+  constexpr std::size_t kThirds = 3;
+  const Parameter& shape = parameters[kShape];
+  const bool rig_is_open = parameters.has_rig() && !parameters[kRig].fixed;
+  const std::size_t shapes = shape.fixed ? 1 : kShapeExponents.size();
+  const std::size_t ratios = rig_is_open ? kRigRatios.size() : 1;
+  std::array<Look, kShapeExponents.size()> best;
+  for (std::size_t guess = 0; guess < plane.guesses(); ++guess) {
+    for (std::size_t k = 0; k < shapes; ++k) {
+      const double alpha =
+          shape.fixed ? shape.theta : std::clamp(kShapeExponents[k], shape.lower, shape.upper);
+      for (std::size_t i = 0; i < kReaches.size(); ++i) {
+        for (std::size_t ratio = 0; ratio < ratios; ++ratio) {
+          KeepBetter(best[shape.fixed ? i * kThirds / kReaches.size() : k], plane,
+                     {.reach = kReaches[i],
+                      .shape = alpha,
+                      .rig_ratio = rig_is_open ? kRigRatios[ratio] : 1.0,
+                      .guess = guess});
+        }
+      }
+    }
+  }
+  if (shape.fixed) {
+    for (Look& look : best) {
+      if (std::isfinite(look.cost)) Refine(look, plane);
+    }
+  }
+  std::ranges::sort(best, {}, &Look::cost);
+  return best;
+}
+
+// The thinned record's minimum is a start only: no digits are asked of it.
+constexpr SolverOptions kRough{
+    .function_tolerance = 1e-4, .parameter_tolerance = 1e-6, .max_iterations = 30};
+
+/// Where α is held the likelihood may have kinks (a Jenkins loop just past slip has a false minimum
+/// where none of its samples slips); with α free it is smooth, and its minimum is a start.
+void AddRelaxedStart(const Problem& thin, Solver& solver, Response& response, Solution& scratch,
+                     std::pmr::memory_resource* memory, std::pmr::vector<StartingPoint>& starts) {
+  Problem relaxed{thin.data, thin.model, thin.state, Parameters(thin.parameters, memory)};
+  relaxed.parameters.Release(kShape);
+  solver.Bind(relaxed, response);
+  solver.Solve(starts.front().theta, kRough, scratch);
+  StartingPoint& start = starts.emplace_back(
+      StartingPoint{.theta = {scratch.theta.begin(), scratch.theta.end(), memory}});
+  start.theta[kShape] = thin.parameters[kShape].theta;
+  solver.Bind(thin, response);
+  solver.Solve(start.theta, kRough, scratch);
+  start.theta.assign(scratch.theta.begin(), scratch.theta.end());
+  start.cost = scratch.sum_of_squares;
+}
+
+/// The options' own start, where it leaves nothing to be looked for.
+std::optional<StartingPoint> GivenStart(const Problem& thin, const FitOptions& options,
+                                        std::pmr::memory_resource* memory) {
+  if (options.start.empty() || options.starts > 1) return std::nullopt;
+  StartingPoint start{.theta = std::pmr::vector<double>(memory)};
+  const Parameters& parameters = thin.parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    double& theta = start.theta.emplace_back(parameters[p].theta);
+    const bool is_searched = p == kSlipForce || parameters[p].term->entry == Entry::kLaw;
+    if (parameters[p].fixed || parameters.FindStart(options, p, theta)) continue;
+    if (is_searched) return std::nullopt;
+  }
+  return start;
+}
+
+}  // namespace
+
+std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
+                                           Solver& solver, Response& response, Solution& scratch,
+                                           std::pmr::memory_resource* memory) {
+  // From how many of the looks: one more than are wanted, since they may meet.
+  constexpr std::size_t kRoughStarts = 2;
+  std::pmr::vector<StartingPoint> starts(memory);
+  if (std::optional<StartingPoint> given = GivenStart(thin, options, memory)) {
+    starts.push_back(std::move(*given));
+    return starts;
+  }
+  starts.reserve(std::max(options.starts, kShapeExponents.size()) + 1);
+  solver.Bind(thin, response);
+  Plane plane(thin, options, solver, memory);
+  const auto looks = LookAround(plane, thin.parameters);
+  // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
+  const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
+    return thin.parameters[p].term->presence == Presence::kOnDemand;
+  });
+  const std::size_t wanted =
+      bent ? looks.size() : std::max(options.starts, kRoughStarts);
+  for (Look look : looks) {
+    if (starts.size() >= wanted || !std::isfinite(look.cost)) break;
+    plane.At(look);
+    const std::span<const double> theta = plane.theta();
+    StartingPoint& start = starts.emplace_back(
+        StartingPoint{.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost});
+    if (!options.start.empty()) continue;  // a start that is given is one
+    solver.Solve(start.theta, kRough, scratch);
+    if (!std::isfinite(scratch.sum_of_squares)) continue;
+    start.theta.assign(scratch.theta.begin(), scratch.theta.end());
+    start.cost = scratch.sum_of_squares;
+  }
+  if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty()) {
+    AddRelaxedStart(thin, solver, response, scratch, memory, starts);
+  }
+  std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
+  if (starts.size() > options.starts) starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(options.starts), starts.end());
+  // Where all looks have the wrong sense, so have all draws.
+  if (starts.empty() || options.starts <= starts.size()) return starts;
+  Draws draws(options.seed);
+  const Parameter& shape = thin.parameters[kShape];
+  for (std::size_t left = kDrawsPerStart * options.starts;
+       left > 0 && starts.size() < options.starts; --left) {
+    Look look;
+    look.reach = draws.LogUniform(kReaches.front(), kReaches.back());
+    const double alpha = draws.Uniform(0.0, kHighestDrawnShape);
+    look.shape = shape.fixed ? shape.theta : std::clamp(alpha, shape.lower, shape.upper);
+    look.rig_ratio = draws.LogUniform(kRigRatios.front(), kRigRatios.back());
+    look.guess = draws.Index(plane.guesses());
+    plane.At(look);
+    if (!std::isfinite(look.cost)) continue;
+    const std::span<const double> theta = plane.theta();
+    starts.push_back({.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost, .drawn = true});
+  }
+  return starts;
+}
+
+}  // namespace mindahl::identification

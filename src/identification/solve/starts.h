@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+#include <vector>
+
+#include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
+#include "mindahl/identification/fit_options.h"
+
+namespace mindahl::identification {
+
+struct StartingPoint {
+  std::pmr::vector<double> theta;  // all parameters
+  double cost = 0.0;               // on the thinned record
+  bool drawn = false;              // at random, not from the look
+};
+
+/// Starting points from the data, best first.
+///
+/// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
+/// linear eliminated, so that neither slopes nor plateaus are read off noisy data. A virgin contact
+/// is tried unloaded at the first sample, at the centre of the record and at displacement zero; a
+/// rig of unknown stiffness at some ratios to the contact's. The best of each α, or where α is held
+/// of each third of the plane, goes on to the minimum of the thinned record. Where options ask for
+/// more than these four, the others are drawn at random over the same range, seeded.
+/// @param thin      the problem on its thinned record
+/// @param solver    bound to it here
+/// @returns empty where no point has the sense of the force
+std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
+                                           Solver& solver, Response& response, Solution& scratch,
+                                           std::pmr::memory_resource* memory);
+
+}  // namespace mindahl::identification

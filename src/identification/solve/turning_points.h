@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <memory>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+#include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
+
+namespace mindahl::identification {
+
+/// Records whose turning points lie beyond their outermost samples, by an overshoot each.
+///
+/// A record that is sampled coarsely misses the extremes of its motion; the branches that follow
+/// then start in the wrong place, and no other parameter can mend that without a bias.
+struct TurnedRecords {
+  ScaledRecords data;  // with the turning points put in beside the outermost samples
+  std::pmr::vector<std::pmr::vector<std::size_t>> reversals;  // of `data`, which refers to them
+  std::vector<double> overshoot;  // of all records' reversals, in units of the data
+};
+
+/// @param overshoot  >= 0, one a reversal of all records
+std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
+                                                  std::span<const double> overshoot);
+
+bool HasTurningPoints(const ScaledRecords& data);
+
+/// How far a turning point may lie beyond its sample: the longer of the steps beside it.
+std::vector<double> LongestOvershoots(const ScaledRecords& data);
+
+/// ∂(weighted force)/∂overshoot, a sparse column a reversal: an overshoot moves the branch that
+/// starts there, and those that start on it.
+class TurningPointColumns {
+ public:
+  /// @param problem  of turned records; θ as of the problem
+  TurningPointColumns(const Problem& problem, std::span<const double> theta, Response& response);
+
+  [[nodiscard]] const Eigen::SparseMatrix<double>& columns() const { return columns_; }
+
+  /// Takes off a column what those of the turning points explain of it.
+  void ProjectOut(Eigen::Ref<Eigen::VectorXd> column) const;
+
+ private:
+  Eigen::SparseMatrix<double> columns_;  // samples × reversals
+  mutable Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> normal_;
+};
+
+/// What all parameters and overshoots together leave of the residuals after one linear step from
+/// the solution, and the overshoots of that step.
+struct TurningPointStep {
+  Eigen::VectorXd left;
+  std::vector<double> overshoot;
+};
+TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solution,
+                                   Response& response);
+
+struct TurningPointFit {
+  std::unique_ptr<TurnedRecords> records;
+  Solution solution;
+};
+
+/// Least squares in all free parameters and the overshoots, by Levenberg and Marquardt's method
+/// within their bounds. Overshoots are eliminated first: their normal matrix is as sparse as the
+/// history is shallow, so that the cost grows with their number, not with its square.
+/// @param overshoot  to start from
+TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
+                                 std::vector<double> overshoot, const SolverOptions& options,
+                                 Response& response);
+
+}  // namespace mindahl::identification

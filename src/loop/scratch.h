@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/cycles.h"
+#include "mindahl/loop/displacement_noise.h"
+#include "mindahl/loop/record.h"
+#include "mindahl/loop/reversals.h"
+
+/// The public functions of this module with their scratch, and what they return, in a memory that
+/// the caller gives: for stages that are run again and again.
+namespace mindahl::loop {
+
+void FindReversals(std::span<const double> displacement, double gate,
+                   std::pmr::vector<std::size_t>& reversals);
+double EstimateReversalGate(std::span<const double> displacement,
+                            std::pmr::memory_resource* scratch);
+double EstimateDisplacementNoise(std::span<const double> displacement,
+                                 std::pmr::memory_resource* scratch);
+LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
+                         std::pmr::memory_resource* scratch);
+int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
+               std::pmr::memory_resource* scratch);
+
+/// The measures of the record whose force has its sign changed, for a sense of −1.
+LoopMeasures InSense(LoopMeasures measures, int force_sense);
+
+}  // namespace mindahl::loop
