@@ -25,6 +25,7 @@
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/io/time_window.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/report/figure.h"
 #include "mindahl/report/json.h"
@@ -207,42 +208,14 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
   return fit;
 }
 
-/// Keeps the samples whose time lies in the window.
-void ApplyTimeWindow(RecordFile& input, const std::string& file, const Interval& window) {
-  Record& record = input.record;
-  if (record.time.empty()) {
-    throw InputError(
-        fmt::format("{}: --time-window needs a time column: name it with --time", file));
-  }
-  Record kept;
-  std::vector<std::size_t> lines;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (record.time[i] < window.lower || record.time[i] > window.upper) continue;
-    kept.displacement.push_back(record.displacement[i]);
-    kept.force.push_back(record.force[i]);
-    kept.time.push_back(record.time[i]);
-    if (!record.normal_load.empty()) kept.normal_load.push_back(record.normal_load[i]);
-    lines.push_back(input.line[i]);
-  }
-  if (kept.size() == 0) {
-    const auto [first, last] = std::ranges::minmax(record.time);
-    throw InputError(
-        fmt::format("{}: --time-window {}:{} holds no sample: the record runs from {} to {} s",
-                    file, window.lower, window.upper, first, last));
-  }
-  input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
-                                    kept.size(), record.size(), window.lower, window.upper));
-  record = std::move(kept);
-  input.line = std::move(lines);
-}
-
 std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& console) {
   std::vector<RecordFile> inputs;
   for (const std::string& file : options.files) {
     RecordFile& input = inputs.emplace_back(io::ReadRecord(file, options.columns));
     if (!options.time_window.empty()) {
-      ApplyTimeWindow(input, file,
-                      ParseInterval(options.time_window, "--time-window", "LO:HI in seconds"));
+      const Interval window =
+          ParseInterval(options.time_window, "--time-window", "LO:HI in seconds");
+      io::KeepTimeWindow(input, file, window.lower, window.upper);
     }
     for (const std::string& note : input.notes) {
       console.err << fmt::format("mindahl fit: note: {}\n", note);
@@ -444,7 +417,7 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
   command
       .add_option(
           "--force-sign", options.force_sign,
-          "has the force the displacement's sense in the file; auto decides from the sign of "
+          "have force and displacement the same sign in the file; auto decides from the sign of "
           "the loop's energy")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "same", "opposite"}))

@@ -238,10 +238,11 @@ std::string ToText(const Report& report) {
   }
   std::string text = report.selection ? SelectionText(*report.selection) : std::string();
   text += fmt::format(
-      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} m), {} cycles; force {} the "
-      "displacement's sense\n",
+      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} m), {} cycles; {} "
+      "of force and displacement\n",
       fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
-      samples, reversals, widest.reversal_gate, cycles, fit.force_sense > 0 ? "in" : "against");
+      samples, reversals, widest.reversal_gate, cycles,
+      fit.force_sense > 0 ? "same sign" : "opposite signs");
   if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
   if (left_out > 0) text += fmt::format("{} samples left out of the fit\n", left_out);
   text += "\n" + ParameterTable(fit);

@@ -1,0 +1,55 @@
+#include "mindahl/io/time_window.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::io {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+RecordFile TimedFile() {
+  RecordFile file;
+  file.record.time = {0, 1, 2, 3};
+  file.record.displacement = {10, 11, 12, 13};
+  file.record.force = {20, 21, 22, 23};
+  file.record.normal_load = {30, 31, 32, 33};
+  file.line = {2, 3, 4, 6};
+  return file;
+}
+
+std::string MessageOf(RecordFile file, double first, double last) {
+  try {
+    KeepTimeWindow(file, "loop.csv", first, last);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
+  RecordFile file = TimedFile();
+  KeepTimeWindow(file, "loop.csv", 1, 2);
+  EXPECT_THAT(file.record.time, ElementsAre(1, 2));
+  EXPECT_THAT(file.record.displacement, ElementsAre(11, 12));
+  EXPECT_THAT(file.record.force, ElementsAre(21, 22));
+  EXPECT_THAT(file.record.normal_load, ElementsAre(31, 32));
+  EXPECT_THAT(file.line, ElementsAre(3, 4));
+  EXPECT_THAT(file.notes, ElementsAre("loop.csv: 2 of 4 samples lie in the time window 1:2 s"));
+}
+
+TEST(TimeWindow, WithoutTimeOrSamplesIsRefused) {
+  EXPECT_THAT(MessageOf(TimedFile(), 4, 5),
+              HasSubstr("4:5 holds no sample: the record runs from 0 to 3 s"));
+  RecordFile untimed = TimedFile();
+  untimed.record.time.clear();
+  EXPECT_THAT(MessageOf(untimed, 0, 1), HasSubstr("needs a time column"));
+}
+
+}  // namespace
+}  // namespace mindahl::io
