@@ -115,7 +115,7 @@ TEST(CycleEnergies, CloseADriftingLoopByAChord) {
 TEST(CycleEnergies, NeedAClosedCycle) {
   const Record record = MakeRecord({.cycles = 0.6});
   EXPECT_TRUE(CycleEnergies(record, Reversals(record)).empty());
-  EXPECT_TRUE(CycleEnergies({{0, 1}, {0, 1}, {}, {}}, {}).empty());
+  EXPECT_TRUE(CycleEnergies(Record{{0, 1}, {0, 1}, {}, {}}, {}).empty());
 }
 
 TEST(MeasureLoop, ReadsAmplitudeCentreAndForces) {
@@ -188,7 +188,7 @@ TEST(MeasureLoop, CountsCompleteCycles) {
 }
 
 TEST(MeasureLoop, MonotoneLoadingHasNoCycle) {
-  const LoopMeasures measures = MeasureLoop({{1, 2, 4}, {0, 3, 5}, {}, {}}, {});
+  const LoopMeasures measures = MeasureLoop(Record{{1, 2, 4}, {0, 3, 5}, {}, {}}, {});
   EXPECT_EQ(measures.cycles, 0U);
   EXPECT_DOUBLE_EQ(measures.amplitude, 1.5);
   EXPECT_DOUBLE_EQ(measures.centre, 2.5);
@@ -197,15 +197,15 @@ TEST(MeasureLoop, MonotoneLoadingHasNoCycle) {
 }
 
 TEST(MeasureLoop, AConstantRecordHasNoAmplitude) {
-  const LoopMeasures measures = MeasureLoop({{2, 2, 2}, {1, 1, 1}, {}, {}}, {});
+  const LoopMeasures measures = MeasureLoop(Record{{2, 2, 2}, {1, 1, 1}, {}, {}}, {});
   EXPECT_EQ(measures.amplitude, 0.0);
   EXPECT_EQ(measures.cycles, 0U);
 }
 
 TEST(MeasureLoop, RejectsAnEmptyOrInconsistentRecord) {
-  EXPECT_THROW(MeasureLoop({}, {}), InvalidArgument);
-  EXPECT_THROW(MeasureLoop({{1, 2}, {1}, {}, {}}, {}), InvalidArgument);
-  EXPECT_THROW(MeasureLoop({{1, 2}, {1, std::nan("")}, {}, {}}, {}), InvalidArgument);
+  EXPECT_THROW(MeasureLoop(Record{}, {}), InvalidArgument);
+  EXPECT_THROW(MeasureLoop(Record{{1, 2}, {1}, {}, {}}, {}), InvalidArgument);
+  EXPECT_THROW(MeasureLoop(Record{{1, 2}, {1, std::nan("")}, {}, {}}, {}), InvalidArgument);
 }
 
 TEST(ForceSense, IsThatOfTheEnergy) {
@@ -253,13 +253,13 @@ TEST(ForceSense, OfAGrossSlipLoopIsItsEnergysEvenAgainstAFallingPlateau) {
 }
 
 TEST(ForceSense, WithoutAClosedCycleIsThatOfTheCovariance) {
-  EXPECT_EQ(ForceSense({{0, 1, 2}, {5, 6, 8}, {}, {}}, {}), 1);
-  EXPECT_EQ(ForceSense({{0, 1, 2}, {-5, -6, -8}, {}, {}}, {}), -1);
+  EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {5, 6, 8}, {}, {}}, {}), 1);
+  EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {-5, -6, -8}, {}, {}}, {}), -1);
 }
 
 TEST(ForceSense, OfAConstantForceIsUnknown) {
-  EXPECT_EQ(ForceSense({{0, 1, 2, 1, 0}, {3, 3, 3, 3, 3}, {}, {}}, {}), 0);
-  EXPECT_EQ(ForceSense({}, {}), 0);
+  EXPECT_EQ(ForceSense(Record{{0, 1, 2, 1, 0}, {3, 3, 3, 3, 3}, {}, {}}, {}), 0);
+  EXPECT_EQ(ForceSense(Record{}, {}), 0);
 }
 
 TEST(ForceSense, SurvivesNoiseOnManyRecords) {
