@@ -1,12 +1,24 @@
 #!/usr/bin/env bash
 # Installs what building, testing and plotting need, from Debian's packages; quick when all is there.
+#   install-dependencies.sh --checks    also what CI checks the source with
+#   install-dependencies.sh --peers     also the programs that bench/peers compares mindahl with
 set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev
-  libgtest-dev libgmock-dev libbenchmark-dev gnuplot-nox jq
+  libgtest-dev libgmock-dev libbenchmark-dev gnuplot-nox jq python3
 )
+for group in "$@"; do
+  case $group in
+    --checks) packages+=(clang-format clang-tidy-19) ;;
+    --peers) packages+=(python3-lmfit) ;;
+    *)
+      echo "install-dependencies: there is no group '$group': --checks or --peers" >&2
+      exit 2
+      ;;
+  esac
+done
 
 missing=()
 for package in "${packages[@]}"; do

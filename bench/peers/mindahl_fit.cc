@@ -1,0 +1,98 @@
+// Times fits of one record, for comparison with other programs: bench/peers/compare.py runs it.
+//   mindahl_fit RECORD.csv REPEATS
+#include <time.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "mindahl/core/version.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/loop/reversals.h"
+#include "mindahl/models/response.h"
+
+namespace {
+
+using namespace mindahl;
+using nlohmann::json;
+
+/// A way to fit: how much of the answer is asked for.
+struct Depth {
+  const char* name;
+  std::function<FitResult(const Record&)> fit;
+};
+
+const std::vector<Depth> kDepths = {
+    {"full",
+     [](const Record& record) {
+       return Fit({&record, 1}, {});
+     }},
+};
+
+/// Of the processor, which other programs on the machine disturb less than the clock.
+double ProcessorMilliseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+double MedianMilliseconds(int repeats, const std::function<void()>& call) {
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) {
+    const double begin = ProcessorMilliseconds();
+    call();
+    times.push_back(ProcessorMilliseconds() - begin);
+  }
+  std::ranges::sort(times);
+  const std::size_t middle = times.size() / 2;
+  return times.size() % 2 == 1 ? times[middle] : (times[middle - 1] + times[middle]) / 2;
+}
+
+/// The floor of any fit: reversals, branches, forces and their derivatives once.
+double OneGradientMilliseconds(int repeats, const Record& record, const BranchLaw& law) {
+  const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
+  std::vector<double> force(record.size());
+  std::vector<double> gradient(record.size() * kGradientColumns);
+  return MedianMilliseconds(repeats, [&] {
+    const LoadingPath path = MakeLoadingPath(
+        record.displacement, FindReversals(record.displacement, 0.0), model.memory, {});
+    EvaluateForceAndGradient(model, law, path, record.displacement, force, gradient);
+  });
+}
+
+json Parameters(const FitResult& fit) {
+  json parameters;
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    const ParameterEstimate* estimate = fit.Find(name);
+    parameters[name] = {{"value", estimate->value}, {"standard_error", nullptr}};
+    if (estimate->standard_error) parameters[name]["standard_error"] = *estimate->standard_error;
+  }
+  return parameters;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int repeats = argc == 3 ? std::atoi(argv[2]) : 0;
+  if (repeats < 1) {
+    std::cerr << "usage: mindahl_fit RECORD.csv REPEATS\n";
+    return 2;
+  }
+  const Record record = ReadRecord(argv[1]).record;
+  json depths;
+  for (const Depth& depth : kDepths) {
+    const FitResult fit = depth.fit(record);
+    depths[depth.name] = {{"converged", fit.converged},
+                          {"parameters", Parameters(fit)},
+                          {"median_ms", MedianMilliseconds(repeats, [&] { depth.fit(record); })}};
+  }
+  const BranchLaw law = kDepths.front().fit(record).law;
+  std::cout << json{{"program", "mindahl " + std::string(Version())},
+                    {"depths", depths},
+                    {"one_gradient_ms", OneGradientMilliseconds(100 * repeats, record, law)}}
+            << '\n';
+}

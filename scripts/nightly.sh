@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# What takes too long for .ci/run: every test with those labelled slow, under the sanitizers with all
+# their checks too; clang's static analyzer; the intervals' coverage over a thousand loops a row; the
+# mapping over thousands of contacts with another seed every night.
+# Some hours on two cores. Every part runs, whatever became of those before.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+
+failed=()
+part() {
+  echo "=== $*"
+  "$@" || failed+=("$*")
+}
+
+./scripts/install-dependencies.sh --checks || exit
+part ./scripts/test.sh ci
+part ./scripts/test.sh asan-full
+part ./scripts/tidy.sh --thorough
+part cmake --build build/ci --target coverage
+seed=$(date +%Y%m%d)
+part build/ci/src/mindahl validate --cases 5000 --seed "$seed"
+
+if ((${#failed[@]})); then
+  printf 'failed: %s\n' "${failed[@]}"
+  exit 1
+fi
