@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -127,8 +128,9 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
     RequireEnoughSamples(candidate.problem);
     return candidate;
   };
-  const auto find_starts = [&](Candidate& candidate) {
-    return FindStartsOf(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
+  const auto find_starts = [&](Candidate& candidate,
+                               double rival = std::numeric_limits<double>::infinity()) {
+    return FindStartsOf(candidate, attempt.thin, options, rival, attempt.buffers, attempt.memory);
   };
   if (const std::optional<InitialState> given = GivenState(attempt)) {
     Candidate candidate = make(*given, first);
@@ -139,7 +141,7 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   Candidate virgin = make(InitialState::kVirgin, first);
   Candidate steady = make(InitialState::kSteady, second);
   const double virgin_cost = find_starts(virgin);
-  const double steady_cost = find_starts(steady);
+  const double steady_cost = find_starts(steady, virgin_cost);
   // A rms twice as large on the thinned record is not made good on the whole one: its n_eff·ln 4
   // is beyond the parameter that the two differ by, however few samples are left of it.
   constexpr double kClearlyWorse = 4.0;
@@ -269,8 +271,7 @@ double DescribeStructures(const Problem& problem, std::span<const double> residu
     for (std::size_t i = 0; i < record.size(); ++i) {
       newtons.push_back(residual[begin + i] * problem.data->force);
     }
-    fit.structure = DescribeStructure(record.displacement, record.reversals, newtons,
-                                      record.counts,
+    fit.structure = DescribeStructure(record.displacement, record.reversals, newtons, record.counts,
                                       {thresholds.main_stroke, thresholds.repeat_chance});
     const auto repeats = static_cast<double>(std::max<std::size_t>(fit.structure.strokes, 1));
     widening = std::max(widening, 1 + fit.structure.repeatable_share * (repeats - 1));
@@ -312,8 +313,8 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     // draws know that already.
     noise.autocorrelation = AutocorrelationOf(
         *problem.data, residual, std::pmr::get_default_resource(), [&](std::size_t i) {
-          return noise.force_share.empty() ||
-                 noise.force_share[i] * noise.force_share[i] >= options.thresholds.force_noise_share;
+          return noise.force_share.empty() || noise.force_share[i] * noise.force_share[i] >=
+                                                  options.thresholds.force_noise_share;
         });
   }
   const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
@@ -366,8 +367,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Judge(result.parameters, result.findings);
 }
 
-void ReportStarts(const Problem& problem, const std::vector<Descent>& descents,
-                  FitResult& result) {
+void ReportStarts(const Problem& problem, const std::vector<Descent>& descents, FitResult& result) {
   const auto rms = [&](double sum_of_squares) {
     return problem.data->force *
            std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted));
@@ -436,8 +436,9 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   if (std::isfinite(best->solution->sum_of_squares)) {
     if (is_weighted) {
       const auto fit_with_weights = [&] {
-        settled = FitWithWeights(best->problem, data, options, displacement_errors, buffers.solver,
-                                 buffers.response, SolverOptionsOf(options), *best->solution, noise);
+        settled =
+            FitWithWeights(best->problem, data, options, displacement_errors, buffers.solver,
+                           buffers.response, SolverOptionsOf(options), *best->solution, noise);
       };
       fit_with_weights();
       // Outliers may have hidden the past and the valley: once more from all starts, as weighted.
@@ -455,8 +456,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
       const bool gated = std::ranges::any_of(
           prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
       if (best->solution->converged && !gated) {
-        turned = FitTurningPointsIfNeeded(best->problem, *best->solution, options,
-                                          buffers.response);
+        turned =
+            FitTurningPointsIfNeeded(best->problem, *best->solution, options, buffers.response);
       }
       if (turned) {
         best->problem.data = &turned->records->data;

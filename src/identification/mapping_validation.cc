@@ -122,8 +122,7 @@ Errors Compare(const FitResult& fit, const MindlinDahlParameters& truth) {
 }
 
 double Median(std::vector<double> values) {
-  return values.empty() ? 0.0
-                        : boost::math::statistics::median(values.begin(), values.end());
+  return values.empty() ? 0.0 : boost::math::statistics::median(values.begin(), values.end());
 }
 
 double Largest(const std::vector<double>& values) {

@@ -198,8 +198,9 @@ std::vector<Cycle> ClosedCycles(const FitResult& fit, const SampleMask& mask,
 
 /// Those that the options hold out, and the cycles of one fold: every so many, so that slow changes
 /// of the contact are in every fold.
-std::vector<std::vector<bool>> HeldOut(std::span<const RecordView> records, const FitOptions& options,
-                   std::span<const Cycle> cycles, std::size_t fold, std::size_t folds) {
+std::vector<std::vector<bool>> HeldOut(std::span<const RecordView> records,
+                                       const FitOptions& options, std::span<const Cycle> cycles,
+                                       std::size_t fold, std::size_t folds) {
   std::vector<std::vector<bool>> mask = options.preparation.held_out;
   mask.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) mask[r].resize(records[r].size(), false);
@@ -335,7 +336,8 @@ void FindRedundant(std::vector<ModelScore>& scores, std::span<const FitResult> f
       score.redundant = true;
       AddRemark(score, "rig not needed: the fit is the same without");
     }
-    if (score.at_bound && !score.model->shape_exponent && fits[i].law.shape_exponent < thresholds.jenkins_shape &&
+    if (score.at_bound && !score.model->shape_exponent &&
+        fits[i].law.shape_exponent < thresholds.jenkins_shape &&
         gains_nothing_on(score, "jenkins", score.rig)) {
       score.redundant = true;
       AddRemark(score, "the same as jenkins");

@@ -76,21 +76,18 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceP
   std::vector<Finding> findings;
   if (!profile.open_above) return findings;
   const loop::LoopMeasures& measures = result.WidestRecord().measures;
-  findings.push_back({.code = "slip_force_bounded_below",
-                      .parameters = {"slip_force"},
-                      .numbers = {{"peak_force", measures.peak_force},
-                                  {"amplitude", measures.amplitude}}});
+  findings.push_back(
+      {.code = "slip_force_bounded_below",
+       .parameters = {"slip_force"},
+       .numbers = {{"peak_force", measures.peak_force}, {"amplitude", measures.amplitude}}});
   if (result.Find("alpha")->status != ParameterStatus::kFixed) {
-    findings.push_back({.code = "alpha_not_identifiable",
-                        .parameters = {"alpha"},
-                        .kind = "with_slip_force"});
+    findings.push_back(
+        {.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});
   }
   return findings;
 }
 
-Finding FoundOpenStiffness() {
-  return {.code = "sigma_bounded_below", .parameters = {"sigma"}};
-}
+Finding FoundOpenStiffness() { return {.code = "sigma_bounded_below", .parameters = {"sigma"}}; }
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {

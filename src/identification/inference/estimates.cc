@@ -36,10 +36,10 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
     places.push_back(static_cast<Eigen::Index>(j));
   }
   full_ = AnalyseJacobian(problem, free, jacobian_, noise, displacement);
-  conditional_ = inside.size() == free.size()
-                     ? full_
-                     : AnalyseJacobian(problem, inside, jacobian_(Eigen::all, places), noise,
-                                       displacement);
+  conditional_ =
+      inside.size() == free.size()
+          ? full_
+          : AnalyseJacobian(problem, inside, jacobian_(Eigen::all, places), noise, displacement);
   // Of correlated residuals a fit takes up more than its parameters' number, and leaves less than
   // the noise's variance; where it takes up most, that is all that can be said.
   if (noise.is_known || displacement.residuals.size() > 0) return;
@@ -82,8 +82,8 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
     lower = estimate.value;
     upper = parameter.ToValue(theta + reach);
   } else {
-    estimate.standard_error = parameter.term->positive ? estimate.value * error
-                                                       : std::abs(parameter.scale) * error;
+    estimate.standard_error =
+        parameter.term->positive ? estimate.value * error : std::abs(parameter.scale) * error;
     lower = parameter.ToValue(theta - quantile_ * error);
     upper = parameter.ToValue(theta + quantile_ * error);
   }

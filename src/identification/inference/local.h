@@ -15,8 +15,8 @@ namespace mindahl::identification {
 struct LocalUncertainty {
   std::vector<std::size_t> columns;  // positions in θ, those not held at a bound
   /// columns²: (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ on the determined subspace, R the correlation of the residuals;
-  /// with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's share of the noise and E
-  /// the K drawn residuals
+  /// with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's share of the noise and
+  /// E the K drawn residuals
   Eigen::MatrixXd factor;
   Eigen::VectorXd white_factor;  // the diagonal of (JᵀJ)⁻¹: what white residuals would give
   /// Residuals' worth of noise that the fit takes up, tr((JᵀJ)⁻¹JᵀRJ): the number of parameters

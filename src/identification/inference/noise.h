@@ -14,7 +14,7 @@ namespace mindahl::identification {
 struct Autocorrelation {
   static constexpr std::size_t kHighestOrder = 12;
 
-  std::size_t order = 0;  // p; 0 when the residuals are white
+  std::size_t order = 0;                                 // p; 0 when the residuals are white
   std::array<double, kHighestOrder> coefficients{};      // φ₁ … φ_p
   std::array<double, kHighestOrder + 1> correlations{};  // ρ₀ … ρ_p, the sample's
   double innovation_share = 1.0;                         // variance of ε over that of r
@@ -43,7 +43,7 @@ struct Noise {
   bool is_known = false;  // it was given, not estimated
   double force = 0.0;     // standard deviation of the force's own
   Autocorrelation autocorrelation;
-  double repeating = 1.0;  // by how much a repeatable residual widens a variance
+  double repeating = 1.0;           // by how much a repeatable residual widens a variance
   std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
   std::size_t outliers = 0;         // samples at less than half their weight
   std::size_t samples = 0;          // that count

@@ -84,8 +84,8 @@ void Widen(ParameterEstimate& estimate, const Parameter& parameter, const Range&
 }  // namespace
 
 bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
-                           const Estimates& estimates, double peak_share,
-                           const FitOptions& options, SearchBuffers& buffers) {
+                           const Estimates& estimates, double peak_share, const FitOptions& options,
+                           SearchBuffers& buffers) {
   if (problem.parameters[kSlipForce].fixed) return false;
   const Thresholds& thresholds = options.thresholds;
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);

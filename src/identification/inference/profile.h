@@ -32,8 +32,8 @@ struct SlipForceProfile {
 /// badly known, and where its likelihood at the ends of the parabola's interval is another one.
 /// @param peak_share  T* of the record over Tc
 bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
-                           const Estimates& estimates, double peak_share,
-                           const FitOptions& options, SearchBuffers& buffers);
+                           const Estimates& estimates, double peak_share, const FitOptions& options,
+                           SearchBuffers& buffers);
 
 SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, const Noise& noise,
                                   const Estimates& estimates, const FitOptions& options,

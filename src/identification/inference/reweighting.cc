@@ -180,8 +180,8 @@ class Weighting {
 
 double RobustScale(std::vector<double> residuals) {
   constexpr double kNormalDeviation = 1.482602218505602;  // σ over the median |r|, 1/Φ⁻¹(3/4)
-  return kNormalDeviation *
-         boost::math::statistics::median_absolute_deviation(residuals.begin(), residuals.end(), 0.0);
+  return kNormalDeviation * boost::math::statistics::median_absolute_deviation(
+                                residuals.begin(), residuals.end(), 0.0);
 }
 
 Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double sum_of_squares,
@@ -191,8 +191,7 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
   noise.is_known = options.force_noise.has_value();
   const double known = options.force_noise.value_or(0.0) / data.force;
   noise.variance =
-      std::max(noise.is_known ? known * known
-                              : sum_of_squares / DegreesOfFreedom(data, parameters),
+      std::max(noise.is_known ? known * known : sum_of_squares / DegreesOfFreedom(data, parameters),
                kRoundingRms * kRoundingRms);
   noise.force = std::sqrt(noise.variance);
   return noise;

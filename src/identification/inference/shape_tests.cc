@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "identification/inference/evidence.h"
 
@@ -55,11 +56,11 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
   buffers.solver.Bind(held, buffers.response);
   buffers.solver.Solve(best.theta, SolverOptionsOf(options), solution);
   MindlinTest test;
-  test.likelihood_ratio = EvidenceOfShape(noise, estimates)
-                              .FStatistic(solution.sum_of_squares, best.sum_of_squares,
-                                          noise.variance);
-  test.p_value = PValueOfF(test.likelihood_ratio,
-                           noise.degrees_of_freedom(problem.parameters.free().size()));
+  test.likelihood_ratio =
+      EvidenceOfShape(noise, estimates)
+          .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
+  test.p_value =
+      PValueOfF(test.likelihood_ratio, noise.degrees_of_freedom(problem.parameters.free().size()));
   return test;
 }
 
@@ -77,7 +78,8 @@ std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords
   Candidate sprung(*problem.data, with_rig, problem.state, std::pmr::get_default_resource());
   Solution solution;
   sprung.solution = &solution;
-  FindStartsOf(sprung, thin, with_rig, buffers, std::pmr::get_default_resource());
+  FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), buffers,
+               std::pmr::get_default_resource());
   Descend(sprung, with_rig, buffers, nullptr);
   // As many parameters in both: ΔAICc is 2 ln Λ.
   const double loss = EvidenceOfShape(noise, estimates)
@@ -85,8 +87,7 @@ std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
   return RigAlternative{
       .rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
-      .tangential_stiffness =
-          sprung.problem.parameters.LawAt(solution.theta).tangential_stiffness};
+      .tangential_stiffness = sprung.problem.parameters.LawAt(solution.theta).tangential_stiffness};
 }
 
 std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution& best,
@@ -132,14 +133,13 @@ std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution&
   const Eigen::MatrixXd factor =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(normal).pseudoInverse();
   const Eigen::VectorXd step = -factor * (split.transpose() * values);
-  const Eigen::MatrixXd correlated =
-      CorrelatedProduct(*problem.data, noise.autocorrelation, split);
+  const Eigen::MatrixXd correlated = CorrelatedProduct(*problem.data, noise.autocorrelation, split);
   // What the departure from one law leaves in the residuals is not noise here.
   const double sum_of_squares = values.squaredNorm();
   if (!(sum_of_squares > 0)) return {};
   const double left = (values + split * step).squaredNorm() / sum_of_squares;
-  const Eigen::MatrixXd covariance = noise.variance * noise.repeating * std::min(left, 1.0) *
-                                     factor * correlated * factor;
+  const Eigen::MatrixXd covariance =
+      noise.variance * noise.repeating * std::min(left, 1.0) * factor * correlated * factor;
   std::vector<BranchShape> shapes;
   for (Eigen::Index k = 0; k < parts; ++k) {
     const Eigen::Index column = column_of(k);

@@ -17,7 +17,7 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
 
 /// α = 1/3 in a rig that gives way.
 struct RigAlternative {
-  double rig_stiffness = 0.0;        // [N/m]
+  double rig_stiffness = 0.0;         // [N/m]
   double tangential_stiffness = 0.0;  // σ of the contact [N/m]
 };
 

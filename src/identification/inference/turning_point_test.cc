@@ -46,8 +46,8 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   const double most = std::exp(best.theta[kStiffness]) * *std::ranges::max_element(longest);
   if (count * most * most / variance < 2 * static_cast<double>(reversals)) return {};
 
-  const double needed = ChiSquaredQuantile(static_cast<double>(reversals),
-                                           options.thresholds.turning_point_chance);
+  const double needed =
+      ChiSquaredQuantile(static_cast<double>(reversals), options.thresholds.turning_point_chance);
   TurningPointStep step = StepTurningPoints(problem, best, response);
   const std::unique_ptr<TurnedRecords> turned = PutInTurningPoints(data, step.overshoot);
   const double left = EffectiveSamples(turned->data, step.left.data());
@@ -70,8 +70,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   }
   const Evidence evidence(data.counted, EffectiveSamples(*refitted.data, residual.data()));
   const double price = 2 * static_cast<double>(reversals);
-  const double gain =
-      evidence.LikelihoodRatio(best.sum_of_squares, fit.solution.sum_of_squares);
+  const double gain = evidence.LikelihoodRatio(best.sum_of_squares, fit.solution.sum_of_squares);
   if (!fit.solution.converged || !(gain > std::max(price, needed))) return {};
   return fit;
 }

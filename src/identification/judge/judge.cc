@@ -27,8 +27,8 @@ constexpr std::array<std::pair<std::string_view, Identifiability>, 11> kVerdicts
 }  // namespace
 
 Identifiability VerdictOf(const Finding& finding) {
-  const auto row =
-      std::ranges::find(kVerdicts, finding.code, &std::pair<std::string_view, Identifiability>::first);
+  const auto row = std::ranges::find(kVerdicts, finding.code,
+                                     &std::pair<std::string_view, Identifiability>::first);
   if (row == kVerdicts.end()) {
     throw std::logic_error("the finding has no verdict: " + std::string(finding.code));
   }

@@ -23,10 +23,11 @@ constexpr std::array kTable = {
     ThresholdRow{"failing_misfit", &Thresholds::failing_misfit, "rms over min(Tc, T*)",
                  "from here on no parameters of the shape are believed",
                  "the stick branch, on which σ and α rest, is itself some ten times as long"},
-    ThresholdRow{"repeats_when_poor", &Thresholds::repeats_when_poor, "share of variance",
-                 "of a poor misfit, what repeats from stroke to stroke to be called systematic",
-                 "noise of the same rms leaves 1 − 0.3 of the variance: the systematic part is then "
-                 "√(0.3/0.7) = 0.65 of it"},
+    ThresholdRow{
+        "repeats_when_poor", &Thresholds::repeats_when_poor, "share of variance",
+        "of a poor misfit, what repeats from stroke to stroke to be called systematic",
+        "noise of the same rms leaves 1 − 0.3 of the variance: the systematic part is then "
+        "√(0.3/0.7) = 0.65 of it"},
     ThresholdRow{"repeats_when_failing", &Thresholds::repeats_when_failing, "share of variance",
                  "the same of a failing misfit",
                  "a failing misfit with 10 % that repeat is 3 % of the force by itself: poor"},
@@ -73,9 +74,10 @@ constexpr std::array kTable = {
                  "samples with less are left out of the model of the force's noise",
                  "where the displacement's noise prevails, residuals are as autocorrelated as its "
                  "errors are, which are drawn apart"},
-    ThresholdRow{"most_absorbed", &Thresholds::most_absorbed, "of the samples",
-                 "of autocorrelated noise a fit is taken to absorb no more",
-                 "beyond it the residuals no longer tell the noise: its variance is at most doubled"},
+    ThresholdRow{
+        "most_absorbed", &Thresholds::most_absorbed, "of the samples",
+        "of autocorrelated noise a fit is taken to absorb no more",
+        "beyond it the residuals no longer tell the noise: its variance is at most doubled"},
     ThresholdRow{"redundant_gain", &Thresholds::redundant_gain, "2 ln Λ",
                  "a model that gains less on a simpler one is that one",
                  "ten times what the solver may leave"},

@@ -161,8 +161,8 @@ Parameter& Parameters::Find(std::string_view name) {
 void Parameters::ApplyOptions(const FitOptions& options) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name);
-    if (term == nullptr || (term->presence != Presence::kOnDemand &&
-                            term->presence != Presence::kReported)) {
+    if (term == nullptr ||
+        (term->presence != Presence::kOnDemand && term->presence != Presence::kReported)) {
       throw InvalidArgument(fmt::format("'{}' is no term that can be asked for", name));
     }
   }
@@ -176,8 +176,8 @@ void Parameters::ApplyOptions(const FitOptions& options) {
       throw InvalidArgument(fmt::format("bounds {}:{} of {} are invalid: the first must be smaller",
                                         interval.lower, interval.upper, name));
     }
-    const double lower = interval.lower == 0.0 && positive ? parameter.lower
-                                                           : parameter.ToTheta(interval.lower);
+    const double lower =
+        interval.lower == 0.0 && positive ? parameter.lower : parameter.ToTheta(interval.lower);
     const double upper = parameter.ToTheta(interval.upper);
     parameter.lower = std::min(lower, upper);
     parameter.upper = std::max(lower, upper);

@@ -154,8 +154,7 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
         } else if (p == kShape) {
           value = slip_force * gradient.shape_exponent[k];
         } else if (p == kSlipForce) {
-          value = slip_force *
-                  (residual[k] - gradient.log_rate[k] + gradient.log_spring_travel[k]);
+          value = slip_force * (residual[k] - gradient.log_rate[k] + gradient.log_spring_travel[k]);
         } else if (p == kRig) {
           value = -slip_force * gradient.log_spring_travel[k];
         } else if (is_unloaded) {

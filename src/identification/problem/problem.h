@@ -31,9 +31,9 @@ struct Problem {
 
 /// What the normalized response t depends on, in units of the data.
 struct LawPoint {
-  double log_rate = 0.0;    // ln(σ/Tc)
-  double shape = 0.0;       // α
-  double log_travel = 0.0;  // ln(Tc/k) of the rig; ignored without one
+  double log_rate = 0.0;          // ln(σ/Tc)
+  double shape = 0.0;             // α
+  double log_travel = 0.0;        // ln(Tc/k) of the rig; ignored without one
   std::span<const double> theta;  // of all parameters, for where each record is unloaded
 };
 

@@ -177,8 +177,8 @@ ScaledRecords Thin(const ScaledRecords& data,
         const double wanted = static_cast<double>(next * next) / static_cast<double>(kept * kept);
         if (!(share >= wanted)) continue;
         keep(i);
-        while (next < kept && share * static_cast<double>(kept * kept) >=
-                                  static_cast<double>(next * next)) {
+        while (next < kept &&
+               share * static_cast<double>(kept * kept) >= static_cast<double>(next * next)) {
           ++next;
         }
       }

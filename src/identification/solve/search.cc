@@ -12,11 +12,11 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
 }
 
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOptions& options,
-                    SearchBuffers& buffers, std::pmr::memory_resource* memory) {
+                    double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory) {
   const Problem problem{&thin, candidate.problem.model, candidate.problem.state,
                         Parameters(candidate.problem.parameters, memory)};
-  candidate.starts =
-      FindStarts(problem, options, buffers.solver, buffers.response, buffers.scratch, memory);
+  candidate.starts = FindStarts(problem, options, rival, buffers.solver, buffers.response,
+                                buffers.scratch, memory);
   return candidate.starts.empty() ? std::numeric_limits<double>::infinity()
                                   : candidate.starts.front().cost;
 }

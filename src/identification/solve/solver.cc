@@ -93,8 +93,7 @@ void Solver::ChooseSearched() {
     return parameter.fixed || parameter.bounded_by_user;
   };
   searched_.clear();
-  slip_force_is_linear_ =
-      !slip_force.fixed && !is_tied(stiffness) && !(has_rig && is_tied(rig));
+  slip_force_is_linear_ = !slip_force.fixed && !is_tied(stiffness) && !(has_rig && is_tied(rig));
   if (slip_force_is_linear_) {
     searched_.push_back({Role::kLogRate, kStiffness, kLowestLogRate, kHighestLogRate});
     if (has_rig) {
@@ -139,8 +138,8 @@ void Solver::OrthogonaliseColumns() {
       if (parameter.term->column == nullptr || parameter.term->scope != scope) continue;
       const bool is_held = parameter.fixed || held_[p] != 0;
       if (is_held && held_theta_[p] == 0) continue;
-      const auto [begin, end] = scope == Scope::kRecord ? RowsOf(parameter.record)
-                                                        : std::pair(std::size_t{0}, samples_);
+      const auto [begin, end] =
+          scope == Scope::kRecord ? RowsOf(parameter.record) : std::pair(std::size_t{0}, samples_);
       if (!is_held) columns_.push_back({p, begin, end, 0.0});
       const std::size_t place = columns_.size() - 1;
       if (!is_held && basis_.size() < columns_.size() * samples_) {
@@ -245,8 +244,8 @@ void Solver::Load(std::span<const double> theta, std::span<double> u) {
 
 void Solver::Store(std::span<const double> u, std::span<double> theta) const {
   const double log_slip_force = std::log(slip_force_);
-  theta[kSlipForce] = problem_->parameters[kSlipForce].fixed ? held_theta_[kSlipForce]
-                                                             : log_slip_force;
+  theta[kSlipForce] =
+      problem_->parameters[kSlipForce].fixed ? held_theta_[kSlipForce] : log_slip_force;
   for (std::size_t j = 0; j < searched_.size(); ++j) {
     const Searched& s = searched_[j];
     theta[s.parameter] = s.role == Role::kLogRate     ? u[j] + log_slip_force
@@ -375,8 +374,7 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
 /// JᵀJ and Jᵀr of the derivatives of the projected residual.
 void Solver::Linearise(std::span<const double> u) {
   const std::size_t count = u.size();
-  const double square =
-      slip_force_is_free_ ? Dot(response_values_, response_values_) : 0.0;
+  const double square = slip_force_is_free_ ? Dot(response_values_, response_values_) : 0.0;
   for (std::size_t j = 0; j < count; ++j) {
     const std::span<double> column = Derivative(j);
     for (std::size_t i = 0; i < samples_; ++i) column[i] *= slip_force_ * weight_[i];
@@ -432,7 +430,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
   constexpr double kFirstDamping = 1e-3;
   constexpr double kLeastDamping = 1e-12;
   constexpr double kMostDamping = 1e16;
-  constexpr double kLastStep = 1e-6;  // of the cost: the step after it has nothing left to gain
+  constexpr double kLastStep = 1e-6;      // of the cost: the step after it has nothing left to gain
   constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
   constexpr int kSlowSteps = 20;          // ... in as many steps
   const auto longest = [](Role role) {
@@ -451,6 +449,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
   double damping = kFirstDamping;
   double growth = 2.0;
   double cost_before = cost;  // kSlowSteps accepted steps ago
+  bool at_u = true;           // is what Evaluate() left that of u?
   int accepted = 0;
   while (solution.iterations < options.max_iterations) {
     ++solution.iterations;
@@ -495,6 +494,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
     }
     const double trial_cost = Evaluate(trial_, /*with_gradient=*/!last);
     const bool better = trial_cost < cost;
+    at_u = better;
     if (last) {
       // Taken or not, it could gain next to nothing.
       if (better) {
@@ -508,14 +508,15 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
     const double gain = cost - trial_cost;
     if (better) {
       const double ratio = predicted > 0 ? gain / predicted : 0.0;
-      damping = std::max(damping * std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3)),
-                         kLeastDamping);
+      damping =
+          std::max(damping * std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3)), kLeastDamping);
       growth = 2.0;
       std::ranges::copy(trial_, u.begin());
       cost = trial_cost;
       Linearise(u);
       if (++accepted % kSlowSteps == 0) {
-        const double rise = static_cast<double>(problem_->data->counted) * (cost_before - cost) / cost_before;
+        const double rise =
+            static_cast<double>(problem_->data->counted) * (cost_before - cost) / cost_before;
         if (rise < kSmallestGain) {
           solution.converged = true;
           solution.termination =
@@ -534,7 +535,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
       break;
     }
   }
-  solution.sum_of_squares = Evaluate(u, /*with_gradient=*/false);
+  solution.sum_of_squares = at_u ? cost : Evaluate(u, /*with_gradient=*/false);
 }
 
 void Solver::MarkSides(std::span<const double> u, Solution& solution) const {

@@ -108,9 +108,9 @@ class Solver {
   std::vector<unsigned char> held_;  // linear parameters held at a bound
   std::vector<double> held_theta_;   // θ of what is not searched
   std::vector<Column> columns_;
-  std::vector<double> basis_;        // orthonormal columns
-  std::vector<double> triangle_;     // R, columns_.size()², by rows
-  std::vector<double> measured_;     // y, weighted, projected
+  std::vector<double> basis_;                 // orthonormal columns
+  std::vector<double> triangle_;              // R, columns_.size()², by rows
+  std::vector<double> measured_;              // y, weighted, projected
   std::vector<double> measured_projections_;  // Qᵀy
   std::vector<double> weight_;
   std::vector<double> response_values_;  // t, weighted, projected
@@ -118,7 +118,7 @@ class Solver {
   std::vector<double> residual_;     // projected
   std::vector<double> derivatives_;  // of the residual by what is searched, projected
   double slip_force_ = 0.0;
-  bool slip_force_is_free_ = false;   // of its bounds
+  bool slip_force_is_free_ = false;  // of its bounds
   bool slip_force_is_linear_ = false;
   std::vector<double> hessian_;
   std::vector<double> gradient_;

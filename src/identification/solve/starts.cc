@@ -12,9 +12,19 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};  // σX/Tc
-/// Square roots and divisions only, but for Dahl's exponential and a soft knee.
-constexpr std::array kShapeExponents = {0.0, 1.0 / 3.0, 1.0, 2.5};
+/// Where the plane is looked at: σX/Tc for some α, closer where loops of that shape differ. The
+/// first two cost square roots and divisions only.
+struct Row {
+  double shape;
+  std::size_t count;
+  std::array<double, 10> reaches;  // σX/Tc
+};
+constexpr std::array kRows = {
+    Row{1.0 / 3.0, 10, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 150.}},
+    Row{0.0, 8, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}}, Row{1.0, 5, {0.5, 1.5, 4.0, 12., 60.}},
+    Row{2.5, 4, {0.7, 3.0, 12., 60.}}};
+/// Where α is held, all of one row.
+constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};
 constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
 constexpr double kHighestDrawnShape = 3.0;
@@ -55,8 +65,8 @@ class Plane {
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
       const Parameter& rig = parameters[kRig];
-      const double stiffness = rig.fixed ? std::exp(rig.theta)
-                                         : look.reach * (1 + look.rig_ratio) / look.rig_ratio;
+      const double stiffness =
+          rig.fixed ? std::exp(rig.theta) : look.reach * (1 + look.rig_ratio) / look.rig_ratio;
       const double softer = 1 / look.reach - 1 / stiffness;
       const double contact = softer <= 0.1 / look.reach ? 10 * look.reach : 1 / softer;
       point.log_rate = std::log(contact);
@@ -108,8 +118,7 @@ class Plane {
       const Parameter& offset = parameters[parameters.PositionOf("displacement_offset", r)];
       all_fixed = all_fixed && offset.fixed;
       fixed.push_back(offset.theta);
-      first.push_back(offset.fixed ? offset.theta
-                                   : problem_.data->records[r].displacement.front());
+      first.push_back(offset.fixed ? offset.theta : problem_.data->records[r].displacement.front());
       centre.push_back(offset.fixed ? offset.theta : 0.0);
       zero.push_back(offset.fixed ? offset.theta : offset.ToTheta(0.0));
     }
@@ -157,30 +166,55 @@ void Refine(Look& best, Plane& plane) {
   }
 }
 
-/// The best looks of those that compete: of one α, or where α is held of one third of the reaches.
-std::array<Look, kShapeExponents.size()> LookAround(Plane& plane, const Parameters& parameters) {
-  constexpr std::size_t kThirds = 3;
+using Looks = std::array<Look, kRows.size()>;
+
+/// The best looks of those that compete, from one guess of where the contact was unloaded: of one
+/// α, or where α is held of one third of the reaches.
+/// @param hopeless  cost beyond which Mindlin's row says enough
+void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, double hopeless,
+                Looks& best) {
   const Parameter& shape = parameters[kShape];
   const bool rig_is_open = parameters.has_rig() && !parameters[kRig].fixed;
-  const std::size_t shapes = shape.fixed ? 1 : kShapeExponents.size();
-  const std::size_t ratios = rig_is_open ? kRigRatios.size() : 1;
-  std::array<Look, kShapeExponents.size()> best;
-  for (std::size_t guess = 0; guess < plane.guesses(); ++guess) {
-    for (std::size_t k = 0; k < shapes; ++k) {
-      const double alpha =
-          shape.fixed ? shape.theta : std::clamp(kShapeExponents[k], shape.lower, shape.upper);
-      for (std::size_t i = 0; i < kReaches.size(); ++i) {
-        for (std::size_t ratio = 0; ratio < ratios; ++ratio) {
-          KeepBetter(best[shape.fixed ? i * kThirds / kReaches.size() : k], plane,
-                     {.reach = kReaches[i],
-                      .shape = alpha,
-                      .rig_ratio = rig_is_open ? kRigRatios[ratio] : 1.0,
-                      .guess = guess});
-        }
-      }
+  const auto look_at = [&](std::size_t group, double reach, double alpha) {
+    if (!rig_is_open) {
+      KeepBetter(best[group], plane, {.reach = reach, .shape = alpha, .guess = guess});
+      return;
+    }
+    for (const double ratio : kRigRatios) {
+      KeepBetter(best[group], plane,
+                 {.reach = reach, .shape = alpha, .rig_ratio = ratio, .guess = guess});
+    }
+  };
+  if (shape.fixed) {
+    constexpr std::size_t kThirds = 3;
+    for (std::size_t i = 0; i < kReaches.size(); ++i) {
+      look_at(i * kThirds / kReaches.size(), kReaches[i], shape.theta);
+    }
+    return;
+  }
+  for (std::size_t k = 0; k < kRows.size(); ++k) {
+    const double alpha = std::clamp(kRows[k].shape, shape.lower, shape.upper);
+    for (std::size_t i = 0; i < kRows[k].count; ++i) look_at(k, kRows[k].reaches[i], alpha);
+    if (best[0].cost > hopeless) return;
+  }
+}
+
+/// From all guesses: from the second on only where the best look says that it is a better one.
+Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
+  Looks best;
+  LookAround(plane, parameters, 0, hopeless, best);
+  for (std::size_t guess = 1; guess < plane.guesses(); ++guess) {
+    Look look = *std::ranges::min_element(best, {}, &Look::cost);
+    const double least = look.cost;
+    look.guess = guess;
+    plane.At(look);
+    // A grid this coarse is some way from the minimum wherever the contact was unloaded.
+    constexpr double kWorthALook = 4.0;
+    if (look.cost < kWorthALook * least || !std::isfinite(least)) {
+      LookAround(plane, parameters, guess, hopeless, best);
     }
   }
-  if (shape.fixed) {
+  if (parameters[kShape].fixed) {
     for (Look& look : best) {
       if (std::isfinite(look.cost)) Refine(look, plane);
     }
@@ -228,42 +262,47 @@ std::optional<StartingPoint> GivenStart(const Problem& thin, const FitOptions& o
 }  // namespace
 
 std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
-                                           Solver& solver, Response& response, Solution& scratch,
-                                           std::pmr::memory_resource* memory) {
-  // From how many of the looks: one more than are wanted, since they may meet.
-  constexpr std::size_t kRoughStarts = 2;
+                                           double rival, Solver& solver, Response& response,
+                                           Solution& scratch, std::pmr::memory_resource* memory) {
+  // A look that is that much worse than the best does not lead to a better minimum.
+  constexpr double kHopeless = 4.0;
   std::pmr::vector<StartingPoint> starts(memory);
   if (std::optional<StartingPoint> given = GivenStart(thin, options, memory)) {
     starts.push_back(std::move(*given));
     return starts;
   }
-  starts.reserve(std::max(options.starts, kShapeExponents.size()) + 1);
+  starts.reserve(std::max(options.starts, kRows.size()) + 1);
   solver.Bind(thin, response);
   Plane plane(thin, options, solver, memory);
-  const auto looks = LookAround(plane, thin.parameters);
+  constexpr double kBeyondRival = 30.0;
+  constexpr double kFarBeyond = 10.0;  // of that: another shape would not make it good
+  const auto looks = LookAround(plane, thin.parameters, kFarBeyond * kBeyondRival * rival);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
   const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
     return thin.parameters[p].term->presence == Presence::kOnDemand;
   });
-  const std::size_t wanted =
-      bent ? looks.size() : std::max(options.starts, kRoughStarts);
+  const bool is_beaten = looks.front().cost > kBeyondRival * rival;
   for (Look look : looks) {
-    if (starts.size() >= wanted || !std::isfinite(look.cost)) break;
+    const bool is_wanted = bent || starts.size() < options.starts ||
+                           (starts.size() < 2 && look.cost < kHopeless * looks.front().cost);
+    if (!is_wanted || !std::isfinite(look.cost)) break;
     plane.At(look);
     const std::span<const double> theta = plane.theta();
     StartingPoint& start = starts.emplace_back(
         StartingPoint{.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost});
+    if (is_beaten) break;
     if (!options.start.empty()) continue;  // a start that is given is one
     solver.Solve(start.theta, kRough, scratch);
     if (!std::isfinite(scratch.sum_of_squares)) continue;
     start.theta.assign(scratch.theta.begin(), scratch.theta.end());
     start.cost = scratch.sum_of_squares;
   }
-  if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty()) {
+  if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty() && !is_beaten) {
     AddRelaxedStart(thin, solver, response, scratch, memory, starts);
   }
   std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
-  if (starts.size() > options.starts) starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(options.starts), starts.end());
+  if (starts.size() > options.starts)
+    starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(options.starts), starts.end());
   // Where all looks have the wrong sense, so have all draws.
   if (starts.empty() || options.starts <= starts.size()) return starts;
   Draws draws(options.seed);
@@ -279,7 +318,8 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
     plane.At(look);
     if (!std::isfinite(look.cost)) continue;
     const std::span<const double> theta = plane.theta();
-    starts.push_back({.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost, .drawn = true});
+    starts.push_back(
+        {.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost, .drawn = true});
   }
   return starts;
 }

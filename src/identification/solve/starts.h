@@ -25,10 +25,12 @@ struct StartingPoint {
 /// of each third of the plane, goes on to the minimum of the thinned record. Where options ask for
 /// more than these four, the others are drawn at random over the same range, seeded.
 /// @param thin      the problem on its thinned record
+/// @param rival     cost there of another past of the contact; looks thirty times as dear are not
+///                  followed, and stand for what they are. Infinite where there is none
 /// @param solver    bound to it here
 /// @returns empty where no point has the sense of the force
 std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
-                                           Solver& solver, Response& response, Solution& scratch,
-                                           std::pmr::memory_resource* memory);
+                                           double rival, Solver& solver, Response& response,
+                                           Solution& scratch, std::pmr::memory_resource* memory);
 
 }  // namespace mindahl::identification

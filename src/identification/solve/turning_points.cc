@@ -283,8 +283,7 @@ ArrowStep SolveArrow(const ArrowSystem& system, double damping,
   const Eigen::LDLT<Eigen::MatrixXd> schur(dense - cross.transpose() * solved_cross);
   step.dense = schur.solve(dense_right - cross.transpose() * solved_right);
   step.sparse = solved_right - solved_cross * step.dense;
-  const Eigen::VectorXd left =
-      system.residual + jacobian * step.dense + overshoots * step.sparse;
+  const Eigen::VectorXd left = system.residual + jacobian * step.dense + overshoots * step.sparse;
   step.predicted = system.residual.squaredNorm() - left.squaredNorm();
   step.found = step.dense.allFinite() && step.sparse.allFinite();
   return step;
@@ -320,8 +319,7 @@ TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solut
   const ArrowStep step = SolveArrow(system, 0.0, none, none);
   TurningPointStep result;
   if (!step.found) return {.left = system.residual, .overshoot = longest};
-  result.left =
-      system.residual + system.jacobian * step.dense + system.overshoots * step.sparse;
+  result.left = system.residual + system.jacobian * step.dense + system.overshoots * step.sparse;
   for (std::size_t k = 0; k < longest.size(); ++k) {
     result.overshoot.push_back(
         std::clamp(step.sparse[static_cast<Eigen::Index>(k)], 0.0, longest[k]));
@@ -393,8 +391,7 @@ TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
     std::vector<double> trial(longest.size());
     for (std::size_t k = 0; k < longest.size(); ++k) {
       const double from = fit.records->overshoot[k];
-      trial[k] =
-          std::clamp(from + step.sparse[static_cast<Eigen::Index>(k)], 0.0, longest[k]);
+      trial[k] = std::clamp(from + step.sparse[static_cast<Eigen::Index>(k)], 0.0, longest[k]);
       any = any || moves(from, trial[k]);
     }
     if (cost <= floor) ++steps_below;
