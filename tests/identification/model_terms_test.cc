@@ -135,6 +135,46 @@ TEST(ModelTerms, DriftIsRecovered) {
   EXPECT_NEAR(fit.Find("force_drift")->value, kDrift, kNoiseFree * kLaw.slip_force);
 }
 
+TEST(ModelTerms, ViscousForceIsRecovered) {
+  // A dashpot beside the contact: C·dδ/dt, of 8 % of Tc at the greatest speed of the sine, which
+  // central differences of 120 samples a cycle know to (2π/120)²/6 = 5e-4.
+  constexpr double kPeriod = 2.0;  // [s]
+  constexpr double kPi = 3.141592653589793;
+  const double fastest = 2 * kPi * kReach / kPeriod;
+  const double viscosity = 0.08 * kLaw.slip_force / fastest;
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double time = kPeriod * static_cast<double>(i) / 120;
+    record.time.push_back(30 + time);
+    record.force[i] += viscosity * fastest * std::cos(2 * kPi * time / kPeriod);
+  }
+  constexpr double kDifferences = 2e-3;
+  FitOptions options;
+  options.terms.emplace_back("viscous");
+  const FitResult fit = FitOne(record, options);
+  EXPECT_TRUE(Recovers(fit, kLaw, kDifferences));
+  EXPECT_NEAR(fit.Find("viscous")->value / viscosity, 1, 2e-2);
+  EXPECT_EQ(fit.Find("viscous")->unit, "N s/m");
+  EXPECT_FALSE(Recovers(FitOne(record), kLaw, 0.02)) << "it matters";
+
+  // Known, it is taken off; of two records of unequal length it is one and the same.
+  options = {};
+  options.fixed["viscous"] = viscosity;
+  EXPECT_TRUE(Recovers(FitOne(record, options), kLaw, kDifferences));
+  options.fixed.clear();
+  options.terms.emplace_back("viscous");
+  Record half = record;
+  for (std::vector<double>* column : {&half.displacement, &half.force, &half.time}) {
+    column->resize(record.size() / 2);
+  }
+  const FitResult joint = Fit(std::vector<Record>{record, half}, options);
+  EXPECT_TRUE(Recovers(joint, kLaw, kDifferences));
+  EXPECT_NEAR(joint.Find("viscous")->value / viscosity, 1, 2e-2);
+
+  record.time.clear();
+  EXPECT_EQ(RefusalOf(record, options), "viscous needs the time of every sample in every record");
+}
+
 /// A load that varies by ±5 % out of step with the motion, and the force with it.
 Record LoopUnderVaryingLoad() {
   constexpr double kMeanLoad = 150.0;

@@ -37,7 +37,7 @@ struct TermUnits {
 struct TermSample {
   double displacement = 0.0;
   double time = 0.0;      ///< −1 … 1 over the record
-  double velocity = 0.0;  ///< of the displacement, per unit of that time; 0 where there is no time
+  double velocity = 0.0;  ///< of the displacement, in the first record's time; 0 without time
 };
 
 /// A parameter of a fit: all that layout, solver, command line, help and documents need to know of

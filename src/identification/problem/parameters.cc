@@ -99,6 +99,15 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     }
   }
   ApplyOptions(options);
+  for (const Parameter& parameter : parameters_) {
+    if (parameter.absent || !parameter.term->needs_time) continue;
+    for (const ScaledRecord& record : data.records) {
+      if (record.velocity.empty()) {
+        throw InvalidArgument(
+            fmt::format("{} needs the time of every sample in every record", parameter.term->name));
+      }
+    }
+  }
   Sort();
 }
 

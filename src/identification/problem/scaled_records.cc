@@ -30,7 +30,9 @@ void RequireScale(std::string_view quantity, double half_range) {
 }
 
 /// Central differences, one-sided at the ends and where time stands still.
-void FillVelocity(ScaledRecord& record) {
+/// @param unit  of time [s], the same for all records: their velocities have one factor
+void FillVelocity(ScaledRecord& record, double unit) {
+  const double units = record.units.half_duration / unit;
   const std::size_t last = record.size() - 1;
   record.velocity.reserve(record.size());
   for (std::size_t i = 0; i <= last; ++i) {
@@ -38,7 +40,7 @@ void FillVelocity(ScaledRecord& record) {
     std::size_t after = std::min(i + 1, last);
     while (before > 0 && !(record.time[after] > record.time[before])) --before;
     while (after < last && !(record.time[after] > record.time[before])) ++after;
-    const double duration = record.time[after] - record.time[before];
+    const double duration = units * (record.time[after] - record.time[before]);
     const double way = record.displacement[after] - record.displacement[before];
     record.velocity.push_back(duration > 0 ? way / duration : 0.0);
   }
@@ -125,7 +127,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
       target.root_weight.push_back(prepared.counts[i] != 0 ? 1.0 : 0.0);
     }
     target.counts.assign(prepared.counts.begin(), prepared.counts.end());
-    if (!time.empty()) FillVelocity(target);
+    if (!time.empty()) FillVelocity(target, scaled.records.front().units.half_duration);
   }
   if (follow_load) FollowLoad(scaled, records);
   return scaled;

@@ -25,7 +25,7 @@ struct ScaledRecord {
   std::pmr::vector<double> displacement;  // (δ − displacement_reference)/length
   std::pmr::vector<double> force;         // (sense·T − force_reference)/force unit
   std::pmr::vector<double> time;      // −1 … 1 over the record; by sample where it has no time
-  std::pmr::vector<double> velocity;  // of the displacement in that time; empty where it has none
+  std::pmr::vector<double> velocity;  // in the first record's time; empty where there is none
   std::pmr::vector<double> load_ratio;     // N over its mean; empty where it is taken as constant
   std::pmr::vector<double> root_weight;    // of each residual; 0 where the sample does not count
   std::pmr::vector<unsigned char> counts;  // 1 where the sample counts, else 0

@@ -69,6 +69,22 @@ constexpr std::array kTerms = {
          .column = [](const TermSample& sample) { return sample.displacement; },
          .option = "--plateau-slope",
          .help = "fit a force that grows with the displacement beside the contact's [N/m]"},
+    Term{
+        .name = "viscous",
+        .unit = "N s/m",
+        .meaning = "C of a force C·dδ/dt beside the contact's",
+        .entry = Entry::kLinear,
+        .presence = Presence::kOnDemand,
+        .lowest = -kWidest,
+        .highest = kWidest,
+        .scale =
+            [](const TermUnits& units) { return units.force * units.half_duration / units.length; },
+        .column = [](const TermSample& sample) { return sample.velocity; },
+        .needs_time = true,
+        .option = "--viscous",
+        .argument = "C|fit",
+        .help = "viscous force C·(dδ/dt) beside the contact's, C [N s/m], or fit; needs a time "
+                "column"},
     Term{.name = "force_offset",
          .unit = "N",
          .meaning = "added to the model's force; with a drift, at the record's middle",
@@ -78,9 +94,8 @@ constexpr std::array kTerms = {
          .lowest = -kWidest,
          .highest = kWidest,
          .scale = ForceOfTheFile,
-         .reference = [](const TermUnits& units) {
-           return units.force_sense * units.force_reference;
-         },
+         .reference =
+             [](const TermUnits& units) { return units.force_sense * units.force_reference; },
          .column = [](const TermSample& /*sample*/) { return 1.0; }},
     Term{.name = "displacement_offset",
          .unit = "m",
@@ -117,8 +132,8 @@ const Term* FindTerm(std::string_view name) {
 
 std::string_view TermNameOf(std::string_view parameter) {
   const std::size_t digits = parameter.find_last_not_of("0123456789");
-  const bool numbered = digits != std::string_view::npos && digits + 1 < parameter.size() &&
-                        parameter[digits] == '_';
+  const bool numbered =
+      digits != std::string_view::npos && digits + 1 < parameter.size() && parameter[digits] == '_';
   return numbered ? parameter.substr(0, digits) : parameter;
 }
 
