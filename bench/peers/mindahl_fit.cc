@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "mindahl/core/version.h"
@@ -20,18 +21,13 @@ namespace {
 using namespace mindahl;
 using nlohmann::json;
 
-/// A way to fit: how much of the answer is asked for.
-struct Depth {
-  const char* name;
-  std::function<FitResult(const Record&)> fit;
-};
+using namespace mindahl::identification;
+using namespace mindahl::loop;
+using namespace mindahl::models;
 
-const std::vector<Depth> kDepths = {
-    {"full",
-     [](const Record& record) {
-       return Fit({&record, 1}, {});
-     }},
-};
+/// How much of the answer is asked for, of a fitter that has fitted before.
+const std::vector<std::pair<const char*, Depth>> kDepths = {
+    {"estimate", Depth::kEstimate}, {"intervals", Depth::kIntervals}, {"full", Depth::kFull}};
 
 /// Of the processor, which other programs on the machine disturb less than the clock.
 double ProcessorMilliseconds() {
@@ -82,15 +78,16 @@ int main(int argc, char** argv) {
     std::cerr << "usage: mindahl_fit RECORD.csv REPEATS\n";
     return 2;
   }
-  const Record record = ReadRecord(argv[1]).record;
+  const Record record = io::ReadRecord(argv[1]).record;
   json depths;
-  for (const Depth& depth : kDepths) {
-    const FitResult fit = depth.fit(record);
-    depths[depth.name] = {{"converged", fit.converged},
-                          {"parameters", Parameters(fit)},
-                          {"median_ms", MedianMilliseconds(repeats, [&] { depth.fit(record); })}};
+  Fitter fitter;
+  for (const auto& [name, depth] : kDepths) {
+    const FitResult fit = fitter.Fit(record, depth);
+    depths[name] = {{"converged", fit.converged},
+                    {"parameters", Parameters(fit)},
+                    {"median_ms", MedianMilliseconds(repeats, [&] { fitter.Fit(record, depth); })}};
   }
-  const BranchLaw law = kDepths.front().fit(record).law;
+  const BranchLaw law = fitter.Fit(record).law;
   std::cout << json{{"program", "mindahl " + std::string(Version())},
                     {"depths", depths},
                     {"one_gradient_ms", OneGradientMilliseconds(100 * repeats, record, law)}}

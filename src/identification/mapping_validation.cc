@@ -138,8 +138,8 @@ double StandardizedDistance(const FitResult& fit, const MindlinDahlParameters& t
   options.fixed = {{"sigma", truth.tangential_stiffness},
                    {"alpha", truth.shape_exponent},
                    {"slip_force", truth.slip_force}};
-  const FitResult at_truth = Fit({&record, 1}, options);
-  const double ratio = at_truth.residuals.rms / fit.residuals.rms;
+  const FitResult at_truth = Fit({&record, 1}, options, Depth::kEstimate);
+  const double ratio = at_truth.rms / fit.rms;
   return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.residuals.degrees_of_freedom);
 }
 

@@ -83,8 +83,7 @@ constexpr std::array kTerms = {
         .needs_time = true,
         .option = "--viscous",
         .argument = "C|fit",
-        .help = "viscous force C·(dδ/dt) beside the contact's, C [N s/m], or fit; needs a time "
-                "column"},
+        .help = "viscous force C·dδ/dt, C [N s/m], or fit; needs a time column"},
     Term{.name = "force_offset",
          .unit = "N",
          .meaning = "added to the model's force; with a drift, at the record's middle",
