@@ -4,12 +4,14 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_reader.h"
 
+using namespace mindahl::identification;
+
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const mindahl::loop::Record record = mindahl::io::ReadRecord(argv[1]).record;
-  const mindahl::identification::FitResult fit =
-      mindahl::identification::Fit({&record, 1}, {.offsets = true});
-  for (const mindahl::identification::ParameterEstimate& parameter : fit.parameters) {
+  Fitter fitter;  // keeps its memory from one fit to the next
+  const FitResult& fit = fitter.Fit(record, Depth::kFull);  // or kIntervals, or kEstimate
+  for (const ParameterEstimate& parameter : fit.parameters) {
     std::printf("%-20s %.10g %s\n", parameter.name.c_str(), parameter.value,
                 parameter.unit.c_str());
   }

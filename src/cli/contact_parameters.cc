@@ -50,11 +50,10 @@ ContactParameters ResolveContact(const ContactOptions& options) {
 
   const contact::PredictedContact predicted =
       contact::PredictContact(known, *options.friction_coefficient);
-  ContactParameters result{
-      .dahl = {.tangential_stiffness = predicted.tangential_stiffness.value,
-               .slip_force = predicted.slip_force.value,
-               .gross_slip_displacement = predicted.gross_slip_displacement.value},
-      .quantities = {}};
+  ContactParameters result{.law = {.tangential_stiffness = predicted.tangential_stiffness.value,
+                                   .shape_exponent = contact::kMindlinShapeExponent,
+                                   .slip_force = predicted.slip_force.value},
+                           .quantities = {}};
   const auto add = [&](const char* section, const char* name,
                        const std::optional<contact::UncertainValue>& value, const char* unit,
                        const char* meaning) {

@@ -5,6 +5,7 @@
 
 #include "cli/contact_options.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/models/branch_law.h"
 
 namespace mindahl::cli {
 
@@ -18,7 +19,7 @@ struct ContactQuantity {
 };
 
 struct ContactParameters {
-  contact::MindlinDahlParameters dahl;
+  models::BranchLaw law;
   std::vector<ContactQuantity> quantities;
 };
 

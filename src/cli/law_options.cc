@@ -38,8 +38,7 @@ BranchLaw ResolveLaw(const LawOptions& options) {
   }
   BranchLaw law;
   if (by_contact) {
-    const contact::MindlinDahlParameters dahl = ResolveContact(options.contact).dahl;
-    law = {dahl.tangential_stiffness, dahl.shape_exponent, dahl.slip_force};
+    law = ResolveContact(options.contact).law;
   } else if (options.sigma && options.slip_force) {
     law = {.tangential_stiffness = *options.sigma, .slip_force = *options.slip_force};
   } else {

@@ -89,8 +89,7 @@ BranchLaw PaperContact() {
   contact.known.normal_load = 100;
   contact.known.contact_radius = 0.0027;
   contact.known.tangential_compliance = 4.42e-11;
-  const contact::MindlinDahlParameters dahl = ResolveContact(contact).dahl;
-  return {dahl.tangential_stiffness, dahl.shape_exponent, dahl.slip_force};
+  return ResolveContact(contact).law;
 }
 
 /// What λ counts: the gross-slip displacement, or three elastic limits where slip is only

@@ -388,28 +388,12 @@ std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantit
   return missing;
 }
 
-MindlinDahlParameters MapMindlinToDahl(const MindlinContact& contact) {
+models::BranchLaw MapMindlinToDahl(const MindlinContact& contact) {
   Validate(contact);
   return {.tangential_stiffness =
               MindlinTangentialStiffness(contact.contact_radius, contact.tangential_compliance),
           .shape_exponent = kMindlinShapeExponent,
-          .slip_force = contact.slip_force,
-          .gross_slip_displacement = GrossSlipDisplacement(contact)};
-}
-
-HertzMindlinContact SolveHertzMindlin(const Body& body_1, const Body& body_2, double normal_load,
-                                      double friction_coefficient) {
-  HertzMindlinContact contact;
-  contact.effective_modulus = EffectiveModulus(body_1, body_2);
-  contact.tangential_compliance = TangentialCompliance(body_1, body_2);
-  contact.equivalent_radius = EquivalentRadius(body_1.radius, body_2.radius);
-  contact.contact_radius =
-      HertzContactRadius(normal_load, contact.equivalent_radius, contact.effective_modulus);
-  contact.maximum_pressure = HertzMaximumPressure(normal_load, contact.contact_radius);
-  contact.approach = HertzApproach(contact.contact_radius, contact.equivalent_radius);
-  contact.dahl = MapMindlinToDahl({contact.contact_radius, contact.tangential_compliance,
-                                   GrossSlipForce(friction_coefficient, normal_load)});
-  return contact;
+          .slip_force = contact.slip_force};
 }
 
 double PropagatedValue::FitShare() const {

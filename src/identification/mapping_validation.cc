@@ -12,11 +12,11 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 
 namespace mindahl::identification {
 
-using contact::MindlinDahlParameters;
 using loop::Record;
 
 namespace {
@@ -100,7 +100,7 @@ struct Errors {
   std::size_t covering = 0;
 };
 
-Errors Compare(const FitResult& fit, const MindlinDahlParameters& truth) {
+Errors Compare(const FitResult& fit, const models::BranchLaw& truth) {
   Errors errors;
   errors.converged = fit.converged;
   errors.termination = fit.termination;
@@ -131,7 +131,7 @@ double Largest(const std::vector<double>& values) {
 
 /// Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
 /// unlike an error over a standard error it also holds where the likelihood is not a parabola.
-double StandardizedDistance(const FitResult& fit, const MindlinDahlParameters& truth,
+double StandardizedDistance(const FitResult& fit, const models::BranchLaw& truth,
                             const Record& record) {
   FitOptions options;
   options.initial_state = fit.initial_state;
@@ -226,7 +226,7 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
   CaseGenerator generator(options);
   for (std::size_t index = 0; index < options.cases; ++index) {
     const Case drawn = generator.Next(index);
-    const MindlinDahlParameters truth = contact::MapMindlinToDahl(drawn.contact);
+    const models::BranchLaw truth = contact::MapMindlinToDahl(drawn.contact);
     const Record clean = MindlinRecord(drawn);
     const double peak =
         *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });

@@ -403,7 +403,6 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   file.time = read_optional(kTime, assigned.time, columns.time, record.time);
   file.normal_load =
       read_optional(kNormalLoad, assigned.normal_load, columns.normal_load, record.normal_load);
-  file.line = table.lines();
   return file;
 }
 

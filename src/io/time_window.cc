@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "mindahl/core/error.h"
 
@@ -17,14 +16,12 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
         fmt::format("{}: --time-window needs a time column: name it with --time", file));
   }
   loop::Record kept;
-  std::vector<std::size_t> lines;
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (record.time[i] < first || record.time[i] > last) continue;
     kept.displacement.push_back(record.displacement[i]);
     kept.force.push_back(record.force[i]);
     kept.time.push_back(record.time[i]);
     if (!record.normal_load.empty()) kept.normal_load.push_back(record.normal_load[i]);
-    if (i < input.line.size()) lines.push_back(input.line[i]);
   }
   if (kept.size() == 0) {
     const auto [begin, end] = std::ranges::minmax(record.time);
@@ -35,7 +32,6 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
   input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
                                     kept.size(), record.size(), first, last));
   record = std::move(kept);
-  input.line = std::move(lines);
 }
 
 }  // namespace mindahl::io

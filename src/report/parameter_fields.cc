@@ -53,7 +53,7 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return Number(item.estimate.upper95); }, WhyOpen},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
        [](const Item& item) { return Text(Name(item.estimate.status)); }},
-      {"identifiability", "", "identifiable, bounded_below, bounded_above or not_identifiable",
+      {"identifiability", "", "identifiable, bounded_below or not_identifiable",
        [](const Item& item) { return Text(Name(item.estimate.identifiability)); }},
   };
   return fields;

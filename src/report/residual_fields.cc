@@ -48,7 +48,7 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
 
 const std::vector<Field<RecordFit>>& StructureFields() {
   static const std::vector<Field<RecordFit>> fields = {
-      {"repeatable_share", "-", "share of the variance that comes back in every stroke",
+      {"repeatable_share", "-", "share of the variance that repeats in every stroke",
        [](const RecordFit& item) { return Number(item.structure.repeatable_share); }},
       {"directions", "", "growing, then falling displacement",
        [](const RecordFit& item) {

@@ -260,7 +260,7 @@ std::string ToText(const Report& report) {
     repeatable = std::max(repeatable, record.structure.repeatable_share);
   }
   if (repeatable > 0) {
-    text += fmt::format("           {:.0f} % of their variance comes back in every stroke\n",
+    text += fmt::format("           repeatable residual: {:.0f} % of their variance is the same in every stroke\n",
                         100 * repeatable);
   }
   if (widest.displacement_noise > 0) {

@@ -59,7 +59,7 @@ TEST_F(MeasuredRecord, TribometerIsFittedAsByTheReference) {
   EXPECT_NEAR(Value(fit, "force_offset"), -0.1, 0.05);
   EXPECT_NEAR(fit["loop"]["centre"].get<double>(), -0.110, 0.001);
   EXPECT_EQ(fit["loop"]["slip_regime"], "gross");
-  // Residuals hang together over whole branches: the samples are far from independent.
+  // Residuals are autocorrelated over whole branches: the samples are far from independent.
   EXPECT_LT(fit["residuals"]["effective_samples"].get<double>(), 1000.0);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -135,7 +136,58 @@ TEST(Errata, PrintedContactRadiusIsRoundedByOnePercentOfStiffness) {
   EXPECT_EQ(std::round(radius * 1e4) / 1e4, kContactRadius);  // two digits, as printed
 }
 
-TEST(Errata, DissipatedEnergyNotWorkTimesFour) {
+TEST(Errata, Equation20IsEquation10OfOtherParameters) {
+  // After eq. 20 the paper calls it equivalent to eq. 10 with σ = 8a/G* and α = 1/3. It is that
+  // law, but of σ' = σ(1 − T*/2Tc)^α and Tc' = 2Tc − T*.
+  const models::BranchLaw law = MapMindlinToDahl(kPaper);
+  const double alpha = law.shape_exponent;
+  // The smallest base, 0.05 at T = 0.9·T* = 0.9·Tc, loses 20 ε; a power of 1/3 leaves a third of
+  // it.
+  constexpr double kRounding = 64.0 * kEpsilon;
+  for (const double peak_share : {0.1, 0.5, 0.9, 1.0}) {
+    const double peak = peak_share * kSlipForce;
+    const double stiffness =
+        law.tangential_stiffness * std::pow(1.0 - peak / (2.0 * kSlipForce), alpha);
+    const double slip_force = 2.0 * kSlipForce - peak;
+    double printed_error = 0.0;
+    for (const double share : {-0.9, -0.5, 0.0, 0.5, 0.9}) {
+      const double along = share * peak;  // sT
+      const double slope =
+          law.tangential_stiffness * std::pow(1.0 - (peak + along) / (2.0 * kSlipForce), alpha);
+      EXPECT_NEAR(stiffness * std::pow(1.0 - along / slip_force, alpha) / slope, 1.0, kRounding);
+      const double as_printed =
+          law.tangential_stiffness * std::pow(1.0 - along / kSlipForce, alpha);
+      printed_error = std::max(printed_error, std::abs(as_printed / slope - 1.0));
+    }
+    EXPECT_GT(printed_error, 0.02);
+  }
+}
+
+TEST(Errata, SlipAnnulusNeverExceedsTheContactItIsPartOf) {
+  // §2.1 sets micro-slip apart from partial slip by A_s < A_c for both. With A_c the area of the
+  // contact, as it is defined there, A_s > A_c cannot be meant either.
+  for (const double share : {1e-6, 0.3, 0.64, 0.65, 0.9, 1.0 - 1e-6}) {
+    EXPECT_LT(SlipAreaFraction(share * kSlipForce, kSlipForce), 1.0);
+  }
+  // Against the stick area πc² there is a boundary: A_s = πa² − πc² exceeds it once c/a < 1/√2,
+  // which is at T/Tc = 1 − 2^{−3/2} and δ = δc/2.
+  constexpr double kRounding = 16.0 * kEpsilon;
+  const double boundary = (1.0 - 0.25 * std::numbers::sqrt2) * kSlipForce;
+  EXPECT_NEAR(StickRadiusRatio(boundary, kSlipForce), 1.0 / std::numbers::sqrt2, kRounding);
+  EXPECT_NEAR(SlipAreaFraction(boundary, kSlipForce), 0.5, kRounding);
+  EXPECT_NEAR(MindlinVirginForce(kPaper, 0.5 * GrossSlipDisplacement(kPaper)) / boundary, 1.0,
+              kRounding);
+  const auto slip_over_stick = [](double force) {
+    const double stick_ratio = StickRadiusRatio(force, kSlipForce);
+    return SlipAreaFraction(force, kSlipForce) / (stick_ratio * stick_ratio);
+  };
+  EXPECT_LT(slip_over_stick(0.99 * boundary), 1.0);
+  EXPECT_GT(slip_over_stick(1.01 * boundary), 1.0);
+}
+
+// No erratum, but easily misread: §2.3 takes the loop for four times the energy that the first
+// loading dissipates. That is right, and is not four times its work.
+TEST(MindlinEnergy, IsFourTimesWhatTheFirstLoadingDissipates) {
   const double amplitude = 0.8 * GrossSlipDisplacement(kPaper);
   const double peak = MindlinVirginForce(kPaper, amplitude);
   // The midpoint rule errs by less than the step squared times the change of slope, (1/20000)²
@@ -159,28 +211,6 @@ TEST(Errata, DissipatedEnergyNotWorkTimesFour) {
   // dissipates, 2∫T dδ − T*δ*, it is the loop.
   EXPECT_GT(4.0 * work / energy, 3.0);
   EXPECT_NEAR(4.0 * (2.0 * work - peak * amplitude) / energy, 1.0, kMidpointRule);
-}
-
-TEST(Errata, SlipAnnulusNeverExceedsTheContactItIsPartOf) {
-  // §2.1 sets micro-slip apart from partial slip by A_s < A_c for both. With A_c the area of the
-  // contact, as it is defined there, A_s > A_c cannot be meant either.
-  for (const double share : {1e-6, 0.3, 0.64, 0.65, 0.9, 1.0 - 1e-6}) {
-    EXPECT_LT(SlipAreaFraction(share * kSlipForce, kSlipForce), 1.0);
-  }
-  // Against the stick area πc² there is a boundary: A_s = πa² − πc² exceeds it once c/a < 1/√2,
-  // which is at T/Tc = 1 − 2^{−3/2} and δ = δc/2.
-  constexpr double kRounding = 16.0 * kEpsilon;
-  const double boundary = (1.0 - 0.25 * std::numbers::sqrt2) * kSlipForce;
-  EXPECT_NEAR(StickRadiusRatio(boundary, kSlipForce), 1.0 / std::numbers::sqrt2, kRounding);
-  EXPECT_NEAR(SlipAreaFraction(boundary, kSlipForce), 0.5, kRounding);
-  EXPECT_NEAR(MindlinVirginForce(kPaper, 0.5 * GrossSlipDisplacement(kPaper)) / boundary, 1.0,
-              kRounding);
-  const auto slip_over_stick = [](double force) {
-    const double stick_ratio = StickRadiusRatio(force, kSlipForce);
-    return SlipAreaFraction(force, kSlipForce) / (stick_ratio * stick_ratio);
-  };
-  EXPECT_LT(slip_over_stick(0.99 * boundary), 1.0);
-  EXPECT_GT(slip_over_stick(1.01 * boundary), 1.0);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 cmake_minimum_required(VERSION 3.25)
 # The modules that each module may include, itself aside. Keep in step with src/CMakeLists.txt.
 set(allowed_core "")
-set(allowed_contact core)
 set(allowed_loop core)
 set(allowed_models core loop)
+set(allowed_contact core models)
 set(allowed_methods core loop models)
 set(allowed_tradeoff core loop models methods)
 set(allowed_identification core contact loop models)

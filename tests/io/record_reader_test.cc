@@ -197,10 +197,6 @@ TEST(RecordReader, NotesSkippedPreamble) {
             (Strings{"loop.csv:3: 2 rows above the header skipped"}));
 }
 
-TEST(RecordReader, KeepsLineOfEachSample) {
-  EXPECT_EQ(Read("# rig\nx,F\n\n1,2\n#\n3,4\n").line, (std::vector<std::size_t>{4, 6}));
-}
-
 // --- Broken files and choices, and what is said of each ------------------------------------------
 
 struct Fault {
@@ -349,7 +345,6 @@ TEST_F(MeasuredRecord, TribometerIsReadByItsHeader) {
   EXPECT_EQ(file.record.force.front(), 242.2 / 1e6);
   EXPECT_EQ(file.record.time.back(), 213.784);
   EXPECT_EQ(file.record.normal_load.back(), 6432.7 / 1e6);
-  EXPECT_EQ(file.line.back(), 42580u);
   EXPECT_EQ(file.notes, Strings{});
 }
 
@@ -360,7 +355,6 @@ TEST_F(MeasuredRecord, SealIsReadByColumnNumbers) {
   EXPECT_EQ(file.record.displacement[1], 1.724 / 1e3);
   EXPECT_EQ(file.record.force.front(), 154.659);
   EXPECT_EQ(file.record.time.back(), 65697.0 / 1e3);
-  EXPECT_EQ(file.line.front(), 1u);
 }
 
 TEST_F(MeasuredRecord, CycloidalGearboxIsReadByItsHeader) {

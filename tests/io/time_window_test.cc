@@ -19,7 +19,6 @@ RecordFile TimedFile() {
   file.record.displacement = {10, 11, 12, 13};
   file.record.force = {20, 21, 22, 23};
   file.record.normal_load = {30, 31, 32, 33};
-  file.line = {2, 3, 4, 6};
   return file;
 }
 
@@ -39,7 +38,6 @@ TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   EXPECT_THAT(file.record.displacement, ElementsAre(11, 12));
   EXPECT_THAT(file.record.force, ElementsAre(21, 22));
   EXPECT_THAT(file.record.normal_load, ElementsAre(31, 32));
-  EXPECT_THAT(file.line, ElementsAre(3, 4));
   EXPECT_THAT(file.notes, ElementsAre("loop.csv: 2 of 4 samples lie in the time window 1:2 s"));
 }
 

@@ -31,11 +31,6 @@ using testing::Wave;
 constexpr MindlinContact kContact{
     .contact_radius = 2.7e-3, .tangential_compliance = 4.42e-11, .slip_force = 2500.0};
 
-BranchLaw LawOf(const MindlinContact& contact) {
-  const MindlinDahlParameters dahl = MapMindlinToDahl(contact);
-  return {dahl.tangential_stiffness, dahl.shape_exponent, dahl.slip_force};
-}
-
 /// 0 on the virgin curve, then 1 unloading, 2 reloading, 1, … for a wave from 0 upwards.
 int PhaseOf(double cycles) {
   if (cycles <= 0.25) return 0;
@@ -161,7 +156,7 @@ TEST(MindlinSource, EquationsForAnImposedDisplacementReturnTheContact) {
     for (const int samples_per_cycle : {drive.wave == Wave::kSine ? 200 : 60}) {
       const Record record = DisplacementControlled(kContact, drive.wave, amplitude, drive.cycles,
                                                    samples_per_cycle, drive.direction);
-      EXPECT_TRUE(Recovers(FitOne(record), LawOf(kContact), kNoiseFree));
+      EXPECT_TRUE(Recovers(FitOne(record), MapMindlinToDahl(kContact), kNoiseFree));
     }
   }
 }
@@ -175,7 +170,7 @@ TEST(MindlinSource, EquationsForAnImposedForceReturnTheContact) {
     for (const int samples_per_cycle : {drive.wave == Wave::kSine ? 200 : 60}) {
       const Record record = ForceControlled(kContact, drive.wave, peak, drive.cycles,
                                             samples_per_cycle, drive.direction);
-      EXPECT_TRUE(Recovers(FitOne(record), LawOf(kContact), kNoiseFree));
+      EXPECT_TRUE(Recovers(FitOne(record), MapMindlinToDahl(kContact), kNoiseFree));
     }
   }
 }
@@ -202,11 +197,11 @@ TEST(MindlinSource, EnsembleOfJenkinsElementsReturnsTheContactWithinItsDiscretis
       FitOptions options;
       options.force_noise = kForceError * kContact.slip_force;
       const FitResult fit = FitOne(MakeRecord(displacement, force), options);
-      EXPECT_TRUE(Recovers(fit, LawOf(kContact), kCoarse));
+      EXPECT_TRUE(Recovers(fit, MapMindlinToDahl(kContact), kCoarse));
       // By Cauchy and Schwarz an error of at most ε a sample moves a parameter by at most √n times
       // the standard error that noise of that size would give it.
       const double reach = std::sqrt(static_cast<double>(displacement.size()));
-      const BranchLaw truth = LawOf(kContact);
+      const BranchLaw truth = MapMindlinToDahl(kContact);
       const auto expect_near = [&](const char* name, double value) {
         const ParameterEstimate& estimate = *fit.Find(name);
         ASSERT_TRUE(estimate.standard_error) << name;
@@ -231,7 +226,7 @@ TEST(MindlinSource, ContactsFromAtomicToTectonicScaleAreAllTheSameToTheFit) {
       SCOPED_TRACE(::testing::Message() << "Tc " << contact.slip_force << ", lambda " << lambda);
       const Record record = DisplacementControlled(
           contact, Wave::kSine, lambda * GrossSlipDisplacement(contact), 2.0, 100, -1.0);
-      EXPECT_TRUE(Recovers(FitOne(record), LawOf(contact), kNoiseFree));
+      EXPECT_TRUE(Recovers(FitOne(record), MapMindlinToDahl(contact), kNoiseFree));
     }
   }
 }

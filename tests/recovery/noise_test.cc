@@ -66,7 +66,7 @@ void ExpectFinite(const FitResult& fit) {
 
 TEST(Noise, NinetyFivePercentIntervalsHoldTheTruthAsOftenAsTheyState) {
   constexpr int kLoops = 300;
-  // Of 300 intervals of 95 %, fewer than 264 hold the truth with a probability of 1e-6 (binomial:
+  // Of 300 intervals of 95 %, fewer than 264 cover the truth with a probability of 1e-6 (binomial:
   // the mean is 285, the standard deviation 3.8).
   constexpr int kFewest = 264;
   // A scatter over 300 loops is known to 1/√600 = 4 %; four times that, and the widening of

@@ -44,7 +44,7 @@ bool Warns(const FitResult& fit, const std::string& code) {
 }
 
 TEST(TurningPoints, MissedBetweenSamplesAreFoundAndTheContactIsRecovered) {
-  const MindlinDahlParameters truth = MapMindlinToDahl(kContact);
+  const BranchLaw truth = MapMindlinToDahl(kContact);
   for (const double lambda : {0.5, 0.8, 1.2, 3.0}) {
     for (const int samples_per_cycle : {50, 101, 201}) {
       for (const double direction : {1.0, -1.0}) {

@@ -19,7 +19,7 @@ std::string Row(const report::FieldDescription& field) {
 }
 
 TEST(Fields, StandInTheContractWithUnitAndMeaning) {
-  const std::string contract = testing::ContractText();
+  const std::string contract = testing::PageText("docs/contract.md");
   for (const report::FieldDescription& field : report::DescribeFields()) {
     EXPECT_NE(contract.find(Row(field)), std::string::npos)
         << "docs/contract.md lacks " << Row(field);

@@ -8,20 +8,21 @@
 #include <set>
 #include <string>
 
-/// docs/contract.md, to be compared with what the program does.
+/// Pages of docs/, to be compared with what the program does.
 namespace mindahl::testing {
 
-inline std::string ContractText() {
-  std::ifstream in(std::string(MINDAHL_SOURCE_DIR) + "/docs/contract.md");
+/// @param page  from the project's folder, "docs/contract.md"
+inline std::string PageText(const std::string& page) {
+  std::ifstream in(std::string(MINDAHL_SOURCE_DIR) + "/" + page);
   std::string text{std::istreambuf_iterator<char>(in), {}};
   std::erase(text, '\\');  // of G\*, which is plain text in the program
   return text;
 }
 
 /// By heading, "mindahl fit"; what stands before the first has the heading "".
-inline std::map<std::string, std::string> ContractSections() {
+inline std::map<std::string, std::string> PageSections(const std::string& page) {
   std::map<std::string, std::string> sections;
-  const std::string text = ContractText();
+  const std::string text = PageText(page);
   std::string heading;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -34,6 +35,10 @@ inline std::map<std::string, std::string> ContractSections() {
     begin = end + 1;
   }
   return sections;
+}
+
+inline std::map<std::string, std::string> ContractSections() {
+  return PageSections("docs/contract.md");
 }
 
 /// What a pattern's first group matches.

@@ -209,12 +209,11 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   for (std::size_t i = 0; i < loops; ++i) {
     const Record record = NoisyRecord(scenario, clean, first_seed + i);
     const identification::FitResult fit = identification::Fit({&record, 1}, options);
-    ++coverage.judged;
     for (std::size_t k = 0; k < truth.size(); ++k) {
       const identification::ParameterEstimate& estimate = *fit.Find(kNames[k]);
-      const bool holds = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
-                         (!estimate.upper95 || truth[k] <= *estimate.upper95);
-      if (holds) ++coverage.covered[k];
+      const bool covers = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
+                          (!estimate.upper95 || truth[k] <= *estimate.upper95);
+      if (covers) ++coverage.covered[k];
       const double error = estimate.value - truth[k];
       sum[k] += error;
       squares[k] += error * error;
@@ -224,7 +223,7 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
       }
     }
   }
-  const auto count = static_cast<double>(coverage.judged);
+  const auto count = static_cast<double>(loops);
   for (std::size_t k = 0; k < truth.size(); ++k) {
     const double mean = sum[k] / count;
     const double scatter = std::sqrt(std::max(squares[k] / count - mean * mean, 0.0));

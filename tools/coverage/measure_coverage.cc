@@ -1,45 +1,90 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
+#include <cstdio>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "coverage.h"
 
-/// Prints the table of docs/coverage.md; exit status 1 when a coverage is outside what is promised.
-/// Of fewer than a thousand loops three standard deviations of the counting are allowed for.
-///   measure_coverage [loops] [part of a scenario's name]
-int main(int argc, char** argv) {
-  using namespace mindahl::coverage;
-  const std::size_t loops = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 1000;
-  const std::string wanted = argc > 2 ? argv[2] : "";
+namespace {
+
+using mindahl::coverage::Coverage;
+using mindahl::coverage::Scenario;
+
+enum ExitStatus { kKept = 0, kNotKept = 1, kBadUsage = 2 };
+
+std::optional<std::size_t> ReadCount(std::string_view text) {
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  const bool is_whole = error == std::errc() && end == text.data() + text.size();
+  if (!is_whole || count == 0) return std::nullopt;
+  return count;
+}
+
+void PrintHead(std::size_t loops) {
   fmt::print(
-      "| {} loops each | interval holds the truth | | | stated error / scatter | | | "
+      "| {} loops each | interval covers the truth | | | stated error / scatter | | | "
       "efficiency | | | bias / scatter | | |\n|---|",
       loops);
   for (int i = 0; i < 12; ++i) fmt::print("---|");
   fmt::print("\n| |");
   for (int i = 0; i < 4; ++i) fmt::print(" σ | α | Tc |");
   fmt::print("\n");
-  constexpr std::size_t kEnough = 1000;
+}
+
+void PrintRow(const Scenario& scenario, const Coverage& coverage) {
+  fmt::print("| {} |", scenario.name);
+  for (const double share : coverage.covered) fmt::print(" {:.1f} % |", 100 * share);
+  for (const double ratio : coverage.error_ratio) fmt::print(" {:.2f} |", ratio);
+  for (const double efficiency : coverage.efficiency) fmt::print(" {:.2f} |", efficiency);
+  for (const double bias : coverage.bias) fmt::print(" {:+.2f} |", bias);
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+/// Prints the table of docs/coverage.md; exit status 1 when a coverage is outside what is promised,
+/// 2 for a number of loops that is none and for a name that no scenario has. Of fewer loops than
+/// the promise is for three standard deviations of the counting are allowed.
+///   measure_coverage [loops] [part of a scenario's name]
+int main(int argc, char** argv) {
+  using mindahl::coverage::kLoops;
+  const std::optional<std::size_t> loops = argc > 1 ? ReadCount(argv[1]) : kLoops;
+  if (!loops || argc > 3) {
+    fmt::print(stderr, "usage: measure_coverage [loops > 0] [part of a scenario's name]\n");
+    return kBadUsage;
+  }
+  const std::string wanted = argc > 2 ? argv[2] : "";
+  std::vector<Scenario> scenarios = mindahl::coverage::Scenarios();
+  std::erase_if(scenarios, [&](const Scenario& scenario) {
+    return scenario.name.find(wanted) == std::string::npos;
+  });
+  if (scenarios.empty()) {
+    fmt::print(stderr, "no scenario has '{}' in its name; there are:\n", wanted);
+    for (const Scenario& scenario : mindahl::coverage::Scenarios()) {
+      fmt::print(stderr, "  {}\n", scenario.name);
+    }
+    return kBadUsage;
+  }
+
+  PrintHead(*loops);
   const double slack =
-      loops >= kEnough ? 0.0 : 3 * std::sqrt(0.95 * 0.05 / static_cast<double>(loops));
+      *loops >= kLoops ? 0.0 : 3 * std::sqrt(0.95 * 0.05 / static_cast<double>(*loops));
   bool kept = true;
-  for (const Scenario& scenario : Scenarios()) {
-    if (scenario.name.find(wanted) == std::string::npos) continue;
-    const Coverage coverage = Measure(scenario, loops);
-    fmt::print("| {} |", scenario.name);
+  for (const Scenario& scenario : scenarios) {
+    const Coverage coverage = Measure(scenario, *loops);
+    PrintRow(scenario, coverage);
     for (const double share : coverage.covered) {
-      fmt::print(" {:.1f} % |", 100 * share);
       kept = kept && share >= scenario.lowest_coverage - slack &&
              share <= scenario.highest_coverage + slack;
     }
-    for (const double ratio : coverage.error_ratio) fmt::print(" {:.2f} |", ratio);
-    for (const double efficiency : coverage.efficiency) fmt::print(" {:.2f} |", efficiency);
-    for (const double bias : coverage.bias) fmt::print(" {:+.2f} |", bias);
-    fmt::print("\n");
-    std::fflush(stdout);
   }
-  if (!kept) fmt::print("\nA coverage is outside what is promised.\n");
-  return kept ? 0 : 1;
+  if (kept) return kKept;
+  fmt::print("\nA coverage is outside what is promised.\n");
+  return kNotKept;
 }

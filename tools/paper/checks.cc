@@ -121,8 +121,8 @@ void AddEnergyChecks(std::vector<Check>& checks) {
       Check::Within("Johnson 7.57 over loop area", 1.0, kTrapezoids,
                     contact::MindlinEnergyPerCycleAtAmplitude(kContact, amplitude) / loop));
   // With z = 1 − λ: work w = λ − ⅖(1 − z^{5/2}) in Tc·δc, loop 8w − 4λ(1 − z^{3/2}).
-  checks.push_back(Check::AsPrinted(
-      "§2.3 as printed: 4 × work of the initial loading over loop area", "4.742", 4 * work / loop));
+  checks.push_back(Check::AsPrinted("§2.3 misread: 4 × work of the initial loading over loop area",
+                                    "4.742", 4 * work / loop));
 }
 
 void AddTableChecks(std::vector<Check>& checks, const std::vector<ErrorsByCycle>& sine_errors) {

@@ -63,10 +63,7 @@ double LoopForce(double displacement, double amplitude, double step) {
 
 }  // namespace
 
-BranchLaw ExactLaw() {
-  const contact::MindlinDahlParameters dahl = contact::MapMindlinToDahl(kContact);
-  return {dahl.tangential_stiffness, dahl.shape_exponent, dahl.slip_force};
-}
+BranchLaw ExactLaw() { return contact::MapMindlinToDahl(kContact); }
 
 BranchLaw PrintedLaw() {
   return {kPrintedStiffness, contact::kMindlinShapeExponent, kContact.slip_force};

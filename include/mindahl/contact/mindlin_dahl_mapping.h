@@ -7,6 +7,7 @@
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
+#include "mindahl/models/branch_law.h"
 
 namespace mindahl::contact {
 
@@ -19,41 +20,10 @@ namespace mindahl::contact {
 /// Dahl's exponent α of a Mindlin contact.
 inline constexpr double kMindlinShapeExponent = 1.0 / 3.0;
 
-/// Dahl's parameters of a Mindlin contact.
-struct MindlinDahlParameters {
-  double tangential_stiffness = 0.0;              ///< σ [N/m]
-  double shape_exponent = kMindlinShapeExponent;  ///< α [-]
-  double slip_force = 0.0;                        ///< Tc [N]
-  double gross_slip_displacement = 0.0;           ///< δc [m]
-};
-
-/// Dahl's parameters of a contact whose radius and compliance are known.
+/// Dahl's parameters of a contact whose radius and compliance are known: σ = 8a/G*, α = 1/3, Tc.
 /// With a friction coefficient and a normal load, the slip force is GrossSlipForce(μ, N).
 /// @throws InvalidArgument as Validate(MindlinContact)
-MindlinDahlParameters MapMindlinToDahl(const MindlinContact& contact);
-
-/// Everything that Hertz and Mindlin say of two bodies under load.
-struct HertzMindlinContact {
-  double effective_modulus = 0.0;      ///< E* [Pa]
-  double tangential_compliance = 0.0;  ///< G* [1/Pa]
-  double equivalent_radius = 0.0;      ///< ρ [m]
-  double contact_radius = 0.0;         ///< a [m]
-  double maximum_pressure = 0.0;       ///< p₀ [Pa]
-  double approach = 0.0;               ///< normal approach a²/ρ [m]
-  MindlinDahlParameters dahl;          ///< σ, α, Tc, δc
-
-  [[nodiscard]] MindlinContact Mindlin() const {
-    return {contact_radius, tangential_compliance, dahl.slip_force};
-  }
-};
-
-/// Hertz, then Mindlin, then the mapping, from geometry, materials and load.
-/// @param normal_load           N [N], finite, > 0
-/// @param friction_coefficient  μ [-], finite, > 0
-/// @throws InvalidArgument naming the parameter, its value and the rule; see Body and
-/// EquivalentRadius
-HertzMindlinContact SolveHertzMindlin(const Body& body_1, const Body& body_2, double normal_load,
-                                      double friction_coefficient);
+models::BranchLaw MapMindlinToDahl(const MindlinContact& contact);
 
 /// A quantity with its standard uncertainty. A number alone is exact, and where a plain number is
 /// asked for the quantity reads as its value.
@@ -116,8 +86,9 @@ struct PredictedContact {
   PropagatedValue gross_slip_displacement;           ///< δc = 3·μN·G*/(16a) [m]
 };
 
-/// Hertz, Mindlin and the mapping with the uncertainty of every input; values as SolveHertzMindlin
-/// and MapMindlinToDahl give them. All uncertainty is that of inputs: fit_error is 0.
+/// Hertz, Mindlin and the mapping with the uncertainty of every input; values as the
+/// functions of hertz.h and MapMindlinToDahl() give them. All uncertainty is that of inputs:
+/// fit_error is 0.
 /// @param known  N, and either a and G* alone or E, ν and R of both bodies
 /// @param friction_coefficient  μ [-], finite, > 0
 /// @throws InvalidArgument naming what is missing, or the parameter, its value and the rule

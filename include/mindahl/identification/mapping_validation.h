@@ -42,7 +42,7 @@ struct ValidationRow {
   double worst_slip_force_error = 0.0;
   double worst_standardized =
       0.0;                ///< with noise: largest distance of the truth in standard errors
-  double coverage = 0.0;  ///< with noise: share of the stated 95 % intervals that hold the truth
+  double coverage = 0.0;  ///< with noise: share of the stated 95 % intervals that cover the truth
 };
 
 struct ValidationReport {

@@ -37,7 +37,6 @@ struct RecordFile {
   ChosenColumn force;
   std::optional<ChosenColumn> time;
   std::optional<ChosenColumn> normal_load;
-  std::vector<std::size_t> line;   ///< physical line of each sample
   std::vector<std::string> notes;  ///< what was assumed, one sentence each
 };
 

@@ -37,11 +37,8 @@ class DisplacementSmoother {
   /// Cost: at most 128 additions a sample.
   [[nodiscard]] std::vector<double> Smooth(std::span<const double> displacement) const;
 
-  /// h of each sample.
-  [[nodiscard]] std::span<const std::size_t> reach() const { return reach_; }
-
  private:
-  std::vector<std::size_t> reach_;
+  std::vector<std::size_t> reach_;  // h of each sample
 };
 
 /// The reversals of a smoothed displacement: the outermost sample of each swing that noise has made

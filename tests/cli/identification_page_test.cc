@@ -1,0 +1,70 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/terms.h"
+#include "mindahl/identification/thresholds.h"
+#include "support/contract.h"
+
+// docs/identification.md against the library: its tables are those of the parameters and of the
+// thresholds, row by row.
+namespace mindahl::identification {
+namespace {
+
+using testing::PageSections;
+using Rows = std::vector<std::string>;
+
+/// Rows of the table in a section, without its head.
+Rows RowsOf(const std::string& section) {
+  const std::string page = PageSections("docs/identification.md").at(section);
+  Rows rows;
+  for (std::size_t begin = page.find("\n| `"); begin != std::string::npos;) {
+    const std::size_t end = page.find('\n', begin + 1);
+    rows.push_back(page.substr(begin + 1, end - begin - 1));
+    begin = page.find("\n| `", end);
+  }
+  return rows;
+}
+
+std::string_view Words(Scope scope) { return scope == Scope::kContact ? "contact" : "record"; }
+
+std::string_view Words(Entry entry) { return entry == Entry::kLaw ? "law" : "linear"; }
+
+std::string Words(const Term& term) {
+  switch (term.presence) {
+    case Presence::kAlways:
+      return "always";
+    case Presence::kOffsets:
+      return "with offsets, else 0";
+    case Presence::kReported:
+      return fmt::format("`{}`, else 0", term.option);
+    case Presence::kOnDemand:
+      return fmt::format("`{}`", term.option);
+  }
+  return "";
+}
+
+TEST(IdentificationPage, HasARowForEveryParameterAndNoOther) {
+  Rows expected;
+  for (const Term& term : Terms()) {
+    expected.push_back(fmt::format("| `{}` | {} | {} | {} | {} | {} |", term.name, term.unit,
+                                   Words(term.scope), Words(term.entry), Words(term),
+                                   term.meaning));
+  }
+  EXPECT_EQ(RowsOf("Parameters"), expected);
+}
+
+TEST(IdentificationPage, HasARowForEveryThresholdAndNoOther) {
+  Rows expected;
+  for (const ThresholdRow& row : ThresholdTable()) {
+    expected.push_back(fmt::format("| `{}` | {:g} | {} | {} | {} |", row.name,
+                                   Thresholds().*row.value, row.unit, row.meaning, row.reason));
+  }
+  EXPECT_EQ(RowsOf("Thresholds"), expected);
+}
+
+}  // namespace
+}  // namespace mindahl::identification
