@@ -103,11 +103,11 @@ void PeekAndMove(benchmark::State& state, const FrictionModel& model, const std:
 }
 
 [[maybe_unused]] const int kRegistered = [] {
-  using cli::Run = void (*)(benchmark::State&, const FrictionModel&, const std::vector<double>&,
+  using Run = void (*)(benchmark::State&, const FrictionModel&, const std::vector<double>&,
                             const SeriesSpring&);
   struct Kind {
     const char* name;
-    cli::Run run;
+    Run run;
   };
   for (const auto& [excitation, x] : {std::pair{"sine", Sine()}, std::pair{"white", White()}}) {
     for (const FrictionModel& model : models::FrictionModels()) {
