@@ -17,7 +17,7 @@ using TableLine = std::vector<std::string>;
 
 /// The lines of tests/data/`name` that are neither comments nor blank.
 inline std::vector<TableLine> ReadTable(const std::string& name) {
-  const std::string path = std::string(MINDAHL_SOURCE_DIR) + "/tests/data/" + name;
+  const std::string path = MINDAHL_SOURCE_DIR "/tests/data/" + name;
   std::ifstream in(path);
   if (!in) throw std::runtime_error("cannot read " + path);
   std::vector<TableLine> lines;

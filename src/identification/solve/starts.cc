@@ -300,7 +300,7 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
   if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty() && !is_beaten) {
     AddRelaxedStart(thin, solver, response, scratch, memory, starts);
   }
-  std::ranges::stable_sort(starts, {}, &StartingPoint::cost);
+  std::ranges::sort(starts, {}, &StartingPoint::cost);
   if (starts.size() > options.starts)
     starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(options.starts), starts.end());
   // Where all looks have the wrong sense, so have all draws.
