@@ -104,7 +104,7 @@ void PeekAndMove(benchmark::State& state, const FrictionModel& model, const std:
 
 [[maybe_unused]] const int kRegistered = [] {
   using Run = void (*)(benchmark::State&, const FrictionModel&, const std::vector<double>&,
-                            const SeriesSpring&);
+                       const SeriesSpring&);
   struct Kind {
     const char* name;
     Run run;

@@ -143,7 +143,8 @@ void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
     fit.terms.push_back(name);
     return;
   }
-  const double value = ParseNumber(text, term.option, fmt::format("a number in {}, or fit", term.unit));
+  const double value =
+      ParseNumber(text, term.option, fmt::format("a number in {}, or fit", term.unit));
   if (term.positive) RequirePositive(fmt::format("{} [{}]", term.option, term.unit), value);
   if (!fit.fixed.emplace(name, value).second) {
     throw InputError(
@@ -158,8 +159,8 @@ void RequireTerm(std::string_view option, std::string_view name, bool is_automat
   if (term == nullptr || term->option.empty()) return;
   const bool is_tried = is_automatic && term->name == "rig_stiffness";
   if (is_tried || std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
-  throw InputError(fmt::format("{}: {} is not fitted, so this has no effect: add {}{}", option, name,
-                               term->option, term->argument.empty() ? "" : " fit"));
+  throw InputError(fmt::format("{}: {} is not fitted, so this has no effect: add {}{}", option,
+                               name, term->option, term->argument.empty() ? "" : " fit"));
 }
 
 Loss FindLoss(std::string_view name) {
@@ -182,7 +183,8 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
   fit.offsets = options.offsets == "on";
   fit.follow_load = options.follow_load;
   if (!options.load_window.empty()) {
-    preparation.load_window = ParseInterval(options.load_window, "--load-window", "LO:HI in newtons");
+    preparation.load_window =
+        ParseInterval(options.load_window, "--load-window", "LO:HI in newtons");
   }
   preparation.skip_cycles = options.skip_cycles;
   fit.loss = FindLoss(options.loss);
@@ -315,12 +317,13 @@ void RunFit(FitCommandOptions options, Console& console) {
     fit = identification::Fit(records, fit_options);
   }
   console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
-  const report::Report report = report::MakeReport({.files = options.files,
-                                                    .records = std::move(inputs),
-                                                    .fit = std::move(fit),
-                                                    .known = options.contact.known,
-                                                    .load_window = fit_options.preparation.load_window,
-                                                    .selection = std::move(selection)});
+  const report::Report report =
+      report::MakeReport({.files = options.files,
+                          .records = std::move(inputs),
+                          .fit = std::move(fit),
+                          .known = options.contact.known,
+                          .load_window = fit_options.preparation.load_window,
+                          .selection = std::move(selection)});
   Write(options, report, console);
 }
 
@@ -366,14 +369,15 @@ void AddTermOptions(CLI::App& command, FitCommandOptions& options, const std::st
     const std::string option(term.option);
     const std::string help(term.help);
     if (term.argument.empty()) {
-      command.add_flag_callback(
-          option, [&options, &term] { options.terms[term.name] = kFitIt; }, help)
+      command
+          .add_flag_callback(
+              option, [&options, &term] { options.terms[term.name] = kFitIt; }, help)
           ->group(group);
     } else {
       command
           .add_option_function<std::string>(
-              option, [&options, &term](const std::string& text) { options.terms[term.name] = text; },
-              help)
+              option,
+              [&options, &term](const std::string& text) { options.terms[term.name] = text; }, help)
           ->type_name(std::string(term.argument))
           ->group(group);
     }

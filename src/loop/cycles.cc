@@ -72,8 +72,7 @@ std::pair<double, double> MovingMeanRange(std::span<const double> force) {
 
 Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last) {
   const std::size_t count = last - first + 1;
-  const auto displacement =
-      std::ranges::minmax(record.displacement.subspan(first, count));
+  const auto displacement = std::ranges::minmax(record.displacement.subspan(first, count));
   const auto [least, greatest] = MovingMeanRange(record.force.subspan(first, count));
   const bool rising = record.displacement[last] > record.displacement[first];
   return {.rising = rising,
@@ -207,10 +206,10 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
   // Most loops peak where they turn; some before, when the force relaxes in a dwell.
   const double lower_end = MeanOf(swings, &Swing::lower_end_force);
   const double upper_end = MeanOf(swings, &Swing::upper_end_force);
-  const double greatest_force =
-      std::max({lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>(), scratch)});
-  const double least_force =
-      std::min({lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>(), scratch)});
+  const double greatest_force = std::max(
+      {lower_end, upper_end, UsualExtreme(swings, &Swing::greatest_force, std::less<>(), scratch)});
+  const double least_force = std::min(
+      {lower_end, upper_end, UsualExtreme(swings, &Swing::least_force, std::greater<>(), scratch)});
   measures.peak_force = (greatest_force - least_force) / 2;
   measures.centre_force = least_force + measures.peak_force;
 

@@ -26,7 +26,7 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   if (!(step > kFinest * (highest - lowest))) return false;
   std::size_t whole = 0;
-  std::size_t rest = 1;  // samples
+  std::size_t rest = 1;                           // samples
   std::array<std::size_t, kFewestRests> rests{};  // different ones
   std::size_t known_rests = 0;
   bool is_even = true;

@@ -114,16 +114,16 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   int votes = 0;
   for (const RecordView& record : records) {
     PreparedRecord& prepared = result.records.emplace_back(record, memory);
-    prepared.reversal_gate = options.reversal_gate.value_or(std::max(
-        EstimateReversalGate(record.displacement, memory), ReachOfNoise(record, options)));
+    prepared.reversal_gate = options.reversal_gate.value_or(
+        std::max(EstimateReversalGate(record.displacement, memory), ReachOfNoise(record, options)));
     FindReversals(record.displacement, prepared.reversal_gate, prepared.reversals);
     votes += ForceSense(record, prepared.reversals, memory);
   }
   result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
   for (std::size_t r = 0; r < records.size(); ++r) {
     PreparedRecord& prepared = result.records[r];
-    prepared.measures = InSense(MeasureLoop(prepared.record, prepared.reversals, memory),
-                                result.force_sense);
+    prepared.measures =
+        InSense(MeasureLoop(prepared.record, prepared.reversals, memory), result.force_sense);
     prepared.encoder_step = EncoderStep(prepared.record.displacement);
     prepared.displacement_noise = DisplacementNoise(prepared, options, memory);
     Smooth(prepared);

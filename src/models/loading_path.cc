@@ -45,8 +45,7 @@ std::int8_t FirstDirection(std::span<const double> displacement,
 /// stack: the origins on it are the surviving extrema.
 class OpenBranches {
  public:
-  OpenBranches(LoadingPath& path, Memory memory)
-      : path_(path), open_(path.open), memory_(memory) {}
+  OpenBranches(LoadingPath& path, Memory memory) : path_(path), open_(path.open), memory_(memory) {}
 
   void Open(Branch branch) {
     branch.parent = open_.empty() ? -1 : open_.back();

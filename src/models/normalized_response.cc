@@ -19,9 +19,8 @@ using SprungDifferentiation = Differentiation<SprungShape<backbone::GeneralShape
 
 /// Tc = 1: forces and stiffnesses are those over it.
 BranchLaw LawOf(const NormalizedLaw& law) {
-  return {.tangential_stiffness = law.rate,
-          .shape_exponent = law.shape_exponent,
-          .slip_force = 1.0};
+  return {
+      .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
 }
 
 void RequireSizes(const LoadingPath& path, std::span<const double> displacement,

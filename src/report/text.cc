@@ -260,8 +260,9 @@ std::string ToText(const Report& report) {
     repeatable = std::max(repeatable, record.structure.repeatable_share);
   }
   if (repeatable > 0) {
-    text += fmt::format("           repeatable residual: {:.0f} % of their variance is the same in every stroke\n",
-                        100 * repeatable);
+    text += fmt::format(
+        "           repeatable residual: {:.0f} % of their variance is the same in every stroke\n",
+        100 * repeatable);
   }
   if (widest.displacement_noise > 0) {
     text += fmt::format("           noise of the displacement {:.3g} m, weighed in\n",

@@ -1,5 +1,3 @@
-#include "identification/inference/noise.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "identification/inference/noise.h"
 #include "recovery/recovered.h"
 
 // The noise of a loop as an autoregressive process, and the standard errors that follow from it.
@@ -229,9 +228,9 @@ TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
     double second;
   };
   for (const auto& [first, second] : {Case{0.9, 0.0}, {1.2, -0.5}, {-0.7, 0.0}, {0.999, 0.0}}) {
-    const Autocorrelation noise = Process({first, second},
-                                          SecondOrderCorrelations(first, second, 3),
-                                          SecondOrderShare(first, second));
+    const Autocorrelation noise =
+        Process({first, second}, SecondOrderCorrelations(first, second, 3),
+                SecondOrderShare(first, second));
     const std::vector<double> form = noise.Quadratic(columns);
     const std::vector<double> exact = explicit_form(SecondOrderCorrelations(first, second, kRows));
     ASSERT_EQ(form.size(), exact.size());

@@ -19,8 +19,7 @@ constexpr double kRounding = 1e-15;
 
 TEST(ResidualStatistics, AreThoseComputedByHand) {
   // r = 1, 2, −1, 0: Σr² = 6, Σ(Δr)² = 1 + 9 + 1 = 11; forces 0, 4, 8, 4: mean 4, Σ(T − 4)² = 32.
-  const ResidualStatistics s =
-      DescribeResiduals(Series{{1, 2, -1, 0}}, Series{{0, 4, 8, 4}}, 10.0);
+  const ResidualStatistics s = DescribeResiduals(Series{{1, 2, -1, 0}}, Series{{0, 4, 8, 4}}, 10.0);
   EXPECT_EQ(s.samples, 4u);
   EXPECT_NEAR(s.rms, std::sqrt(6.0 / 4), kRounding);
   EXPECT_EQ(s.max_abs, 2.0);

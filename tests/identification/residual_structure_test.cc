@@ -32,8 +32,7 @@ ResidualStructure StructureOf(const History& displacement, const std::vector<dou
 }
 
 ResidualStructure StructureOf(const History& displacement, const std::vector<double>& residual) {
-  return StructureOf(displacement, residual,
-                     std::vector<unsigned char>(displacement.size(), 1));
+  return StructureOf(displacement, residual, std::vector<unsigned char>(displacement.size(), 1));
 }
 
 /// Residuals from displacement and direction of motion, +1 or −1, which the sample ends.

@@ -106,7 +106,7 @@ struct FitResult {
   double force_noise = 0.0;  ///< [N], known or estimated
   std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
-  std::vector<BranchShape> branch_shapes;   ///< α of each branch on its own; empty where it is held
+  std::vector<BranchShape> branch_shapes;  ///< α of each branch on its own; empty where it is held
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

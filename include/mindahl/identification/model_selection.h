@@ -62,8 +62,9 @@ struct ModelSelection {
 /// *Criterion*, for k free parameters and the variance of the noise:
 ///   AICc = n_eff·ln(rms²) + 2k + 2k(k+1)/(n − k − 1),      n_eff: ResidualStatistics
 /// Akaike (1974) and Hurvich & Tsai (1989) but for n_eff, which weighs the likelihood: residuals
-/// that are autocorrelated, or repeat in every stroke, carry less information. n_eff is that of the candidate with the least
-/// rms, for all: a poor model's residuals are autocorrelated, which must not count in its favour. Differences of rms below the rounding of the data are none.
+/// that are autocorrelated, or repeat in every stroke, carry less information. n_eff is that of the
+/// candidate with the least rms, for all: a poor model's residuals are autocorrelated, which must
+/// not count in its favour. Differences of rms below the rounding of the data are none.
 ///
 /// *Prediction.* Whole cycles, from one reversal to the next but one, are dealt to the folds in
 /// turn; each fold is predicted by fits to the rest that start from the full fit, the samples held

@@ -54,8 +54,8 @@ struct Term {
   double lowest = 0.0;  ///< default bounds, in units of the data
   double highest = 0.0;
   double (*scale)(const TermUnits&) = nullptr;
-  double (*reference)(const TermUnits&) = nullptr;   ///< none: 0
-  double (*column)(const TermSample&) = nullptr;     ///< of a linear one; none: the model's force
+  double (*reference)(const TermUnits&) = nullptr;  ///< none: 0
+  double (*column)(const TermSample&) = nullptr;    ///< of a linear one; none: the model's force
   bool needs_time = false;
   std::string_view option = {};    ///< of the command line that asks for it; empty: none
   std::string_view argument = {};  ///< its argument; empty: a flag

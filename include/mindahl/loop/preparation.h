@@ -50,8 +50,8 @@ struct PreparedRecord {
   explicit PreparedRecord(const RecordView& view, std::pmr::memory_resource* memory)
       : record(view), reversals(memory), counts(memory), smoothed(memory) {}
 
-  RecordView record;           ///< as measured; must outlive this
-  double reversal_gate = 0.0;  ///< [m]
+  RecordView record;                        ///< as measured; must outlive this
+  double reversal_gate = 0.0;               ///< [m]
   std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopMeasures measures;                    ///< with the force in the displacement's sense
   double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's

@@ -18,10 +18,10 @@ struct NormalizedLaw {
 
 /// Derivatives of t = T/Tc, a column each; an empty one is not wanted.
 struct NormalizedGradient {
-  std::span<double> log_rate;                ///< ∂t/∂ln κ
-  std::span<double> shape_exponent;          ///< ∂t/∂α
-  std::span<double> unloaded_displacement;   ///< ∂t/∂δ₀ [1/m], of a virgin contact
-  std::span<double> log_spring_travel;       ///< ∂t/∂ln c
+  std::span<double> log_rate;               ///< ∂t/∂ln κ
+  std::span<double> shape_exponent;         ///< ∂t/∂α
+  std::span<double> unloaded_displacement;  ///< ∂t/∂δ₀ [1/m], of a virgin contact
+  std::span<double> log_spring_travel;      ///< ∂t/∂ln c
 };
 
 /// How forces over Tc follow the places where branches start, for those who move them.
