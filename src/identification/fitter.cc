@@ -481,6 +481,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   if (!settled) {
     result.converged = false;
     result.termination.assign("The weights of the samples did not settle.");
+    result.findings.push_back({.code = "weights_not_settled"});
   }
   result.force_noise = noise.force * data.force;
   result.outliers = noise.outliers;
