@@ -405,6 +405,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.termination.assign("not run");
   result.iterations = 0;
   result.model = options.model;
+  result.law = {};
+  result.rig = {};
   result.force_noise = 0.0;
   result.outliers = 0;
   result.rms = 0.0;
@@ -482,6 +484,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   if (!settled) {
     result.converged = false;
     result.termination.assign("The weights of the samples did not settle.");
+    result.findings.push_back({.code = "weights_not_settled"});
   }
   result.force_noise = noise.force * data.force;
   result.outliers = noise.outliers;

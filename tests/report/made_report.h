@@ -106,6 +106,7 @@ inline report::ReportInput FailedInput() {
   input.fit.residuals = {};
   input.fit.records[0].residual.clear();
   input.fit.records[0].fitted_force.clear();
+  input.fit.findings = {{.code = "fit_failed", .severity = identification::Severity::kFailure}};
   return input;
 }
 

@@ -1,0 +1,304 @@
+#include "identification/inference/estimates.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "identification/inference/evidence.h"
+#include "identification/sample_loop.h"
+#include "identification/stages.h"
+
+// Standard errors, intervals and correlations against the formulas of a linearised fit, whose
+// Jacobian is found here by central differences of the model's force.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::Generator;
+using testing::kLaw;
+using testing::KnownNoise;
+using testing::Loop;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Stages;
+using testing::Wave;
+using testing::WithForceNoise;
+
+/// Central differences of a step of 1e-5 leave 1e-10 of the third derivative and 1e-11 of rounding
+/// over the step: 1e-6 of a column, which the condition of the fit, 1e2, may magnify.
+constexpr double kDifferences = 1e-4;
+
+Record NoisyLoop(double noise = 0.01, std::uint64_t seed = 5) {
+  Generator generator(seed);
+  return WithForceNoise(Loop(), noise * kLaw.slip_force, generator);
+}
+
+FitOptions Virgin() {
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  return options;
+}
+
+FitResult IntervalsOf(const Record& record, const FitOptions& options) {
+  const RecordView view = record;
+  return Fitter(options).Fit(view, Depth::kIntervals);
+}
+
+/// R of a series, by the correlations of an autoregressive process of order one.
+Eigen::MatrixXd CorrelationMatrix(double rho, Eigen::Index size) {
+  Eigen::MatrixXd matrix(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    for (Eigen::Index j = 0; j < size; ++j) {
+      matrix(i, j) = std::pow(rho, static_cast<double>(std::abs(i - j)));
+    }
+  }
+  return matrix;
+}
+
+struct Sandwich {
+  Eigen::MatrixXd covariance;  // of θ at unit variance
+  double absorbed = 0.0;
+};
+
+/// (JᵀJ)⁻¹JᵀRJ(JᵀJ)⁻¹ and the trace of (JᵀJ)⁻¹JᵀRJ.
+Sandwich SandwichOf(const Eigen::MatrixXd& jacobian, double rho) {
+  const Eigen::MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
+  const Eigen::MatrixXd correlated =
+      jacobian.transpose() * CorrelationMatrix(rho, jacobian.rows()) * jacobian;
+  return {inverse * correlated * inverse, (inverse * correlated).trace()};
+}
+
+TEST(Estimates, OfWhiteNoiseAreThoseOfTheNormalEquations) {
+  const Record record = NoisyLoop();
+  const FitResult fit = IntervalsOf(record, Virgin());
+  ASSERT_EQ(fit.residuals.effective_samples, static_cast<double>(record.size()))
+      << "the case needs white residuals";
+  Stages stages(record, Virgin());
+  const std::vector<double> theta = stages.ThetaOf(fit);
+  const auto& free = stages.problem.parameters.free();
+  const Eigen::VectorXd residual = stages.ResidualsAt(theta);
+  const auto degrees = static_cast<double>(record.size() - free.size());
+  const double variance = residual.squaredNorm() / degrees;
+  EXPECT_NEAR(fit.force_noise, std::sqrt(variance) * stages.data.force, 1e-9 * fit.force_noise);
+  EXPECT_EQ(fit.residuals.degrees_of_freedom, degrees);
+  const Eigen::MatrixXd covariance =
+      variance * SandwichOf(stages.DifferencesAt(theta), 0.0).covariance;
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const auto place = static_cast<Eigen::Index>(j);
+    const Parameter& parameter = stages.problem.parameters[free[j]];
+    const ParameterEstimate& estimate = *fit.Find(stages.problem.parameters.NameOf(free[j]));
+    SCOPED_TRACE(estimate.name);
+    const double error = std::sqrt(covariance(place, place));
+    const double unit = parameter.term->positive ? estimate.value : std::abs(parameter.scale);
+    ASSERT_TRUE(estimate.standard_error && estimate.lower95 && estimate.upper95);
+    EXPECT_NEAR(*estimate.standard_error / (unit * error), 1.0, kDifferences);
+    // Symmetric in θ: in the logarithm of what is positive.
+    const double half = StudentQuantile95(degrees) * error;
+    EXPECT_NEAR((parameter.ToTheta(*estimate.upper95) - theta[free[j]]) /
+                    std::copysign(half, parameter.scale),
+                1.0, kDifferences);
+    EXPECT_NEAR((theta[free[j]] - parameter.ToTheta(*estimate.lower95)) /
+                    std::copysign(half, parameter.scale),
+                1.0, kDifferences);
+    for (std::size_t k = 0; k < free.size(); ++k) {
+      const auto other = static_cast<Eigen::Index>(k);
+      const double expected =
+          covariance(place, other) / std::sqrt(covariance(place, place) * covariance(other, other));
+      const auto row = static_cast<std::size_t>(&estimate - fit.parameters.data());
+      const auto column = static_cast<std::size_t>(
+          fit.Find(stages.problem.parameters.NameOf(free[k])) - fit.parameters.data());
+      EXPECT_NEAR(fit.correlation[row * fit.parameters.size() + column], expected, kDifferences);
+    }
+  }
+}
+
+TEST(Estimates, OfCorrelatedNoiseAreWiderAndItsAbsorbedShareIsGivenBack) {
+  constexpr double kRho = 0.9;
+  constexpr double kVariance = 4e-4;
+  Stages stages(NoisyLoop(), Virgin());
+  const Solution solution = stages.Solve();
+  Noise noise = KnownNoise(kVariance, stages.data.counted);
+  noise.autocorrelation = testing::FirstOrder(kRho);
+  const Sandwich sandwich = SandwichOf(stages.DifferencesAt(solution.theta), kRho);
+  const auto count = static_cast<double>(stages.data.counted);
+  const auto parameters = static_cast<double>(stages.problem.parameters.free().size());
+  for (const bool is_known : {true, false}) {
+    noise.is_known = is_known;
+    const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
+    // (n − p) residuals' worth were divided by, but only n − tr were left.
+    const double variance =
+        is_known ? kVariance : kVariance * (count - parameters) / (count - sandwich.absorbed);
+    EXPECT_GT(sandwich.absorbed, 2 * parameters) << "the case needs it";
+    EXPECT_NEAR(estimates.variance() / variance, 1.0, kDifferences);
+    EXPECT_NEAR(estimates.local().absorbed / sandwich.absorbed, 1.0, kDifferences);
+    const auto& free = stages.problem.parameters.free();
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      const auto place = static_cast<Eigen::Index>(j);
+      const double error = std::sqrt(variance * sandwich.covariance(place, place));
+      EXPECT_NEAR(estimates.ErrorOfTheta(free[j]) / error, 1.0, kDifferences);
+      const double white =
+          kVariance / variance *
+          SandwichOf(stages.DifferencesAt(solution.theta), 0.0).covariance(place, place) /
+          sandwich.covariance(place, place);
+      EXPECT_NEAR(estimates.WhiteShare(free[j]) / white, 1.0, kDifferences);
+    }
+    EXPECT_NEAR(estimates.quantile(),
+                StudentQuantile95(
+                    is_known ? 1e6 : count / ((1 + kRho * kRho) / (1 - kRho * kRho)) - parameters),
+                1e-6);
+  }
+}
+
+TEST(Estimates, AtABoundReachOneSidedFromIt) {
+  FitOptions options = Virgin();
+  for (const Interval& bounds : {Interval{0.45, 2.0}, Interval{0.0, 0.35}}) {
+    options.bounds["alpha"] = bounds;
+    Stages stages(NoisyLoop(), options);
+    const Solution solution = stages.Solve();
+    const bool is_lower = bounds.lower > 0;
+    ASSERT_EQ(solution.side[kShape], is_lower ? BoundSide::kLower : BoundSide::kUpper);
+    const Noise noise = KnownNoise(1e-4, stages.data.counted);
+    const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
+    const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
+    const Eigen::MatrixXd all = SandwichOf(jacobian, 0.0).covariance;
+    ParameterEstimate alpha;
+    alpha.value = solution.theta[kShape];
+    estimates.Fill(kShape, alpha);
+    EXPECT_FALSE(alpha.standard_error);
+    ASSERT_TRUE(alpha.lower95 && alpha.upper95);
+    EXPECT_NEAR(is_lower ? *alpha.lower95 : *alpha.upper95, solution.theta[kShape], 1e-12);
+    const double reach = 1.959964 * std::sqrt(1e-4 * all(kShape, kShape));
+    EXPECT_NEAR((*alpha.upper95 - *alpha.lower95) / reach, 1.0, kDifferences);
+    // The others: as if α were held there.
+    std::vector<Eigen::Index> inside;
+    for (Eigen::Index j = 0; j < jacobian.cols(); ++j) {
+      if (j != static_cast<Eigen::Index>(kShape)) inside.push_back(j);
+    }
+    const Eigen::MatrixXd rest = SandwichOf(jacobian(Eigen::all, inside), 0.0).covariance;
+    EXPECT_NEAR(estimates.ErrorOfTheta(kStiffness) / std::sqrt(1e-4 * rest(0, 0)), 1.0,
+                kDifferences);
+    EXPECT_TRUE(std::isnan(estimates.Correlation(kStiffness, kShape)));
+  }
+}
+
+TEST(Estimates, OfAMirroredRecordHaveMirroredCorrelations) {
+  const Record record = NoisyLoop();
+  const FitResult plain = IntervalsOf(record, Virgin());
+  struct Mirror {
+    double displacement;
+    double force;
+  };
+  for (const auto& [displacement, force] : {Mirror{1, -1}, {-1, 1}, {-1, -1}}) {
+    const FitResult mirrored = IntervalsOf(testing::Scaled(record, displacement, force), Virgin());
+    const auto sign_of = [&](const std::string& name) {
+      return name == "force_offset" ? force : name == "displacement_offset" ? displacement : 1.0;
+    };
+    const std::size_t count = plain.parameters.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::string& one = plain.parameters[i].name;
+      const double value = sign_of(one) * plain.parameters[i].value;
+      EXPECT_NEAR(mirrored.parameters[i].value, value, 1e-5 * std::abs(value)) << one;
+      for (std::size_t j = 0; j < count; ++j) {
+        const double expected =
+            plain.correlation[i * count + j] * sign_of(one) * sign_of(plain.parameters[j].name);
+        if (std::isnan(expected)) continue;
+        EXPECT_NEAR(mirrored.correlation[i * count + j], expected, 1e-5)
+            << one << ", " << plain.parameters[j].name;
+      }
+    }
+  }
+}
+
+TEST(Estimates, MisfitThatRepeatsIsNotAveragedAwayByMoreStrokes) {
+  // 100 strokes of a loop with a force that stands in its middle: by the share q that repeats, the
+  // variance of an estimate is 1 + q·(N − 1) times what the noise would leave.
+  Record record = MakeRecord(Cycling(Wave::kSine, testing::kReach, 50.25, 40), {});
+  record.force = Respond(Model("mindlin-dahl"), kLaw, record.displacement);
+  Generator generator(3);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double x = record.displacement[i] / testing::kReach;
+    record.force[i] += 1.2 * std::exp(-9 * x * x) + 0.6 * testing::Normal(generator);
+  }
+  const FitResult fit = IntervalsOf(record, Virgin());
+  ASSERT_TRUE(fit.records[0].overshoot.empty()) << "the case is without turning points";
+  const ResidualStructure& structure = fit.records[0].structure;
+  EXPECT_EQ(structure.strokes, 50U) << "of the direction that has more";
+  ASSERT_GT(structure.repeatable_share, 0.1);
+  const double repeating = 1 + structure.repeatable_share * 49;
+  const std::span<const double> series = fit.records[0].residual;
+  const std::span<const unsigned char> counts = fit.records[0].counts;
+  const Autocorrelation process = EstimateAutocorrelation({&series, 1}, {&counts, 1});
+  EXPECT_NEAR(fit.residuals.effective_samples * repeating * process.SquaredCorrelations() /
+                  static_cast<double>(record.size()),
+              1.0, 1e-6);
+  // The same noise without what repeats.
+  Stages stages(record, Virgin());
+  const Solution solution = stages.Solve();
+  const auto parameters = stages.problem.parameters.free().size();
+  Noise noise =
+      KnownNoise(solution.sum_of_squares / static_cast<double>(stages.data.counted - parameters),
+                 stages.data.counted);
+  noise.is_known = false;
+  noise.autocorrelation = process;
+  const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
+  const double once = estimates.ErrorOfTheta(kShape);
+  EXPECT_NEAR(*fit.Find("alpha")->standard_error / (std::sqrt(repeating) * once), 1.0, 1e-4);
+}
+
+TEST(Estimates, OfDisplacementNoiseCountItOnce) {
+  // With a known noise of the force and draws E of what the displacement's does, by hand:
+  // s²·(JᵀJ)⁻¹(JᵀSSJ + JᵀEEᵀJ/(K s²))(JᵀJ)⁻¹.
+  constexpr double kVariance = 1e-4;
+  Stages stages(NoisyLoop(), Virgin());
+  const Solution solution = stages.Solve();
+  const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
+  Noise noise = KnownNoise(kVariance, stages.data.counted);
+  Generator generator(8);
+  DisplacementEffect effect{Eigen::MatrixXd(jacobian.rows(), 3), kVariance};
+  for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+    noise.force_share.push_back(testing::Uniform(generator, 0.2, 1.0));
+    for (Eigen::Index k = 0; k < 3; ++k) effect.residuals(i, k) = 0.02 * testing::Normal(generator);
+  }
+  const Estimates estimates(stages.problem, solution, noise, effect, {}, stages.buffers.response);
+  const Eigen::MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
+  const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
+  const Eigen::MatrixXd of_force = share.asDiagonal() * jacobian;
+  const Eigen::MatrixXd drawn = jacobian.transpose() * effect.residuals;
+  const Eigen::MatrixXd covariance =
+      inverse * (kVariance * of_force.transpose() * of_force + drawn * drawn.transpose() / 3.0) *
+      inverse;
+  const auto& free = stages.problem.parameters.free();
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const auto place = static_cast<Eigen::Index>(j);
+    EXPECT_NEAR(estimates.ErrorOfTheta(free[j]) / std::sqrt(covariance(place, place)), 1.0,
+                kDifferences);
+  }
+}
+
+TEST(Estimates, OfADirectionWithoutEffectAreNone) {
+  // A straight line knows the ratio of nothing: its plateau slope is σ.
+  Stages stages(NoisyLoop(), Virgin());
+  const Solution solution = stages.Solve();
+  Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
+  jacobian.col(1) = 2 * jacobian.col(0);
+  const auto& free = stages.problem.parameters.free();
+  const LocalUncertainty local =
+      AnalyseJacobian(stages.problem, {free.begin(), free.end()}, jacobian,
+                      KnownNoise(1.0, stages.data.counted), {});
+  EXPECT_FALSE(local.determined[0] || local.determined[1]);
+  EXPECT_TRUE(local.determined[2] && local.determined[3]);
+  ASSERT_EQ(local.null.size(), 1U);
+  // 2·δθ₁ + δθ₀ = 0
+  EXPECT_NEAR(local.null[0][0] + 2 * local.null[0][1], 0.0, 1e-9 * std::abs(local.null[0][0]));
+}
+
+}  // namespace
+}  // namespace mindahl::identification

@@ -1,0 +1,172 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "identification/sample_loop.h"
+#include "mindahl/identification/fit.h"
+
+// One fitter for many records, at the depth that is wanted.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Generator;
+using testing::kLaw;
+using testing::kReach;
+using testing::Loop;
+using testing::WithForceNoise;
+
+Record NoisyLoop(std::uint64_t seed, double cycles = 2.0) {
+  Generator generator(seed);
+  return WithForceNoise(Loop(cycles), 0.01 * kLaw.slip_force, generator);
+}
+
+void ExpectSame(const std::optional<double>& one, const std::optional<double>& other,
+                const std::string& what) {
+  ASSERT_EQ(one.has_value(), other.has_value()) << what;
+  if (one && !(std::isnan(*one) && std::isnan(*other))) EXPECT_EQ(*one, *other) << what;
+}
+
+/// Everything that a result states, to the last bit.
+void ExpectSame(const FitResult& one, const FitResult& other) {
+  EXPECT_EQ(one.depth, other.depth);
+  EXPECT_EQ(one.converged, other.converged);
+  EXPECT_EQ(one.termination, other.termination);
+  EXPECT_EQ(one.iterations, other.iterations);
+  EXPECT_EQ(one.initial_state, other.initial_state);
+  EXPECT_EQ(one.force_sense, other.force_sense);
+  EXPECT_EQ(one.law.tangential_stiffness, other.law.tangential_stiffness);
+  EXPECT_EQ(one.law.shape_exponent, other.law.shape_exponent);
+  EXPECT_EQ(one.law.slip_force, other.law.slip_force);
+  EXPECT_EQ(one.rig.stiffness, other.rig.stiffness);
+  EXPECT_EQ(one.rms, other.rms);
+  EXPECT_EQ(one.force_noise, other.force_noise);
+  EXPECT_EQ(one.outliers, other.outliers);
+  EXPECT_EQ(one.residuals.samples, other.residuals.samples);
+  EXPECT_EQ(one.residuals.effective_samples, other.residuals.effective_samples);
+  EXPECT_EQ(one.residuals.durbin_watson, other.residuals.durbin_watson);
+  EXPECT_EQ(one.starts.size(), other.starts.size());
+  EXPECT_EQ(one.branch_shapes.size(), other.branch_shapes.size());
+  ASSERT_EQ(one.mindlin_test.has_value(), other.mindlin_test.has_value());
+  if (one.mindlin_test) EXPECT_EQ(one.mindlin_test->p_value, other.mindlin_test->p_value);
+  ASSERT_EQ(one.parameters.size(), other.parameters.size());
+  for (std::size_t k = 0; k < one.parameters.size(); ++k) {
+    const ParameterEstimate& a = one.parameters[k];
+    const ParameterEstimate& b = other.parameters[k];
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.unit, b.unit);
+    EXPECT_EQ(a.value, b.value) << a.name;
+    EXPECT_EQ(a.status, b.status) << a.name;
+    EXPECT_EQ(a.identifiability, b.identifiability) << a.name;
+    ExpectSame(a.standard_error, b.standard_error, a.name);
+    ExpectSame(a.lower95, b.lower95, a.name);
+    ExpectSame(a.upper95, b.upper95, a.name);
+  }
+  ASSERT_EQ(one.correlation.size(), other.correlation.size());
+  for (std::size_t k = 0; k < one.correlation.size(); ++k) {
+    ExpectSame(one.correlation[k], other.correlation[k], "correlation");
+  }
+  ASSERT_EQ(one.findings.size(), other.findings.size());
+  for (std::size_t k = 0; k < one.findings.size(); ++k) {
+    EXPECT_EQ(one.findings[k].code, other.findings[k].code);
+    EXPECT_EQ(one.findings[k].numbers, other.findings[k].numbers);
+    EXPECT_EQ(one.findings[k].parameters, other.findings[k].parameters);
+  }
+  ASSERT_EQ(one.records.size(), other.records.size());
+  for (std::size_t r = 0; r < one.records.size(); ++r) {
+    EXPECT_EQ(one.records[r].reversals, other.records[r].reversals);
+    EXPECT_EQ(one.records[r].overshoot, other.records[r].overshoot);
+    EXPECT_EQ(one.records[r].counts, other.records[r].counts);
+    EXPECT_EQ(one.records[r].left_out, other.records[r].left_out);
+    EXPECT_EQ(one.records[r].residual, other.records[r].residual);
+    EXPECT_EQ(one.records[r].fitted_force, other.records[r].fitted_force);
+    EXPECT_EQ(one.records[r].displacement_noise, other.records[r].displacement_noise);
+    EXPECT_EQ(one.records[r].structure.repeatable_share,
+              other.records[r].structure.repeatable_share);
+    EXPECT_EQ(one.records[r].measures.amplitude, other.records[r].measures.amplitude);
+  }
+}
+
+/// Records that take every way through a fit.
+std::vector<std::vector<Record>> Assortment() {
+  Generator generator(3);
+  Record dithered = NoisyLoop(4, 4.0);
+  for (double& x : dithered.displacement) x += 0.01 * kReach * testing::Normal(generator);
+  Record coarse;
+  const Record dense = Loop(3.0);
+  for (std::size_t i = 1; i < dense.size(); i += 4) {
+    coarse.displacement.push_back(dense.displacement[i]);
+    coarse.force.push_back(dense.force[i]);
+  }
+  const Record wrong = testing::Scaled(Loop(), 1.0, -1.0);
+  return {{NoisyLoop(1)}, {testing::Scaled(NoisyLoop(2, 3.0), 0.2, -2.0), NoisyLoop(5)},
+          {dithered},     {testing::From(NoisyLoop(6, 3.0), 95)},
+          {coarse},       {wrong},
+          {Loop(1.0)}};
+}
+
+TEST(Fitter, GivesForAnyRecordWhatAFreshOneGives) {
+  for (const Depth depth : {Depth::kEstimate, Depth::kIntervals, Depth::kFull}) {
+    Fitter used;
+    for (int round = 0; round < 2; ++round) {
+      int number = 0;
+      for (const std::vector<Record>& records : Assortment()) {
+        SCOPED_TRACE("records " + std::to_string(number++) + ", round " + std::to_string(round));
+        const std::vector<RecordView> views(records.begin(), records.end());
+        Fitter fresh;
+        ExpectSame(used.Fit(views, depth), fresh.Fit(views, depth));
+      }
+    }
+  }
+}
+
+TEST(Fitter, LeavesNothingOfAFitBeforeOneThatFails) {
+  // Forced to the wrong sense, no start is found.
+  FitOptions options;
+  options.preparation.force_sense = 1;
+  Fitter used(options);
+  Fitter fresh(options);
+  const Record good = Loop();
+  const Record wrong = testing::Scaled(Loop(), 1.0, -1.0);
+  for (const Depth depth : {Depth::kEstimate, Depth::kFull}) {
+    ASSERT_TRUE(used.Fit(RecordView(good), depth).converged);
+    const FitResult& failed = used.Fit(RecordView(wrong), depth);
+    EXPECT_FALSE(failed.converged);
+    ASSERT_NE(failed.FindFinding("fit_failed"), nullptr);
+    EXPECT_EQ(failed.FindFinding("fit_failed")->severity, Severity::kFailure);
+    ExpectSame(failed, fresh.Fit(RecordView(wrong), depth));
+  }
+}
+
+TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
+  for (const std::vector<Record>& records : Assortment()) {
+    const std::vector<RecordView> views(records.begin(), records.end());
+    Fitter fitter;
+    const FitResult estimate = fitter.Fit(views, Depth::kEstimate);
+    const FitResult intervals = fitter.Fit(views, Depth::kIntervals);
+    const FitResult full = fitter.Fit(views, Depth::kFull);
+    ASSERT_EQ(estimate.parameters.size(), full.parameters.size());
+    for (std::size_t k = 0; k < estimate.parameters.size(); ++k) {
+      EXPECT_EQ(estimate.parameters[k].value, intervals.parameters[k].value);
+      EXPECT_EQ(estimate.parameters[k].value, full.parameters[k].value);
+      EXPECT_EQ(estimate.parameters[k].status, full.parameters[k].status);
+      EXPECT_FALSE(estimate.parameters[k].standard_error) << "an estimate has none";
+    }
+    EXPECT_EQ(estimate.rms, full.rms);
+    EXPECT_EQ(estimate.converged, full.converged);
+    EXPECT_TRUE(estimate.correlation.empty());
+    EXPECT_TRUE(estimate.starts.empty());
+    EXPECT_EQ(intervals.correlation.size(), full.correlation.size());
+    EXPECT_FALSE(intervals.mindlin_test);
+    EXPECT_TRUE(intervals.branch_shapes.empty());
+    EXPECT_EQ(intervals.residuals.effective_samples, full.residuals.effective_samples);
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::identification

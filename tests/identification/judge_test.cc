@@ -1,0 +1,122 @@
+#include "identification/judge/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// Verdicts from estimates and findings alone, by precedence.
+namespace mindahl::identification {
+namespace {
+
+ParameterEstimate Known(const char* name) {
+  return {.name = name,
+          .unit = "-",
+          .value = 2.0,
+          .standard_error = 0.1,
+          .lower95 = 1.8,
+          .upper95 = 2.2,
+          .status = ParameterStatus::kFree};
+}
+
+/// What each finding says of the parameters that it names, as docs/contract.md has it.
+const std::map<std::string_view, Identifiability>& Verdicts() {
+  static const std::map<std::string_view, Identifiability> verdicts = {
+      {"no_model_fits", Identifiability::kNotIdentifiable},
+      {"undetermined_parameter", Identifiability::kNotIdentifiable},
+      {"undetermined_combination", Identifiability::kNotIdentifiable},
+      {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
+      {"alpha_not_identifiable", Identifiability::kNotIdentifiable},
+      {"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
+      {"shape_or_rig", Identifiability::kNotIdentifiable},
+      {"slip_force_bounded_below", Identifiability::kBoundedBelow},
+      {"sigma_bounded_below", Identifiability::kBoundedBelow},
+      {"systematic_residual", Identifiability::kIdentifiable},
+      {"turning_points_between_samples", Identifiability::kIdentifiable},
+  };
+  return verdicts;
+}
+
+Identifiability JudgedWith(ParameterEstimate estimate, std::vector<Finding> findings) {
+  Judge({&estimate, 1}, findings);
+  return estimate.identifiability;
+}
+
+TEST(Judge, FindingSetsTheVerdictOnWhatItNamesOnly) {
+  for (const auto& [code, verdict] : Verdicts()) {
+    std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
+    const Finding finding{.code = code, .parameters = {"alpha"}};
+    Judge(estimates, {&finding, 1});
+    EXPECT_EQ(VerdictOf(finding), verdict) << code;
+    EXPECT_EQ(estimates[1].identifiability, verdict) << code;
+    EXPECT_EQ(estimates[0].identifiability, Identifiability::kIdentifiable) << code;
+    EXPECT_EQ(estimates[2].identifiability, Identifiability::kIdentifiable) << code;
+  }
+}
+
+TEST(Judge, OfTwoFindingsTheWorseHoldsInEitherOrder) {
+  for (const auto& [one, verdict_of_one] : Verdicts()) {
+    for (const auto& [other, verdict_of_other] : Verdicts()) {
+      const Finding first{.code = one, .parameters = {"sigma", "alpha"}};
+      const Finding second{.code = other, .parameters = {"alpha"}};
+      const Identifiability worse = std::max(verdict_of_one, verdict_of_other);
+      EXPECT_EQ(JudgedWith(Known("alpha"), {first, second}), worse) << one << ", " << other;
+      EXPECT_EQ(JudgedWith(Known("alpha"), {second, first}), worse) << one << ", " << other;
+      EXPECT_EQ(JudgedWith(Known("sigma"), {second, first}), verdict_of_one) << one;
+    }
+  }
+}
+
+TEST(Judge, FindingWithoutParametersChangesNone) {
+  for (const auto& [code, verdict] : Verdicts()) {
+    EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = code}}), Identifiability::kIdentifiable) << code;
+  }
+  EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = "weights_not_settled"}}),
+            Identifiability::kIdentifiable);
+}
+
+TEST(Judge, WhatIsHeldIsIdentifiableWhateverIsFound) {
+  ParameterEstimate held = Known("alpha");
+  held.status = ParameterStatus::kFixed;
+  held.standard_error = held.lower95 = held.upper95 = std::nullopt;
+  EXPECT_EQ(JudgedWith(held, {{.code = "undetermined_parameter", .parameters = {"alpha"}}}),
+            Identifiability::kIdentifiable);
+}
+
+TEST(Judge, OpenIntervalIsALimitAndNoIntervalIsNothing) {
+  ParameterEstimate open = Known("slip_force");
+  open.upper95.reset();
+  EXPECT_EQ(JudgedWith(open, {}), Identifiability::kBoundedBelow);
+  EXPECT_EQ(JudgedWith(open, {{.code = "no_model_fits", .parameters = {"slip_force"}}}),
+            Identifiability::kNotIdentifiable);
+  EXPECT_EQ(JudgedWith(open, {{.code = "systematic_residual", .parameters = {"slip_force"}}}),
+            Identifiability::kBoundedBelow)
+      << "a finding makes nothing better";
+  open.lower95.reset();
+  EXPECT_EQ(JudgedWith(open, {}), Identifiability::kNotIdentifiable);
+  // At a bound there is an interval and no error.
+  ParameterEstimate at_bound = Known("alpha");
+  at_bound.status = ParameterStatus::kAtLowerBound;
+  at_bound.standard_error.reset();
+  EXPECT_EQ(JudgedWith(at_bound, {}), Identifiability::kIdentifiable);
+}
+
+TEST(Judge, EarlierVerdictIsForgotten) {
+  ParameterEstimate estimate = Known("alpha");
+  estimate.identifiability = Identifiability::kNotIdentifiable;
+  EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kIdentifiable);
+}
+
+TEST(Judge, CodeWithoutAVerdictIsAMistakeOfTheProgram) {
+  const Finding finding{.code = "bad_weather", .parameters = {"alpha"}};
+  EXPECT_THROW(VerdictOf(finding), std::logic_error);
+  EXPECT_THROW(JudgedWith(Known("alpha"), {finding}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace mindahl::identification

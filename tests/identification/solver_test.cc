@@ -1,0 +1,219 @@
+#include "identification/solve/solver.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "identification/sample_loop.h"
+#include "identification/stages.h"
+
+// Variable projection against what it stands for: the least squares of all parameters.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Generator;
+using testing::kLaw;
+using testing::Loop;
+using testing::Stages;
+using testing::WithForceNoise;
+
+Record NoisyLoop(std::uint64_t seed = 4) {
+  Generator generator(seed);
+  return WithForceNoise(Loop(), 0.01 * kLaw.slip_force, generator);
+}
+
+/// The largest component of Jᵀr by unit columns, over |r|: 0 at a minimum.
+double GradientAt(Stages& stages, const Solution& solution) {
+  const Eigen::VectorXd residual = stages.ResidualsAt(solution.theta);
+  const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
+  const auto& free = stages.problem.parameters.free();
+  double worst = 0.0;
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    if (solution.side[free[j]] != BoundSide::kInside) continue;
+    const auto column = jacobian.col(static_cast<Eigen::Index>(j));
+    worst = std::max(worst, std::abs(column.dot(residual)) / (column.norm() * residual.norm()));
+  }
+  return worst;
+}
+
+/// A step can lower the cost by 1e-10 of it at the most: cosines are 1e-5 at the most. Differences
+/// are worse, by samples near slip, where the law's second derivative has no bound.
+constexpr double kStationary = 1e-4;
+
+TEST(Solver, LeavesNoGradientInAnyParameter) {
+  Record record = NoisyLoop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(0.01 * static_cast<double>(i));
+    record.force[i] += 0.5 * record.time[i];
+  }
+  for (const std::vector<std::string>& terms : {std::vector<std::string>{},
+                                                {"force_drift"},
+                                                {"plateau_slope", "force_drift"},
+                                                {"rig_stiffness"}}) {
+    FitOptions options;
+    options.terms = terms;
+    Stages stages(record, options);
+    const Solution solution = stages.Solve();
+    EXPECT_TRUE(solution.converged);
+    EXPECT_LT(GradientAt(stages, solution), kStationary) << (terms.empty() ? "" : terms[0]);
+    EXPECT_NEAR(solution.sum_of_squares / stages.ResidualsAt(solution.theta).squaredNorm(), 1.0,
+                1e-10);
+  }
+  Stages two(std::vector<Record>{NoisyLoop(), testing::Scaled(NoisyLoop(9), 0.6, 0.9)});
+  const Solution joint = two.Solve();
+  EXPECT_LT(GradientAt(two, joint), kStationary);
+}
+
+TEST(Solver, ReachesTheSameMinimumInNaturalCoordinates) {
+  // Bounds that the user gives on σ make the solver search σ and Tc themselves; wide ones change
+  // nothing else.
+  const Solution eliminated = Stages(NoisyLoop()).Solve();
+  FitOptions options;
+  options.bounds["sigma"] = {1e6, 1e9};
+  const Solution natural = Stages(NoisyLoop(), options).Solve();
+  EXPECT_NEAR(natural.sum_of_squares / eliminated.sum_of_squares, 1.0, 1e-9);
+  for (std::size_t p = 0; p < natural.theta.size(); ++p) {
+    EXPECT_NEAR(natural.theta[p], eliminated.theta[p], 1e-4);
+  }
+}
+
+TEST(Solver, ReachesTheSameMinimumWithARigInEitherCoordinates) {
+  Generator generator(6);
+  const Record record = WithForceNoise(testing::SprungLoop({4e7, 0.4, 40.0}, 6e7), 0.05, generator);
+  FitOptions options;
+  options.terms = {"rig_stiffness"};
+  Stages eliminated(record, options);
+  const Solution one = eliminated.Solve();
+  options.bounds["rig_stiffness"] = {1e6, 1e10};
+  Stages natural(record, options);
+  const Solution other = natural.Solve();
+  EXPECT_NEAR(other.sum_of_squares / one.sum_of_squares, 1.0, 1e-8);
+  EXPECT_LT(GradientAt(eliminated, one), kStationary);
+  EXPECT_LT(GradientAt(natural, other), kStationary);
+}
+
+TEST(Solver, HeldStiffnessRigOrSlipForceLeaveTheOthersAtTheirMinimum) {
+  Generator generator(6);
+  const Record record = WithForceNoise(testing::SprungLoop({4e7, 0.4, 40.0}, 6e7), 0.05, generator);
+  struct Held {
+    const char* name;
+    double value;
+    bool rig;
+  };
+  for (const auto& [name, value, rig] : {Held{"sigma", 3e7, false},
+                                         {"slip_force", 39.0, false},
+                                         {"rig_stiffness", 5e7, true},
+                                         {"sigma", 3.5e7, true},
+                                         {"slip_force", 39.5, true}}) {
+    SCOPED_TRACE(std::string(name) + (rig ? " with a rig" : ""));
+    FitOptions options;
+    if (rig) options.terms = {"rig_stiffness"};
+    options.fixed[name] = value;
+    Stages stages(record, options);
+    const Solution solution = stages.Solve();
+    EXPECT_TRUE(solution.converged);
+    const std::size_t p = stages.problem.parameters.PositionOf(name, 0);
+    EXPECT_NEAR(stages.problem.parameters[p].ToValue(solution.theta[p]) / value, 1.0, 1e-14);
+    EXPECT_LT(GradientAt(stages, solution), kStationary);
+  }
+}
+
+TEST(Solver, EliminatedColumnStaysAtItsBoundAndTheRestIsRefitted) {
+  const Record record = testing::Shifted(NoisyLoop(), 0.0, 5.0);
+  FitOptions options;
+  options.bounds["force_offset"] = {-20.0, 3.0};
+  Stages stages(record, options);
+  const Solution solution = stages.Solve();
+  const std::size_t p = stages.problem.parameters.PositionOf("force_offset", 0);
+  EXPECT_EQ(solution.side[p], BoundSide::kUpper);
+  EXPECT_NEAR(stages.problem.parameters[p].ToValue(solution.theta[p]), 3.0, 1e-12);
+  EXPECT_LT(GradientAt(stages, solution), kStationary) << "of the others";
+  FitOptions held;
+  held.fixed["force_offset"] = 3.0;
+  EXPECT_NEAR(Stages(record, held).Solve().sum_of_squares / solution.sum_of_squares, 1.0, 1e-9);
+  // A bound of the slip force as well, which is eliminated too.
+  FitOptions limited;
+  limited.bounds["slip_force"] = {1.0, 55.0};
+  Stages below(record, limited);
+  const Solution at_bound = below.Solve();
+  EXPECT_NEAR(below.problem.parameters[kSlipForce].ToValue(at_bound.theta[kSlipForce]), 55.0, 1e-7);
+  EXPECT_EQ(at_bound.side[kSlipForce], BoundSide::kUpper);
+}
+
+TEST(Solver, CanBeBoundAgainToAnotherProblem) {
+  Stages first(NoisyLoop());
+  Stages second(testing::Scaled(NoisyLoop(7), 2.0, 3.0));
+  const Solution alone = second.Solve();
+  first.Solve();
+  Solution reused;
+  first.buffers.solver.Bind(second.problem, first.buffers.response);
+  first.buffers.solver.Solve(alone.theta, {}, reused);
+  EXPECT_NEAR(reused.sum_of_squares / alone.sum_of_squares, 1.0, 1e-10);
+}
+
+TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
+  Record record = NoisyLoop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(0.1 * static_cast<double>(i));
+    record.normal_load.push_back(100.0 + static_cast<double>(i % 7));
+  }
+  FitOptions options;
+  options.follow_load = true;
+  Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)}, options);
+  std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
+  const ScaledRecords thin = Thin(stages.data, reversals, Stages::Memory());
+  ASSERT_EQ(thin.records.size(), 2U);
+  std::size_t counted = 0;
+  for (std::size_t r = 0; r < 2; ++r) {
+    const ScaledRecord& whole = stages.data.records[r];
+    const ScaledRecord& part = thin.records[r];
+    EXPECT_LT(part.size(), whole.size() / 2);
+    ASSERT_EQ(part.reversals.size(), whole.reversals.size());
+    for (std::size_t j = 0; j < whole.reversals.size(); ++j) {
+      EXPECT_EQ(part.displacement[part.reversals[j]], whole.displacement[whole.reversals[j]]);
+      EXPECT_EQ(part.force[part.reversals[j]], whole.force[whole.reversals[j]]);
+    }
+    EXPECT_EQ(part.displacement.front(), whole.displacement.front());
+    EXPECT_EQ(part.displacement.back(), whole.displacement.back());
+    EXPECT_EQ(part.load_ratio.size(), part.size());
+    EXPECT_EQ(part.velocity.size(), part.size());
+    for (const unsigned char counts : part.counts) counted += counts;
+  }
+  EXPECT_EQ(thin.counted, counted);
+  EXPECT_EQ(thin.samples(), thin.records[0].size() + thin.records[1].size());
+}
+
+TEST(Starts, RespectTheMaskAndARowThatIsLoadedFirst) {
+  // Garbage where samples do not count, and a record that begins at the top of its loop.
+  Record record = testing::From(Loop(3.0), 25);
+  FitOptions options;
+  options.preparation.held_out = {std::vector<bool>(record.size(), false)};
+  options.preparation.force_sense = 1;
+  for (std::size_t i = 40; i < record.size(); i += 3) {
+    options.preparation.held_out[0][i] = true;
+    record.force[i] = -300.0;
+  }
+  const FitResult fit = testing::FitOne(record, options);
+  EXPECT_TRUE(testing::Recovers(fit, kLaw, testing::kNoiseFree));
+  Stages stages(record, options);
+  std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
+  const ScaledRecords thin = Thin(stages.data, reversals, Stages::Memory());
+  const Problem problem{&thin, stages.problem.model, stages.problem.state,
+                        Parameters(stages.problem.parameters, Stages::Memory())};
+  Solution scratch;
+  const auto starts = FindStarts(problem, options, stages.buffers.solver, stages.buffers.response,
+                                 scratch, Stages::Memory());
+  ASSERT_FALSE(starts.empty());
+  EXPECT_LT(starts.front().cost, 1e-3) << "the garbage alone would cost hundreds";
+  EXPECT_NEAR(problem.parameters.LawAt(starts.front().theta).slip_force / kLaw.slip_force, 1, 0.05);
+}
+
+}  // namespace
+}  // namespace mindahl::identification

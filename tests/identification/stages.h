@@ -1,0 +1,127 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstddef>
+#include <memory_resource>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "identification/inference/noise.h"
+#include "identification/problem/problem.h"
+#include "identification/problem/scaled_records.h"
+#include "identification/solve/search.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/preparation.h"
+#include "recovery/recovered.h"
+
+/// The stages of a fit, one by one, on records of a test.
+namespace mindahl::testing {
+
+class Stages {
+ public:
+  explicit Stages(std::vector<loop::Record> given, identification::FitOptions fit_options = {},
+                  models::InitialState state = models::InitialState::kVirgin)
+      : records(std::move(given)),
+        options(std::move(fit_options)),
+        views(records.begin(), records.end()),
+        prepared(loop::Prepare(views, options.preparation, Memory())),
+        data(identification::Scale(prepared, options.follow_load, Memory())),
+        problem{&data, options.model, state,
+                identification::Parameters(data, options, state, Memory())} {}
+  explicit Stages(loop::Record record, identification::FitOptions fit_options = {},
+                  models::InitialState state = models::InitialState::kVirgin)
+      : Stages(std::vector<loop::Record>{std::move(record)}, std::move(fit_options), state) {}
+  Stages(const Stages&) = delete;
+  Stages& operator=(const Stages&) = delete;
+
+  static std::pmr::memory_resource* Memory() { return std::pmr::get_default_resource(); }
+
+  /// The least-squares solution, from starts on the thinned records.
+  identification::Solution Solve() {
+    std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
+    const identification::ScaledRecords thin = identification::Thin(data, reversals, Memory());
+    identification::Candidate candidate(data, options, problem.state, Memory());
+    identification::Solution solution;
+    candidate.solution = &solution;
+    identification::FindStartsOf(candidate, thin, options, buffers, Memory());
+    identification::Descend(candidate, options, buffers, nullptr);
+    return solution;
+  }
+
+  /// θ of the parameters that a fit reports.
+  std::vector<double> ThetaOf(const identification::FitResult& fit) const {
+    std::vector<double> theta;
+    for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
+      const auto* estimate = fit.Find(problem.parameters.NameOf(p));
+      theta.push_back(estimate == nullptr ? problem.parameters[p].theta
+                                          : problem.parameters[p].ToTheta(estimate->value));
+    }
+    return theta;
+  }
+
+  /// Weighted residuals at θ.
+  Eigen::VectorXd ResidualsAt(std::span<const double> theta) {
+    identification::Response response;
+    response.Bind(problem);
+    std::vector<double> force(problem.size());
+    identification::Predict(problem, theta, response, force);
+    Eigen::VectorXd residual(static_cast<Eigen::Index>(force.size()));
+    Eigen::Index k = 0;
+    for (const identification::ScaledRecord& record : problem.data->records) {
+      for (std::size_t i = 0; i < record.size(); ++i, ++k) {
+        residual[k] =
+            record.root_weight[i] * (force[static_cast<std::size_t>(k)] - record.force[i]);
+      }
+    }
+    return residual;
+  }
+
+  /// ∂residual/∂θ of the free parameters by central differences.
+  Eigen::MatrixXd DifferencesAt(const std::vector<double>& theta, double step = 1e-5) {
+    const auto& free = problem.parameters.free();
+    Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(problem.size()),
+                             static_cast<Eigen::Index>(free.size()));
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      std::vector<double> above = theta;
+      std::vector<double> below = theta;
+      above[free[j]] += step;
+      below[free[j]] -= step;
+      jacobian.col(static_cast<Eigen::Index>(j)) =
+          (ResidualsAt(above) - ResidualsAt(below)) / (2 * step);
+    }
+    return jacobian;
+  }
+
+  std::vector<loop::Record> records;
+  identification::FitOptions options;
+  std::vector<loop::RecordView> views;
+  loop::PreparedRecords prepared;
+  identification::ScaledRecords data;
+  identification::Problem problem;
+  identification::SearchBuffers buffers;
+};
+
+/// White noise of a known variance [units of the data²].
+inline identification::Noise KnownNoise(double variance, std::size_t samples) {
+  identification::Noise noise;
+  noise.variance = variance;
+  noise.force = std::sqrt(variance);
+  noise.is_known = true;
+  noise.samples = samples;
+  return noise;
+}
+
+/// An autoregressive process of order one.
+inline identification::Autocorrelation FirstOrder(double rho) {
+  identification::Autocorrelation process;
+  process.order = 1;
+  process.coefficients[0] = rho;
+  process.correlations[0] = 1.0;
+  process.correlations[1] = rho;
+  process.innovation_share = 1 - rho * rho;
+  return process;
+}
+
+}  // namespace mindahl::testing

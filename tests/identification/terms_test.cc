@@ -1,0 +1,153 @@
+#include "mindahl/identification/terms.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identification/problem/parameters.h"
+#include "identification/sample_loop.h"
+#include "identification/stages.h"
+
+// The table of parameters, and θ of each.
+namespace mindahl::identification {
+namespace {
+
+using loop::Record;
+
+constexpr TermUnits kUnits{.force = 20.0,
+                           .length = 3e-6,
+                           .half_duration = 5.0,
+                           .force_sense = -1.0,
+                           .force_reference = 7.0,
+                           .displacement_reference = 2e-6};
+
+TEST(Terms, EveryRowIsComplete) {
+  std::set<std::string_view> names;
+  for (const Term& term : Terms()) {
+    SCOPED_TRACE(term.name);
+    EXPECT_TRUE(names.insert(term.name).second) << "twice";
+    EXPECT_FALSE(term.unit.empty());
+    EXPECT_FALSE(term.meaning.empty());
+    EXPECT_LT(term.lowest, term.highest);
+    ASSERT_NE(term.scale, nullptr);
+    EXPECT_TRUE(!term.positive || (term.lowest > 0 && term.scale(kUnits) > 0));
+    // Who enters linearly has a column, but for the factor of the model's own force.
+    EXPECT_EQ(term.column != nullptr, term.entry == Entry::kLinear && term.name != "slip_force");
+    // Who is asked for by a word of the command line says what it does; who is not, has none.
+    const bool is_asked_for =
+        term.presence == Presence::kOnDemand || term.presence == Presence::kReported;
+    EXPECT_EQ(term.option.starts_with("--"), is_asked_for);
+    EXPECT_EQ(term.help.empty(), term.option.empty());
+    EXPECT_TRUE(term.argument.empty() || !term.option.empty());
+    EXPECT_TRUE(term.argument.empty() || term.help.find(term.unit) != std::string_view::npos);
+    EXPECT_EQ(FindTerm(term.name), &term);
+  }
+}
+
+TEST(Terms, OfTheContactComeBeforeThoseOfARecord) {
+  bool seen_record = false;
+  for (const Term& term : Terms()) {
+    EXPECT_FALSE(seen_record && term.scope == Scope::kContact) << term.name;
+    seen_record = seen_record || term.scope == Scope::kRecord;
+  }
+}
+
+TEST(Terms, OfTheLawStandWhereTheSolverLooksForThem) {
+  ASSERT_GT(Terms().size(), kRig);
+  EXPECT_EQ(Terms()[kStiffness].name, "sigma");
+  EXPECT_EQ(Terms()[kShape].name, "alpha");
+  EXPECT_EQ(Terms()[kSlipForce].name, "slip_force");
+  EXPECT_EQ(Terms()[kRig].name, "rig_stiffness");
+  const testing::Stages stages(testing::Loop());
+  for (const std::size_t p : {kStiffness, kShape, kSlipForce, kRig}) {
+    EXPECT_EQ(stages.problem.parameters[p].term, &Terms()[p]);
+  }
+}
+
+TEST(Terms, UnknownNamesAreNone) {
+  EXPECT_EQ(FindTerm("stiffness"), nullptr);
+  EXPECT_EQ(FindTerm(""), nullptr);
+  EXPECT_EQ(FindTerm("force_offset_1"), nullptr) << "without the record's number";
+}
+
+TEST(Terms, NumberOfARecordIsNoPartOfTheName) {
+  EXPECT_EQ(TermNameOf("force_offset_2"), "force_offset");
+  EXPECT_EQ(TermNameOf("force_offset_120"), "force_offset");
+  EXPECT_EQ(TermNameOf("force_offset"), "force_offset");
+  EXPECT_EQ(TermNameOf("alpha"), "alpha");
+  EXPECT_EQ(TermNameOf("alpha2"), "alpha2");
+  EXPECT_EQ(TermNameOf("12"), "12");
+  EXPECT_EQ(TermNameOf(""), "");
+}
+
+TEST(Parameters, OfSeveralRecordsAreNumberedAndFound) {
+  const Record wide = testing::Loop();
+  const testing::Stages stages(std::vector<Record>{wide, testing::Scaled(wide, 0.5, 0.5)});
+  const Parameters& parameters = stages.problem.parameters;
+  std::set<std::string> names;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const std::string name = parameters.NameOf(p);
+    EXPECT_TRUE(names.insert(name).second) << name;
+    EXPECT_EQ(TermNameOf(name), parameters[p].term->name);
+    EXPECT_EQ(parameters.PositionOf(parameters[p].term->name, parameters[p].record), p) << name;
+  }
+  EXPECT_TRUE(names.contains("sigma") && names.contains("force_offset_1") &&
+              names.contains("displacement_offset_2"));
+  EXPECT_EQ(parameters.PositionOf("bad_weather", 0), parameters.size());
+  // One record's have no number.
+  const testing::Stages one(wide);
+  EXPECT_EQ(one.problem.parameters.NameOf(one.problem.parameters.PositionOf("force_offset", 0)),
+            "force_offset");
+}
+
+TEST(Parameters, ValuesAreScaleTimesThetaAndBack) {
+  constexpr double kRounding = 1e-14;
+  for (const Term& term : Terms()) {
+    Parameter parameter{.term = &term, .scale = term.scale(kUnits)};
+    if (term.reference != nullptr) parameter.reference = term.reference(kUnits);
+    for (const double theta : {-1.5, 0.0, 0.25, 2.0}) {
+      const double value = parameter.ToValue(theta);
+      EXPECT_NEAR(parameter.ToTheta(value), theta, kRounding) << term.name;
+      const double expected = term.positive ? parameter.scale * std::exp(theta)
+                                            : parameter.reference + parameter.scale * theta;
+      EXPECT_DOUBLE_EQ(value, expected) << term.name;
+    }
+  }
+}
+
+TEST(Parameters, HaveTheUnitsOfTheFile) {
+  const auto value_of_one = [](std::string_view name) {
+    const Term& term = *FindTerm(name);
+    return term.scale(kUnits);
+  };
+  EXPECT_DOUBLE_EQ(value_of_one("sigma"), 20.0 / 3e-6);
+  EXPECT_DOUBLE_EQ(value_of_one("slip_force"), 20.0);
+  EXPECT_DOUBLE_EQ(value_of_one("rig_stiffness"), 20.0 / 3e-6);
+  EXPECT_DOUBLE_EQ(value_of_one("plateau_slope"), 20.0 / 3e-6);
+  // A force turned round in the file.
+  EXPECT_DOUBLE_EQ(value_of_one("force_offset"), -20.0);
+  EXPECT_DOUBLE_EQ(FindTerm("force_offset")->reference(kUnits), -7.0);
+  EXPECT_DOUBLE_EQ(value_of_one("force_drift"), -20.0 / 5.0);
+  EXPECT_DOUBLE_EQ(value_of_one("displacement_offset"), 3e-6);
+  EXPECT_DOUBLE_EQ(FindTerm("displacement_offset")->reference(kUnits), 2e-6);
+  const TermSample sample{.displacement = 0.3, .time = -0.7};
+  EXPECT_EQ(FindTerm("plateau_slope")->column(sample), 0.3);
+  EXPECT_EQ(FindTerm("force_offset")->column(sample), 1.0);
+  EXPECT_EQ(FindTerm("force_drift")->column(sample), -0.7);
+}
+
+TEST(Parameters, LieAtABoundWithinABillionthOfTheWay) {
+  EXPECT_EQ(SideOf(0.0, 0.0, 2.0), BoundSide::kLower);
+  EXPECT_EQ(SideOf(1e-9, 0.0, 2.0), BoundSide::kLower);
+  EXPECT_EQ(SideOf(3e-9, 0.0, 2.0), BoundSide::kInside);
+  EXPECT_EQ(SideOf(2.0 - 1e-9, 0.0, 2.0), BoundSide::kUpper);
+  EXPECT_EQ(SideOf(2.0 - 3e-9, 0.0, 2.0), BoundSide::kInside);
+  EXPECT_EQ(SideOf(0.5e-9, 0.0, 1e-3), BoundSide::kLower) << "at least 1e-9";
+}
+
+}  // namespace
+}  // namespace mindahl::identification
