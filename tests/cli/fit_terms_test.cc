@@ -401,7 +401,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Misuse{"RigThatIsNoNumber",
                {"--rig-stiffness", "soft"},
-               "--rig-stiffness: 'soft' is not a number: write a stiffness in N/m, or fit"},
+               "--rig-stiffness: 'soft' is not a number: write a number in N/m, or fit"},
         Misuse{"RigOfNoStiffness",
                {"--rig-stiffness", "0"},
                "--rig-stiffness [N/m] = 0 is invalid: must be finite and > 0"},
