@@ -462,8 +462,7 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
       ->group(group);
   command
       .add_option("--starts", options.starts,
-                  "starting points that are refined, the best of a grid and beyond four drawn at "
-                  "random")
+                  "starting points refined: the best looks, beyond four drawn at random")
       ->capture_default_str()
       ->check(WholeNumber(1, 1000))
       ->group(group);
