@@ -412,7 +412,6 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.rms = 0.0;
   result.mindlin_test.reset();
   result.branch_shapes.clear();
-  result.parameters.clear();
   result.correlation.clear();
   result.residuals = {};
   result.starts.clear();
@@ -477,6 +476,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   if (full) ReportStarts(best->problem, descents, result);
   if (!std::isfinite(solution.sum_of_squares)) {
     result.converged = false;
+    result.parameters.clear();
     result.findings.push_back({.code = "fit_failed", .severity = Severity::kFailure});
     return;
   }

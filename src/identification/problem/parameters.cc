@@ -149,11 +149,11 @@ bool Parameters::IsCalled(std::size_t i, std::string_view name) const {
 }
 
 Parameter& Parameters::Find(std::string_view name) {
-  std::vector<std::string> names;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (IsCalled(i, name)) return parameters_[i];
-    names.push_back(NameOf(i));
   }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) names.push_back(NameOf(i));
   throw InvalidArgument(
       fmt::format("parameter '{}' is unknown: must be one of {}", name, fmt::join(names, ", ")));
 }
@@ -161,8 +161,8 @@ Parameter& Parameters::Find(std::string_view name) {
 void Parameters::ApplyOptions(const FitOptions& options) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name);
-    if (term == nullptr || (term->presence != Presence::kOnDemand &&
-                            term->presence != Presence::kReported)) {
+    if (term == nullptr ||
+        (term->presence != Presence::kOnDemand && term->presence != Presence::kReported)) {
       throw InvalidArgument(fmt::format("'{}' is no term that can be asked for", name));
     }
   }
@@ -176,8 +176,8 @@ void Parameters::ApplyOptions(const FitOptions& options) {
       throw InvalidArgument(fmt::format("bounds {}:{} of {} are invalid: the first must be smaller",
                                         interval.lower, interval.upper, name));
     }
-    const double lower = interval.lower == 0.0 && positive ? parameter.lower
-                                                           : parameter.ToTheta(interval.lower);
+    const double lower =
+        interval.lower == 0.0 && positive ? parameter.lower : parameter.ToTheta(interval.lower);
     const double upper = parameter.ToTheta(interval.upper);
     parameter.lower = std::min(lower, upper);
     parameter.upper = std::max(lower, upper);
