@@ -29,7 +29,9 @@ Record NoisyLoop(std::uint64_t seed, double cycles = 2.0) {
 void ExpectSame(const std::optional<double>& one, const std::optional<double>& other,
                 const std::string& what) {
   ASSERT_EQ(one.has_value(), other.has_value()) << what;
-  if (one && !(std::isnan(*one) && std::isnan(*other))) EXPECT_EQ(*one, *other) << what;
+  if (one && !(std::isnan(*one) && std::isnan(*other))) {
+    EXPECT_EQ(*one, *other) << what;
+  }
 }
 
 /// Everything that a result states, to the last bit.
@@ -53,7 +55,9 @@ void ExpectSame(const FitResult& one, const FitResult& other) {
   EXPECT_EQ(one.starts.size(), other.starts.size());
   EXPECT_EQ(one.branch_shapes.size(), other.branch_shapes.size());
   ASSERT_EQ(one.mindlin_test.has_value(), other.mindlin_test.has_value());
-  if (one.mindlin_test) EXPECT_EQ(one.mindlin_test->p_value, other.mindlin_test->p_value);
+  if (one.mindlin_test) {
+    EXPECT_EQ(one.mindlin_test->p_value, other.mindlin_test->p_value);
+  }
   ASSERT_EQ(one.parameters.size(), other.parameters.size());
   for (std::size_t k = 0; k < one.parameters.size(); ++k) {
     const ParameterEstimate& a = one.parameters[k];

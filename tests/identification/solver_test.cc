@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -208,8 +209,9 @@ TEST(Starts, RespectTheMaskAndARowThatIsLoadedFirst) {
   const Problem problem{&thin, stages.problem.model, stages.problem.state,
                         Parameters(stages.problem.parameters, Stages::Memory())};
   Solution scratch;
-  const auto starts = FindStarts(problem, options, stages.buffers.solver, stages.buffers.response,
-                                 scratch, Stages::Memory());
+  const auto starts =
+      FindStarts(problem, options, std::numeric_limits<double>::infinity(), stages.buffers.solver,
+                 stages.buffers.response, scratch, Stages::Memory());
   ASSERT_FALSE(starts.empty());
   EXPECT_LT(starts.front().cost, 1e-3) << "the garbage alone would cost hundreds";
   EXPECT_NEAR(problem.parameters.LawAt(starts.front().theta).slip_force / kLaw.slip_force, 1, 0.05);

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory_resource>
 #include <span>
 #include <utility>
@@ -45,7 +46,8 @@ class Stages {
     identification::Candidate candidate(data, options, problem.state, Memory());
     identification::Solution solution;
     candidate.solution = &solution;
-    identification::FindStartsOf(candidate, thin, options, buffers, Memory());
+    identification::FindStartsOf(candidate, thin, options, std::numeric_limits<double>::infinity(),
+                                 buffers, Memory());
     identification::Descend(candidate, options, buffers, nullptr);
     return solution;
   }

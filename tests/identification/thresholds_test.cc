@@ -131,8 +131,8 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double p_val
   const Estimates estimates(stages.problem, best, noise, {}, thresholds, stages.buffers.response);
   std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
   const ScaledRecords thin = Thin(stages.data, reversals, Stages::Memory());
-  return TryRig(stages.problem, thin, best, {.p_value = p_value}, noise, estimates, stages.options,
-                stages.buffers)
+  return TryRig(stages.problem, thin, best, MindlinTest{0.0, p_value, {}}, noise, estimates,
+                stages.options, stages.buffers)
       .has_value();
 }
 
@@ -601,7 +601,7 @@ TEST_P(Threshold, TwiceOrHalfOfItDecidesAnother) {
 
 INSTANTIATE_TEST_SUITE_P(Rows, Threshold,
                          ::testing::ValuesIn(ThresholdTable().begin(), ThresholdTable().end()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& row) { return std::string(row.param.name); });
 
 }  // namespace
 }  // namespace mindahl::identification

@@ -11,8 +11,8 @@ namespace mindahl::identification {
 
 /// Least-squares fits of records with the same options, one after the other, in memory that is
 /// kept: at Depth::kEstimate a fit of records that are no larger than those before allocates
-/// nothing, unless their displacement is noisy, a loss is robust or turning points lie between
-/// samples.
+/// nothing, unless their displacement is noisy, a loss is robust, or samples are so coarse for the
+/// noise of the force that turning points between them have to be looked for.
 ///
 /// A fit is of one contact: σ, α and Tc (and what else has Scope::kContact) are shared by its
 /// records, offsets belong to each. It minimises

@@ -26,6 +26,18 @@ double EffectiveSamples(const ScaledRecords& data, const double* residual) {
          EstimateAutocorrelation(series, counts).SquaredCorrelations();
 }
 
+/// How far the motion may turn beyond any sample; as LongestOvershoots, the longest of them.
+double LongestOvershoot(const ScaledRecords& data) {
+  double longest = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    const auto& x = record.displacement;
+    for (const std::size_t i : record.reversals) {
+      longest = std::max({longest, std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i])});
+    }
+  }
+  return longest;
+}
+
 }  // namespace
 
 std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
@@ -42,8 +54,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   const double variance = best.sum_of_squares / count;
   if (std::sqrt(variance) < kRoundingRms) return {};
   // Nor have missed extremes that no sample could show: σ·overshoot is the most they may do.
-  const std::vector<double> longest = LongestOvershoots(data);
-  const double most = std::exp(best.theta[kStiffness]) * *std::ranges::max_element(longest);
+  const double most = std::exp(best.theta[kStiffness]) * LongestOvershoot(data);
   if (count * most * most / variance < 2 * static_cast<double>(reversals)) return {};
 
   const double needed =

@@ -158,11 +158,11 @@ bool Parameters::IsCalled(std::size_t i, std::string_view name) const {
 }
 
 Parameter& Parameters::Find(std::string_view name) {
-  std::vector<std::string> names;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (IsCalled(i, name)) return parameters_[i];
-    names.push_back(NameOf(i));
   }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) names.push_back(NameOf(i));
   throw InvalidArgument(
       fmt::format("parameter '{}' is unknown: must be one of {}", name, fmt::join(names, ", ")));
 }

@@ -300,7 +300,12 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
   if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty() && !is_beaten) {
     AddRelaxedStart(thin, solver, response, scratch, memory, starts);
   }
-  std::ranges::sort(starts, {}, &StartingPoint::cost);
+  // By insertion, as they are few: stable_sort would allocate.
+  for (auto start = starts.begin(); start != starts.end(); ++start) {
+    std::rotate(
+        std::ranges::upper_bound(starts.begin(), start, start->cost, {}, &StartingPoint::cost),
+        start, start + 1);
+  }
   if (starts.size() > options.starts)
     starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(options.starts), starts.end());
   // Where all looks have the wrong sense, so have all draws.
