@@ -104,7 +104,8 @@ TEST(Profile, TakesTheWiderOfBothAtEachEnd) {
 }
 
 TEST(Profile, OpenAboveLeavesAtLeastTheForceThatWasCarried) {
-  SlipForceProfile open{.open_above = true};
+  SlipForceProfile open;
+  open.open_above = true;
   open.slip_force = {std::log(0.8), std::log(20)};
   open.shape_exponent = {0.2, 5.0};
   open.stiffness = {0.0, 0.0};
