@@ -13,7 +13,11 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
 
 double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOptions& options,
                     double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory) {
-  const Problem problem{&thin, candidate.problem.model, candidate.problem.state,
+  // Where a window or a fold leaves little of the thinned record, all of it is looked at.
+  constexpr std::size_t kEnough = 4;  // samples a parameter
+  const bool is_enough = thin.counted >= kEnough * candidate.problem.parameters.free().size();
+  const ScaledRecords& looked_at = is_enough ? thin : *candidate.problem.data;
+  const Problem problem{&looked_at, candidate.problem.model, candidate.problem.state,
                         Parameters(candidate.problem.parameters, memory)};
   candidate.starts = FindStarts(problem, options, rival, buffers.solver, buffers.response,
                                 buffers.scratch, memory);
