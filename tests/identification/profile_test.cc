@@ -1,0 +1,150 @@
+#include "identification/inference/profile.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "identification/stages.h"
+
+// Where the likelihood is profiled, what that gives, and what it does to intervals.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::FitOne;
+using testing::Generator;
+using testing::KnownNoise;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Stages;
+using testing::Wave;
+using testing::WithForceNoise;
+
+constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
+constexpr double kGrossSlip = 1.5e-6;  // [m]
+
+Record NoisyLoop(double lambda, double noise, std::uint64_t seed) {
+  Generator generator(seed);
+  const auto displacement = Cycling(Wave::kSine, lambda * kGrossSlip, 2.0, 120);
+  return WithForceNoise(
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement)),
+      noise * kMindlin.slip_force, generator);
+}
+
+TEST(Profile, ThatIsNotNeededWouldHaveChangedNothing) {
+  // Skipped where the parabola is off by less than 15 % of 2 ln Λ, that is 7 % of the width; the
+  // grid's bisections find an end to 1/64 of a step.
+  constexpr double kSame = 0.1;
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Record record = NoisyLoop(2.0, 0.003, seed);
+    FitOptions forced;
+    forced.thresholds.parabola_error = 0.0;
+    const FitResult skipped = FitOne(record);
+    const FitResult profiled = FitOne(record, forced);
+    for (const char* name : {"sigma", "alpha", "slip_force"}) {
+      const ParameterEstimate& one = *skipped.Find(name);
+      const ParameterEstimate& other = *profiled.Find(name);
+      EXPECT_EQ(one.value, other.value);
+      const double width = *one.upper95 - *one.lower95;
+      EXPECT_NEAR(*one.lower95, *other.lower95, kSame * width) << name;
+      EXPECT_NEAR(*one.upper95, *other.upper95, kSame * width) << name;
+      EXPECT_EQ(one.identifiability, other.identifiability) << name;
+    }
+  }
+}
+
+/// Made estimates of σ, α and Tc, widened by a profile.
+FitResult Widened(const SlipForceProfile& profile, double peak_force, bool shape_is_fixed = false) {
+  const auto displacement = Cycling(Wave::kSine, 1.0, 2.0, 40);
+  Stages stages(MakeRecord(displacement, displacement));
+  FitResult result;
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    ParameterEstimate& estimate = result.parameters.emplace_back();
+    estimate.name = name;
+    estimate.value = 1.0;
+    estimate.standard_error = 0.05;
+    estimate.lower95 = 0.9;
+    estimate.upper95 = 1.1;
+    estimate.status = ParameterStatus::kFree;
+  }
+  if (shape_is_fixed) {
+    result.parameters[1].status = ParameterStatus::kFixed;
+    result.parameters[1].standard_error = result.parameters[1].lower95 =
+        result.parameters[1].upper95 = std::nullopt;
+  }
+  WidenByProfile(stages.problem, profile, 2.0, peak_force, result);
+  return result;
+}
+
+TEST(Profile, TakesTheWiderOfBothAtEachEnd) {
+  // The records' units are 1: σ and Tc are exp θ, α is θ.
+  const FitResult result = Widened({.slip_force = {std::log(0.95), std::log(1.5)},
+                                    .shape_exponent = {0.5, 1.05},
+                                    .stiffness = {std::log(0.95), std::log(1.05)}},
+                                   0.0);
+  const ParameterEstimate& sigma = result.parameters[0];
+  EXPECT_EQ(*sigma.lower95, 0.9);
+  EXPECT_EQ(*sigma.upper95, 1.1);
+  EXPECT_NEAR(*sigma.standard_error, 0.05, 1e-12);
+  const ParameterEstimate& alpha = result.parameters[1];
+  EXPECT_NEAR(*alpha.lower95, 0.5, 1e-12);
+  EXPECT_EQ(*alpha.upper95, 1.1);
+  EXPECT_NEAR(*alpha.standard_error, 0.3 / 2.0, 1e-12) << "half the width over the quantile";
+  const ParameterEstimate& slip_force = result.parameters[2];
+  EXPECT_EQ(*slip_force.lower95, 0.9);
+  EXPECT_NEAR(*slip_force.upper95, 1.5, 1e-12);
+  EXPECT_NEAR(*slip_force.standard_error, 0.3 / 2.0, 1e-12);
+}
+
+TEST(Profile, OpenAboveLeavesAtLeastTheForceThatWasCarried) {
+  SlipForceProfile open{.open_above = true};
+  open.slip_force = {std::log(0.8), std::log(20)};
+  open.shape_exponent = {0.2, 5.0};
+  open.stiffness = {0.0, 0.0};
+  const FitResult result = Widened(open, 0.97);
+  EXPECT_NEAR(*result.parameters[2].lower95, 0.97, 1e-12);
+  EXPECT_FALSE(result.parameters[2].upper95 || result.parameters[2].standard_error);
+  EXPECT_FALSE(result.parameters[1].upper95 || result.parameters[1].standard_error);
+  EXPECT_NEAR(*result.parameters[1].lower95, 0.2, 1e-12);
+  EXPECT_TRUE(result.parameters[0].upper95) << "of the stiffness nothing is open";
+  // A fit too poor to have carried it says no more than its value.
+  EXPECT_NEAR(*Widened(open, 1.3).parameters[2].lower95, 1.0, 1e-12);
+  EXPECT_FALSE(Widened(open, 0.97, /*shape_is_fixed=*/true).parameters[1].lower95);
+}
+
+TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
+  // At the ends of Tc's range, found again by a fit with Tc held there, F is that of 95 %.
+  const Record record = NoisyLoop(1.3, 0.02, 4);
+  Stages stages(record);
+  const Solution best = stages.Solve();
+  const double variance = 4e-4;
+  const Noise noise = KnownNoise(variance, stages.data.counted);
+  const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
+  const SlipForceProfile profile =
+      ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
+  EXPECT_FALSE(profile.open_above);
+  for (const double end : {profile.slip_force.lower, profile.slip_force.upper}) {
+    FitOptions held;
+    held.fixed["slip_force"] = stages.problem.parameters[kSlipForce].ToValue(end);
+    const double cost = Stages(record, held).Solve().sum_of_squares - best.sum_of_squares;
+    const double critical = estimates.quantile() * estimates.quantile();
+    // Six bisections of a step of 0.05 or more in ln Tc.
+    EXPECT_LT(cost / variance, critical * 1.001);
+    EXPECT_GT(cost / variance, critical * 0.7);
+  }
+  EXPECT_LT(profile.slip_force.lower, best.theta[kSlipForce]);
+  EXPECT_GT(profile.slip_force.upper, best.theta[kSlipForce]);
+  EXPECT_LT(profile.shape_exponent.lower, best.theta[kShape]);
+  EXPECT_GT(profile.shape_exponent.upper, best.theta[kShape]);
+  EXPECT_LT(profile.stiffness.lower, best.theta[kStiffness]);
+}
+
+}  // namespace
+}  // namespace mindahl::identification

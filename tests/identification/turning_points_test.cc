@@ -1,0 +1,160 @@
+#include "identification/solve/turning_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "identification/inference/turning_point_test.h"
+#include "identification/stages.h"
+
+// Turning points between samples: what an overshoot does to the forces, and when it is fitted.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::Generator;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Stages;
+using testing::Wave;
+
+constexpr BranchLaw kLaw{4e7, 0.4, 40.0};
+constexpr double kReach = 1.4e-6;  // [m]
+
+/// Every n-th sample of a record: its extremes lie between them.
+Record Sparse(const Record& dense, std::size_t begin, std::size_t every) {
+  Record record;
+  for (std::size_t i = begin; i < dense.size(); i += every) {
+    record.displacement.push_back(dense.displacement[i]);
+    record.force.push_back(dense.force[i]);
+  }
+  return record;
+}
+
+/// Strokes of growing, then falling size: inner loops that close on outer ones.
+testing::History Nested() {
+  testing::History history;
+  double at = 0.0;
+  for (const double end : {1.0, -0.9, 0.6, -0.3, 0.4, -0.8, 0.95}) {
+    for (int i = 1; i <= 60; ++i) history.push_back(kReach * (at + (end - at) * i / 60));
+    at = end;
+  }
+  return history;
+}
+
+TEST(TurningPoints, ColumnsAreTheDerivativesByTheOvershoots) {
+  constexpr double kStep = 1e-6;
+  constexpr double kDifferences = 1e-5;  // of forces of order one: rounding over the step, twice
+  for (const char* model : {"mindlin-dahl", "dahl"}) {
+    for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
+      SCOPED_TRACE(std::string(model) + (state == InitialState::kVirgin ? ", virgin" : ", steady"));
+      BranchLaw law = kLaw;
+      if (std::string(model) == "dahl") law.shape_exponent = 1.0;
+      const testing::History history = Nested();
+      FitOptions options;
+      options.model = &Model(model);
+      Stages stages(Sparse(MakeRecord(history, Respond(Model(model), law, history)), 3, 7), options,
+                    state);
+      const Parameters& parameters = stages.problem.parameters;
+      std::vector<double> theta;
+      for (std::size_t p = 0; p < parameters.size(); ++p) theta.push_back(parameters[p].theta);
+      theta[kStiffness] = parameters[kStiffness].ToTheta(law.tangential_stiffness);
+      theta[kSlipForce] = parameters[kSlipForce].ToTheta(law.slip_force);
+      theta[kShape] = law.shape_exponent;
+      // Unloaded off the middle: else the second extreme is the mirror of the first, and the
+      // contact there at the corner where it comes back to its virgin curve.
+      theta[parameters.PositionOf("displacement_offset", 0)] =
+          state == InitialState::kVirgin ? -0.2 : 0.0;
+      std::vector<double> overshoot;
+      for (const double longest : LongestOvershoots(stages.data)) {
+        overshoot.push_back(0.3 * longest + 0.001 * static_cast<double>(overshoot.size()));
+      }
+      ASSERT_GE(overshoot.size(), 6U);
+      const auto residuals = [&](const std::vector<double>& at) {
+        const auto turned = PutInTurningPoints(stages.data, at);
+        stages.problem.data = &turned->data;
+        Eigen::VectorXd values = stages.ResidualsAt(theta);
+        stages.problem.data = &stages.data;
+        return values;
+      };
+      const auto turned = PutInTurningPoints(stages.data, overshoot);
+      EXPECT_TRUE(HasTurningPoints(turned->data));
+      EXPECT_FALSE(HasTurningPoints(stages.data));
+      stages.problem.data = &turned->data;
+      Response response;
+      response.Bind(stages.problem);
+      const TurningPointColumns columns(stages.problem, theta, response);
+      const Eigen::MatrixXd exact(columns.columns());
+      stages.problem.data = &stages.data;
+      double largest = 0.0;
+      for (std::size_t k = 0; k < overshoot.size(); ++k) {
+        std::vector<double> above = overshoot;
+        std::vector<double> below = overshoot;
+        above[k] += kStep;
+        below[k] -= kStep;
+        const Eigen::VectorXd difference = (residuals(above) - residuals(below)) / (2 * kStep);
+        const Eigen::VectorXd column = exact.col(static_cast<Eigen::Index>(k));
+        EXPECT_LT((column - difference).cwiseAbs().maxCoeff(), kDifferences) << k;
+        largest = std::max(largest, column.cwiseAbs().maxCoeff());
+      }
+      EXPECT_GT(largest, 0.1) << "there is something to see";
+      // What they explain is taken off a column to rounding.
+      Eigen::VectorXd explained = exact.col(1) + 0.5 * exact.col(2);
+      columns.ProjectOut(explained);
+      EXPECT_LT(explained.norm(), 1e-7);
+    }
+  }
+}
+
+TEST(TurningPoints, OfMoreThanTwoHundredReversalsAreFitted) {
+  const auto displacement = Cycling(Wave::kSine, kReach, 110.0, 160);
+  const Record record =
+      Sparse(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), 1, 8);
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  const RecordView view = record;
+  Fitter fitter(options);
+  const FitResult& fit = fitter.Fit(view, Depth::kEstimate);
+  ASSERT_GT(fit.records[0].reversals.size(), 200U);
+  EXPECT_EQ(fit.records[0].overshoot.size(), fit.records[0].reversals.size());
+  EXPECT_NEAR(fit.law.tangential_stiffness / kLaw.tangential_stiffness, 1.0, testing::kNoiseFree);
+  EXPECT_NEAR(fit.law.slip_force / kLaw.slip_force, 1.0, testing::kNoiseFree);
+}
+
+TEST(TurningPoints, NeedTwoSamplesThatCountAParameter) {
+  // Six reversals and five parameters: 22 samples that count at the least. The others still move.
+  const auto displacement = Cycling(Wave::kSine, kReach, 3.0, 160);
+  const Record record =
+      Sparse(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), 1, 8);
+  for (const std::size_t counting : {21U, 22U, 40U}) {
+    FitOptions options;
+    options.initial_state = InitialState::kVirgin;
+    options.preparation.held_out = {std::vector<bool>(record.size(), true)};
+    for (std::size_t i = 0; i < counting; ++i) {
+      options.preparation.held_out[0][i * record.size() / counting] = false;
+    }
+    Stages stages(record, options);
+    const Solution best = stages.Solve();
+    ASSERT_EQ(stages.data.counted, counting);
+    ASSERT_EQ(stages.data.records[0].reversals.size(), 6U);
+    ASSERT_EQ(stages.problem.parameters.free().size(), 5U);
+    Thresholds anything;
+    anything.turning_point_chance = 0.9;
+    stages.options.thresholds = anything;
+    const bool fitted =
+        FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers.response)
+            .has_value();
+    if (counting < 22) EXPECT_FALSE(fitted);
+    if (counting >= 40) EXPECT_TRUE(fitted);
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::identification
