@@ -206,6 +206,8 @@ TEST(Estimates, OfAMirroredRecordHaveMirroredCorrelations) {
       const std::string& one = plain.parameters[i].name;
       const double value = sign_of(one) * plain.parameters[i].value;
       EXPECT_NEAR(mirrored.parameters[i].value, value, 1e-5 * std::abs(value)) << one;
+      const double error = plain.parameters[i].standard_error.value_or(0.0);
+      EXPECT_NEAR(mirrored.parameters[i].standard_error.value_or(0.0), error, 1e-4 * error) << one;
       for (std::size_t j = 0; j < count; ++j) {
         const double expected =
             plain.correlation[i * count + j] * sign_of(one) * sign_of(plain.parameters[j].name);

@@ -21,10 +21,10 @@ TEST(Evidence, LikelihoodRatioIsThatOfTheEffectiveSamples) {
 }
 
 TEST(Evidence, RoundingErrorsSayNothing) {
-  const Evidence evidence(100, 100.0);
+  const Evidence evidence(100, 40.0);
   const double floor = 100 * kRoundingRms * kRoundingRms;
   EXPECT_EQ(evidence.LikelihoodRatio(floor / 2, 0.0), 0.0);
-  EXPECT_NEAR(evidence.LikelihoodRatio(4 * floor, floor / 8), 100 * std::log(4.0), 1e-10);
+  EXPECT_NEAR(evidence.LikelihoodRatio(4 * floor, floor / 8), 40 * std::log(4.0), 1e-10);
   EXPECT_EQ(evidence.Aicc(floor / 2, 3), evidence.Aicc(0.0, 3));
   EXPECT_LT(evidence.Aicc(floor, 3), evidence.Aicc(2 * floor, 3));
 }

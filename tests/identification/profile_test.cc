@@ -104,8 +104,7 @@ TEST(Profile, TakesTheWiderOfBothAtEachEnd) {
 }
 
 TEST(Profile, OpenAboveLeavesAtLeastTheForceThatWasCarried) {
-  SlipForceProfile open;
-  open.open_above = true;
+  SlipForceProfile open{.open_above = true};
   open.slip_force = {std::log(0.8), std::log(20)};
   open.shape_exponent = {0.2, 5.0};
   open.stiffness = {0.0, 0.0};
@@ -121,30 +120,74 @@ TEST(Profile, OpenAboveLeavesAtLeastTheForceThatWasCarried) {
 }
 
 TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
-  // At the ends of Tc's range, found again by a fit with Tc held there, F is that of 95 %.
+  // At the ends of Tc's range, found again by a fit with Tc held there, F is that of 95 %; of
+  // autocorrelated noise by the share that its white part would have of the variance.
   const Record record = NoisyLoop(1.3, 0.02, 4);
-  Stages stages(record);
-  const Solution best = stages.Solve();
   const double variance = 4e-4;
-  const Noise noise = KnownNoise(variance, stages.data.counted);
-  const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
-  const SlipForceProfile profile =
-      ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
-  EXPECT_FALSE(profile.open_above);
-  for (const double end : {profile.slip_force.lower, profile.slip_force.upper}) {
-    FitOptions held;
-    held.fixed["slip_force"] = stages.problem.parameters[kSlipForce].ToValue(end);
-    const double cost = Stages(record, held).Solve().sum_of_squares - best.sum_of_squares;
-    const double critical = estimates.quantile() * estimates.quantile();
-    // Six bisections of a step of 0.05 or more in ln Tc.
-    EXPECT_LT(cost / variance, critical * 1.001);
-    EXPECT_GT(cost / variance, critical * 0.7);
+  for (const double rho : {0.0, 0.6}) {
+    Stages stages(record);
+    const Solution best = stages.Solve();
+    Noise noise = KnownNoise(variance, stages.data.counted);
+    if (rho > 0) noise.autocorrelation = testing::FirstOrder(rho);
+    const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
+    const double share = estimates.WhiteShare(kSlipForce);
+    EXPECT_EQ(share<0.5, rho> 0);
+    const SlipForceProfile profile =
+        ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
+    EXPECT_FALSE(profile.open_above);
+    for (const double end : {profile.slip_force.lower, profile.slip_force.upper}) {
+      FitOptions held;
+      held.fixed["slip_force"] = stages.problem.parameters[kSlipForce].ToValue(end);
+      const double cost = Stages(record, held).Solve().sum_of_squares - best.sum_of_squares;
+      const double critical = estimates.quantile() * estimates.quantile();
+      // Six bisections of a step of 0.05 or more in ln Tc.
+      EXPECT_LT(cost / variance * share, critical * 1.001);
+      EXPECT_GT(cost / variance * share, critical * 0.7);
+    }
+    EXPECT_LT(profile.slip_force.lower, best.theta[kSlipForce]);
+    EXPECT_GT(profile.slip_force.upper, best.theta[kSlipForce]);
+    EXPECT_LT(profile.shape_exponent.lower, best.theta[kShape]);
+    EXPECT_GT(profile.shape_exponent.upper, best.theta[kShape]);
+    EXPECT_LT(profile.stiffness.lower, best.theta[kStiffness]);
   }
-  EXPECT_LT(profile.slip_force.lower, best.theta[kSlipForce]);
-  EXPECT_GT(profile.slip_force.upper, best.theta[kSlipForce]);
-  EXPECT_LT(profile.shape_exponent.lower, best.theta[kShape]);
-  EXPECT_GT(profile.shape_exponent.upper, best.theta[kShape]);
-  EXPECT_LT(profile.stiffness.lower, best.theta[kStiffness]);
+}
+
+TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
+  // Far from slip α rises with Tc; a bound on α holds Tc back, and not the data.
+  FitOptions options;
+  options.bounds["alpha"] = {0.0, 0.7};
+  Stages stages(NoisyLoop(0.5, 0.0005, 3), options);
+  const Solution best = stages.Solve();
+  ASSERT_EQ(best.side[kShape], BoundSide::kInside);
+  for (const double variance : {1e-6, 1e-3}) {
+    const Noise noise = KnownNoise(variance, stages.data.counted);
+    const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
+    const SlipForceProfile profile =
+        ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
+    if (variance > 1e-5)
+      EXPECT_EQ(SideOf(stages.problem.parameters[kShape], profile.shape_exponent.upper),
+                BoundSide::kUpper);
+    EXPECT_EQ(profile.open_above, variance > 1e-5);
+  }
+}
+
+TEST(Profile, IsAskedForAtABoundAndNotForAHeldSlipForce) {
+  Stages stages(NoisyLoop(2.0, 0.003, 1));
+  Solution best = stages.Solve();
+  const Noise noise = KnownNoise(1e-6, stages.data.counted);
+  const auto needed = [&] {
+    const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
+    return NeedsSlipForceProfile(stages.problem, best, noise, estimates, 1.0, stages.options,
+                                 stages.buffers);
+  };
+  EXPECT_FALSE(needed());
+  for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
+    best.side[p] = BoundSide::kUpper;
+    EXPECT_TRUE(needed()) << p;
+    best.side[p] = BoundSide::kInside;
+  }
+  stages.problem.parameters.Fix(kSlipForce, best.theta[kSlipForce]);
+  EXPECT_FALSE(needed());
 }
 
 }  // namespace

@@ -151,12 +151,25 @@ TEST(TurningPoints, NeedTwoSamplesThatCountAParameter) {
     const bool fitted =
         FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers.response)
             .has_value();
-    if (counting < 22) {
-      EXPECT_FALSE(fitted);
-    } else if (counting >= 40) {
-      EXPECT_TRUE(fitted);
-    }
+    if (counting < 22) EXPECT_FALSE(fitted);
+    if (counting >= 40) EXPECT_TRUE(fitted);
   }
+}
+
+TEST(TurningPoints, ThatWouldLieInsideAreRefusedAfterAll) {
+  // Outermost samples that read too far out: a linear step would turn before them, which no
+  // overshoot may.
+  const auto displacement = Cycling(Wave::kSine, kReach, 3.0, 160);
+  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  for (std::size_t i = 40; i < record.size(); i += 80) {
+    record.displacement[i] += std::copysign(0.02 * kReach, record.displacement[i]);
+  }
+  Stages stages(record);
+  const Solution best = stages.Solve();
+  const TurningPointStep step = StepTurningPoints(stages.problem, best, stages.buffers.response);
+  EXPECT_LT(step.left.squaredNorm(), 0.5 * best.sum_of_squares) << "the step is tempting";
+  EXPECT_FALSE(
+      FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers.response));
 }
 
 }  // namespace

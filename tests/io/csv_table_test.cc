@@ -311,9 +311,9 @@ TEST(CsvTable, DoesNotMindMissingCellInColumnThatNobodyReads) {
 }
 
 TEST(CsvTable, ReadsEveryDoubleBackAsWritten) {
-  const CsvTable table =
-      ParseCsvTable("x\n0.1\n1.7976931348623157e308\n4.9406564584124654e-324\n1e-400\n", "x.csv");
-  EXPECT_EQ(Column(table, 0), (Numbers{0.1, 1.7976931348623157e308, 5e-324, 0.0}));
+  const CsvTable table = ParseCsvTable(
+      "x\n0.1\n1.7976931348623157e308\n4.9406564584124654e-324\n1e-400\n-1E-400\n", "x.csv");
+  EXPECT_EQ(Column(table, 0), (Numbers{0.1, 1.7976931348623157e308, 5e-324, 0.0, 0.0}));
 }
 
 TEST(CsvTable, ReadsFileOfSeveralBlocks) {

@@ -1,0 +1,141 @@
+#include "identification/diagnosis/diagnosis.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "identification/stages.h"
+
+// Findings from results made by hand.
+namespace mindahl::identification {
+namespace {
+
+using ::testing::ElementsAre;
+
+/// α, σ and Tc that are well known; a loop far below slip: T* = 2 N, Tc = 10 N.
+FitResult Made() {
+  FitResult result;
+  result.law = {1e7, 0.4, 10.0};
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    ParameterEstimate& estimate = result.parameters.emplace_back();
+    estimate.name = name;
+    estimate.value = 2.0;
+    estimate.lower95 = 1.9;
+    estimate.upper95 = 2.1;
+    estimate.status = ParameterStatus::kFree;
+  }
+  RecordFit& record = result.records.emplace_back();
+  record.measures.amplitude = 1e-6;
+  record.measures.peak_force = 2.0;
+  return result;
+}
+
+TEST(FindMisfit, IsOfTheForceThatWasReachedOrOfSlip) {
+  FitResult result = Made();
+  result.residuals.rms = 0.06;
+  result.records[0].structure.repeatable_share = 0.8;
+  const auto far_from_slip = FindMisfit(result, {});
+  ASSERT_TRUE(far_from_slip);
+  EXPECT_DOUBLE_EQ(*far_from_slip->Number("misfit"), 0.06 / 2.0);
+  EXPECT_DOUBLE_EQ(*far_from_slip->Number("repeatable_share"), 0.8);
+  result.law.slip_force = 1.5;
+  EXPECT_DOUBLE_EQ(*FindMisfit(result, {})->Number("misfit"), 0.06 / 1.5);
+  result.law.slip_force = 0.0;
+  EXPECT_FALSE(FindMisfit(result, {}));
+}
+
+TEST(FindMisfit, SaysWhereItIsLargestAndWhomItConcerns) {
+  FitResult result = Made();
+  result.residuals.rms = 0.1;
+  ResidualStructure& structure = result.records[0].structure;
+  structure.repeatable_share = 0.8;
+  structure.directions[0].direction = 1;
+  structure.directions[1].direction = -1;
+  structure.directions[0].bins = {{0.1, 0.2, 0}, {0.6, -0.3, 0}};
+  structure.directions[1].bins = {{0.1, 0.1, 0}, {0.6, -0.7, 0}};
+  const auto poor = FindMisfit(result, {});
+  ASSERT_TRUE(poor);
+  EXPECT_EQ(poor->code, "systematic_residual");
+  EXPECT_TRUE(poor->parameters.empty());
+  EXPECT_EQ(poor->Number("largest"), 0.7);
+  EXPECT_EQ(poor->Number("position"), 0.6);
+  EXPECT_EQ(poor->Number("direction"), -1.0);
+  structure.directions[0].bins[0].mean = 0.9;
+  EXPECT_EQ(FindMisfit(result, {})->Number("direction"), 1.0);
+  result.residuals.rms = 0.5;
+  const auto failing = FindMisfit(result, {});
+  EXPECT_EQ(failing->code, "no_model_fits");
+  EXPECT_THAT(failing->parameters, ElementsAre("sigma", "alpha"));
+}
+
+TEST(FindWideIntervals, AreOfParametersThatNothingElseNames) {
+  FitResult result = Made();
+  EXPECT_TRUE(FindWideIntervals(result, {}).empty());
+  for (ParameterEstimate& estimate : result.parameters) {
+    estimate.lower95 = 1.0;
+    estimate.upper95 = 50.0;
+  }
+  const auto codes = [&] {
+    std::vector<std::string> found;
+    for (const Finding& finding : FindWideIntervals(result, {})) {
+      EXPECT_EQ(finding.kind, "wide");
+      EXPECT_EQ(finding.Number("lower"), 1.0);
+      EXPECT_EQ(finding.Number("upper"), 50.0);
+      EXPECT_EQ(std::string(finding.code), finding.parameters.at(0) + "_not_identifiable");
+      found.emplace_back(finding.parameters.at(0));
+    }
+    return found;
+  };
+  EXPECT_THAT(codes(), ElementsAre("sigma", "alpha", "slip_force"));
+  result.findings = {{.code = "shape_or_rig", .parameters = {"alpha"}}};
+  EXPECT_THAT(codes(), ElementsAre("sigma", "slip_force"));
+  result.parameters[0].status = ParameterStatus::kFixed;
+  result.parameters[2].upper95.reset();
+  EXPECT_TRUE(codes().empty());
+}
+
+TEST(FindOpenSlipForce, NamesTheShapeToo) {
+  FitResult result = Made();
+  EXPECT_TRUE(FindOpenSlipForce(result, {.open_above = false}).empty());
+  auto findings = FindOpenSlipForce(result, {.open_above = true});
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_EQ(findings[0].code, "slip_force_bounded_below");
+  EXPECT_EQ(findings[0].Number("peak_force"), 2.0);
+  EXPECT_EQ(findings[0].Number("amplitude"), 1e-6);
+  EXPECT_THAT(findings[0].parameters, ElementsAre("slip_force"));
+  EXPECT_EQ(findings[1].code, "alpha_not_identifiable");
+  EXPECT_EQ(findings[1].kind, "with_slip_force");
+  EXPECT_THAT(findings[1].parameters, ElementsAre("alpha"));
+  result.parameters[1].status = ParameterStatus::kFixed;
+  EXPECT_EQ(FindOpenSlipForce(result, {.open_above = true}).size(), 1U);
+}
+
+TEST(FindUndetermined, TellsSingleParametersFromCombinations) {
+  const auto displacement = testing::Cycling(testing::Wave::kSine, 1.0, 2.0, 40);
+  const testing::Stages stages(testing::MakeRecord(displacement, displacement));
+  LocalUncertainty local;
+  local.columns = {kStiffness, kShape, kSlipForce};
+  local.determined = {true, true, true};
+  EXPECT_FALSE(FindUndetermined(stages.problem, local));
+  local.determined = {false, true, false};
+  local.null = {{1, 0, -1}};
+  const auto combination = FindUndetermined(stages.problem, local);
+  ASSERT_TRUE(combination);
+  EXPECT_EQ(combination->code, "undetermined_combination");
+  EXPECT_THAT(combination->parameters, ElementsAre("sigma", "slip_force"));
+  local.null = {{1, 0, 0}, {0, 0, 1}};
+  EXPECT_EQ(FindUndetermined(stages.problem, local)->code, "undetermined_parameter");
+}
+
+TEST(FoundRigAlternative, HasBothReadings) {
+  const Finding finding = FoundRigAlternative(Made(), {3e6, 2e7}, {});
+  EXPECT_EQ(finding.Number("rig_stiffness"), 3e6);
+  EXPECT_EQ(finding.Number("alpha"), 0.4);
+  EXPECT_EQ(FoundTurningPoints(2e-8).Number("overshoot"), 2e-8);
+  EXPECT_EQ(FoundTurningPoints(2e-8).severity, Severity::kNote);
+}
+
+}  // namespace
+}  // namespace mindahl::identification

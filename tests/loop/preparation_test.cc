@@ -1,0 +1,123 @@
+#include "mindahl/loop/preparation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <memory_resource>
+#include <vector>
+
+#include "mindahl/loop/reversals.h"
+#include "support/histories.h"
+
+// What is known of records before any model is asked.
+namespace mindahl::loop {
+namespace {
+
+using testing::Generator;
+using testing::Normal;
+
+constexpr double kTwoPi = 6.283185307179586;
+constexpr int kCycle = 100;  // samples
+
+/// Cycles of a lagging force about ±1, loads of 10 and, in the second cycle, 12.
+Record Made(int cycles = 3) {
+  Record record;
+  for (int i = 0; i <= cycles * kCycle; ++i) {
+    record.displacement.push_back(std::sin(kTwoPi * i / kCycle));
+    record.force.push_back(std::sin(kTwoPi * i / kCycle + 0.4));
+    record.normal_load.push_back(i / kCycle == 1 ? 12.0 : 10.0);
+  }
+  return record;
+}
+
+PreparedRecords PrepareAll(const std::vector<Record>& records, const PreparationOptions& options) {
+  const std::vector<RecordView> views(records.begin(), records.end());
+  return Prepare(views, options, std::pmr::get_default_resource());
+}
+
+TEST(Preparation, OneMaskLeavesOutWhatWindowSkippedCyclesAndMasksDo) {
+  const std::vector<Record> records = {Made()};
+  const std::size_t size = records[0].size();
+  PreparationOptions options;
+  options.load_window = {9.0, 11.0};
+  options.skip_cycles = 1;
+  options.held_out = {std::vector<bool>(size, false)};
+  options.held_out[0][290] = true;
+  const PreparedRecords prepared = PrepareAll(records, options);
+  const PreparedRecord& one = prepared.records[0];
+  ASSERT_EQ(one.reversals.size(), 6U);
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    // The first cycle ends with the second reversal, at three quarters.
+    const bool counts = i >= 75 && (i < 100 || i >= 200) && i != 290;
+    EXPECT_EQ(one.counts[i], counts ? 1 : 0) << i;
+    left_out += counts ? 0 : 1;
+  }
+  EXPECT_EQ(one.left_out, left_out);
+  EXPECT_EQ(prepared.samples(), size);
+  EXPECT_EQ(prepared.counted(), size - left_out);
+}
+
+TEST(Preparation, SenseIsThatOfTheEnergyUnlessItIsGiven) {
+  Record opposite = Made();
+  for (double& force : opposite.force) force = -force;
+  EXPECT_EQ(PrepareAll({Made()}, {}).force_sense, 1);
+  const PreparedRecords turned = PrepareAll({opposite}, {});
+  EXPECT_EQ(turned.force_sense, -1);
+  EXPECT_GT(*turned.records[0].measures.energy_per_cycle, 0.0);
+  PreparationOptions options;
+  options.force_sense = 1;
+  EXPECT_EQ(PrepareAll({opposite}, options).force_sense, 1);
+  // Of several records, most.
+  EXPECT_EQ(PrepareAll({opposite, Made(), opposite}, {}).force_sense, -1);
+}
+
+TEST(Preparation, GateIsGivenFoundOrFromAKnownNoise) {
+  PreparationOptions options;
+  EXPECT_EQ(PrepareAll({Made()}, options).records[0].reversal_gate, 0.0);
+  options.displacement_noise = 1e-3;
+  const std::vector<Record> records = {Made()};
+  const double reach = 2e-3 * std::sqrt(2 * std::log(static_cast<double>(records[0].size())));
+  EXPECT_NEAR(PrepareAll(records, options).records[0].reversal_gate, reach, 1e-12);
+  options.reversal_gate = 0.25;
+  EXPECT_EQ(PrepareAll(records, options).records[0].reversal_gate, 0.25);
+  Generator generator(2);
+  Record noisy = Made();
+  for (double& x : noisy.displacement) x += 0.02 * Normal(generator);
+  const PreparedRecords found = PrepareAll({noisy}, {});
+  EXPECT_GT(found.records[0].reversal_gate, 0.02);
+  EXPECT_EQ(found.records[0].reversals.size(), 6U);
+}
+
+TEST(Preparation, NoisyDisplacementIsSmoothedAndItsReversalsMoved) {
+  Generator generator(3);
+  const Record clean = Made();
+  Record noisy = clean;
+  for (double& x : noisy.displacement) x += 0.02 * Normal(generator);
+  const PreparedRecords prepared = PrepareAll({noisy}, {});
+  const PreparedRecord& one = prepared.records[0];
+  ASSERT_EQ(one.smoothed.size(), clean.size());
+  ASSERT_TRUE(one.smoother);
+  EXPECT_NEAR(one.displacement_noise, 0.02, 0.005);
+  double before = 0.0;
+  double after = 0.0;
+  for (std::size_t i = 0; i < clean.size(); ++i) {
+    before += std::pow(noisy.displacement[i] - clean.displacement[i], 2);
+    after += std::pow(one.displacement()[i] - clean.displacement[i], 2);
+  }
+  EXPECT_LT(after, 0.5 * before);
+  for (std::size_t j = 0; j < one.reversals.size(); ++j) {
+    const double sense = j % 2 == 0 ? 1.0 : -1.0;
+    const std::size_t turn = one.reversals[j];
+    for (std::size_t i = turn - 20; i < turn + 20 && i < clean.size(); ++i) {
+      EXPECT_LE(sense * one.displacement()[i], sense * one.displacement()[turn]) << j;
+    }
+  }
+  // What is exact is not touched.
+  const std::vector<Record> exact = {clean};
+  EXPECT_TRUE(PrepareAll(exact, {}).records[0].smoothed.empty());
+}
+
+}  // namespace
+}  // namespace mindahl::loop
