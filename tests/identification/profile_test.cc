@@ -164,9 +164,10 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
     const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
     const SlipForceProfile profile =
         ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
-    if (variance > 1e-5)
+    if (variance > 1e-5) {
       EXPECT_EQ(SideOf(stages.problem.parameters[kShape], profile.shape_exponent.upper),
                 BoundSide::kUpper);
+    }
     EXPECT_EQ(profile.open_above, variance > 1e-5);
   }
 }

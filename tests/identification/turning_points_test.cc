@@ -151,8 +151,11 @@ TEST(TurningPoints, NeedTwoSamplesThatCountAParameter) {
     const bool fitted =
         FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers.response)
             .has_value();
-    if (counting < 22) EXPECT_FALSE(fitted);
-    if (counting >= 40) EXPECT_TRUE(fitted);
+    if (counting < 22) {
+      EXPECT_FALSE(fitted);
+    } else if (counting >= 40) {
+      EXPECT_TRUE(fitted);
+    }
   }
 }
 

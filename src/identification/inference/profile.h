@@ -23,9 +23,9 @@ struct Range {
 struct SlipForceProfile {
   /// Not clearly rejected where Tc is twenty times the largest force, or α has reached its bound.
   bool open_above = false;
-  Range slip_force;      // ln Tc
-  Range shape_exponent;  // α
-  Range stiffness;       // ln σ
+  Range slip_force = {};      // ln Tc
+  Range shape_exponent = {};  // α
+  Range stiffness = {};       // ln σ
 };
 
 /// May the parabola be wrong along Tc? It is asked where the loop stays away from slip, where Tc is
