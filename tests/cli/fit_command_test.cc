@@ -180,7 +180,8 @@ TEST_P(FitJsonOf, HasEveryKeyOfTheContract) { ExpectContract(Run()); }
 TEST_P(FitJsonOf, NamesEveryNullOnceAndSaysWhy) { ExpectEveryNullExplained(Run()); }
 
 TEST_P(FitJsonOf, WarnsOfNothingThatOnlyExplainsANull) {
-  for (const json& warning : Run().at("warnings")) {
+  const json fit = Run();
+  for (const json& warning : fit.at("warnings")) {
     const std::string code = warning.at("code");
     for (const char* explanation :
          {"alpha_not_tested", "no_standard_error", "open_interval", "held_fixed", "no_correlation",

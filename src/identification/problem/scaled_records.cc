@@ -174,7 +174,7 @@ ScaledRecords Thin(const ScaledRecords& data,
       const std::size_t end = turns_at_end ? record.reversals[stroke] : record.size() - 1;
       const double way = record.displacement[end] - record.displacement[begin];
       std::size_t next = 1;
-      for (std::size_t i = begin + 1; i < end && next < kept; ++i) {
+      for (std::size_t i = begin + 1; way != 0 && i < end && next < kept; ++i) {
         const double share = (record.displacement[i] - record.displacement[begin]) / way;
         const double wanted = static_cast<double>(next * next) / static_cast<double>(kept * kept);
         if (!(share >= wanted)) continue;
