@@ -58,19 +58,6 @@ struct Attempt {
   std::pmr::memory_resource* memory;
 };
 
-/// Residuals of the solution that count, weighted.
-void Evaluate(const Problem& problem, const Solution& solution, Response& response,
-              std::span<double> residual) {
-  response.Bind(problem);
-  Predict(problem, solution.theta, response, residual);
-  std::size_t k = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      residual[k] = record.root_weight[i] * (residual[k] - record.force[i]);
-    }
-  }
-}
-
 /// Autocorrelation of residuals of all samples; those that `passes` refuses tell nothing.
 template <typename Passes>
 Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
@@ -99,7 +86,8 @@ bool EverySample(std::size_t /*sample*/) { return true; }
 /// As many independent samples as tell the variance of a solution's residuals.
 double EffectiveSamples(const Attempt& attempt, const Candidate& candidate) {
   std::pmr::vector<double> residual(candidate.problem.size(), attempt.memory);
-  Evaluate(candidate.problem, *candidate.solution, attempt.buffers.response, residual);
+  EvaluateResidual(candidate.problem, candidate.solution->theta, attempt.buffers.response,
+                   residual);
   return static_cast<double>(attempt.data.counted) /
          AutocorrelationOf(attempt.data, residual, attempt.memory, EverySample)
              .SquaredCorrelations();
@@ -303,7 +291,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   const FitOptions& options = attempt.options;
   SearchBuffers& buffers = attempt.buffers;
   std::vector<double> residual(problem.size());
-  Evaluate(problem, solution, buffers.response, residual);
+  EvaluateResidual(problem, solution.theta, buffers.response, residual);
   // Rounding errors are autocorrelated as they like: nothing is to be learnt from them.
   const double rms =
       std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));

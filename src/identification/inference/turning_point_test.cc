@@ -71,14 +71,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   Problem refitted = problem;
   refitted.data = &fit.records->data;
   std::vector<double> residual(refitted.size());
-  response.Bind(refitted);
-  Predict(refitted, fit.solution.theta, response, residual);
-  std::size_t k = 0;
-  for (const ScaledRecord& record : refitted.data->records) {
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      residual[k] = record.root_weight[i] * (residual[k] - record.force[i]);
-    }
-  }
+  EvaluateResidual(refitted, fit.solution.theta, response, residual);
   const Evidence evidence(data.counted, EffectiveSamples(*refitted.data, residual.data()));
   const double price = 2 * static_cast<double>(reversals);
   const double gain = evidence.LikelihoodRatio(best.sum_of_squares, fit.solution.sum_of_squares);

@@ -114,12 +114,29 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   }
 }
 
+/// Weighted residuals in the place of the forces of the model.
+void TakeOffMeasured(const Problem& problem, std::span<double> force) {
+  std::size_t k = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
+      force[k] = record.root_weight[i] * (force[k] - record.force[i]);
+    }
+  }
+}
+
 }  // namespace
 
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> force) {
   response.Evaluate(PointAt(problem, theta), force);
   Complete(problem, theta, force);
+}
+
+void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
+                      std::span<double> residual) {
+  response.Bind(problem);
+  Predict(problem, theta, response, residual);
+  TakeOffMeasured(problem, residual);
 }
 
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
@@ -165,12 +182,7 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
     }
   }
   Complete(problem, theta, residual);
-  std::size_t k = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      residual[k] = record.root_weight[i] * (residual[k] - record.force[i]);
-    }
-  }
+  TakeOffMeasured(problem, residual);
 }
 
 }  // namespace mindahl::identification

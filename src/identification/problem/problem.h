@@ -75,6 +75,10 @@ class Response {
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> force);
 
+/// Weighted residuals, model − measured, of every sample; binds the response to the problem.
+void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
+                      std::span<double> residual);
+
 /// The column of a linear parameter: of a record's, zero on the others; no weight.
 double ColumnAt(const Problem& problem, std::size_t parameter, std::size_t record,
                 std::size_t sample);

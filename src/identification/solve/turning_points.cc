@@ -290,18 +290,11 @@ ArrowStep SolveArrow(const ArrowSystem& system, double damping,
 }
 
 double CostAt(const Problem& problem, std::span<const double> theta, Response& response,
-              std::vector<double>& force) {
-  force.resize(problem.size());
-  response.Bind(problem);
-  Predict(problem, theta, response, force);
+              std::vector<double>& residual) {
+  residual.resize(problem.size());
+  EvaluateResidual(problem, theta, response, residual);
   double cost = 0.0;
-  std::size_t k = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      const double residual = record.root_weight[i] * (force[k] - record.force[i]);
-      cost += residual * residual;
-    }
-  }
+  for (const double value : residual) cost += value * value;
   return cost;
 }
 
