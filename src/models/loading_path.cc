@@ -21,7 +21,9 @@ void RequireDisplacements(std::span<const double> displacement) {
     ThrowInvalid("samples of the displacement history [-]",
                  static_cast<double>(displacement.size()), "must be <= 2147483640");
   }
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
+  bool all = true;  // without a jump: the usual case
+  for (const double x : displacement) all &= IsWithinReach(x);
+  for (std::size_t i = 0; !all && i < displacement.size(); ++i) {
     if (!IsWithinReach(displacement[i])) {
       RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
     }
@@ -62,30 +64,45 @@ class OpenBranches {
           .direction = static_cast<std::int8_t>(-direction_)});
   }
 
+  /// How many of the samples ahead the present branch has before it closes.
+  [[nodiscard]] std::size_t SamplesAhead(std::span<const double> displacement) const {
+    if (memory_ == Memory::kNone || open_.size() < 2) return displacement.size();
+    const double closing = ClosingDisplacement(open_.size(), OriginOf{path_, open_});
+    const double direction = direction_;
+    std::size_t ahead = 0;
+    while (ahead < displacement.size() && direction * (displacement[ahead] - closing) < 0) ++ahead;
+    return ahead;
+  }
+
   /// Moves on to `displacement` in the present direction; closes what it passes.
   void Advance(double displacement) {
     if (memory_ == Memory::kNone) return;
-    const auto origin_of = [&](std::size_t i) {
-      return path_.branches[static_cast<std::size_t>(open_[i])].origin;
-    };
-    open_.resize(StillOpen(open_.size(), origin_of, direction_, displacement));
+    open_.resize(StillOpen(open_.size(), OriginOf{path_, open_}, direction_, displacement));
   }
 
   [[nodiscard]] std::int32_t Present() const { return open_.back(); }
 
  private:
+  struct OriginOf {
+    const LoadingPath& path;
+    const std::vector<std::int32_t>& open;
+    double operator()(std::size_t i) const {
+      return path.branches[static_cast<std::size_t>(open[i])].origin;
+    }
+  };
+
   LoadingPath& path_;
   std::vector<std::int32_t>& open_;
   Memory memory_;
   std::int8_t direction_ = 1;  // of the motion; the virgin curve is run both ways
 };
 
-void AppendToRuns(std::vector<BranchRun>& runs, std::size_t sample, std::int32_t branch) {
+void AppendToRuns(std::vector<BranchRun>& runs, std::size_t begin, std::size_t end,
+                  std::int32_t branch) {
   if (!runs.empty() && runs.back().branch == branch) {
-    runs.back().end = static_cast<std::uint32_t>(sample + 1);
+    runs.back().end = static_cast<std::uint32_t>(end);
   } else {
-    runs.push_back(
-        {static_cast<std::uint32_t>(sample), static_cast<std::uint32_t>(sample + 1), branch});
+    runs.push_back({static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end), branch});
   }
 }
 
@@ -138,13 +155,17 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const std::
   OpenInitialBranches(open, displacement, FirstDirection(displacement, reversals), memory, initial);
 
   std::size_t next_reversal = 0;
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    open.Advance(displacement[i]);
-    AppendToRuns(path.runs, i, open.Present());
-    if (next_reversal < reversals.size() && reversals[next_reversal] == i) {
-      open.Reverse(displacement[i]);
-      ++next_reversal;
+  for (std::size_t i = 0; i < displacement.size();) {
+    const bool turns =
+        next_reversal < reversals.size() && reversals[next_reversal] < displacement.size();
+    const std::size_t end = turns ? reversals[next_reversal] + 1 : displacement.size();
+    while (i < end) {
+      open.Advance(displacement[i]);
+      const std::size_t next = i + 1 + open.SamplesAhead(displacement.subspan(i + 1, end - i - 1));
+      AppendToRuns(path.runs, i, next, open.Present());
+      i = next;
     }
+    if (turns) open.Reverse(displacement[reversals[next_reversal++]]);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
+#include "models/branch_kernel.h"
 #include "models/response_gradient.h"
 #include "models/scaled_branches.h"
 
@@ -28,6 +29,45 @@ void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
   RequireSameSize("displacement", displacement.size(), "response", t.size());
   RequireSameSize("displacement", displacement.size(), "loading path",
                   path.runs.empty() ? 0 : path.runs.back().end);
+}
+
+/// Forces over Tc of one run.
+template <typename ShapeOnBranch>
+void EvaluateRun(const ScaledBranch<double>& branch, const ShapeOnBranch& shape, double limit,
+                 std::span<const double> displacement, std::span<double> t) {
+  models::EvaluateRun(branch, shape, 1.0, limit, displacement, t);
+}
+void EvaluateRun(const ScaledBranch<double>& branch, const backbone::GeneralShape<double>& shape,
+                 double limit, std::span<const double> displacement, std::span<double> t) {
+  EvaluateGeneralRun(branch, shape.shape_exponent, limit, displacement, t);
+}
+
+template <typename ShapeOnBranch>
+void DifferentiateRun(const ShapeOnBranch& shape, const ScaledBranch<double>& branch,
+                      const SprungDifferentiation::BranchGradient& branch_gradient, double limit,
+                      std::span<const double> displacement, std::span<double> t,
+                      const NormalizedGradient& gradient) {
+  const auto keep = [](std::span<double> column, std::size_t i, double value) {
+    if (!column.empty()) column[i] = value;
+  };
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    double force = 0.0;
+    const auto g = SprungDifferentiation::DifferentiateSample(shape, branch, branch_gradient,
+                                                              displacement[i], force);
+    t[i] = std::clamp(force, -limit, limit);
+    keep(gradient.log_rate, i, g[kRate]);
+    keep(gradient.shape_exponent, i, g[kShape]);
+    keep(gradient.unloaded_displacement, i, g[kUnloaded]);
+    keep(gradient.log_spring_travel, i, g[kSpring]);
+  }
+}
+void DifferentiateRun(const DirectShape& shape, const ScaledBranch<double>& branch,
+                      const RigidDifferentiation::BranchGradient& branch_gradient, double limit,
+                      std::span<const double> displacement, std::span<double> t,
+                      const NormalizedGradient& gradient) {
+  DifferentiateGeneralRun(branch, branch_gradient, shape.shape_exponent, limit, displacement, t,
+                          gradient);
+  std::ranges::fill(gradient.log_spring_travel, 0.0);
 }
 
 }  // namespace
@@ -60,8 +100,9 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
     for (const BranchRun& run : path.runs) {
       const std::size_t count = run.end - run.begin;
       const ScaledBranch<double>& branch = branches[static_cast<std::size_t>(run.branch)];
-      EvaluateRun(branch, ShapeOn(shape, branch), 1.0, ForceLimit(model),
-                  displacement.subspan(run.begin, count), t.subspan(run.begin, count));
+      const auto x = displacement.subspan(run.begin, count);
+      EvaluateRun(branch, ShapeOn(shape, branch), ForceLimit(model), x,
+                  t.subspan(run.begin, count));
     }
   };
   backbone::WithShape(law.shape_exponent, [&](const auto& contact) {
@@ -91,21 +132,15 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
     differentiation.Differentiate(path, branches, gradients);
     for (const BranchRun& run : path.runs) {
       const auto b = static_cast<std::size_t>(run.branch);
-      const auto& shape_on_branch = ShapeOn(shape, branches[b]);
-      for (std::size_t i = run.begin; i < run.end; ++i) {
-        double force = 0.0;
-        const auto g = differentiation.DifferentiateSample(shape_on_branch, branches[b],
-                                                           gradients[b], displacement[i], force);
-        t[i] = std::clamp(force, -limit, limit);
-        if (!gradient.log_rate.empty()) gradient.log_rate[i] = g[kRate];
-        if (!gradient.shape_exponent.empty()) gradient.shape_exponent[i] = g[kShape];
-        if (!gradient.unloaded_displacement.empty()) {
-          gradient.unloaded_displacement[i] = g[kUnloaded];
-        }
-        if (gradient.log_spring_travel.empty()) continue;
-        gradient.log_spring_travel[i] = 0.0;
-        if constexpr (differentiation.kSprung) gradient.log_spring_travel[i] = g[kSpring];
-      }
+      const auto part = [&](std::span<double> column) {
+        return column.empty() ? column : column.subspan(run.begin, run.end - run.begin);
+      };
+      DifferentiateRun(ShapeOn(shape, branches[b]), branches[b], gradients[b], limit,
+                       displacement.subspan(run.begin, run.end - run.begin), part(t),
+                       {.log_rate = part(gradient.log_rate),
+                        .shape_exponent = part(gradient.shape_exponent),
+                        .unloaded_displacement = part(gradient.unloaded_displacement),
+                        .log_spring_travel = part(gradient.log_spring_travel)});
     }
   };
   if (law.spring_travel == 0) {

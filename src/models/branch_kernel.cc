@@ -1,0 +1,316 @@
+#include "models/branch_kernel.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mindahl/models/backbone.h"
+
+// A function that is always inlined takes the instruction set of its caller.
+#define MINDAHL_INLINE inline __attribute__((always_inline))
+
+namespace mindahl::models {
+namespace {
+
+constexpr std::size_t kBlock = 64;  // samples; their columns stay in the nearest cache
+constexpr std::size_t kLanes = 8;   // doubles in the widest vector; divides kBlock
+using Column = std::array<double, kBlock>;
+
+constexpr std::int64_t kExponentBias = std::int64_t{1023} << 52;
+
+/// Of z: log z = k·ln 2 + 2·atanh(s), |s| <= 0.1716. Where k = 0, z = 1 − w is taken from w.
+struct Reduction {
+  double k;
+  double s;
+};
+MINDAHL_INLINE Reduction Reduce(double w, double z) {
+  constexpr std::int64_t kRootHalf = 0x3fe6a09e667f3bcd;
+  constexpr std::int64_t kIntegers = 0x4330000000000000;  // 2⁵²: its last bits count ones
+  constexpr double kBiased = 4503599627370496.0 + 1023.0;
+  const auto bits = std::bit_cast<std::uint64_t>(z);
+  const std::uint64_t biased_k =
+      (bits - static_cast<std::uint64_t>(kRootHalf) + static_cast<std::uint64_t>(kExponentBias)) >>
+      52;
+  const double k =
+      std::bit_cast<double>(biased_k | static_cast<std::uint64_t>(kIntegers)) - kBiased;
+  const double m =
+      std::bit_cast<double>(bits - (biased_k << 52) + static_cast<std::uint64_t>(kExponentBias));
+  const double above = k == 0 ? -w : m - 1;
+  const double below = k == 0 ? 2 - w : m + 1;
+  return {k, above / below};
+}
+
+/// Σ cᵢxⁱ, even and odd powers side by side: half as long a chain of operations.
+template <std::size_t kCount>
+MINDAHL_INLINE double Polynomial(const std::array<double, kCount>& c, double x) {
+  static_assert(kCount % 2 == 0);
+  const double square = x * x;
+  double even = c[kCount - 2];
+  double odd = c[kCount - 1];
+  for (std::size_t i = kCount - 2; i > 0; i -= 2) {
+    even = even * square + c[i - 2];
+    odd = odd * square + c[i - 1];
+  }
+  return even + x * odd;
+}
+
+/// P = Σ xⁱ/(2i+3): 2·atanh(s) = 2s + 2s³·P(s²). For x <= 0.0295 the first term left out is below
+/// ε/20 of P.
+MINDAHL_INLINE double AtanhSeries(double x) {
+  constexpr std::array kTerms = {1. / 3,  1. / 5,  1. / 7,  1. / 9,  1. / 11,
+                                 1. / 13, 1. / 15, 1. / 17, 1. / 19, 1. / 21};
+  return Polynomial(kTerms, x);
+}
+
+/// e^x − 1 = scale·part + (scale − 1)
+struct Exponential {
+  double scale;  // 2ⁿ
+  double part;   // e^r − 1, |r| <= ½ ln 2
+};
+MINDAHL_INLINE Exponential Exponentiate(double x) {
+  constexpr double kPerLog2 = 1.4426950408889634;
+  constexpr double kLog2High =
+      6.93147180369123816490e-01;  // 33 bits: its products with n are exact
+  constexpr double kLog2Low = 1.90821492927058770002e-10;
+  constexpr double kRound = 6755399441055744.0;  // 1.5·2⁵²: adding it rounds to an integer
+  constexpr double kLowest = -708.0;             // 2ⁿ is normal
+  const double bounded = x > kLowest ? x : kLowest;
+  const double shifted = bounded * kPerLog2 + kRound;
+  const double n = shifted - kRound;
+  const double r = (bounded - n * kLog2High) - n * kLog2Low;
+  constexpr std::array kFactorials = {
+      1. / 2,     1. / 6,      1. / 24,       1. / 120,       1. / 720,        1. / 5040,
+      1. / 40320, 1. / 362880, 1. / 3628800., 1. / 39916800., 1. / 479001600., 1. / 6227020800.};
+  const std::uint64_t scale = (std::bit_cast<std::uint64_t>(shifted) + 1023) << 52;
+  return {std::bit_cast<double>(scale), r + r * r * Polynomial(kFactorials, r)};
+}
+
+/// What all samples of a run share.
+struct RunConstants {
+  double origin;
+  double rate;
+  double reach;
+  double beta;
+  double per_beta;  // 0 for β = 0, where it is not used
+};
+
+MINDAHL_INLINE RunConstants ConstantsOf(const ScaledBranch<double>& branch, double shape_exponent) {
+  const double beta = 1 - shape_exponent;
+  return {branch.origin, branch.rate, backbone::Reach(branch.rate), beta,
+          beta == 0 ? 0.0 : 1 / beta};
+}
+
+struct Sample {
+  double sign;
+  double y;
+  double z;  // 1 where the contact slips
+  double log_remaining;
+  double series;  // P
+  Reduction reduction;
+  Exponential exponential;
+  bool slips;
+};
+
+MINDAHL_INLINE Sample SampleAt(const RunConstants& run, double displacement) {
+  constexpr double kLog2High = 6.93147180369123816490e-01;
+  constexpr double kLog2Low = 1.90821492927058770002e-10;
+  Sample sample{};
+  const double e = displacement - run.origin;
+  const double length = std::abs(e);
+  sample.sign = std::copysign(1.0, e);
+  sample.y = run.rate * (length < run.reach ? length : run.reach);
+  const double all = run.beta * sample.y;
+  sample.slips = !(all < 1);
+  const double w = sample.slips ? 0.0 : all;
+  sample.z = 1 - w;
+  sample.reduction = Reduce(w, sample.z);
+  const auto [k, s] = sample.reduction;
+  const double square = s * s;
+  sample.series = AtanhSeries(square);
+  const double cubic = s * square * sample.series;
+  const double log_z = k * kLog2High + (k * kLog2Low + 2 * (s + cubic));
+  // s = −w/(2−w): log(1−w)/w = −(1 − s)(1 + s²P), which makes nothing special of β = 0.
+  const double near = -sample.y * ((1 - s) * (1 + square * sample.series));
+  sample.log_remaining = k == 0 ? near : log_z * run.per_beta;
+  sample.exponential = Exponentiate(sample.log_remaining);
+  return sample;
+}
+
+/// φ
+MINDAHL_INLINE double ForceOf(const Sample& sample) {
+  const auto [scale, part] = sample.exponential;
+  return sample.slips ? 1.0 : (1 - scale) - scale * part;
+}
+
+MINDAHL_INLINE double Clamp(double value, double limit) {
+  const double below = value < limit ? value : limit;
+  return below > -limit ? below : -limit;
+}
+
+/// Samples of one run and what becomes of them; beyond the last there is padding.
+struct Block {
+  Column displacement;
+  Column t;
+  Column log_rate;
+  Column shape_exponent;
+  Column unloaded;
+};
+
+/// Whole vectors only: what is left over would be done one by one.
+template <typename AtSample>
+MINDAHL_INLINE void ForEach(std::size_t count, AtSample&& at) {
+  for (std::size_t begin = 0; begin < count; begin += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) at(begin + lane);
+  }
+}
+
+MINDAHL_INLINE void EvaluateBlock(const ScaledBranch<double>& branch, double shape_exponent,
+                                  double limit, std::size_t count, Block& block) {
+  const RunConstants run = ConstantsOf(branch, shape_exponent);
+  const double start = branch.force;
+  const double height = branch.height;
+  ForEach(
+      count, [&](std::size_t i) __attribute__((always_inline)) {
+        const Sample sample = SampleAt(run, block.displacement[i]);
+        block.t[i] = Clamp(start + sample.sign * (height * ForceOf(sample)), limit);
+      });
+}
+
+MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch<double>& branch,
+                                       const Differentiation<DirectShape>::BranchGradient& start,
+                                       double shape_exponent, double limit, std::size_t count,
+                                       Block& block) {
+  const RunConstants run = ConstantsOf(branch, shape_exponent);
+  const double force_start = branch.force;
+  const double height = branch.height;
+  const double force_rate = start.force[kRate];
+  const double force_shape = start.force[kShape];
+  const double force_unloaded = start.force[kUnloaded];
+  const double height_rate = start.height[kRate];
+  const double height_shape = start.height[kShape];
+  const double height_unloaded = start.height[kUnloaded];
+  const double elastic_rate = height * start.log_rate[kRate];
+  const double elastic_shape = height * start.log_rate[kShape];
+  const double elastic_unloaded = height * start.log_rate[kUnloaded];
+  const double slope_unloaded = start.origin_per_unloaded * height * branch.rate;
+  ForEach(
+      count, [&](std::size_t i) __attribute__((always_inline)) {
+        const Sample sample = SampleAt(run, block.displacement[i]);
+        const auto [k, s] = sample.reduction;
+        const auto [scale, part] = sample.exponential;
+        const double phi = ForceOf(sample);
+        const double remaining = scale + scale * part;
+        const double per_z = 1 / sample.z;
+        const double slope = sample.slips ? 0.0 : remaining * per_z;
+        const double elastic = sample.y * slope;
+        // (w/(1−w) + log1p(−w))/w² = ½(1−s)²·[1/(1+s) + s·P], and 1/(1+s) = (1 + 1/z)/2
+        const double less = 1 - s;
+        const double curvature = 0.5 * less * less * (0.5 * (1 + per_z) + s * sample.series);
+        const double near = remaining * sample.y * (sample.y * curvature);
+        const double far = (elastic + remaining * sample.log_remaining) * run.per_beta;
+        const double by_shape = sample.slips ? 0.0 : k == 0 ? near : far;
+        block.t[i] = Clamp(force_start + sample.sign * (height * phi), limit);
+        block.log_rate[i] = force_rate + sample.sign * (height_rate * phi + elastic_rate * elastic);
+        block.shape_exponent[i] =
+            force_shape +
+            sample.sign * (height_shape * phi + elastic_shape * elastic - height * by_shape);
+        block.unloaded[i] = force_unloaded - slope_unloaded * slope +
+                            sample.sign * (height_unloaded * phi + elastic_unloaded * elastic);
+      });
+}
+
+}  // namespace
+
+struct BranchKernel {
+  decltype(EvaluateBlock)* evaluate;
+  decltype(DifferentiateBlock)* differentiate;
+};
+
+namespace {
+
+// The blocks for one instruction set each.
+
+#define MINDAHL_BLOCKS(name, attributes)                                                         \
+  attributes void Evaluate##name(const ScaledBranch<double>& branch, double shape_exponent,      \
+                                 double limit, std::size_t count, Block& block) {                \
+    EvaluateBlock(branch, shape_exponent, limit, count, block);                                  \
+  }                                                                                              \
+  attributes void Differentiate##name(const ScaledBranch<double>& branch,                        \
+                                      const Differentiation<DirectShape>::BranchGradient& start, \
+                                      double shape_exponent, double limit, std::size_t count,    \
+                                      Block& block) {                                            \
+    DifferentiateBlock(branch, start, shape_exponent, limit, count, block);                      \
+  }                                                                                              \
+  constexpr BranchKernel k##name = {Evaluate##name, Differentiate##name};
+
+MINDAHL_BLOCKS(Baseline, )
+#if defined(__x86_64__)
+MINDAHL_BLOCKS(Avx2, __attribute__((target("avx2,fma"))))
+MINDAHL_BLOCKS(Avx512, __attribute__((target("avx512f,avx512dq"))))
+#endif
+#undef MINDAHL_BLOCKS
+
+/// The samples from `begin` on; the last is repeated where whole vectors ask for more.
+std::size_t Fill(std::span<const double> displacement, std::size_t begin, Block& block) {
+  const std::size_t count = std::min(kBlock, displacement.size() - begin);
+  std::copy_n(&displacement[begin], count, block.displacement.begin());
+  for (std::size_t i = count; i % kLanes != 0; ++i) {
+    block.displacement[i] = block.displacement[count - 1];
+  }
+  return count;
+}
+
+void Keep(const Column& column, std::size_t begin, std::size_t count, std::span<double> to) {
+  if (!to.empty()) std::copy_n(column.begin(), count, &to[begin]);
+}
+
+}  // namespace
+
+std::vector<const BranchKernel*> BranchKernels() {
+  std::vector<const BranchKernel*> kernels = {&kBaseline};
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) kernels.push_back(&kAvx2);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
+    kernels.push_back(&kAvx512);
+  }
+#endif
+  return kernels;
+}
+
+const BranchKernel& WidestBranchKernel() {
+  static const BranchKernel& widest = *BranchKernels().back();
+  return widest;
+}
+
+void EvaluateGeneralRun(const ScaledBranch<double>& branch, double shape_exponent, double limit,
+                        std::span<const double> displacement, std::span<double> t,
+                        const BranchKernel& kernel) {
+  Block block;
+  for (std::size_t begin = 0; begin < displacement.size(); begin += kBlock) {
+    const std::size_t count = Fill(displacement, begin, block);
+    kernel.evaluate(branch, shape_exponent, limit, count, block);
+    Keep(block.t, begin, count, t);
+  }
+}
+
+void DifferentiateGeneralRun(const ScaledBranch<double>& branch,
+                             const Differentiation<DirectShape>::BranchGradient& branch_gradient,
+                             double shape_exponent, double limit,
+                             std::span<const double> displacement, std::span<double> t,
+                             const NormalizedGradient& gradient, const BranchKernel& kernel) {
+  Block block;
+  for (std::size_t begin = 0; begin < displacement.size(); begin += kBlock) {
+    const std::size_t count = Fill(displacement, begin, block);
+    kernel.differentiate(branch, branch_gradient, shape_exponent, limit, count, block);
+    Keep(block.t, begin, count, t);
+    Keep(block.log_rate, begin, count, gradient.log_rate);
+    Keep(block.shape_exponent, begin, count, gradient.shape_exponent);
+    Keep(block.unloaded, begin, count, gradient.unloaded_displacement);
+  }
+}
+
+}  // namespace mindahl::models

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mindahl/models/normalized_response.h"
+#include "models/response_gradient.h"
+#include "models/scaled_branches.h"
+
+/// The branch law at many displacements at once, for fits: the same arithmetic for every sample,
+/// without a jump or a call, so that the compiler makes vectors of it. Built for several
+/// instruction sets, of which the widest that the processor has is chosen at the first call; they
+/// differ in roundings only.
+///
+/// Errors: φ relative 4 ε, as in backbone.h; derivatives 4 ε of 1 and, next to slip, those of a
+/// displacement that is off by ε, which for α < 1/2 bends φ' without bound: they steer a solver.
+namespace mindahl::models {
+
+/// The arithmetic of one instruction set.
+struct BranchKernel;
+
+/// Those that the processor has, the widest last.
+std::vector<const BranchKernel*> BranchKernels();
+const BranchKernel& WidestBranchKernel();
+
+/// t of the samples of one run, `limit` being the largest |t|.
+void EvaluateGeneralRun(const ScaledBranch<double>& branch, double shape_exponent, double limit,
+                        std::span<const double> displacement, std::span<double> t,
+                        const BranchKernel& kernel = WidestBranchKernel());
+
+/// t and its derivatives; a column of `gradient` that is empty is not wanted.
+void DifferentiateGeneralRun(const ScaledBranch<double>& branch,
+                             const Differentiation<DirectShape>::BranchGradient& branch_gradient,
+                             double shape_exponent, double limit,
+                             std::span<const double> displacement, std::span<double> t,
+                             const NormalizedGradient& gradient,
+                             const BranchKernel& kernel = WidestBranchKernel());
+
+}  // namespace mindahl::models
