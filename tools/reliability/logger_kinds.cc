@@ -127,6 +127,14 @@ Loop LongWithDropOuts(const Truth& truth, std::size_t level, Draws& draws) {
   return DropOuts(Lengthy(truth), level, draws);
 }
 
+Loop LongWithNoise(const Truth& truth, std::size_t level, Draws& draws) {
+  Record record = Measured(Lengthy(truth), draws);
+  for (double& displacement : record.displacement) {
+    displacement += At(level, {0.003, 0.01, 0.03}) * Amplitude(truth) * draws.Normal();
+  }
+  return {record, AllOf(truth.law)};
+}
+
 }  // namespace
 
 std::vector<Kind> LoggerKinds() {
@@ -145,6 +153,8 @@ std::vector<Kind> LoggerKinds() {
        "50 cycles of 200 samples; 1, 5, 20 off by 0.5 to 4 X", false},
       {"10,000 rows with drop-outs", Half::kDevelopment, LongWithDropOuts,
        "50 cycles of 200 samples; 0.2, 1, 5 % read 0, 0", false},
+      {"10,000 rows of noisy displacement", Half::kHeldOut, LongWithNoise,
+       "50 cycles of 200 samples; 0.3, 1, 3 % of X, white", false},
   };
 }
 

@@ -34,7 +34,7 @@ struct Options {
 };
 
 int RefuseKind(std::string_view name) {
-  fmt::print(stderr, "no kind is called '{}'; there are:\n", name);
+  fmt::print(stderr, "no kind that was asked for is called '{}'; there are:\n", name);
   for (const Kind& kind : Kinds()) fmt::print(stderr, "  {}\n", kind.name);
   return kBadUsage;
 }

@@ -9,8 +9,8 @@
 /// The small run that every build makes, and what its rates may be.
 namespace mindahl::reliability {
 
-/// One loop a level of every quick kind.
-inline constexpr std::size_t kSmallLoops = 1;
+/// Loops a level of every quick kind.
+inline constexpr std::size_t kSmallLoops = 4;
 inline constexpr std::uint64_t kSmallSeed = 1;
 
 /// Largest shares of the fits of a half.

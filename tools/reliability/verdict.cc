@@ -98,15 +98,16 @@ std::string ResidualsText(const FitResult& fit) {
   if (fit.records.empty()) return "";
   const identification::RecordFit& record = fit.records.front();
   return fmt::format(
-      "   {} samples, {} reversals (gate {:.2g} X), {}, {}; rms {:.3g} % of Tc, largest {:.3g}, "
+      "   {} samples, {} reversals (gate {:.2g} X), {}, {}; T* {:.3g} % of Tc, rms {:.3g}, "
+      "largest {:.3g}, "
       "Durbin-Watson {:.2f}, {:.0f} effective; {:.0f} % repeatable\n",
       fit.residuals.samples, record.reversals.size(),
       record.reversal_gate / record.measures.amplitude,
       fit.initial_state == models::InitialState::kVirgin ? "virgin" : "steady",
       fit.converged ? "converged" : "NOT CONVERGED: " + fit.termination,
-      100 * fit.residuals.normalized_rms, 100 * fit.residuals.max_abs / fit.law.slip_force,
-      fit.residuals.durbin_watson, fit.residuals.effective_samples,
-      100 * record.structure.repeatable_share);
+      100 * record.measures.peak_force / fit.law.slip_force, 100 * fit.residuals.normalized_rms,
+      100 * fit.residuals.max_abs / fit.law.slip_force, fit.residuals.durbin_watson,
+      fit.residuals.effective_samples, 100 * record.structure.repeatable_share);
 }
 
 }  // namespace

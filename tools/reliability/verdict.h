@@ -32,12 +32,14 @@ inline constexpr double kShare = 0.02;
 
 /// What a fit lets its reader know beside the numbers.
 struct Caution {
-  bool no_answer = false;  ///< it failed, did not converge, or calls its model inadequate
+  bool no_answer = false;  ///< it failed or did not converge
   bool warns = false;      ///< of anything
   bool alarms = false;     ///< of more than what the record leaves open
 };
 
-/// The one place that knows how a fit speaks: by the severity of its findings.
+/// The one place that knows how a fit speaks: by its convergence and the severity of its findings.
+/// A verdict on the adequacy of its model belongs here too: inadequate is no answer, doubtful warns
+/// and alarms.
 Caution CautionOf(const identification::FitResult& fit);
 
 struct Judgement {
