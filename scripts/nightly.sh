@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What takes too long for .ci/run: every test with those labelled slow, under the sanitizers with all
-# their checks too; clang's static analyzer; the intervals' coverage over a thousand loops a row; the
-# mapping over thousands of contacts with another seed every night.
+# their checks too; clang's static analyzer; the intervals' coverage over a thousand loops a row; how
+# often a corrupted loop is fitted wrongly without a word; the mapping over thousands of contacts with
+# another seed every night.
 # Some hours on two cores. Every part runs, whatever became of those before.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -17,6 +18,7 @@ part ./scripts/test.sh ci
 part ./scripts/test.sh asan-full
 part ./scripts/tidy.sh --thorough
 part cmake --build build/ci --target coverage
+part cmake --build build/ci --target reliability
 seed=$(date +%Y%m%d)
 part build/ci/src/mindahl validate --cases 5000 --seed "$seed"
 
