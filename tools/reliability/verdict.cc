@@ -1,6 +1,7 @@
 #include "verdict.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -96,6 +97,8 @@ std::string FindingsText(const FitResult& fit) {
   std::string text = "   findings:";
   for (const Finding& finding : fit.findings) {
     text += fmt::format(" {}{}{}", finding.code, finding.kind.empty() ? "" : "/", finding.kind);
+    if (!finding.parameters.empty())
+      text += fmt::format(" [{}]", fmt::join(finding.parameters, ", "));
     if (finding.severity == Severity::kNote) text += " (note)";
   }
   return text + (fit.findings.empty() ? " none\n" : "\n");
