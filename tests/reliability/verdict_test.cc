@@ -89,6 +89,14 @@ TEST(Verdict, TakesTheEstimateForTheEndOfAnOpenInterval) {
   EXPECT_EQ(Judge(fit, {.sigma = kTruth}).misses, 0U);
 }
 
+TEST(Verdict, CallsALowerLimitAboveTheTruthFalse) {
+  FitResult fit = FitOf(200.0, 95.0);  // from 105
+  EXPECT_FALSE(Judge(fit, {.sigma = kTruth}).false_limit);
+  fit.parameters.front().identifiability = Identifiability::kBoundedBelow;
+  EXPECT_TRUE(Judge(fit, {.sigma = kTruth}).false_limit);
+  EXPECT_FALSE(Judge(fit, {.sigma = Range{100.0, 104.0}}).false_limit);
+}
+
 TEST(Verdict, CountsIntervalsAndThoseThatMiss) {
   const Judgement near = Judge(FitOf(101.0, 0.9), {.sigma = kTruth});
   EXPECT_EQ(near.intervals, 1U);

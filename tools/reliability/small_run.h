@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,23 +11,35 @@
 namespace mindahl::reliability {
 
 /// Loops a level of every quick kind.
-inline constexpr std::size_t kSmallLoops = 4;
+inline constexpr std::size_t kSmallLoops = 3;
 inline constexpr std::uint64_t kSmallSeed = 1;
 
-/// Largest shares of the fits of a half.
-struct Limit {
+/// Shares of the fits of a half, and of the intervals those that miss.
+struct Rates {
   Half half = Half::kDevelopment;
   double silent = 0.0;
   double warned = 0.0;
   double failed = 0.0;
-  double alarms = 1.0;
-  double misses = 1.0;  ///< of the intervals
+  double false_limits = 0.0;
+  double alarms = 0.0;
+  double misses = 0.0;
 };
 
-inline constexpr std::array<Limit, 3> kLimits = {{
-    {.half = Half::kDevelopment, .silent = 1.0, .warned = 1.0},
-    {.half = Half::kHeldOut, .silent = 1.0, .warned = 1.0},
-    {.half = Half::kClean, .silent = 0.0, .warned = 0.0, .alarms = 1.0, .misses = 1.0},
+/// Those of the quick kinds over fifty loops a level, seed 1: what docs/reliability.md has, less
+/// the kinds that are not quick. To be lowered with every change that lowers them. Alarms and
+/// misses are bounded on clean loops alone; on others an alarm is as it should be.
+inline constexpr std::array<Rates, 3> kMeasured = {{
+    {Half::kDevelopment, 0.086, 0.098, 0.0, 0.013, 1.0, 1.0},
+    {Half::kHeldOut, 0.092, 0.060, 0.0, 0.014, 1.0, 1.0},
+    {Half::kClean, 0.0, 0.0, 0.0, 0.002, 0.168, 0.039},
 }};
+
+/// Two standard deviations of the counting above the rate: a rate that is right exceeds it once in
+/// forty runs with other loops, and never with the same ones; one that has doubled does, where more
+/// than four are to be counted.
+/// @param count  fits, or intervals
+inline double LimitOf(double rate, std::size_t count) {
+  return rate + 2 * std::sqrt(rate * (1 - rate) / static_cast<double>(count));
+}
 
 }  // namespace mindahl::reliability

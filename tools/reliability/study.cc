@@ -13,10 +13,12 @@ struct Figures {
   bool alarms;
   std::size_t intervals;
   std::size_t misses;
+  bool false_limit;
 };
 
 std::string Packed(const Judgement& judgement) {
-  const Figures figures{judgement.outcome, judgement.alarms, judgement.intervals, judgement.misses};
+  const Figures figures{judgement.outcome, judgement.alarms, judgement.intervals, judgement.misses,
+                        judgement.false_limit};
   std::string text(sizeof figures, '\0');
   std::memcpy(text.data(), &figures, sizeof figures);
   return text + judgement.account;
@@ -25,8 +27,8 @@ std::string Packed(const Judgement& judgement) {
 Judgement Unpacked(const std::string& text) {
   Figures figures{};
   std::memcpy(&figures, text.data(), sizeof figures);
-  return {figures.outcome, figures.alarms, figures.intervals, figures.misses,
-          text.substr(sizeof figures)};
+  return {figures.outcome, figures.alarms,      figures.intervals,
+          figures.misses,  figures.false_limit, text.substr(sizeof figures)};
 }
 
 double Ratio(std::size_t part, std::size_t whole) {
@@ -73,11 +75,13 @@ void Tally::Add(const Case& of, const Result& result) {
   if (judgement.alarms) ++alarms;
   intervals += judgement.intervals;
   misses += judgement.misses;
+  if (judgement.false_limit) ++false_limits;
   slowest = std::max(slowest, result.seconds);
 }
 
 double Tally::Share(Outcome outcome) const { return Ratio(Of(outcome), fits); }
 double Tally::AlarmShare() const { return Ratio(alarms, fits); }
+double Tally::FalseLimitShare() const { return Ratio(false_limits, fits); }
 double Tally::MissShare() const { return Ratio(misses, intervals); }
 
 }  // namespace mindahl::reliability

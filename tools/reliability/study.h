@@ -38,7 +38,8 @@ struct Tally {
   std::size_t alarms = 0;
   std::size_t intervals = 0;
   std::size_t misses = 0;
-  double slowest = 0.0;  ///< [s]
+  std::size_t false_limits = 0;  ///< fits with one
+  double slowest = 0.0;          ///< [s]
 
   void Add(const Case& of, const Result& result);
   [[nodiscard]] std::size_t Of(Outcome outcome) const {
@@ -47,6 +48,7 @@ struct Tally {
   /// Of the fits, in 0 … 1.
   [[nodiscard]] double Share(Outcome outcome) const;
   [[nodiscard]] double AlarmShare() const;
+  [[nodiscard]] double FalseLimitShare() const;
   /// Of the intervals.
   [[nodiscard]] double MissShare() const;
 };

@@ -37,7 +37,7 @@ void PrintHalf(std::FILE* file, Half half, const std::vector<Case>& cases,
 }
 
 bool IsOfInterest(const Case& of, const Judgement& judgement) {
-  if (judgement.outcome >= Outcome::kWarned) return true;
+  if (judgement.outcome >= Outcome::kWarned || judgement.false_limit) return true;
   return of.kind->half == Half::kClean && (judgement.alarms || judgement.misses > 0);
 }
 
@@ -60,16 +60,16 @@ void PrintTables(std::FILE* file, const std::vector<Case>& cases,
                  const std::vector<Result>& results) {
   const std::vector<HalfTally> halves = TallyHalves(cases, results);
   fmt::print(file,
-             "| | fits | {} alarms | misses of intervals | slowest [s] |\n"
-             "|---|---|---|---|---|---|---|---|---|---|\n",
+             "| | fits | {} alarms | misses of intervals | false limits | slowest [s] |\n"
+             "|---|---|---|---|---|---|---|---|---|---|---|\n",
              kOutcomeHead);
   for (const auto& [half, tally] : halves) {
     fmt::print(file, "| {} | {} |", Name(half), tally.fits);
     for (std::size_t k = 0; k < kOutcomes; ++k) {
       fmt::print(file, " {:.1f} % |", 100 * tally.Share(static_cast<Outcome>(k)));
     }
-    fmt::print(file, " {:.1f} % | {:.1f} % | {:.2g} |\n", 100 * tally.AlarmShare(),
-               100 * tally.MissShare(), tally.slowest);
+    fmt::print(file, " {:.1f} % | {:.1f} % | {:.1f} % | {:.2g} |\n", 100 * tally.AlarmShare(),
+               100 * tally.MissShare(), 100 * tally.FalseLimitShare(), tally.slowest);
   }
   for (const HalfTally& half : halves) PrintHalf(file, half.half, cases, results);
 }

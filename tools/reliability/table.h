@@ -20,8 +20,8 @@ std::vector<HalfTally> TallyHalves(const std::vector<Case>& cases,
 void PrintTables(std::FILE* file, const std::vector<Case>& cases,
                  const std::vector<Result>& results);
 
-/// Every fit that was silent, warned or failed, and clean ones that alarmed or missed: what was
-/// true, what was said, and how to have the loop as a file.
+/// Every fit that was silent, warned or failed or gave a false limit, and clean ones that alarmed
+/// or missed: what was true, what was said, and how to have the loop as a file.
 void PrintDetails(std::FILE* file, const std::vector<Case>& cases,
                   const std::vector<Result>& results);
 

@@ -1,6 +1,7 @@
 #include "verdict.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +61,12 @@ struct Comparison {
   bool covers = true;
 };
 
+/// One that is bounded below has nothing but its limit to be believed.
+bool IsFalseLimit(const ParameterEstimate& estimate, const Range& truth) {
+  return estimate.identifiability == Identifiability::kBoundedBelow && estimate.lower95 &&
+         *estimate.lower95 > (1 + kShare) * truth.highest;
+}
+
 std::string TruthText(const std::optional<Range>& truth) {
   if (!truth) return "not asked";
   if (truth->lowest == truth->highest) return fmt::format("{:.5g}", truth->lowest);
@@ -77,6 +84,7 @@ std::string ParameterText(const ParameterEstimate& estimate, const std::optional
                   estimate.name, TruthText(truth), estimate.value, EndText(estimate.lower95),
                   EndText(estimate.upper95), Words(estimate.identifiability));
   if (estimate.status != ParameterStatus::kFree) text += ", at bound";
+  if (truth && IsFalseLimit(estimate, *truth)) text += ", FALSE LIMIT";
   if (truth) {
     const Comparison comparison(estimate, *truth);
     text += fmt::format("; off by {:.2g} %, {:.2g} half widths", 100 * comparison.share_off,
@@ -89,6 +97,8 @@ std::string FindingsText(const FitResult& fit) {
   std::string text = "   findings:";
   for (const Finding& finding : fit.findings) {
     text += fmt::format(" {}{}{}", finding.code, finding.kind.empty() ? "" : "/", finding.kind);
+    if (!finding.parameters.empty())
+      text += fmt::format(" [{}]", fmt::join(finding.parameters, ", "));
     if (finding.severity == Severity::kNote) text += " (note)";
   }
   return text + (fit.findings.empty() ? " none\n" : "\n");
@@ -152,6 +162,7 @@ Judgement Judge(const FitResult& fit, const Expected& expected) {
     bool is_wrong = false;
     if (truth && estimate->identifiability != Identifiability::kIdentifiable) {
       judgement.outcome = std::max(judgement.outcome, Outcome::kUndecided);
+      if (IsFalseLimit(*estimate, *truth)) judgement.false_limit = true;
     } else if (truth && !caution.no_answer) {
       const Comparison comparison(*estimate, *truth);
       is_wrong = comparison.is_far_off;

@@ -47,6 +47,7 @@ struct Judgement {
   bool alarms = false;        ///< Caution::alarms
   std::size_t intervals = 0;  ///< of parameters that are asked and identifiable
   std::size_t misses = 0;     ///< of these, those that do not cover the truth
+  bool false_limit = false;   ///< a lower limit lies above the truth by more than kShare
   std::string account;        ///< truth, estimate, interval and findings, some lines
 };
 
