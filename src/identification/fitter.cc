@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/inference/adequacy_test.h"
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
@@ -15,6 +16,7 @@
 #include "identification/inference/reweighting.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
+#include "identification/judge/adequacy.h"
 #include "identification/judge/judge.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
@@ -129,7 +131,9 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   Candidate virgin = make(InitialState::kVirgin, first);
   Candidate steady = make(InitialState::kSteady, second);
   const double virgin_cost = find_starts(virgin);
-  const double steady_cost = find_starts(steady, virgin_cost);
+  const double virgin_look =
+      virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
+  const double steady_cost = find_starts(steady, virgin_look);
   // A rms twice as large on the thinned record is not made good on the whole one: its n_eff·ln 4
   // is beyond the parameter that the two differ by, however few samples are left of it.
   constexpr double kClearlyWorse = 4.0;
@@ -285,6 +289,18 @@ void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));
 }
 
+/// Adequacy, and intervals that cover what its causes would change.
+void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
+                        const Estimates& estimates, const Thresholds& thresholds,
+                        Response& response, FitResult& result) {
+  const AdequacyTest test = TestAdequacy(problem, solution, noise, estimates, response);
+  std::vector<DepartureFit> causes = CausesOf(test, thresholds);
+  result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
+  if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
+  WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
+                    result.parameters);
+}
+
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
 void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution, Noise& noise,
            const DisplacementErrors& displacement_errors, FitResult& result) {
@@ -348,6 +364,8 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
       }
     }
   }
+  ConsiderDepartures(problem, solution, noise, estimates, options.thresholds, buffers.response,
+                     result);
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }

@@ -101,7 +101,15 @@ std::string FindingsText(const FitResult& fit) {
       text += fmt::format(" [{}]", fmt::join(finding.parameters, ", "));
     if (finding.severity == Severity::kNote) text += " (note)";
   }
-  return text + (fit.findings.empty() ? " none\n" : "\n");
+  if (fit.findings.empty()) text += " none";
+  text += fmt::format("\n   adequacy: {}, misfit {:.2g} of the noise, p = {:.2g};",
+                      static_cast<int>(fit.adequacy.verdict), fit.adequacy.misfit_over_noise,
+                      fit.adequacy.p_value);
+  for (const identification::Cause& cause : fit.adequacy.causes) {
+    text += fmt::format(" {} ({:.0f}, explains {:.0f} %, moves {:.2g})", cause.code,
+                        cause.delta_aicc, 100 * cause.explains, cause.moves);
+  }
+  return text + "\n";
 }
 
 std::string ResidualsText(const FitResult& fit) {
@@ -145,6 +153,12 @@ Caution CautionOf(const FitResult& fit) {
     if (finding.severity == Severity::kNote) continue;
     caution.warns = true;
     if (std::ranges::find(kLeftOpen, finding.code) == kLeftOpen.end()) caution.alarms = true;
+  }
+  if (fit.adequacy.verdict == identification::AdequacyVerdict::kDoubtful) {
+    caution.warns = caution.alarms = true;
+  }
+  if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
+    caution.no_answer = true;
   }
   caution.warns = caution.warns || caution.no_answer;
   caution.alarms = caution.alarms || caution.no_answer;

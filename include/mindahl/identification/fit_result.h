@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/residual_statistics.h"
 #include "mindahl/identification/residual_structure.h"
@@ -111,6 +112,7 @@ struct FitResult {
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;
   ResidualStatistics residuals;
+  Adequacy adequacy;  ///< from depth kIntervals on
   std::vector<StartReport> starts;
   std::vector<RecordFit> records;
   std::vector<Finding> findings;

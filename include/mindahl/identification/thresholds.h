@@ -10,6 +10,7 @@ namespace mindahl::identification {
 /// one is moved by a factor of two. What only bounds the work of a solver is not here.
 struct Thresholds {
   double significance = 0.05;
+  double shape_effect = 0.05;
   double indistinguishable = 4.0;
   double rigid_beside_rig = 30.0;
   double poor_misfit = 0.02;
@@ -33,6 +34,9 @@ struct Thresholds {
   double redundant_gain = 0.01;
   double jenkins_shape = 0.01;
   double known_together = 0.99;
+  double doubt = 0.005;
+  double cause = 1e-3;
+  double rival_cause = 10.0;
 };
 
 struct ThresholdRow {

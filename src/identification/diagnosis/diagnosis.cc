@@ -152,7 +152,9 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
                               {"alpha", result.law.shape_exponent}}};
   // A contact that is rigid beside the rig is Jenkins' element again: the same curve, no other α.
   if (alternative.tangential_stiffness < thresholds.rigid_beside_rig * alternative.rig_stiffness) {
-    finding.parameters = {"alpha"};
+    finding.parameters = {"sigma", "alpha"};
+  } else {
+    finding.severity = Severity::kNote;
   }
   return finding;
 }

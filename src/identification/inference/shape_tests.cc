@@ -69,7 +69,8 @@ std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords
                                      const Noise& noise, const Estimates& estimates,
                                      const FitOptions& options, SearchBuffers& buffers) {
   const bool wanted = test.p_value < options.thresholds.significance &&
-                      best.theta[kShape] < kMindlin && !problem.parameters.has_rig();
+                      kMindlin - best.theta[kShape] > options.thresholds.shape_effect &&
+                      !problem.parameters.has_rig();
   if (!wanted) return std::nullopt;
   FitOptions with_rig = options;
   with_rig.terms.emplace_back("rig_stiffness");

@@ -9,6 +9,9 @@ constexpr std::array kTable = {
     ThresholdRow{"significance", &Thresholds::significance, "p",
                  "Mindlin's exponent is rejected below it",
                  "the usual two-sided convention; a rig is looked for on rejection only"},
+    ThresholdRow{"shape_effect", &Thresholds::shape_effect, "α",
+                 "from Mindlin's exponent, for a rig to be looked for in its place",
+                 "the branches then depart by 1 % of Tc: less is not worth a rig, however sure"},
     ThresholdRow{"indistinguishable", &Thresholds::indistinguishable, "ΔAICc",
                  "fits less apart are not told from each other",
                  "an evidence of e² to 1; noise makes a superfluous parameter look better by more "
@@ -88,6 +91,15 @@ constexpr std::array kTable = {
                  "from here on two parameters are known only together",
                  "either alone is then 1/√(1 − 0.99²) = 7 times less certain than with the other "
                  "known"},
+    ThresholdRow{"doubt", &Thresholds::doubt, "p",
+                 "residuals that noise alone makes less often are not noise alone",
+                 "one adequate loop in two hundred is doubted"},
+    ThresholdRow{"cause", &Thresholds::cause, "p",
+                 "a departure that noise alone makes less often is a cause",
+                 "of the 15 that are tried, one loop in seventy then has one by chance"},
+    ThresholdRow{"rival_cause", &Thresholds::rival_cause, "ΔAICc",
+                 "intervals cover causes that are no worse than the best by more",
+                 "an evidence of e⁵ = 150 to 1"},
 };
 
 }  // namespace

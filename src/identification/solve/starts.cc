@@ -274,9 +274,9 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
   starts.reserve(std::max(options.starts, kRows.size()) + 1);
   solver.Bind(thin, response);
   Plane plane(thin, options, solver, memory);
-  constexpr double kBeyondRival = 30.0;
-  constexpr double kFarBeyond = 10.0;  // of that: another shape would not make it good
-  const auto looks = LookAround(plane, thin.parameters, kFarBeyond * kBeyondRival * rival);
+  // Looks are compared with looks: a grid this coarse is far from the minimum of a quiet record.
+  constexpr double kBeyondRival = 10.0;
+  const auto looks = LookAround(plane, thin.parameters, kBeyondRival * rival);
   // A column that follows the displacement, or a rig, bends the plane: all looks are followed.
   const bool bent = std::ranges::any_of(thin.parameters.free(), [&](std::size_t p) {
     return thin.parameters[p].term->presence == Presence::kOnDemand;
@@ -288,8 +288,10 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
     if (!is_wanted || !std::isfinite(look.cost)) break;
     plane.At(look);
     const std::span<const double> theta = plane.theta();
-    StartingPoint& start = starts.emplace_back(
-        StartingPoint{.theta = {theta.begin(), theta.end(), memory}, .cost = look.cost});
+    StartingPoint& start =
+        starts.emplace_back(StartingPoint{.theta = {theta.begin(), theta.end(), memory},
+                                          .cost = look.cost,
+                                          .look = looks.front().cost});
     if (is_beaten) break;
     if (!options.start.empty()) continue;  // a start that is given is one
     solver.Solve(start.theta, kRough, scratch);

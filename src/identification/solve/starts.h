@@ -13,6 +13,7 @@ namespace mindahl::identification {
 struct StartingPoint {
   std::pmr::vector<double> theta;  // all parameters
   double cost = 0.0;               // on the thinned record
+  double look = 0.0;               // of the best look there
   bool drawn = false;              // at random, not from the look
 };
 
@@ -25,7 +26,7 @@ struct StartingPoint {
 /// of each third of the plane, goes on to the minimum of the thinned record. Where options ask for
 /// more than these four, the others are drawn at random over the same range, seeded.
 /// @param thin      the problem on its thinned record
-/// @param rival     cost there of another past of the contact; looks thirty times as dear are not
+/// @param rival     look of another past of the contact; looks ten times as dear are not
 ///                  followed, and stand for what they are. Infinite where there is none
 /// @param solver    bound to it here
 /// @returns empty where no point has the sense of the force

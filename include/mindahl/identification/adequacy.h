@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mindahl::identification {
+
+/// Does the model describe the record?
+enum class AdequacyVerdict {
+  kAdequate,    ///< residuals look like noise, as far as this record tells
+  kDoubtful,    ///< they do not; intervals cover what the causes that explain it would change
+  kInadequate,  ///< parameters of this model mean nothing for this record
+};
+
+/// Something beside the model that the residuals look like.
+struct Cause {
+  std::string_view code;    ///< stable, for scripts; docs/contract.md lists them
+  double delta_aicc = 0.0;  ///< of the fit with it less that without: negative where it helps
+  double explains = 0.0;    ///< share of the residuals' variance [–]
+  double size = 0.0;        ///< of it, in `unit`; of several numbers the first
+  std::string_view unit;    ///< "s", "samples", "N s/m" …
+  std::string_view option;  ///< that takes it into account; empty where there is none yet
+  /// By how much it would move σ, α and Tc, in halves of their 95 % intervals: the largest.
+  double moves = 0.0;
+};
+
+/// A fit's judgement of itself: docs/identification.md.
+struct Adequacy {
+  AdequacyVerdict verdict = AdequacyVerdict::kAdequate;
+  /// rms of what is explained by all causes together or comes back in every stroke, over that of
+  /// the noise
+  double misfit_over_noise = 0.0;
+  double p_value = 1.0;       ///< that noise alone looks like that
+  std::vector<Cause> causes;  ///< those that help, the best first
+};
+
+}  // namespace mindahl::identification

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "identification/inference/departures.h"
+#include "identification/inference/estimates.h"
+
+namespace mindahl::identification {
+
+/// What a fit would be with one departure in it, by one linear step.
+struct DepartureFit {
+  std::size_t departure = 0;  // its place in Departures()
+  double p_value = 1.0;       // that noise alone makes it
+  double delta_aicc = 0.0;    // against the fit without
+  double explains = 0.0;      // share of the sum of squares
+  double size = 0.0;          // of its first column, in its unit
+  std::vector<double> step;   // of θ, one a free parameter
+  std::vector<double> error;  // standard error of θ with it, likewise
+};
+
+/// Residuals against noise: as noise counts what no departure explains, with the autocorrelation
+/// that it has. What the model misses is smooth along the loop and would pass for autocorrelated
+/// noise otherwise.
+struct AdequacyTest {
+  double misfit_over_noise = 0.0;
+  double p_value = 1.0;
+  double noise = 0.0;               // standard deviation of a weighted residual
+  double degrees_of_freedom = 1.0;  // of the noise
+  std::vector<DepartureFit> fits;   // of the departures that the record can tell
+};
+
+AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
+                          const Estimates& estimates, Response& response);
+
+/// By how much a departure moves a parameter, in halves of its 95 % interval; 0 where that is open.
+double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
+              std::size_t parameter, const ParameterEstimate& estimate);
+
+/// Intervals that cover what the parameters would be with each of the departures.
+void WidenByDepartures(const Problem& problem, const Solution& solution,
+                       std::span<const DepartureFit> fits, double quantile,
+                       std::span<ParameterEstimate> estimates);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "identification/problem/problem.h"
+
+namespace mindahl::identification {
+
+/// A way in which a record may depart from the model, to first order: forces in proportion to one
+/// to three columns.
+struct Departure {
+  std::string_view code;
+  std::string_view unit;    // of the first column's factor; empty where it says little
+  std::string_view option;  // of the command line; empty where there is none
+  /// Names the term of a fit that is the same; it is not looked for where that is fitted.
+  std::string_view term = {};
+};
+
+/// Columns of all departures at a solution.
+struct DepartureColumns {
+  Eigen::MatrixXd columns;           // weighted, rows as the Jacobian's
+  std::vector<std::size_t> of;       // of each column: its place in Departures()
+  std::vector<double> unit_of_size;  // of each: what a factor of one is, in the departure's unit
+};
+
+/// In the order in which they are given up where a record has few samples.
+std::span<const Departure> Departures();
+
+/// @param most  columns that are wanted; fewer where the next departure's do not fit
+DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
+                                     Response& response, std::size_t most);
+
+}  // namespace mindahl::identification

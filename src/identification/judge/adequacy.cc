@@ -1,0 +1,55 @@
+#include "identification/judge/adequacy.h"
+
+#include <algorithm>
+
+namespace mindahl::identification {
+namespace {
+
+/// That noise alone makes what all departures explain, or what the best of them does.
+double ChanceOfNoise(const AdequacyTest& test) {
+  double best = 1.0;
+  for (const DepartureFit& fit : test.fits) best = std::min(best, fit.p_value);
+  return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
+}
+
+}  // namespace
+
+std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
+  std::vector<DepartureFit> causes;
+  for (const DepartureFit& fit : test.fits) {
+    if (fit.p_value < thresholds.cause && fit.delta_aicc < 0) causes.push_back(fit);
+  }
+  std::ranges::stable_sort(causes, {}, &DepartureFit::delta_aicc);
+  const double best = causes.empty() ? 0.0 : causes.front().delta_aicc;
+  std::erase_if(causes, [&](const DepartureFit& fit) {
+    return fit.delta_aicc > best + thresholds.rival_cause;
+  });
+  return causes;
+}
+
+Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
+                       std::span<const DepartureFit> causes, const Thresholds& thresholds,
+                       std::span<const ParameterEstimate> estimates) {
+  Adequacy adequacy;
+  adequacy.misfit_over_noise = test.misfit_over_noise;
+  adequacy.p_value = ChanceOfNoise(test);
+  const auto& reported = problem.parameters.reported();
+  for (const DepartureFit& fit : causes) {
+    const Departure& departure = Departures()[fit.departure];
+    Cause& cause = adequacy.causes.emplace_back(Cause{.code = departure.code,
+                                                      .delta_aicc = fit.delta_aicc,
+                                                      .explains = fit.explains,
+                                                      .size = fit.size,
+                                                      .unit = departure.unit,
+                                                      .option = departure.option});
+    for (std::size_t k = 0; k < reported.size(); ++k) {
+      if (reported[k] > kSlipForce) continue;
+      cause.moves =
+          std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
+    }
+  }
+  if (adequacy.p_value < thresholds.doubt) adequacy.verdict = AdequacyVerdict::kDoubtful;
+  return adequacy;
+}
+
+}  // namespace mindahl::identification

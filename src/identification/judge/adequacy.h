@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "identification/inference/adequacy_test.h"
+#include "mindahl/identification/adequacy.h"
+#include "mindahl/identification/thresholds.h"
+
+namespace mindahl::identification {
+
+/// The departures that noise alone does not make, the best first, without those that another beats
+/// clearly.
+std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
+
+/// @param estimates  of the reported parameters, with the intervals that the model itself gives
+Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
+                       std::span<const DepartureFit> causes, const Thresholds& thresholds,
+                       std::span<const ParameterEstimate> estimates);
+
+}  // namespace mindahl::identification
