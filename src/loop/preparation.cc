@@ -115,7 +115,8 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   for (const RecordView& record : records) {
     PreparedRecord& prepared = result.records.emplace_back(record, memory);
     prepared.reversal_gate = options.reversal_gate.value_or(
-        std::max(EstimateReversalGate(record.displacement, memory), ReachOfNoise(record, options)));
+        std::max(ChooseReversalGate(record.displacement, {}, memory).gate,
+                 ReachOfNoise(record, options)));
     FindReversals(record.displacement, prepared.reversal_gate, prepared.reversals);
     votes += ForceSense(record, prepared.reversals, memory);
   }

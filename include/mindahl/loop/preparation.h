@@ -20,7 +20,7 @@ struct Interval {
 
 /// How records are read before any model is asked.
 struct PreparationOptions {
-  /// Excursions up to this [m] are noise and make no reversal. Empty: EstimateReversalGate, and at
+  /// Excursions up to this [m] are noise and make no reversal. Empty: ChooseReversalGate, and at
   /// least what a known displacement noise reaches, 2√(2 ln n) standard deviations.
   std::optional<double> reversal_gate;
 
