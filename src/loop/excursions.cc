@@ -36,7 +36,8 @@ std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
     points[open++] = point;
     while (open >= 4) {
       const Excursion inner = excursion(open - 3, 2);
-      if (inner.range > excursion(open - 4, 1).range || inner.range > excursion(open - 2, 1).range) {
+      if (inner.range > excursion(open - 4, 1).range ||
+          inner.range > excursion(open - 2, 1).range) {
         break;
       }
       excursions.push_back(inner);

@@ -10,8 +10,8 @@ namespace mindahl::loop {
 /// A pair of neighbouring extremes that is left when all smaller ones are taken out: under a gate
 /// of its range or more it makes no reversal.
 struct Excursion {
-  double range = 0.0;         // [m]
-  std::size_t first = 0;      // samples of its two extremes
+  double range = 0.0;     // [m]
+  std::size_t first = 0;  // samples of its two extremes
   std::size_t last = 0;
   std::size_t reversals = 0;  // that vanish with it: 2, or 1 where an end of the record is in it
 

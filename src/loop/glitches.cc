@@ -24,8 +24,8 @@ double UsualStep(Column values, std::pmr::memory_resource* scratch) {
     if (step > 0) steps.push_back(step);
   }
   if (steps.empty()) return 0.0;
-  const auto at = steps.begin() +
-                  static_cast<std::ptrdiff_t>(kShare * static_cast<double>(steps.size() - 1));
+  const auto at =
+      steps.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(steps.size() - 1));
   std::ranges::nth_element(steps, at);
   return *at;
 }
@@ -38,9 +38,7 @@ class Channel {
 
   [[nodiscard]] Column values() const { return mended_.empty() ? values_ : Column(mended_); }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
-  [[nodiscard]] double Step(std::size_t i) const {
-    return std::abs(values()[i] - values()[i - 1]);
-  }
+  [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
   /// Of the column as it is when this is first asked for.
   double usual_step() {
     if (!usual_step_) usual_step_ = UsualStep(values(), memory_);
@@ -150,9 +148,8 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules, Channel& d
            outside(record.force) > rules.dropout * step_of_force;
   };
   // Where one inside the record is a dropout the others are, wherever the loop just was.
-  const bool any = std::ranges::any_of(runs, [&](const ZeroRun& run) {
-    return run.IsInside(record.size()) && lies_off(run);
-  });
+  const bool any = std::ranges::any_of(
+      runs, [&](const ZeroRun& run) { return run.IsInside(record.size()) && lies_off(run); });
   for (const ZeroRun& run : runs) {
     if (!(any && run.IsInside(record.size())) && !lies_off(run)) continue;
     displacement.LeaveOut(run.begin, run.end, Glitch::kDropout);
@@ -163,7 +160,7 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules, Channel& d
 /// Third largest step about [begin, end), that into it and that out of it aside: a second spike
 /// makes two. 0 with fewer.
 double StepAbout(const Channel& channel, std::size_t begin, std::size_t end,
-                                 const GlitchRules& rules) {
+                 const GlitchRules& rules) {
   std::array<double, 3> largest{};
   const auto look_at = [&](std::size_t i) {
     const double step = channel.Step(i);
@@ -241,8 +238,8 @@ bool JumpsAtTheEnd(const Channel& channel, std::size_t begin, std::size_t end,
 /// Does the column go on in the direction that it had in the last samples of [begin, end)?
 bool GoesOn(Column values, std::size_t begin, std::size_t end) {
   const std::size_t reach = std::min((end - begin) / 2, values.size() - end);
-  return (values[end - 1 + reach] - values[end - 1]) *
-             (values[end - 1] - values[end - 1 - reach]) > 0;
+  return (values[end - 1 + reach] - values[end - 1]) * (values[end - 1] - values[end - 1 - reach]) >
+         0;
 }
 
 void FindHeld(Channel& channel, const Channel& other, const GlitchRules& rules) {

@@ -117,8 +117,7 @@ struct Plateau {
 /// stroke of the drive.
 template <typename Visit>
 void ForEachPlateau(Excursions excursions, std::span<const Look> looks, Visit visit) {
-  Plateau plateau{
-      .exceptions = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise))};
+  Plateau plateau{.exceptions = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise))};
   for (std::size_t i = 0; i + 1 < excursions.size() && looks[i] != Look::kDrive; ++i) {
     plateau.lower = excursions[i].range;
     plateau.upper = excursions[i + 1].range;
@@ -135,9 +134,8 @@ std::pair<Plateau, Plateau> WidestPlateaus(Excursions excursions, std::span<cons
   const auto noise = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise));
   if (noise == 0) return {};
   std::size_t fewest = noise;  // under no gate
-  ForEachPlateau(excursions, looks, [&](const Plateau& plateau) {
-    fewest = std::min(fewest, plateau.exceptions);
-  });
+  ForEachPlateau(excursions, looks,
+                 [&](const Plateau& plateau) { fewest = std::min(fewest, plateau.exceptions); });
   const double allowed =
       static_cast<double>(fewest) + rules.exceptions * static_cast<double>(noise);
   Plateau widest;

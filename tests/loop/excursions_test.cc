@@ -25,8 +25,8 @@ TEST(CountReversals, IsTheNumberThatIsFoundUnderEveryGate) {
     const auto excursions = Excursions(history);
     ASSERT_EQ(CountReversals(excursions, 0.0), FindReversals(history, 0.0).size());
     for (const Excursion& excursion : excursions) {
-      for (const double gate : {excursion.range * (1 - 1e-12), excursion.range,
-                                excursion.range * (1 + 1e-12)}) {
+      for (const double gate :
+           {excursion.range * (1 - 1e-12), excursion.range, excursion.range * (1 + 1e-12)}) {
         ASSERT_EQ(CountReversals(excursions, gate), FindReversals(history, gate).size())
             << "history " << i << ", gate " << gate;
       }

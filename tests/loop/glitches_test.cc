@@ -8,9 +8,9 @@
 #include <functional>
 #include <memory_resource>
 #include <numbers>
+#include <string>
 #include <type_traits>
 #include <utility>
-#include <string>
 #include <vector>
 
 #include "loop/mending.h"
@@ -41,7 +41,8 @@ History Sine(double cycles, double samples_per_cycle, double phase = 0.0) {
 
 History Triangle(double cycles, double samples_per_cycle) {
   History history = Sine(cycles, samples_per_cycle);
-  for (double& displacement : history) displacement = 2 / std::numbers::pi * std::asin(displacement);
+  for (double& displacement : history)
+    displacement = 2 / std::numbers::pi * std::asin(displacement);
   return history;
 }
 
@@ -79,6 +80,11 @@ void Count(History& values, double step) {
 
 GlitchCount CountIn(const Record& record) { return CountGlitches(FindGlitches(record)); }
 
+/// Between one and so many.
+double Cycles(Generator& generator, std::size_t most) {
+  return static_cast<double>(1 + generator() % most);
+}
+
 struct CleanKind {
   const char* name;
   std::function<Record(Generator&)> make;
@@ -87,21 +93,21 @@ struct CleanKind {
 const std::vector<CleanKind>& CleanKinds() {
   static const std::vector<CleanKind> kinds = {
       {"Sine",
-       [](Generator& g) { return Respond(g, Sine(1 + g() % 20, LogUniform(g, 20, 2000))); }},
+       [](Generator& g) { return Respond(g, Sine(Cycles(g, 20), LogUniform(g, 20, 2000))); }},
       {"FewSamplesACycle",
-       [](Generator& g) { return Respond(g, Sine(2 + g() % 50, Uniform(g, 5, 10), 0.3)); }},
+       [](Generator& g) { return Respond(g, Sine(Cycles(g, 50), Uniform(g, 5, 10), 0.3)); }},
       {"Triangle",
-       [](Generator& g) { return Respond(g, Triangle(1 + g() % 20, LogUniform(g, 5, 2000))); }},
+       [](Generator& g) { return Respond(g, Triangle(Cycles(g, 20), LogUniform(g, 5, 2000))); }},
       {"Noise",
        [](Generator& g) {
-         Record record = Respond(g, Sine(1 + g() % 20, LogUniform(g, 10, 1000)));
+         Record record = Respond(g, Sine(Cycles(g, 20), LogUniform(g, 10, 1000)));
          AddNoise(g, record.displacement, LogUniform(g, 1e-5, 3e-2));
          AddNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
          return record;
        }},
       {"Encoders",
        [](Generator& g) {
-         Record record = Respond(g, Sine(1 + g() % 20, LogUniform(g, 10, 3000)));
+         Record record = Respond(g, Sine(Cycles(g, 20), LogUniform(g, 10, 3000)));
          const double step = LogUniform(g, 1e-4, 5e-2);
          AddNoise(g, record.displacement, (g() % 2 == 0 ? 0.0 : 0.3) * step);
          Count(record.displacement, step);
@@ -188,8 +194,7 @@ TEST(FindGlitches, FindsSpikesOfOneToThreeSamplesWhereTheyAre) {
           const std::vector<Glitch> glitches = FindGlitches(record);
           ASSERT_EQ(glitches.size(), record.size()) << at << ' ' << samples << ' ' << height;
           for (std::size_t i = 0; i < record.size(); ++i) {
-            EXPECT_EQ(glitches[i],
-                      i >= at && i < at + samples ? Glitch::kSpike : Glitch::kNone)
+            EXPECT_EQ(glitches[i], i >= at && i < at + samples ? Glitch::kSpike : Glitch::kNone)
                 << i;
           }
         }
@@ -368,8 +373,7 @@ bool HasDropoutAt(const GlitchRules& rules, double level, std::size_t at) {
 bool HasHeld(const GlitchRules& rules, std::size_t equal, double jump) {
   Record record = Steps(90);
   for (std::size_t k = 1; k < equal; ++k) record.displacement[40 + k] = record.displacement[40];
-  const double shift =
-      record.displacement[40] + jump - record.displacement[40 + equal];
+  const double shift = record.displacement[40] + jump - record.displacement[40 + equal];
   for (std::size_t i = 40 + equal; i < record.size(); ++i) record.displacement[i] += shift;
   return HasGlitch(record, rules);
 }
@@ -381,7 +385,7 @@ const std::vector<Rule>& Rules() {
       rules.*member = static_cast<Value>(factor * static_cast<double>(rules.*member));
     };
   };
-  static const std::vector<Rule> rules = {
+  static const std::vector<Rule> list = {
       // Over the farther neighbour, which is a step higher.
       {"spike", scaled(&GlitchRules::spike),
        [](const GlitchRules& rules) {
@@ -417,7 +421,9 @@ const std::vector<Rule>& Rules() {
       {"shortest_held", scaled(&GlitchRules::shortest_held),
        [](const GlitchRules& rules) { return HasHeld(rules, 5, 5) && !HasHeld(rules, 4, 5); }},
       {"held_jump", scaled(&GlitchRules::held_jump),
-       [](const GlitchRules& rules) { return HasHeld(rules, 10, 3.5) && !HasHeld(rules, 10, 2.5); }},
+       [](const GlitchRules& rules) {
+         return HasHeld(rules, 10, 3.5) && !HasHeld(rules, 10, 2.5);
+       }},
       {"most", scaled(&GlitchRules::most),
        [](const GlitchRules& rules) {
          const auto has = [&](std::size_t every) {
@@ -430,7 +436,7 @@ const std::vector<Rule>& Rules() {
          return has(5) && !has(3);
        }},
   };
-  return rules;
+  return list;
 }
 
 class GlitchRule : public ::testing::TestWithParam<Rule> {};

@@ -115,7 +115,8 @@ bool ASettlingOfThreeStepsIsBeyondTheNoiseOfAnEncoder(const ReversalRules& rules
   return count(2) == 2 && count(3) == 2 + 1;
 }
 
-/// Strokes of six samples, none of which is long enough for a jump, under white noise of this share of the range, as it is estimated.
+/// Strokes of six samples, none of which is long enough for a jump, under white noise of this share
+/// of the range, as it is estimated.
 History RoughDrive(double share) {
   Generator generator(1);
   History noise;

@@ -24,7 +24,8 @@ struct LoopMeasures {
   /// spike makes it
   double peak_force = 0.0;
   double centre_force = 0.0;  ///< [N]: midway between those forces
-  /// W [J] = ∮ T dδ, mean over the closed cycles; empty when the record closes none
+  /// W [J] = ∮ T dδ, mean over the closed cycles of the widest amplitude, to 5 %: never over those
+  /// of different amplitude; empty when the record closes none
   std::optional<double> energy_per_cycle;
 };
 
