@@ -103,7 +103,7 @@ Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last
           .greatest_force = greatest};
 }
 
-/// The swings that reach at least three quarters as far as the widest: not nested loops, run-in or
+/// The swings that reach as far as the widest, to a twentieth: not nested loops, run-in or
 /// run-out.
 /// Without two turning points the whole record is one.
 std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std::size_t> points,
@@ -119,8 +119,9 @@ std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std
     swings.push_back(MeasureSwing(record, points[k], points[k + 1]));
     widest = std::max(widest, swings.back().highest - swings.back().lowest);
   }
-  std::erase_if(swings,
-                [&](const Swing& swing) { return swing.highest - swing.lowest < 0.75 * widest; });
+  std::erase_if(swings, [&](const Swing& swing) {
+    return swing.highest - swing.lowest < kSteadyAmplitude * widest;
+  });
   return swings;
 }
 

@@ -22,7 +22,9 @@ struct Stroke {
   Column displacement;  // [m]
   Column force;         // [N]
 
-  [[nodiscard]] double width() const { return std::abs(displacement.back() - displacement.front()); }
+  [[nodiscard]] double width() const {
+    return std::abs(displacement.back() - displacement.front());
+  }
   [[nodiscard]] bool rises() const { return displacement.back() > displacement.front(); }
 };
 
@@ -309,8 +311,9 @@ Series SeriesOf(const LoopFacts& facts, Fact fact) {
 /// What is a mean or a trend of the cycles' own facts.
 void Summarise(LoopFacts& facts) {
   const auto mean_of = [&](double CycleFacts::*member) {
-    return Mean(SeriesOf(facts, [&](const CycleFacts& cycle) { return std::optional(cycle.*member); })
-                    .values);
+    return Mean(SeriesOf(facts, [&](const CycleFacts& cycle) {
+                  return std::optional(cycle.*member);
+                }).values);
   };
   facts.amplitude = mean_of(&CycleFacts::amplitude);
   facts.peak_force = mean_of(&CycleFacts::peak_force);

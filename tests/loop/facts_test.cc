@@ -29,13 +29,13 @@ constexpr double kRounding = 1e-10;
 /// A stick of stiffness σ that slips at Tc, the displacement a triangle about a centre: a
 /// parallelogram with its corners on samples.
 struct Parallelogram {
-  double stiffness = 20.0;      // [N/m]
-  double slip_force = 2.0;      // [N]
-  double centre = 0.0;          // [m]
-  double offset = 0.0;          // [N]
-  double normal_load = 0.0;     // [N]; 0 where it is not known
-  double curvature = 0.0;       // [N/m²] of a force in both strokes, about the centre
-  double growth = 0.0;          // of the slip force, a cycle
+  double stiffness = 20.0;   // [N/m]
+  double slip_force = 2.0;   // [N]
+  double centre = 0.0;       // [m]
+  double offset = 0.0;       // [N]
+  double normal_load = 0.0;  // [N]; 0 where it is not known
+  double curvature = 0.0;    // [N/m²] of a force in both strokes, about the centre
+  double growth = 0.0;       // of the slip force, a cycle
   std::vector<double> amplitudes = {1.0, 1.0, 1.0, 1.0, 1.0};  // [m] of each cycle
 };
 
@@ -198,8 +198,7 @@ TEST(MeasureFacts, HiddenReversalsLengthenThePath) {
   Generator generator(3);
   Record record = MakeRecord({});
   for (double& x : record.displacement) x += 0.01 * Normal(generator);
-  const LoopFacts facts =
-      MeasureFacts(record, FindReversals(record.displacement, 0.2), 1);
+  const LoopFacts facts = MeasureFacts(record, FindReversals(record.displacement, 0.2), 1);
   // Steps of N(0.005, 0.01√2): their mean size is 0.0145·√(2/π)·(1 + …) = 0.0120 for 0.005.
   EXPECT_NEAR(facts.path_ratio, 2.4, 0.2);
   EXPECT_NEAR(*facts.half_gap, 2.0, 0.02);
@@ -255,9 +254,9 @@ TEST(MeasureFacts, OfMeasuredSealsAreWhatOthersReadOff) {
     const char* name;
     double half_gap;  // [N]
   };
-  for (const Seal& seal : {Seal{"O-ring257_3bar", 8.5}, Seal{"NAP310_5bar", 7.2},
-                           Seal{"Circle_1bar", 5.6}, Seal{"Circle_2bar", 9.3},
-                           Seal{"KDN_5bar", 8.15}, Seal{"Stadium_1bar", 6.85}}) {
+  for (const Seal& seal :
+       {Seal{"O-ring257_3bar", 8.5}, Seal{"NAP310_5bar", 7.2}, Seal{"Circle_1bar", 5.6},
+        Seal{"Circle_2bar", 9.3}, Seal{"KDN_5bar", 8.15}, Seal{"Stadium_1bar", 6.85}}) {
     SCOPED_TRACE(seal.name);
     const std::string file = "seals/" + std::string(seal.name) + ".csv";
     const auto rows = testing::ReadMeasured(file, '\t');
