@@ -9,12 +9,10 @@
 #include <utility>
 
 #include "loop/scratch.h"
+#include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
-namespace {
-
-/// The reversals, with the record's first and last sample where they lie at an extreme.
 std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement,
                                             std::span<const std::size_t> reversals,
                                             std::pmr::memory_resource* scratch) {
@@ -36,6 +34,42 @@ std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement
   return points;
 }
 
+std::pair<double, double> MovingMeanRange(std::span<const double> force) {
+  const std::size_t width = std::max<std::size_t>(force.size() / 20, 1);
+  double sum =
+      std::accumulate(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(width), 0.0);
+  double least = sum;
+  double greatest = sum;
+  for (std::size_t i = width; i < force.size(); ++i) {
+    sum += force[i] - force[i - width];
+    least = std::min(least, sum);
+    greatest = std::max(greatest, sum);
+  }
+  return {least / static_cast<double>(width), greatest / static_cast<double>(width)};
+}
+
+double CycleEnergy(const RecordView& record, std::size_t first, std::size_t last) {
+  const std::span<const double> x = record.displacement;
+  // Forces relative to the first sample: an offset must not cost digits on a small loop.
+  const auto force = [&](std::size_t i) {
+    return static_cast<long double>(record.force[i]) - record.force[first];
+  };
+  const auto way = [&](std::size_t from, std::size_t to) {
+    return static_cast<long double>(x[to]) - x[from];
+  };
+  long double energy = 0.5L * force(last) * way(last, first);
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    energy += 0.5L * (force(i) + force(i - 1)) * way(i - 1, i);
+  }
+  if (!(std::abs(energy) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
+    ThrowInvalid("energy of a cycle [J]", std::numeric_limits<double>::infinity(),
+                 "must be within the range of double, 1.8e308: use larger units");
+  }
+  return static_cast<double>(energy);
+}
+
+namespace {
+
 /// Swings between turning points, with the record's ends as fractions of one.
 double CountSwings(std::span<const double> displacement, std::span<const std::size_t> points,
                    double amplitude) {
@@ -55,21 +89,6 @@ struct Swing {
   double greatest_force = 0.0;
 };
 
-/// Least and greatest mean over a twentieth of the swing: what the force keeps to, not its noise.
-std::pair<double, double> MovingMeanRange(std::span<const double> force) {
-  const std::size_t width = std::max<std::size_t>(force.size() / 20, 1);
-  double sum =
-      std::accumulate(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(width), 0.0);
-  double least = sum;
-  double greatest = sum;
-  for (std::size_t i = width; i < force.size(); ++i) {
-    sum += force[i] - force[i - width];
-    least = std::min(least, sum);
-    greatest = std::max(greatest, sum);
-  }
-  return {least / static_cast<double>(width), greatest / static_cast<double>(width)};
-}
-
 Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last) {
   const std::size_t count = last - first + 1;
   const auto displacement = std::ranges::minmax(record.displacement.subspan(first, count));
@@ -84,7 +103,7 @@ Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last
           .greatest_force = greatest};
 }
 
-/// The swings that reach at least three quarters as far as the widest: not nested loops, run-in or
+/// The swings that reach as far as the widest, to a twentieth: not nested loops, run-in or
 /// run-out.
 /// Without two turning points the whole record is one.
 std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std::size_t> points,
@@ -100,8 +119,9 @@ std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std
     swings.push_back(MeasureSwing(record, points[k], points[k + 1]));
     widest = std::max(widest, swings.back().highest - swings.back().lowest);
   }
-  std::erase_if(swings,
-                [&](const Swing& swing) { return swing.highest - swing.lowest < 0.75 * widest; });
+  std::erase_if(swings, [&](const Swing& swing) {
+    return swing.highest - swing.lowest < kSteadyAmplitude * widest;
+  });
   return swings;
 }
 
@@ -141,30 +161,30 @@ std::pmr::vector<double> CycleEnergies(const RecordView& record,
                                        std::span<const std::size_t> reversals,
                                        std::pmr::memory_resource* scratch) {
   std::pmr::vector<double> energies(scratch);
-  const std::span<const double> x = record.displacement;
-  const std::pmr::vector<std::size_t> points = TurningPoints(x, reversals, scratch);
+  const std::pmr::vector<std::size_t> points =
+      TurningPoints(record.displacement, reversals, scratch);
   energies.reserve(points.size());
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
-    const std::size_t first = points[k];
-    const std::size_t last = points[k + 2];
-    // Forces relative to the first sample: an offset must not cost digits on a small loop.
-    const auto force = [&](std::size_t i) {
-      return static_cast<long double>(record.force[i]) - record.force[first];
-    };
-    const auto way = [&](std::size_t from, std::size_t to) {
-      return static_cast<long double>(x[to]) - x[from];
-    };
-    long double energy = 0.5L * force(last) * way(last, first);
-    for (std::size_t i = first + 1; i <= last; ++i) {
-      energy += 0.5L * (force(i) + force(i - 1)) * way(i - 1, i);
-    }
-    if (!(std::abs(energy) <= static_cast<long double>(std::numeric_limits<double>::max()))) {
-      ThrowInvalid("energy of a cycle [J]", std::numeric_limits<double>::infinity(),
-                   "must be within the range of double, 1.8e308: use larger units");
-    }
-    energies.push_back(static_cast<double>(energy));
+    energies.push_back(CycleEnergy(record, points[k], points[k + 2]));
   }
   return energies;
+}
+
+/// Of the cycles of the widest amplitude: those of others lose more or less.
+double EnergyOfTheWidest(std::span<const double> displacement, std::span<const std::size_t> points,
+                         std::span<const double> energies) {
+  double widest = 0.0;
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    widest = std::max(widest, CycleAmplitude(displacement, points.subspan(2 * k)));
+  }
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    if (CycleAmplitude(displacement, points.subspan(2 * k)) < kSteadyAmplitude * widest) continue;
+    sum += energies[k];
+    ++count;
+  }
+  return sum / count;
 }
 
 }  // namespace
@@ -219,7 +239,7 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
         static_cast<std::size_t>(CountSwings(x, points, measures.amplitude) / 2 + kShortOfACycle);
   }
   const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
-  if (!energies.empty()) measures.energy_per_cycle = Mean(energies);
+  if (!energies.empty()) measures.energy_per_cycle = EnergyOfTheWidest(x, points, energies);
   return measures;
 }
 

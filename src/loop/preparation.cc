@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "loop/mending.h"
 #include "loop/scratch.h"
 #include "mindahl/core/error.h"
 
@@ -38,7 +40,7 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   // The rounding of a file, or of a fine encoder, is not worth it.
   constexpr double kCoarse = 1e-3;  // of half the range
   if (options.displacement_noise) return *options.displacement_noise;
-  const std::span<const double> displacement = prepared.record.displacement;
+  const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
   return prepared.reversal_gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement, memory)
@@ -47,16 +49,46 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
 
 void Smooth(PreparedRecord& prepared) {
   if (!(prepared.displacement_noise > 0)) return;
-  prepared.smoother.emplace(prepared.record.displacement, prepared.displacement_noise);
-  const std::vector<double> smoothed = prepared.smoother->Smooth(prepared.record.displacement);
+  const std::span<const double> displacement = prepared.readings().displacement;
+  prepared.smoother.emplace(displacement, prepared.displacement_noise);
+  const std::vector<double> smoothed = prepared.smoother->Smooth(displacement);
   prepared.smoothed.assign(smoothed.begin(), smoothed.end());
   const std::vector<std::size_t> moved = MoveReversals(prepared.smoothed, prepared.reversals);
   prepared.reversals.assign(moved.begin(), moved.end());
 }
 
+/// Their samples do not count, and the path goes straight over them.
+void LeaveOutGlitches(PreparedRecord& prepared, const PreparationOptions& options,
+                      std::pmr::memory_resource* memory) {
+  prepared.counts.assign(prepared.size(), 1);
+  if (!options.leave_out_glitches) return;
+  Mended mended = FindAndMend(prepared.record, {}, memory);
+  if (mended.glitches.empty()) return;
+  prepared.glitches = CountGlitches(mended.glitches);
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    if (mended.glitches[i] != Glitch::kNone) prepared.counts[i] = 0;
+  }
+  prepared.mended_displacement = std::move(mended.displacement);
+  prepared.mended_force = std::move(mended.force);
+}
+
+void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
+               std::pmr::memory_resource* memory) {
+  const std::span<const double> displacement = prepared.readings().displacement;
+  ReversalGate& choice = prepared.gate_choice;
+  if (!options.reversal_gate) choice = ChooseReversalGate(displacement, {}, memory);
+  prepared.reversal_gate =
+      options.reversal_gate.value_or(std::max(choice.gate, ReachOfNoise(prepared.record, options)));
+  FindReversals(displacement, prepared.reversal_gate, prepared.reversals);
+  choice.gate = prepared.reversal_gate;
+  choice.count = prepared.reversals.size();
+  if (!choice.certain) return;
+  choice.other_gate = choice.gate;
+  choice.other_count = choice.count;
+}
+
 void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOptions& options) {
   const RecordView& record = prepared.record;
-  prepared.counts.assign(record.size(), 1);
   if (options.load_window) {
     if (record.normal_load.empty()) {
       throw InvalidArgument("the load window needs a normal load in every record");
@@ -86,7 +118,7 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
   if (prepared.left_out == record.size()) {
     throw InvalidArgument(fmt::format(
         "nothing is left of record {}: {} samples lie outside the load window, in the cycles "
-        "that are skipped, or are held out",
+        "that are skipped, are glitches, or are held out",
         number + 1, prepared.left_out));
   }
 }
@@ -114,17 +146,16 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   int votes = 0;
   for (const RecordView& record : records) {
     PreparedRecord& prepared = result.records.emplace_back(record, memory);
-    prepared.reversal_gate = options.reversal_gate.value_or(
-        std::max(EstimateReversalGate(record.displacement, memory), ReachOfNoise(record, options)));
-    FindReversals(record.displacement, prepared.reversal_gate, prepared.reversals);
-    votes += ForceSense(record, prepared.reversals, memory);
+    LeaveOutGlitches(prepared, options, memory);
+    FindTurns(prepared, options, memory);
+    votes += ForceSense(prepared.readings(), prepared.reversals, memory);
   }
   result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
   for (std::size_t r = 0; r < records.size(); ++r) {
     PreparedRecord& prepared = result.records[r];
     prepared.measures =
-        InSense(MeasureLoop(prepared.record, prepared.reversals, memory), result.force_sense);
-    prepared.encoder_step = EncoderStep(prepared.record.displacement);
+        InSense(MeasureLoop(prepared.readings(), prepared.reversals, memory), result.force_sense);
+    prepared.encoder_step = EncoderStep(prepared.readings().displacement);
     prepared.displacement_noise = DisplacementNoise(prepared, options, memory);
     Smooth(prepared);
     LeaveOut(prepared, r, options);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "loop/reversal_rules.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/displacement_noise.h"
 #include "mindahl/loop/record.h"
@@ -16,8 +17,8 @@ namespace mindahl::loop {
 
 void FindReversals(std::span<const double> displacement, double gate,
                    std::pmr::vector<std::size_t>& reversals);
-double EstimateReversalGate(std::span<const double> displacement,
-                            std::pmr::memory_resource* scratch);
+ReversalGate ChooseReversalGate(std::span<const double> displacement, const ReversalRules& rules,
+                                std::pmr::memory_resource* scratch);
 double EstimateDisplacementNoise(std::span<const double> displacement,
                                  std::pmr::memory_resource* scratch);
 LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,

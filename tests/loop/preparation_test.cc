@@ -119,5 +119,73 @@ TEST(Preparation, NoisyDisplacementIsSmoothedAndItsReversalsMoved) {
   EXPECT_TRUE(PrepareAll(exact, {}).records[0].smoothed.empty());
 }
 
+TEST(Preparation, ASpikeInDisplacementMakesNeitherReversalNorHistory) {
+  const Record clean = Made();
+  Record spiked = clean;
+  spiked.displacement[120] += 3;
+  const PreparedRecords prepared = PrepareAll({spiked}, {});
+  const PreparedRecord& one = prepared.records[0];
+  EXPECT_EQ(one.glitches.spikes, 1U);
+  EXPECT_EQ(one.glitches.examples[0], 120U);
+  EXPECT_EQ(one.counts[120], 0);
+  EXPECT_EQ(one.left_out, 1U);
+  EXPECT_EQ(one.reversals.size(), 6U);
+  // A straight way over it is off by the sine's curvature, (2π/100)²/2, at most.
+  EXPECT_NEAR(one.displacement()[120], clean.displacement[120], 2e-3);
+  EXPECT_EQ(one.record.displacement[120], spiked.displacement[120]) << "as measured";
+  EXPECT_NEAR(one.measures.amplitude, 1.0, 1e-12);
+}
+
+TEST(Preparation, DropoutsDoNotCountNorChangeTheLoop) {
+  Generator generator(4);
+  const Record clean = Made();
+  Record broken = clean;
+  std::size_t zeros = 0;
+  for (std::size_t i = 2; i + 2 < broken.size(); ++i) {
+    if (generator() % 20 != 0) continue;
+    broken.displacement[i] = broken.force[i] = 0.0;
+    ++zeros;
+  }
+  const PreparedRecords whole = PrepareAll({clean}, {});
+  const PreparedRecords prepared = PrepareAll({broken}, {});
+  const PreparedRecord& one = prepared.records[0];
+  EXPECT_GE(one.glitches.dropouts + 1, zeros);
+  EXPECT_EQ(one.left_out, one.glitches.total());
+  EXPECT_EQ(one.reversals.size(), 6U);
+  EXPECT_EQ(prepared.force_sense, 1);
+  constexpr double kBridged = 0.01;  // of a loop with lines over 5 % of its samples
+  const double energy = *whole.records[0].measures.energy_per_cycle;
+  EXPECT_NEAR(*one.measures.energy_per_cycle, energy, kBridged * energy);
+  EXPECT_NEAR(one.measures.peak_force, whole.records[0].measures.peak_force, kBridged);
+}
+
+TEST(Preparation, LeavesGlitchesInWhereItIsAskedTo) {
+  Record spiked = Made();
+  spiked.displacement[120] += 3;
+  PreparationOptions options;
+  options.leave_out_glitches = false;
+  const std::vector<Record> records = {spiked};
+  const PreparedRecords prepared = PrepareAll(records, options);
+  EXPECT_EQ(prepared.records[0].glitches.total(), 0U);
+  EXPECT_EQ(prepared.records[0].left_out, 0U);
+  EXPECT_EQ(prepared.records[0].displacement()[120], spiked.displacement[120]);
+}
+
+TEST(Preparation, SaysHowSureTheGateIs) {
+  Generator generator(5);
+  Record noisy = Made();
+  for (double& x : noisy.displacement) x += 0.01 * Normal(generator);
+  const std::vector<Record> records = {noisy};
+  const PreparedRecords found = PrepareAll(records, {});
+  EXPECT_TRUE(found.records[0].gate_choice.certain);
+  EXPECT_EQ(found.records[0].gate_choice.count, 6U);
+  EXPECT_EQ(found.records[0].gate_choice.gate, found.records[0].reversal_gate);
+  PreparationOptions options;
+  options.reversal_gate = 0.0;
+  const PreparedRecords given = PrepareAll(records, options);
+  EXPECT_TRUE(given.records[0].gate_choice.certain);
+  EXPECT_GT(given.records[0].gate_choice.count, 6U);
+}
+
 }  // namespace
 }  // namespace mindahl::loop

@@ -41,9 +41,7 @@ History Quantised(History history, double step) {
   return history;
 }
 
-std::size_t CountGated(const History& history) {
-  return FindReversals(history, EstimateReversalGate(history)).size();
-}
+std::size_t CountGated(const History& history) { return ChooseReversalGate(history).count; }
 
 TEST(FindReversals, FindsEveryChangeOfDirectionWithoutAGate) {
   EXPECT_EQ(FindReversals(History{0, 2, 1, 3, -1, 0}, 0.0), (Indices{1, 2, 3, 4}));
@@ -137,18 +135,18 @@ TEST(FindReversals, RejectsAGateThatIsNoDistance) {
   EXPECT_THROW(FindReversals(history, std::numeric_limits<double>::infinity()), InvalidArgument);
 }
 
-TEST(EstimateReversalGate, IsZeroOnCleanLoops) {
+TEST(ChooseReversalGate, IsZeroOnCleanLoops) {
   for (const std::size_t samples : {20, 50, 200, 1000}) {
     for (const double cycles : {0.5, 1.0, 1.3, 5.0, 20.0}) {
-      EXPECT_EQ(EstimateReversalGate(Sine(cycles, samples)), 0.0) << samples << ' ' << cycles;
+      EXPECT_EQ(ChooseReversalGate(Sine(cycles, samples)).gate, 0.0) << samples << ' ' << cycles;
     }
   }
-  EXPECT_EQ(EstimateReversalGate(History{}), 0.0);
-  EXPECT_EQ(EstimateReversalGate(History{1, 2, 1}), 0.0);
-  EXPECT_EQ(EstimateReversalGate(History{2, 2, 2, 2, 2, 2}), 0.0);
+  EXPECT_EQ(ChooseReversalGate(History{}).gate, 0.0);
+  EXPECT_EQ(ChooseReversalGate(History{1, 2, 1}).gate, 0.0);
+  EXPECT_EQ(ChooseReversalGate(History{2, 2, 2, 2, 2, 2}).gate, 0.0);
 }
 
-TEST(EstimateReversalGate, KeepsCleanSmallInnerLoops) {
+TEST(ChooseReversalGate, KeepsCleanSmallInnerLoops) {
   // Ramps between ±1 with an inner loop of 1 to 30 % of the range on some, each of it many samples.
   Generator generator(3);
   for (int i = 0; i < 500; ++i) {
@@ -170,33 +168,34 @@ TEST(EstimateReversalGate, KeepsCleanSmallInnerLoops) {
       }
       ramp_to(target, samples);
     }
-    ASSERT_EQ(EstimateReversalGate(history), 0.0) << "history " << i;
+    ASSERT_EQ(ChooseReversalGate(history).gate, 0.0) << "history " << i;
   }
 }
 
-TEST(EstimateReversalGate, IsZeroOnWhiteSequences) {
+TEST(ChooseReversalGate, IsZeroOnWhiteSequences) {
   Generator generator(4);
   for (int i = 0; i < 500; ++i) {
-    ASSERT_EQ(EstimateReversalGate(testing::WhiteSequence(generator, 5 + generator() % 1000, 1.0)),
-              0.0);
+    const History sequence = testing::WhiteSequence(generator, 5 + generator() % 1000, 1.0);
+    ASSERT_EQ(ChooseReversalGate(sequence).gate, 0.0) << "sequence " << i;
   }
 }
 
-TEST(EstimateReversalGate, IsZeroOnAllButAFewRandomWalks) {
-  // Some walks of a few dozen steps do look like a noisy swing; 54 of 5000 were seen to.
+TEST(ChooseReversalGate, IsHardlyEverSureOfAGateOnARandomWalk) {
+  // A walk has excursions of all ranges and no gate: 6 % of 5000 looked like a noisy swing, most of
+  // them of a few dozen steps.
   constexpr int kWalks = 1000;
-  constexpr int kGated = 20;
+  constexpr int kGated = 100;
   Generator generator(5);
   int gated = 0;
   for (int i = 0; i < kWalks; ++i) {
-    if (EstimateReversalGate(testing::RandomWalk(generator, 5 + generator() % 1500, 1.0)) > 0) {
-      ++gated;
-    }
+    const History walk = testing::RandomWalk(generator, 5 + generator() % 1500, 1.0);
+    const ReversalGate choice = ChooseReversalGate(walk);
+    if (choice.gate > 0 && choice.certain) ++gated;
   }
   EXPECT_LE(gated, kGated);
 }
 
-TEST(EstimateReversalGate, CountsTheReversalsOfANoisySineAsOfTheCleanOne) {
+TEST(ChooseReversalGate, CountsTheReversalsOfANoisySineAsOfTheCleanOne) {
   // Noise of 1e-5 to 3e-2 of the amplitude, 50 to 2000 samples a cycle, 1 to 10 cycles that begin
   // and end in mid-swing: an end within the noise of an extreme could be called either way.
   constexpr int kRecords = 500;
@@ -212,14 +211,14 @@ TEST(EstimateReversalGate, CountsTheReversalsOfANoisySineAsOfTheCleanOne) {
   }
 }
 
-TEST(EstimateReversalGate, WithoutItNoiseWouldMakeReversals) {
+TEST(ChooseReversalGate, WithoutItNoiseWouldMakeReversals) {
   Generator generator(7);
   const History noisy = WithNoise(generator, Sine(5, 1000), 0.01);
   EXPECT_GT(FindReversals(noisy, 0.0).size(), 1000U);
   EXPECT_EQ(CountGated(noisy), 10U);
 }
 
-TEST(EstimateReversalGate, SeesThroughEncoderSteps) {
+TEST(ChooseReversalGate, SeesThroughEncoderSteps) {
   // The last digit flickers on a slow stretch.
   Generator generator(8);
   for (const double step : {1e-4, 1e-3, 1e-2}) {
@@ -231,7 +230,7 @@ TEST(EstimateReversalGate, SeesThroughEncoderSteps) {
   }
 }
 
-TEST(EstimateReversalGate, ASlowDipOfTwoEncoderStepsIsNoise) {
+TEST(ChooseReversalGate, ASlowDipOfTwoEncoderStepsIsNoise) {
   // At rest for 32 samples a step, so that differences show no noise and the dip is a slow one.
   constexpr double kStep = 1e-2;
   History history = Quantised(Sine(3, 20000), kStep);
@@ -240,18 +239,158 @@ TEST(EstimateReversalGate, ASlowDipOfTwoEncoderStepsIsNoise) {
   EXPECT_EQ(CountGated(history), 6U);
 }
 
-TEST(EstimateReversalGate, AQuantisedSineNeedsNone) {
+TEST(ChooseReversalGate, AQuantisedSineNeedsNone) {
   EXPECT_EQ(FindReversals(Quantised(Sine(5, 400), 1e-3), 0.0).size(), 10U);
   EXPECT_EQ(CountGated(Quantised(Sine(5, 400), 1e-3)), 10U);
 }
 
-TEST(EstimateReversalGate, ScalesWithTheUnit) {
+TEST(ChooseReversalGate, ScalesWithTheUnit) {
   Generator generator(9);
   const History noisy = WithNoise(generator, Sine(5, 500), 0.01);
   History scaled = noisy;
   for (double& displacement : scaled) displacement *= 0x1p-20;
-  EXPECT_EQ(EstimateReversalGate(scaled), 0x1p-20 * EstimateReversalGate(noisy));
-  EXPECT_GT(EstimateReversalGate(noisy), 0.0);
+  EXPECT_EQ(ChooseReversalGate(scaled).gate, 0x1p-20 * ChooseReversalGate(noisy).gate);
+  EXPECT_GT(ChooseReversalGate(noisy).gate, 0.0);
+}
+
+/// Drives whose every turn counts, and what a gauge makes of them.
+History TwoAmplitudes(double small, std::size_t samples_per_cycle) {
+  History history = {0.0};
+  for (int block = 0; block < 6; ++block) {
+    const double amplitude = block % 2 == 0 ? 1.0 : small;
+    const History cycles = Sine(2.0, samples_per_cycle);
+    for (std::size_t i = 1; i < cycles.size(); ++i) history.push_back(amplitude * cycles[i]);
+  }
+  return history;
+}
+
+History GrowingSine(double from, double cycles, double samples_per_cycle) {
+  History history;
+  const auto samples = static_cast<std::size_t>(cycles * samples_per_cycle);
+  for (std::size_t i = 0; i <= samples; ++i) {
+    const double part = static_cast<double>(i);
+    const double envelope = from + (1 - from) * part / static_cast<double>(samples);
+    history.push_back(envelope * std::sin(0.3 + 2 * std::numbers::pi * part / samples_per_cycle));
+  }
+  return history;
+}
+
+/// The gauge reads up to `depth` less for 1 to 12 samples, at one sample in `rarity`.
+History WithStepsBack(Generator& generator, History history, double depth, std::size_t rarity) {
+  for (std::size_t i = 2; i + 20 < history.size(); ++i) {
+    if (generator() % rarity != 0) continue;
+    const double step = depth * Uniform(generator, 0.1, 1.0);
+    for (std::size_t left = 1 + generator() % 12; left > 0; --left) history[i++] -= step;
+    i += 3;
+  }
+  return history;
+}
+
+TEST(ChooseReversalGate, KeepsTheSmallCyclesOfANoisyDriveOfTwoAmplitudes) {
+  Generator generator(10);
+  for (int i = 0; i < 200; ++i) {
+    const double small = testing::LogUniform(generator, 0.1, 0.7);
+    const auto samples = static_cast<std::size_t>(testing::LogUniform(generator, 50, 1000));
+    const History clean = TwoAmplitudes(small, samples);
+    ASSERT_EQ(ChooseReversalGate(clean).gate, 0.0);
+    const double noise = small * testing::LogUniform(generator, 1e-4, 1e-2);
+    const ReversalGate choice = ChooseReversalGate(WithNoise(generator, clean, noise));
+    ASSERT_EQ(choice.count, FindReversals(clean, 0.0).size()) << small << ' ' << noise;
+    ASSERT_TRUE(choice.certain) << small << ' ' << noise;
+  }
+}
+
+TEST(ChooseReversalGate, KeepsTheFirstCyclesOfAGrowingSine) {
+  Generator generator(11);
+  for (int i = 0; i < 200; ++i) {
+    const double from = testing::LogUniform(generator, 0.05, 0.5);
+    const History coarse = GrowingSine(from, 12, Uniform(generator, 6, 12));
+    ASSERT_EQ(ChooseReversalGate(coarse).gate, 0.0) << from;
+    const History clean = GrowingSine(from, 12, testing::LogUniform(generator, 50, 500));
+    const double noise = from * testing::LogUniform(generator, 1e-4, 1e-2);
+    ASSERT_EQ(CountGated(WithNoise(generator, clean, noise)), FindReversals(clean, 0.0).size())
+        << from << ' ' << noise;
+  }
+}
+
+TEST(ChooseReversalGate, IsZeroOnFewSamplesACycle) {
+  // However the samples fall on the motion, and wherever the record ends.
+  Generator generator(12);
+  for (int i = 0; i < 500; ++i) {
+    const double samples = Uniform(generator, 5, 12);
+    History history;
+    const auto count = static_cast<std::size_t>(samples * Uniform(generator, 2, 60));
+    const double phase = Uniform(generator, 0, 6.28);
+    for (std::size_t k = 0; k < count; ++k) {
+      history.push_back(std::sin(phase + 2 * std::numbers::pi * static_cast<double>(k) / samples));
+    }
+    ASSERT_EQ(ChooseReversalGate(history).gate, 0.0) << samples << ' ' << phase;
+  }
+}
+
+TEST(ChooseReversalGate, SeesThroughStepsBackOfAGaugeOrIsNotSure) {
+  // Up to 5 % of the amplitude for up to 12 samples. On a sine one that falls on a turning point
+  // may look like a small smooth loop; at a constant speed none does.
+  constexpr int kRecords = 200;
+  constexpr int kMiscounted = 6;
+  Generator generator(13);
+  int miscounted = 0;
+  int sure = 0;
+  for (int i = 0; i < kRecords; ++i) {
+    const auto samples = static_cast<std::size_t>(testing::LogUniform(generator, 200, 1500));
+    const History clean = Sine(5, samples, Uniform(generator, -0.5, 0.5));
+    const double depth = testing::LogUniform(generator, 0.005, 0.05);
+    const History read = WithStepsBack(generator, WithNoise(generator, clean, 1e-4), depth, 100);
+    const ReversalGate choice = ChooseReversalGate(read);
+    if (choice.count == FindReversals(clean, 0.0).size()) continue;
+    ++miscounted;
+    sure += choice.certain ? 1 : 0;
+  }
+  EXPECT_LE(miscounted, kMiscounted);
+  EXPECT_LE(sure, 1);
+}
+
+TEST(ChooseReversalGate, SeesThroughNoiseInADwell) {
+  Generator generator(14);
+  for (int i = 0; i < 200; ++i) {
+    const History swing = Sine(4, 100 + generator() % 400, 0.3);
+    const Indices turns = FindReversals(swing, 0.0);
+    const std::size_t rest = generator() % 200;
+    History clean;
+    for (std::size_t k = 0; k < swing.size(); ++k) {
+      const bool rests = std::ranges::find(turns, k) != turns.end();
+      clean.insert(clean.end(), rests ? 1 + rest : 1, swing[k]);
+    }
+    const double noise = testing::LogUniform(generator, 1e-5, 2e-2);
+    ASSERT_EQ(CountGated(WithNoise(generator, clean, noise)), turns.size()) << rest << ' ' << noise;
+  }
+}
+
+TEST(ChooseReversalGate, ASingleNoisyStrokeHasNone) {
+  Generator generator(15);
+  for (int i = 0; i < 100; ++i) {
+    History stroke(50 + generator() % 2000);
+    for (std::size_t k = 0; k < stroke.size(); ++k) {
+      stroke[k] = static_cast<double>(k) / static_cast<double>(stroke.size());
+    }
+    const double noise = testing::LogUniform(generator, 1e-5, 2e-2);
+    ASSERT_EQ(CountGated(WithNoise(generator, stroke, noise)), 0U) << noise;
+  }
+}
+
+TEST(ChooseReversalGate, SaysBothCountsWhereItIsNotSure) {
+  // Vibration: as smooth as a drive, with ranges from a little to a tenth of a stroke.
+  History history = Sine(3, 4000);
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const auto at = static_cast<double>(i);
+    history[i] += 0.02 * std::sin(at / 5) * (1.01 + std::sin(at / 97));
+  }
+  const ReversalGate choice = ChooseReversalGate(history);
+  EXPECT_FALSE(choice.certain);
+  EXPECT_EQ(choice.count, 6U);
+  EXPECT_GT(choice.other_count, 100U);
+  EXPECT_EQ(FindReversals(history, choice.gate).size(), choice.count);
+  EXPECT_EQ(FindReversals(history, choice.other_gate).size(), choice.other_count);
 }
 
 class MeasuredReversals : public ::testing::Test {
@@ -278,27 +417,43 @@ TEST_F(MeasuredReversals, TribometerTurnsTwiceACycleDespiteDwells) {
   for (const auto& row : rows) {
     if (row[0] >= 20 && row[0] <= 60) position.push_back(row[2]);
   }
-  // 10 cycles of 4 s from mid-swing, ±115 µm.
-  const Indices reversals = FindReversals(position, EstimateReversalGate(position));
-  EXPECT_EQ(reversals.size(), 20U);
+  // 10 cycles of 4 s, ±115 µm, from rest at the lower end, where the position settles by three
+  // steps of its encoder, to rest there.
+  const Indices reversals = FindReversals(position, ChooseReversalGate(position).gate);
+  EXPECT_EQ(reversals.size(), 19U);
   for (std::size_t k = 1; k < reversals.size(); ++k) {
     EXPECT_GT(std::abs(position[reversals[k]] - position[reversals[k - 1]]), 0.2);  // mm
   }
 }
 
+TEST_F(MeasuredReversals, TribometerTurnsAtBothEndsOfAllItsCycles) {
+  const auto rows = Read("tribometer/test_data_2.txt", '\t');
+  SKIP_WHERE_ABSENT();
+  // 50 cycles from rest at one end, where the position settles by three steps of its encoder, to
+  // rest at the same: the ends turn nothing.
+  EXPECT_EQ(CountGated(testing::Column(rows, 2)), 99U);
+}
+
 TEST_F(MeasuredReversals, SealsReverseNineteenTimesDespiteBackwardStepsOfTheLaser) {
-  for (const char* file :
-       {"seals/Circle_1bar.csv", "seals/O-ring257_3bar.csv", "seals/NAP310_5bar.csv"}) {
-    const auto rows = Read(file, '\t');
+  std::size_t steps_back = 0;
+  for (const char* seal :
+       {"Circle_1bar", "Circle_2bar", "KDN_5bar", "Kidney_lc_7bar", "NAP310_5bar", "O-ring257_3bar",
+        "Stadium_1bar", "rerun_1_O-ring257_5bar", "rerun_2_O-ring257_5bar",
+        "rerun_3_O-ring257_5bar"}) {
+    SCOPED_TRACE(seal);
+    const auto rows = Read("seals/" + std::string(seal) + ".csv", '\t');
     SKIP_WHERE_ABSENT();
     const History position = testing::Column(rows, 4);
-    const Indices reversals = FindReversals(position, EstimateReversalGate(position));
-    EXPECT_EQ(reversals.size(), 19U) << file;  // 9.5 cycles, out from rest
+    const ReversalGate choice = ChooseReversalGate(position);
+    EXPECT_EQ(choice.count, 19U);  // 9.5 cycles, out from rest
+    EXPECT_TRUE(choice.certain);
+    const Indices reversals = FindReversals(position, choice.gate);
     for (std::size_t k = 1; k < reversals.size(); ++k) {
-      EXPECT_GT(std::abs(position[reversals[k]] - position[reversals[k - 1]]), 37.0) << file;  // mm
+      EXPECT_GT(std::abs(position[reversals[k]] - position[reversals[k - 1]]), 35.0);  // mm
     }
-    EXPECT_GT(FindReversals(position, 0.0).size(), 100U) << "the gate has nothing to do";
+    steps_back += (FindReversals(position, 0.0).size() - reversals.size()) / 2;
   }
+  EXPECT_GT(steps_back, 500U) << "the gate has nothing to do";
 }
 
 TEST_F(MeasuredReversals, CycloidalRampsReverseAsTheTestsWereRun) {

@@ -15,7 +15,7 @@ struct LoopMeasures {
   /// start and to its end count by their length, 0.02 cycles short of one is one.
   std::size_t cycles = 0;
   /// X [m]: half the distance between the mean upper and lower extremes of the main swings, those
-  /// at least three quarters as wide as the widest
+  /// at least 0.95 times as wide as the widest
   double amplitude = 0.0;
   double centre = 0.0;  ///< [m]: midway between those extremes
   /// T* [N]: half the distance between the greatest and least force of the main swings: the mean at
@@ -24,7 +24,8 @@ struct LoopMeasures {
   /// spike makes it
   double peak_force = 0.0;
   double centre_force = 0.0;  ///< [N]: midway between those forces
-  /// W [J] = ∮ T dδ, mean over the closed cycles; empty when the record closes none
+  /// W [J] = ∮ T dδ, mean over the closed cycles of the widest amplitude, to 5 %: never over those
+  /// of different amplitude; empty when the record closes none
   std::optional<double> energy_per_cycle;
 };
 

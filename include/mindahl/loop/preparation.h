@@ -8,7 +8,9 @@
 
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/displacement_noise.h"
+#include "mindahl/loop/glitches.h"
 #include "mindahl/loop/record.h"
+#include "mindahl/loop/reversals.h"
 
 namespace mindahl::loop {
 
@@ -20,9 +22,12 @@ struct Interval {
 
 /// How records are read before any model is asked.
 struct PreparationOptions {
-  /// Excursions up to this [m] are noise and make no reversal. Empty: EstimateReversalGate, and at
+  /// Excursions up to this [m] are noise and make no reversal. Empty: ChooseReversalGate, and at
   /// least what a known displacement noise reaches, 2√(2 ln n) standard deviations.
   std::optional<double> reversal_gate;
+
+  /// Spikes, dropouts and held values (FindGlitches) do not count, and make no history.
+  bool leave_out_glitches = true;
 
   /// +1: force and displacement have the same sign, −1: opposite (a load cell on the other body).
   /// Empty: decided by the sign of the loop's energy.
@@ -48,10 +53,19 @@ struct PreparationOptions {
 /// One record as every later stage sees it.
 struct PreparedRecord {
   explicit PreparedRecord(const RecordView& view, std::pmr::memory_resource* memory)
-      : record(view), reversals(memory), counts(memory), smoothed(memory) {}
+      : record(view),
+        mended_displacement(memory),
+        mended_force(memory),
+        reversals(memory),
+        counts(memory),
+        smoothed(memory) {}
 
-  RecordView record;                        ///< as measured; must outlive this
-  double reversal_gate = 0.0;               ///< [m]
+  RecordView record;                             ///< as measured; must outlive this
+  GlitchCount glitches;                          ///< that are left out
+  std::pmr::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
+  std::pmr::vector<double> mended_force;         ///< [N]; likewise
+  double reversal_gate = 0.0;                    ///< [m]
+  ReversalGate gate_choice;                 ///< how sure the gate is; `certain` where it was given
   std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopMeasures measures;                    ///< with the force in the displacement's sense
   double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
@@ -64,7 +78,16 @@ struct PreparedRecord {
 
   /// What the contact is taken to have followed [m].
   [[nodiscard]] std::span<const double> displacement() const {
-    return smoothed.empty() ? record.displacement : std::span<const double>(smoothed);
+    return smoothed.empty() ? readings().displacement : std::span<const double>(smoothed);
+  }
+  /// [N]: as measured, with lines over glitches.
+  [[nodiscard]] std::span<const double> force() const { return readings().force; }
+  /// The record with lines over glitches.
+  [[nodiscard]] RecordView readings() const {
+    RecordView mended = record;
+    if (!mended_displacement.empty()) mended.displacement = mended_displacement;
+    if (!mended_force.empty()) mended.force = mended_force;
+    return mended;
   }
   [[nodiscard]] std::size_t size() const { return record.size(); }
 };
@@ -80,8 +103,8 @@ struct PreparedRecords {
   [[nodiscard]] std::size_t counted() const;
 };
 
-/// Reversals, sense of force, smoothing and the mask of samples that count: what depends on no
-/// model.
+/// Glitches, reversals, sense of force, smoothing and the mask of samples that count: what depends
+/// on no model.
 /// @param records  not empty; their memory must outlive the result
 /// @param memory   of the result and of scratch; must outlive it
 /// @throws InvalidArgument for records or options that break a rule, where a record has no normal

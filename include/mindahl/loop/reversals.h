@@ -21,17 +21,32 @@ namespace mindahl::loop {
 /// Cost: one pass.
 std::vector<std::size_t> FindReversals(std::span<const double> displacement, double gate);
 
-/// Gate [m] that separates reversals of the drive from reversals made by measurement noise.
+/// A gate, the reversals that it leaves, and whether another would have had as good a claim.
+struct ReversalGate {
+  double gate = 0.0;            ///< [m]; 0 where nothing looks like noise
+  std::size_t count = 0;        ///< reversals under it, as FindReversals finds them
+  bool certain = true;          ///< no other plateau of the count competes
+  std::size_t other_count = 0;  ///< reversals under the competing gate; `count` where certain
+  double other_gate = 0.0;      ///< [m]; `gate` where certain
+};
+
+/// Gate [m] that separates reversals of the drive from those made by noise, by an encoder's steps
+/// and by backward steps of a gauge.
 ///
-/// The closed inner loops of the record (four-point rainflow count) are sorted by range. Noise
-/// makes many small ones that last a few samples, or stay within the range of the noise or two
-/// steps of the encoder; the drive makes large ones, and nothing lies between. The gate is set in
-/// that gap: above the largest noise-like range, at most twice it. Where there is no gap - a clean
-/// record, a white sequence, all but 1 % of random walks - it is 0. The noise is the median
-/// absolute third difference, which a smooth drive hardly enters.
+/// Each excursion, a pair of extremes with its range, vanishes from the count where the gate
+/// reaches its range: the count is a staircase that is known exactly. An excursion looks like noise
+/// where it is brief beside the main strokes and either within the reach of the white noise, of
+/// which an encoder's steps q make q/√12,
+///   1.25·2√(2 ln n) standard deviations,
+/// or made mostly of a jump between two samples. Of the plateaus of the count that nearly agree
+/// with these looks the widest in log(gate) is taken, never beyond a stroke that looks like the
+/// drive's; the gate lies in it, at most at twice the range below it. Where nothing looks like
+/// noise - a clean record, nested loops, few samples a cycle - it is 0. The choice is uncertain
+/// where the plateau is narrow, where another is half as wide, and where excursions that lie as
+/// densely as those of noise are smooth, as vibration is.
 ///
 /// @param displacement  [m], finite
-/// @returns [m], 0 when no inner loop looks like noise
-double EstimateReversalGate(std::span<const double> displacement);
+/// Cost: n log n at most.
+ReversalGate ChooseReversalGate(std::span<const double> displacement);
 
 }  // namespace mindahl::loop

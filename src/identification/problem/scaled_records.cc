@@ -87,7 +87,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
   scaled.counted = records.counted();
   for (const loop::PreparedRecord& record : records.records) {
     scaled.length = std::max(scaled.length, RangeOf(record.displacement()).half);
-    scaled.force = std::max(scaled.force, RangeOf(record.record.force).half);
+    scaled.force = std::max(scaled.force, RangeOf(record.force()).half);
   }
   if (!(scaled.length > 0)) {
     throw InvalidArgument("the displacement never changes: a fit needs a moving contact");
@@ -101,7 +101,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
   scaled.records.reserve(records.records.size());
   for (const loop::PreparedRecord& prepared : records.records) {
     const std::span<const double> displacement = prepared.displacement();
-    const std::span<const double> force = prepared.record.force;
+    const std::span<const double> force = prepared.force();
     const std::span<const double> time = prepared.record.time;
     const std::size_t size = prepared.size();
     ScaledRecord& target = scaled.records.emplace_back(memory);

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/preparation.h"
+#include "mindahl/loop/record.h"
+
+namespace mindahl::loop {
+
+/// One closed cycle, from a turning point to the next but one. X and T* as half of a range, so that
+/// no offset matters; what a cycle does not show is empty.
+struct CycleFacts {
+  std::size_t start = 0;      ///< sample of its first turning point
+  double amplitude = 0.0;     ///< X [m]: a quarter of the way of its two strokes
+  double peak_force = 0.0;    ///< T* [N]: half the range of the force, as in LoopMeasures
+  double energy = 0.0;        ///< W [J] = ∮ T dδ, closed by a chord
+  double energy_ratio = 0.0;  ///< W/(4XT*) [-]: 1 of a rectangle, 0 of a line
+  /// [N]: half the force between the strokes, in the middle third of the stroke: the median of the
+  /// means over five parts of it. Of a loop that slips it is the slip force, whatever the
+  /// stiffness.
+  std::optional<double> half_gap;
+  double centre_force = 0.0;  ///< [N]: midway between the strokes, in the same place
+  /// [m]: half the displacement between the strokes where the force is within T*/10 of
+  /// `centre_force`: how far the contact slides, X less what the stick takes.
+  std::optional<double> sliding_amplitude;
+};
+
+/// A straight line through a fact of each cycle against the cycle's number.
+struct Trend {
+  double slope = 0.0;           ///< [unit of the fact a cycle]
+  double standard_error = 0.0;  ///< likewise
+  double p_value = 1.0;         ///< of no trend, two-sided, by Student's t
+};
+
+/// What a record says before any model is asked.
+///
+/// Means are those of the widest steady cycles, whose amplitude is at least 0.95 of the widest
+/// cycle's: never of cycles of different amplitude.
+struct LoopFacts {
+  bool closed = false;  ///< false: the record closes no cycle, and there are no facts
+  std::vector<CycleFacts> cycles;
+  std::size_t steady_cycles = 0;                      ///< of the widest amplitude
+  double amplitude = 0.0;                             ///< X [m]
+  double peak_force = 0.0;                            ///< T* [N]
+  double energy_per_cycle = 0.0;                      ///< W [J]
+  double energy_ratio = 0.0;                          ///< W/(4XT*) [-] of the means
+  std::optional<double> sliding_amplitude;            ///< [m]
+  std::optional<double> half_gap;                     ///< [N]
+  std::optional<double> half_gap_standard_deviation;  ///< [N] between cycles; of two or more
+  /// [N/m]: of the least-squares line over the first tenth of each stroke, the median over strokes.
+  /// A lower limit of the stiffness: the loop may have bent within it.
+  std::optional<double> slope_after_reversal;
+  std::optional<double> plateau_slope;  ///< [N/m]: likewise over the last third
+  /// [-]: how far the falling stroke is from the rising one turned about the loop's centre, over
+  /// T*: of the forces U_j and D_j in ten parts of the strokes the standard deviation of (U_j +
+  /// D_{11−j})/2. Zero of a loop that has the symmetry of a contact; a slope of both strokes and
+  /// offsets do not enter.
+  std::optional<double> asymmetry;
+  /// [-]: Σ|Δδ| over the strokes' widths, from the first cycle to the last: 1 where every turn is
+  /// known; far above, there are reversals or noise between.
+  double path_ratio = 0.0;
+  /// µ_W = W/(4·N·sliding amplitude) [-], N the mean load; empty where that is not known.
+  std::optional<double> energy_friction_coefficient;
+  std::optional<Trend> half_gap_trend;  ///< [N a cycle]: of three or more steady cycles
+  std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
+};
+
+/// @param record       with the force in any sense
+/// @param reversals    as from FindReversals on the same record
+/// @param force_sense  ±1, see ForceSense; forces and what they make are in the displacement's
+/// sense
+/// @throws InvalidArgument when the record is empty or inconsistent, or an energy overflows
+/// Cost: linear in the samples.
+LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
+                       int force_sense);
+
+/// Of what is left of a record without glitches, smoothed where it is noisy.
+LoopFacts MeasureFacts(const PreparedRecord& prepared, int force_sense);
+
+}  // namespace mindahl::loop

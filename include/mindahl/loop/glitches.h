@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/record.h"
+
+namespace mindahl::loop {
+
+/// What is wrong with a sample, where something is.
+enum class Glitch : std::uint8_t {
+  kNone,
+  kSpike,    ///< one channel is far off its neighbours, for one to three samples
+  kDropout,  ///< both channels read 0, off their neighbours
+  kHeld,     ///< one channel repeats its last value while the other goes on, and then jumps
+};
+
+/// How many samples of a record are glitches [-], and where the first of them are.
+struct GlitchCount {
+  static constexpr std::size_t kMostExamples = 5;
+
+  std::size_t spikes = 0;
+  std::size_t dropouts = 0;
+  std::size_t held = 0;
+  std::array<std::size_t, kMostExamples> examples{};  ///< samples, the first min(total, 5) in use
+
+  [[nodiscard]] std::size_t total() const { return spikes + dropouts + held; }
+};
+
+/// Samples that no contact and no drive has made.
+///
+/// - A spike of 1 to 3 samples leaves its neighbours and comes back: it lies beyond both by more
+///   than three times the steps about it (the third largest of 24) and of the record (of ten steps
+///   nine are smaller). So corners, turning points of few samples a cycle, and square pulses that
+///   come again are none.
+/// - A dropout reads exactly 0 and 0, outside its neighbours' range by more than two such steps in
+///   either channel; where one does, all inside the record that read so. At an end of the record,
+///   which may begin at rest, it is off by more than four such steps of the displacement.
+/// - A value is held where five or more samples of one channel are the same while the other moves,
+///   and it then jumps, alone, by more than three times the steps about it. So rest, an encoder's
+///   steps, and the plateau of a law that slips at a constant force are none.
+/// A kind that makes up more than a quarter of a channel is no glitch of it. In the first and last
+/// two samples no spike is found.
+///
+/// @param record  finite, see Validate
+/// @returns one entry a sample; empty where there is no glitch
+/// Cost: linear in the samples.
+std::vector<Glitch> FindGlitches(const RecordView& record);
+
+/// @param glitches  as from FindGlitches
+GlitchCount CountGlitches(std::span<const Glitch> glitches);
+
+}  // namespace mindahl::loop

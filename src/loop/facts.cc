@@ -1,0 +1,386 @@
+#include "mindahl/loop/facts.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/statistics/univariate_statistics.hpp>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "loop/strokes.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl::loop {
+namespace {
+
+using Column = std::span<const double>;
+using Points = std::span<const std::size_t>;
+
+/// A stroke between two turning points of a record in the displacement's sense.
+struct Stroke {
+  Column displacement;  // [m]
+  Column force;         // [N]
+
+  [[nodiscard]] double width() const {
+    return std::abs(displacement.back() - displacement.front());
+  }
+  [[nodiscard]] bool rises() const { return displacement.back() > displacement.front(); }
+};
+
+Stroke StrokeOf(const RecordView& record, std::size_t first, std::size_t last) {
+  return {record.displacement.subspan(first, last - first + 1),
+          record.force.subspan(first, last - first + 1)};
+}
+
+/// Mean of y over the range [lower, upper] of x that a line from sample to sample crosses: ∫ y dx
+/// by trapezia, to and fro, over the range. Empty where it does not cross it once in all.
+std::optional<double> MeanOver(Column x, Column y, double lower, double upper) {
+  constexpr double kWhole = 1e-6;
+  double integral = 0.0;
+  double way = 0.0;
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    const double step = x[i] - x[i - 1];
+    const double from = std::clamp(x[i - 1], lower, upper);
+    const double to = std::clamp(x[i], lower, upper);
+    if (from == to) continue;
+    const double slope = (y[i] - y[i - 1]) / step;
+    const double middle = y[i - 1] + slope * ((from + to) / 2 - x[i - 1]);
+    integral += middle * (to - from);
+    way += to - from;
+  }
+  if (!(std::abs(way) > (1 - kWhole) * (upper - lower))) return std::nullopt;
+  return integral / way;
+}
+
+/// Means of a stroke's force over equal parts of [centre − reach, centre + reach], from the lowest.
+template <std::size_t kParts>
+std::optional<std::array<double, kParts>> PartsOf(const Stroke& stroke, double centre,
+                                                  double reach) {
+  std::array<double, kParts> means{};
+  const auto edge = [&](std::size_t j) {
+    return centre - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
+  };
+  for (std::size_t j = 0; j < kParts; ++j) {
+    const auto mean = MeanOver(stroke.displacement, stroke.force, edge(j), edge(j + 1));
+    if (!mean) return std::nullopt;
+    means[j] = *mean;
+  }
+  return means;
+}
+
+/// The two strokes of a cycle, with the middle of what both pass.
+struct Cycle {
+  Stroke rising;
+  Stroke falling;
+  double centre = 0.0;  // [m]
+  double reach = 0.0;   // [m] to either side
+};
+
+Cycle CycleOf(const RecordView& record, Points points) {
+  const Stroke one = StrokeOf(record, points[0], points[1]);
+  const Stroke other = StrokeOf(record, points[1], points[2]);
+  Cycle cycle{one.rises() ? one : other, one.rises() ? other : one};
+  const double lower =
+      std::max(cycle.rising.displacement.front(), cycle.falling.displacement.back());
+  const double upper =
+      std::min(cycle.rising.displacement.back(), cycle.falling.displacement.front());
+  cycle.centre = lower + (upper - lower) / 2;
+  cycle.reach = (upper - lower) / 2;
+  return cycle;
+}
+
+template <typename Values>
+double Median(Values values) {
+  return boost::math::statistics::median(values.begin(), values.end());
+}
+
+double Mean(Column values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
+  constexpr std::size_t kParts = 5;
+  constexpr double kMiddle = 1.0 / 3;  // of the stroke
+  const auto up = PartsOf<kParts>(cycle.rising, cycle.centre, kMiddle * cycle.reach);
+  const auto down = PartsOf<kParts>(cycle.falling, cycle.centre, kMiddle * cycle.reach);
+  if (!up || !down) return;
+  std::array<double, kParts> gaps{};
+  std::ranges::transform(*up, *down, gaps.begin(), std::minus<>());
+  facts.half_gap = Median(gaps) / 2;
+  facts.centre_force = (Median(*up) + Median(*down)) / 2;
+}
+
+void MeasureWidth(const Cycle& cycle, CycleFacts& facts) {
+  constexpr double kAbout = 0.1;  // of T*
+  const double lower = facts.centre_force - kAbout * facts.peak_force;
+  const double upper = facts.centre_force + kAbout * facts.peak_force;
+  const auto sliding_back = MeanOver(cycle.falling.force, cycle.falling.displacement, lower, upper);
+  const auto sliding_on = MeanOver(cycle.rising.force, cycle.rising.displacement, lower, upper);
+  if (sliding_back && sliding_on) facts.sliding_amplitude = (*sliding_back - *sliding_on) / 2;
+}
+
+double PeakForce(const RecordView& record, Points points, const Cycle& cycle) {
+  const Column force = record.force;
+  const auto [up_least, up_greatest] = MovingMeanRange(cycle.rising.force);
+  const auto [down_least, down_greatest] = MovingMeanRange(cycle.falling.force);
+  const double ends = (force[points[0]] + force[points[2]]) / 2;
+  const double turn = force[points[1]];
+  const double greatest = std::max({up_greatest, down_greatest, ends, turn});
+  const double least = std::min({up_least, down_least, ends, turn});
+  return (greatest - least) / 2;
+}
+
+CycleFacts MeasureCycle(const RecordView& record, Points points) {
+  const Cycle cycle = CycleOf(record, points);
+  CycleFacts facts;
+  facts.start = points[0];
+  facts.amplitude = CycleAmplitude(record.displacement, points);
+  facts.peak_force = PeakForce(record, points, cycle);
+  facts.energy = CycleEnergy(record, points[0], points[2]);
+  const double rectangle = 4 * facts.amplitude * facts.peak_force;
+  facts.energy_ratio = rectangle > 0 ? facts.energy / rectangle : 0.0;
+  MeasureGap(cycle, facts);
+  if (facts.half_gap && facts.peak_force > 0) MeasureWidth(cycle, facts);
+  return facts;
+}
+
+/// Slope [N/m] of the least-squares line through the samples of a stroke between two shares of its
+/// width; of the chord there where there are fewer than three.
+std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to) {
+  constexpr double kFewest = 3;
+  const double width = stroke.width();
+  const auto share = [&](std::size_t i) {
+    return std::abs(stroke.displacement[i] - stroke.displacement.front()) / width;
+  };
+  double count = 0.0;
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  for (std::size_t i = 0; i < stroke.force.size(); ++i) {
+    if (share(i) < from || share(i) > to) continue;
+    ++count;
+    const double dx = stroke.displacement[i] - mean_x;
+    mean_x += dx / count;
+    mean_y += (stroke.force[i] - mean_y) / count;
+    xx += dx * (stroke.displacement[i] - mean_x);
+    xy += dx * (stroke.force[i] - mean_y);
+  }
+  if (count >= kFewest && xx > 0) return xy / xx;
+  const double sense = stroke.rises() ? 1.0 : -1.0;
+  const double start = stroke.displacement.front();
+  const double end_force = 0.02 * width;  // [m] that the forces at the ends are means over
+  const auto force_at = [&](double part) {
+    const double at = start + sense * std::clamp(part, 0.01, 0.99) * width;
+    return MeanOver(stroke.displacement, stroke.force, at - end_force / 2, at + end_force / 2);
+  };
+  const auto first = force_at(from);
+  const auto last = force_at(to);
+  if (!first || !last) return std::nullopt;
+  return sense * (*last - *first) /
+         ((std::clamp(to, 0.01, 0.99) - std::clamp(from, 0.01, 0.99)) * width);
+}
+
+/// The turning points of the cycles of the widest amplitude, three each.
+std::vector<Points> SteadyCycles(const LoopFacts& facts, Points points) {
+  double widest = 0.0;
+  for (const CycleFacts& cycle : facts.cycles) widest = std::max(widest, cycle.amplitude);
+  std::vector<Points> steady;
+  for (std::size_t k = 0; k < facts.cycles.size(); ++k) {
+    if (facts.cycles[k].amplitude >= kSteadyAmplitude * widest) {
+      steady.push_back(points.subspan(2 * k, 3));
+    }
+  }
+  return steady;
+}
+
+std::optional<double> MedianSlope(const RecordView& record, std::span<const Points> cycles,
+                                  double from, double to) {
+  std::vector<double> slopes;
+  for (const Points& cycle : cycles) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto slope = SlopeBetween(StrokeOf(record, cycle[k], cycle[k + 1]), from, to);
+      if (slope) slopes.push_back(*slope);
+    }
+  }
+  if (slopes.empty()) return std::nullopt;
+  return Median(slopes);
+}
+
+double StandardDeviation(Column values) {
+  const double mean = Mean(values);
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+std::optional<double> Asymmetry(const RecordView& record, std::span<const Points> cycles,
+                                double peak_force) {
+  constexpr std::size_t kParts = 10;
+  constexpr double kReach = 0.95;  // of what both strokes pass: their corners differ in a sample
+  std::array<double, kParts> sums{};
+  std::size_t count = 0;
+  for (const Points& points : cycles) {
+    const Cycle cycle = CycleOf(record, points);
+    const auto up = PartsOf<kParts>(cycle.rising, cycle.centre, kReach * cycle.reach);
+    const auto down = PartsOf<kParts>(cycle.falling, cycle.centre, kReach * cycle.reach);
+    if (!up || !down) continue;
+    for (std::size_t j = 0; j < kParts; ++j) sums[j] += (*up)[j] + (*down)[kParts - 1 - j];
+    ++count;
+  }
+  if (count == 0 || !(peak_force > 0)) return std::nullopt;
+  for (double& sum : sums) sum /= 2 * static_cast<double>(count);
+  return StandardDeviation(sums) / peak_force;
+}
+
+/// Least squares of values against the numbers of their cycles.
+std::optional<Trend> TrendOf(Column numbers, Column values) {
+  if (values.size() < 3) return std::nullopt;
+  const double mean_number = Mean(numbers);
+  const double mean_value = Mean(values);
+  double squares = 0.0;
+  double products = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    squares += (numbers[i] - mean_number) * (numbers[i] - mean_number);
+    products += (numbers[i] - mean_number) * (values[i] - mean_value);
+  }
+  Trend trend{.slope = products / squares};
+  double rest = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double fitted = mean_value + trend.slope * (numbers[i] - mean_number);
+    rest += (values[i] - fitted) * (values[i] - fitted);
+  }
+  const auto freedom = static_cast<double>(values.size() - 2);
+  trend.standard_error = std::sqrt(rest / freedom / squares);
+  if (trend.standard_error > 0) {
+    const boost::math::students_t student(freedom);
+    const double t = std::abs(trend.slope) / trend.standard_error;
+    trend.p_value = 2 * boost::math::cdf(boost::math::complement(student, t));
+  } else if (trend.slope != 0) {
+    trend.p_value = 0.0;
+  }
+  return trend;
+}
+
+/// Way over the widths of all strokes of the cycles.
+double PathRatio(Column displacement, Points points, std::size_t cycles) {
+  double path = 0.0;
+  for (std::size_t i = points[0] + 1; i <= points[2 * cycles]; ++i) {
+    path += std::abs(displacement[i] - displacement[i - 1]);
+  }
+  double widths = 0.0;
+  for (std::size_t k = 0; k < 2 * cycles; ++k) {
+    widths += std::abs(displacement[points[k + 1]] - displacement[points[k]]);
+  }
+  return path / widths;
+}
+
+double MeanLoad(const RecordView& record, std::span<const Points> cycles) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const Points& cycle : cycles) {
+    for (std::size_t i = cycle[0]; i <= cycle[2]; ++i) {
+      sum += record.normal_load[i];
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+/// A fact of the steady cycles that have it, with the cycles' numbers.
+struct Series {
+  std::vector<double> numbers;
+  std::vector<double> values;
+};
+
+template <typename Fact>
+Series SeriesOf(const LoopFacts& facts, Fact fact) {
+  double widest = 0.0;
+  for (const CycleFacts& cycle : facts.cycles) widest = std::max(widest, cycle.amplitude);
+  Series series;
+  for (std::size_t k = 0; k < facts.cycles.size(); ++k) {
+    const std::optional<double> value = fact(facts.cycles[k]);
+    if (facts.cycles[k].amplitude < kSteadyAmplitude * widest || !value) continue;
+    series.numbers.push_back(static_cast<double>(k));
+    series.values.push_back(*value);
+  }
+  return series;
+}
+
+/// What is a mean or a trend of the cycles' own facts.
+void Summarise(LoopFacts& facts) {
+  const auto mean_of = [&](double CycleFacts::*member) {
+    return Mean(SeriesOf(facts, [&](const CycleFacts& cycle) {
+                  return std::optional(cycle.*member);
+                }).values);
+  };
+  facts.amplitude = mean_of(&CycleFacts::amplitude);
+  facts.peak_force = mean_of(&CycleFacts::peak_force);
+  facts.energy_per_cycle = mean_of(&CycleFacts::energy);
+  const double rectangle = 4 * facts.amplitude * facts.peak_force;
+  facts.energy_ratio = rectangle > 0 ? facts.energy_per_cycle / rectangle : 0.0;
+  const Series sliding =
+      SeriesOf(facts, [](const CycleFacts& cycle) { return cycle.sliding_amplitude; });
+  if (!sliding.values.empty()) facts.sliding_amplitude = Mean(sliding.values);
+  const Series gaps = SeriesOf(facts, [](const CycleFacts& cycle) { return cycle.half_gap; });
+  if (!gaps.values.empty()) facts.half_gap = Mean(gaps.values);
+  if (gaps.values.size() > 1) facts.half_gap_standard_deviation = StandardDeviation(gaps.values);
+  facts.half_gap_trend = TrendOf(gaps.numbers, gaps.values);
+  const Series energies =
+      SeriesOf(facts, [](const CycleFacts& cycle) { return std::optional(cycle.energy); });
+  facts.energy_trend = TrendOf(energies.numbers, energies.values);
+}
+
+/// Forces in the displacement's sense.
+LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
+  LoopFacts facts;
+  const std::pmr::vector<std::size_t> turns =
+      TurningPoints(record.displacement, reversals, std::pmr::get_default_resource());
+  const Points points = turns;
+  for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
+    facts.cycles.push_back(MeasureCycle(record, points.subspan(k, 3)));
+  }
+  facts.closed = !facts.cycles.empty();
+  if (!facts.closed) return facts;
+  Summarise(facts);
+  const std::vector<Points> steady = SteadyCycles(facts, points);
+  facts.steady_cycles = steady.size();
+  facts.slope_after_reversal = MedianSlope(record, steady, 0.0, 0.1);
+  facts.plateau_slope = MedianSlope(record, steady, 2.0 / 3, 1.0);
+  facts.asymmetry = Asymmetry(record, steady, facts.peak_force);
+  facts.path_ratio = PathRatio(record.displacement, points, facts.cycles.size());
+  if (!record.normal_load.empty() && facts.sliding_amplitude && *facts.sliding_amplitude > 0) {
+    const double load = MeanLoad(record, steady);
+    if (load > 0) {
+      facts.energy_friction_coefficient =
+          facts.energy_per_cycle / (4 * load * *facts.sliding_amplitude);
+    }
+  }
+  return facts;
+}
+
+}  // namespace
+
+LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
+                       int force_sense) {
+  Validate(record);
+  if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
+  if (force_sense != 1 && force_sense != -1) {
+    ThrowInvalid("force sense [-]", force_sense, "must be +1 or -1");
+  }
+  if (force_sense == 1) return MeasureInSense(record, reversals);
+  std::vector<double> turned(record.force.begin(), record.force.end());
+  for (double& force : turned) force = -force;
+  RecordView in_sense = record;
+  in_sense.force = turned;
+  return MeasureInSense(in_sense, reversals);
+}
+
+LoopFacts MeasureFacts(const PreparedRecord& prepared, int force_sense) {
+  RecordView record = prepared.readings();
+  record.displacement = prepared.displacement();
+  return MeasureFacts(record, prepared.reversals, force_sense);
+}
+
+}  // namespace mindahl::loop

@@ -1,0 +1,306 @@
+#include "mindahl/loop/glitches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "loop/mending.h"
+
+namespace mindahl::loop {
+namespace {
+
+using Column = std::span<const double>;
+
+/// The step [unit of the column] that nine in ten of those that are not zero do not exceed; 0
+/// without any.
+double UsualStep(Column values, std::pmr::memory_resource* scratch) {
+  constexpr double kShare = 0.9;
+  std::pmr::vector<double> steps(scratch);
+  steps.reserve(values.size());
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step > 0) steps.push_back(step);
+  }
+  if (steps.empty()) return 0.0;
+  const auto at =
+      steps.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(steps.size() - 1));
+  std::ranges::nth_element(steps, at);
+  return *at;
+}
+
+/// A column, what is wrong in it, and the column with lines over that.
+class Channel {
+ public:
+  Channel(Column values, std::pmr::memory_resource* memory)
+      : values_(values), mended_(memory), glitches_(memory), memory_(memory) {}
+
+  [[nodiscard]] Column values() const { return mended_.empty() ? values_ : Column(mended_); }
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
+  /// Of the column as it is when this is first asked for.
+  double usual_step() {
+    if (!usual_step_) usual_step_ = UsualStep(values(), memory_);
+    return *usual_step_;
+  }
+
+  void LeaveOut(std::size_t begin, std::size_t end, Glitch kind) {
+    if (glitches_.empty()) {
+      glitches_.assign(values_.size(), Glitch::kNone);
+      mended_.assign(values_.begin(), values_.end());
+    }
+    std::fill(glitches_.begin() + static_cast<std::ptrdiff_t>(begin),
+              glitches_.begin() + static_cast<std::ptrdiff_t>(end), kind);
+    BridgeOver(begin, end);
+  }
+
+  /// Takes everything of a kind back where there is more of it than a share of the samples.
+  void TakeBackIfCommon(Glitch kind, double most) {
+    const auto count = static_cast<double>(std::ranges::count(glitches_, kind));
+    if (!(count > most * static_cast<double>(values_.size()))) return;
+    std::ranges::replace(glitches_, kind, Glitch::kNone);
+    mended_.assign(values_.begin(), values_.end());
+    for (std::size_t begin = 0; begin < size(); ++begin) {
+      if (glitches_[begin] == Glitch::kNone) continue;
+      std::size_t end = begin + 1;
+      while (end < size() && glitches_[end] != Glitch::kNone) ++end;
+      BridgeOver(begin, end);
+      begin = end;
+    }
+  }
+
+  [[nodiscard]] bool IsWhole() const {
+    return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
+  }
+  [[nodiscard]] std::span<const Glitch> glitches() const { return glitches_; }
+  std::pmr::vector<double> TakeMended() { return std::move(mended_); }
+
+ private:
+  /// A line between the samples about [begin, end); a level one at the record's ends.
+  void BridgeOver(std::size_t begin, std::size_t end) {
+    if (begin == 0 && end == size()) return;
+    const double last = mended_[end < size() ? end : begin - 1];
+    const double first = begin > 0 ? mended_[begin - 1] : last;
+    const auto steps = static_cast<double>(end - begin + 1);
+    for (std::size_t i = begin; i < end; ++i) {
+      const double share = static_cast<double>(i - begin + 1) / steps;
+      mended_[i] = first + share * (last - first);
+    }
+  }
+
+  Column values_;
+  std::pmr::vector<double> mended_;
+  std::pmr::vector<Glitch> glitches_;
+  std::optional<double> usual_step_;
+  std::pmr::memory_resource* memory_;
+};
+
+/// How far 0 lies outside the range of two values.
+double OutsideOf(double one, double other) {
+  return std::max({std::min(one, other), -std::max(one, other), 0.0});
+}
+
+/// The steps [unit of the column] of neighbours of which neither reads 0 and 0.
+double UsualStepWithoutZeros(Column values, const RecordView& record,
+                             std::pmr::memory_resource* scratch) {
+  std::pmr::vector<double> kept(scratch);
+  kept.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (record.displacement[i] != 0 || record.force[i] != 0) kept.push_back(values[i]);
+  }
+  return UsualStep(kept, scratch);
+}
+
+/// Successive samples that read 0 and 0: [begin, end).
+struct ZeroRun {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+
+  [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
+};
+
+std::pmr::vector<ZeroRun> ZeroRuns(const RecordView& record, std::pmr::memory_resource* scratch) {
+  std::pmr::vector<ZeroRun> runs(scratch);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (record.displacement[i] != 0 || record.force[i] != 0) continue;
+    if (runs.empty() || runs.back().end < i) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  return runs;
+}
+
+void FindDropouts(const RecordView& record, const GlitchRules& rules, Channel& displacement,
+                  Channel& force, std::pmr::memory_resource* scratch) {
+  const std::pmr::vector<ZeroRun> runs = ZeroRuns(record, scratch);
+  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
+  const Column x = record.displacement;
+  const double step_of_x = UsualStepWithoutZeros(x, record, scratch);
+  const double step_of_force = UsualStepWithoutZeros(record.force, record, scratch);
+  const auto lies_off = [&](const ZeroRun& run) {
+    if (!run.IsInside(record.size())) {
+      return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
+    }
+    const auto outside = [&](Column values) {
+      return OutsideOf(values[run.begin - 1], values[run.end]);
+    };
+    return outside(x) > rules.dropout * step_of_x ||
+           outside(record.force) > rules.dropout * step_of_force;
+  };
+  // Where one inside the record is a dropout the others are, wherever the loop just was.
+  const bool any = std::ranges::any_of(
+      runs, [&](const ZeroRun& run) { return run.IsInside(record.size()) && lies_off(run); });
+  for (const ZeroRun& run : runs) {
+    if (!(any && run.IsInside(record.size())) && !lies_off(run)) continue;
+    displacement.LeaveOut(run.begin, run.end, Glitch::kDropout);
+    force.LeaveOut(run.begin, run.end, Glitch::kDropout);
+  }
+}
+
+/// Third largest step about [begin, end), that into it and that out of it aside: a second spike
+/// makes two. 0 with fewer.
+double StepAbout(const Channel& channel, std::size_t begin, std::size_t end,
+                 const GlitchRules& rules) {
+  std::array<double, 3> largest{};
+  const auto look_at = [&](std::size_t i) {
+    const double step = channel.Step(i);
+    if (step > largest[0]) {
+      largest = {step, largest[0], largest[1]};
+    } else if (step > largest[1]) {
+      largest = {largest[0], step, largest[1]};
+    } else if (step > largest[2]) {
+      largest[2] = step;
+    }
+  };
+  for (std::size_t i = begin - 1; i >= 1 && begin - i <= rules.about; --i) look_at(i);
+  const std::size_t size = channel.size();
+  for (std::size_t i = end + 1; i < size && i - end <= rules.about; ++i) look_at(i);
+  return largest[2];
+}
+
+/// Samples of the spike that begins at i; 0 where none does.
+std::size_t SpikeAt(Channel& channel, std::size_t i, const GlitchRules& rules) {
+  const Column values = channel.values();
+  const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
+  const double before = sense * values[i - 1];
+  double least = sense * values[i];
+  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + rules.longest_spike; ++end) {
+    const double height = least - std::max(before, sense * values[end]);
+    if (height > rules.spike * channel.Step(end + 1) &&
+        height > rules.spike * StepAbout(channel, i, end, rules) &&
+        height > rules.spike * channel.usual_step()) {
+      return end - i;
+    }
+    least = std::min(least, sense * values[end]);
+  }
+  return 0;
+}
+
+/// One pass: a spike may hide another, until it is mended.
+bool FindSpikes(Channel& channel, const GlitchRules& rules) {
+  bool found = false;
+  for (std::size_t i = 2; i + 2 < channel.size(); ++i) {
+    // Hardly a sample of a clean record leaves its neighbour so.
+    if (!(channel.Step(i) > rules.spike * channel.Step(i - 1))) continue;
+    const std::size_t samples = SpikeAt(channel, i, rules);
+    if (samples == 0) continue;
+    channel.LeaveOut(i, i + samples, Glitch::kSpike);
+    found = true;
+  }
+  return found;
+}
+
+double LargestStep(const Channel& channel, std::size_t begin, std::size_t end) {
+  double largest = 0.0;
+  const std::size_t last = std::min(end, channel.size());
+  for (std::size_t i = std::max<std::size_t>(begin, 1); i < last; ++i) {
+    largest = std::max(largest, channel.Step(i));
+  }
+  return largest;
+}
+
+/// Has the column another value at half of the samples of [begin, end) than at the one before?
+bool Moves(const Channel& channel, std::size_t begin, std::size_t end) {
+  std::size_t moves = 0;
+  for (std::size_t i = begin; i < end; ++i) moves += channel.Step(i) > 0 ? 1U : 0U;
+  return 2 * moves >= end - begin;
+}
+
+/// Does the column jump where the run [begin, end) of equal values is over?
+bool JumpsAtTheEnd(const Channel& channel, std::size_t begin, std::size_t end,
+                   const GlitchRules& rules) {
+  const std::size_t length = end - begin;
+  const double about = std::max(LargestStep(channel, begin - std::min(begin, length), begin + 1),
+                                LargestStep(channel, end + 1, end + 1 + length));
+  return channel.Step(end) > rules.held_jump * about;
+}
+
+/// Does the column go on in the direction that it had in the last samples of [begin, end)?
+bool GoesOn(Column values, std::size_t begin, std::size_t end) {
+  const std::size_t reach = std::min((end - begin) / 2, values.size() - end);
+  return (values[end - 1 + reach] - values[end - 1]) * (values[end - 1] - values[end - 1 - reach]) >
+         0;
+}
+
+void FindHeld(Channel& channel, const Channel& other, const GlitchRules& rules) {
+  const std::size_t size = channel.size();
+  for (std::size_t begin = 0; begin + rules.shortest_held < size;) {
+    std::size_t end = begin + 1;
+    while (end < size && channel.values()[end] == channel.values()[begin]) ++end;
+    if (end < size && end - begin >= rules.shortest_held && Moves(other, begin + 1, end) &&
+        JumpsAtTheEnd(channel, begin, end, rules) && !JumpsAtTheEnd(other, begin, end, rules) &&
+        GoesOn(other.values(), begin, end) &&
+        channel.Step(end) > rules.held_jump * channel.usual_step()) {
+      channel.LeaveOut(begin + 1, end, Glitch::kHeld);
+    }
+    begin = end;
+  }
+}
+
+}  // namespace
+
+Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
+                   std::pmr::memory_resource* memory) {
+  constexpr int kPasses = 3;
+  Channel displacement(record.displacement, memory);
+  Channel force(record.force, memory);
+  FindDropouts(record, rules, displacement, force, memory);
+  for (Channel* channel : {&displacement, &force}) {
+    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
+    for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
+    channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
+  }
+  FindHeld(displacement, force, rules);
+  FindHeld(force, displacement, rules);
+  Mended mended(memory);
+  for (Channel* channel : {&displacement, &force}) {
+    channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
+    if (channel->IsWhole()) continue;
+    if (mended.glitches.empty()) mended.glitches.assign(record.size(), Glitch::kNone);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (channel->glitches()[i] != Glitch::kNone) mended.glitches[i] = channel->glitches()[i];
+    }
+    (channel == &displacement ? mended.displacement : mended.force) = channel->TakeMended();
+  }
+  return mended;
+}
+
+std::vector<Glitch> FindGlitches(const RecordView& record) {
+  Validate(record);
+  const Mended mended = FindAndMend(record, {}, std::pmr::get_default_resource());
+  return {mended.glitches.begin(), mended.glitches.end()};
+}
+
+GlitchCount CountGlitches(std::span<const Glitch> glitches) {
+  GlitchCount count;
+  for (std::size_t i = 0; i < glitches.size(); ++i) {
+    if (glitches[i] == Glitch::kNone) continue;
+    if (count.total() < GlitchCount::kMostExamples) count.examples[count.total()] = i;
+    if (glitches[i] == Glitch::kSpike) ++count.spikes;
+    if (glitches[i] == Glitch::kDropout) ++count.dropouts;
+    if (glitches[i] == Glitch::kHeld) ++count.held;
+  }
+  return count;
+}
+
+}  // namespace mindahl::loop

@@ -1,0 +1,304 @@
+#include "mindahl/loop/facts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <memory_resource>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+#include "support/histories.h"
+#include "support/measured.h"
+
+// What a record says before any model is asked, on loops whose facts are known in closed form.
+namespace mindahl::loop {
+namespace {
+
+using testing::Generator;
+using testing::Normal;
+
+/// Rounding of sums of a few hundred terms.
+constexpr double kRounding = 1e-10;
+
+/// A stick of stiffness σ that slips at Tc, the displacement a triangle about a centre: a
+/// parallelogram with its corners on samples.
+struct Parallelogram {
+  double stiffness = 20.0;   // [N/m]
+  double slip_force = 2.0;   // [N]
+  double centre = 0.0;       // [m]
+  double offset = 0.0;       // [N]
+  double normal_load = 0.0;  // [N]; 0 where it is not known
+  double curvature = 0.0;    // [N/m²] of a force in both strokes, about the centre
+  double growth = 0.0;       // of the slip force, a cycle
+  std::vector<double> amplitudes = {1.0, 1.0, 1.0, 1.0, 1.0};  // [m] of each cycle
+};
+
+constexpr std::size_t kStroke = 400;  // samples
+
+Record MakeRecord(const Parallelogram& loop) {
+  Record record;
+  double force = 0.0;
+  double last = 0.0;
+  const auto go = [&](double to, double slip_force) {
+    const double from = last;
+    for (std::size_t i = 1; i <= kStroke; ++i) {
+      const double x = from + (to - from) * static_cast<double>(i) / kStroke;
+      force = std::clamp(force + loop.stiffness * (x - last), -slip_force, slip_force);
+      last = x;
+      record.displacement.push_back(loop.centre + x);
+      record.force.push_back(loop.offset + force + loop.curvature * x * x);
+      if (loop.normal_load > 0) record.normal_load.push_back(loop.normal_load);
+    }
+  };
+  double slip_force = loop.slip_force;
+  go(-loop.amplitudes.front(), slip_force);
+  for (const double amplitude : loop.amplitudes) {
+    go(amplitude, slip_force);
+    go(-amplitude, slip_force);
+    slip_force += loop.growth * loop.slip_force;
+  }
+  return record;
+}
+
+LoopFacts FactsOf(const Record& record, int force_sense = 1) {
+  return MeasureFacts(record, FindReversals(record.displacement, 0.0), force_sense);
+}
+
+TEST(MeasureFacts, OfAParallelogramAreThoseOfItsStickAndSlip) {
+  const Parallelogram loop{.centre = -11.0, .offset = 7.0, .normal_load = 5.0};
+  const LoopFacts facts = FactsOf(MakeRecord(loop));
+  ASSERT_TRUE(facts.closed);
+  ASSERT_EQ(facts.cycles.size(), 5U);
+  EXPECT_EQ(facts.steady_cycles, 5U);
+  EXPECT_EQ(facts.cycles[1].start, 3 * kStroke - 1);
+  EXPECT_NEAR(facts.amplitude, 1.0, kRounding);
+  EXPECT_NEAR(facts.peak_force, 2.0, kRounding);
+  EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
+  EXPECT_NEAR(*facts.half_gap_standard_deviation, 0.0, kRounding);
+  EXPECT_NEAR(facts.cycles[0].centre_force, 7.0, kRounding);
+  // The stick takes Tc/σ to mid-force, twice that to the plateau.
+  const double sliding = 1.0 - 0.1;
+  EXPECT_NEAR(*facts.sliding_amplitude, sliding, kRounding);
+  EXPECT_NEAR(facts.energy_per_cycle, 4 * 2.0 * sliding, kRounding);
+  EXPECT_NEAR(facts.energy_ratio, sliding, kRounding);
+  EXPECT_NEAR(*facts.slope_after_reversal, 20.0, kRounding);
+  EXPECT_NEAR(*facts.plateau_slope, 0.0, kRounding);
+  EXPECT_NEAR(*facts.asymmetry, 0.0, kRounding);
+  EXPECT_NEAR(facts.path_ratio, 1.0, kRounding);
+  // Whatever the stiffness: of a rectangle with the same plateau it is the same.
+  EXPECT_NEAR(*facts.energy_friction_coefficient, 2.0 / 5.0, kRounding);
+}
+
+TEST(MeasureFacts, AreInTheDisplacementsSense) {
+  const Parallelogram loop{.offset = 7.0};
+  Record opposite = MakeRecord(loop);
+  for (double& force : opposite.force) force = -force;
+  const LoopFacts facts = FactsOf(opposite, -1);
+  EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
+  EXPECT_NEAR(facts.energy_per_cycle, 4 * 2.0 * 0.9, kRounding);
+  EXPECT_NEAR(*facts.slope_after_reversal, 20.0, kRounding);
+  EXPECT_NEAR(facts.cycles[0].centre_force, 7.0, kRounding);
+}
+
+TEST(MeasureFacts, OfAnEllipseAreThoseOfItsMiddleThird) {
+  // The strokes are T*(± sin φ √(1 − u²)) about the slope: the median part of five lies at
+  // 1/15 < |u| < 1/5.
+  constexpr double kLag = 0.4;
+  constexpr int kCycle = 4000;  // samples: chords are short of the arc by (2π/4000)²/8 = 3e-7
+  Record record;
+  for (int i = 0; i <= 4 * kCycle; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCycle;
+    record.displacement.push_back(3 + 2 * std::sin(angle));
+    record.force.push_back(10 * std::sin(angle + kLag));
+  }
+  const auto integral = [](double u) { return (u * std::sqrt(1 - u * u) + std::asin(u)) / 2; };
+  const double mean = (integral(0.2) - integral(1.0 / 15)) / (0.2 - 1.0 / 15);
+  const LoopFacts facts = FactsOf(record);
+  EXPECT_NEAR(*facts.half_gap, 10 * std::sin(kLag) * mean, 1e-5);
+  EXPECT_NEAR(facts.energy_per_cycle, std::numbers::pi * 2 * 10 * std::sin(kLag), 1e-4);
+  EXPECT_NEAR(*facts.asymmetry, 0.0, 1e-6);
+}
+
+TEST(MeasureFacts, MeansAreOfTheWidestCyclesAlone) {
+  const Parallelogram loop{.amplitudes = {0.5, 1.0, 1.0, 0.3, 0.3, 0.3}};
+  const LoopFacts facts = FactsOf(MakeRecord(loop));
+  // Between amplitudes a cycle has strokes of two widths and is neither.
+  EXPECT_EQ(facts.cycles.size(), 5U);  // the last stroke of all ends nowhere
+  EXPECT_EQ(facts.steady_cycles, 1U);
+  EXPECT_NEAR(facts.amplitude, 1.0, kRounding);
+  EXPECT_NEAR(facts.energy_per_cycle, 4 * 2.0 * 0.9, kRounding);
+  EXPECT_FALSE(facts.half_gap_standard_deviation);
+  EXPECT_FALSE(facts.half_gap_trend);
+}
+
+TEST(MeasureFacts, AsymmetryIsHowMuchTheStrokesDifferTurnedAboutTheCentre) {
+  // A force aδ² in both strokes: of the turned strokes it is the mean that differs.
+  constexpr double kCurvature = 0.3;
+  constexpr std::size_t kParts = 10;
+  const LoopFacts facts = FactsOf(MakeRecord({.curvature = kCurvature}));
+  std::array<double, kParts> squares{};
+  double mean = 0.0;
+  for (std::size_t j = 0; j < kParts; ++j) {
+    const double from = 0.95 * (2.0 * static_cast<double>(j) / kParts - 1);
+    const double to = from + 0.95 * 2.0 / kParts;
+    squares[j] = (to * to * to - from * from * from) / (3 * (to - from));
+    mean += squares[j] / kParts;
+  }
+  double variance = 0.0;
+  for (const double square : squares) variance += (square - mean) * (square - mean) / (kParts - 1);
+  // A chord of 1/200 m lies above the parabola by a/6 of its square at most.
+  constexpr double kChord = kCurvature / 200 / 200;
+  EXPECT_NEAR(*facts.asymmetry * facts.peak_force, kCurvature * std::sqrt(variance), kChord);
+}
+
+TEST(MeasureFacts, ASlopeOfBothStrokesIsNoAsymmetryAndTellsInThePlateau) {
+  constexpr double kSlope = -0.6;  // [N/m]
+  Record record = MakeRecord({});
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] += kSlope * record.displacement[i];
+  }
+  const LoopFacts facts = FactsOf(record);
+  EXPECT_NEAR(*facts.asymmetry, 0.0, kRounding);
+  EXPECT_NEAR(*facts.plateau_slope, kSlope, kRounding);
+  EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
+}
+
+TEST(MeasureFacts, ATrendIsFoundWhereThereIsOne) {
+  Generator generator(1);
+  Record record = MakeRecord({.growth = 0.02, .amplitudes = std::vector<double>(10, 1.0)});
+  for (double& force : record.force) force += 0.02 * Normal(generator);
+  const LoopFacts facts = FactsOf(record);
+  ASSERT_TRUE(facts.half_gap_trend && facts.energy_trend);
+  EXPECT_NEAR(facts.half_gap_trend->slope, 0.04, 4 * facts.half_gap_trend->standard_error);
+  EXPECT_LT(facts.half_gap_trend->p_value, 1e-6);
+  EXPECT_LT(facts.energy_trend->p_value, 1e-6);
+}
+
+TEST(MeasureFacts, ATrendIsFoundByChanceAsOftenAsItsProbabilitySays) {
+  // Of 400 records one in twenty, ±4 standard deviations of a binomial.
+  constexpr int kRecords = 400;
+  constexpr double kLevel = 0.05;
+  Generator generator(2);
+  int found = 0;
+  for (int i = 0; i < kRecords; ++i) {
+    Record record = MakeRecord({.amplitudes = std::vector<double>(6, 1.0)});
+    for (double& force : record.force) force += 0.05 * Normal(generator);
+    found += FactsOf(record).half_gap_trend->p_value < kLevel ? 1 : 0;
+  }
+  EXPECT_NEAR(found, kLevel * kRecords, 4 * std::sqrt(kLevel * (1 - kLevel) * kRecords));
+}
+
+TEST(MeasureFacts, HiddenReversalsLengthenThePath) {
+  Generator generator(3);
+  Record record = MakeRecord({});
+  for (double& x : record.displacement) x += 0.01 * Normal(generator);
+  const LoopFacts facts = MeasureFacts(record, FindReversals(record.displacement, 0.2), 1);
+  // Steps of N(0.005, 0.01√2): their mean size is 0.0145·√(2/π)·(1 + …) = 0.0120 for 0.005.
+  EXPECT_NEAR(facts.path_ratio, 2.4, 0.2);
+  EXPECT_NEAR(*facts.half_gap, 2.0, 0.02);
+}
+
+TEST(MeasureFacts, OfFewSamplesACycleComeFromLinesBetweenThem) {
+  Record record;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 2 * std::numbers::pi * i / 8;
+    record.displacement.push_back(std::sin(angle));
+    record.force.push_back(std::cos(angle) > 1e-9 || std::sin(angle) > 0.99 ? 1.0 : -1.0);
+  }
+  const LoopFacts facts = FactsOf(record);
+  ASSERT_TRUE(facts.closed);
+  EXPECT_NEAR(*facts.half_gap, 1.0, kRounding);
+  EXPECT_TRUE(facts.slope_after_reversal.has_value());
+  EXPECT_NEAR(*facts.plateau_slope, 0.0, kRounding);
+}
+
+TEST(MeasureFacts, ARecordThatClosesNoCycleSaysSo) {
+  const LoopFacts facts = FactsOf(Record{{0, 1, 2, 3}, {0, 1, 2, 2}, {}, {}});
+  EXPECT_FALSE(facts.closed);
+  EXPECT_TRUE(facts.cycles.empty());
+  EXPECT_FALSE(facts.half_gap);
+}
+
+TEST(MeasureFacts, RejectsWhatIsNoRecordAndNoSense) {
+  EXPECT_THROW(FactsOf(Record{}), InvalidArgument);
+  EXPECT_THROW(FactsOf(Record{{1, 2}, {1}, {}, {}}), InvalidArgument);
+  EXPECT_THROW(FactsOf(MakeRecord({}), 0), InvalidArgument);
+}
+
+LoopFacts FactsOfPrepared(const Record& record) {
+  const std::vector<RecordView> views = {record};
+  const PreparedRecords prepared = Prepare(views, {}, std::pmr::get_default_resource());
+  return MeasureFacts(prepared.records[0], prepared.force_sense);
+}
+
+TEST(MeasureFacts, OfAPreparedRecordAreWithoutItsGlitches) {
+  Record record = MakeRecord({.offset = 3.0});
+  record.displacement[1000] = 50;
+  record.force[1500] = -80;
+  const LoopFacts facts = FactsOfPrepared(record);
+  EXPECT_NEAR(*facts.half_gap, 2.0, kRounding);
+  EXPECT_NEAR(facts.energy_per_cycle, 4 * 2.0 * 0.9, kRounding);
+  EXPECT_NEAR(facts.path_ratio, 1.0, kRounding);
+}
+
+// Reference values are those of the measured records' README, read off the loops by others.
+TEST(MeasureFacts, OfMeasuredSealsAreWhatOthersReadOff) {
+  constexpr double kRead = 0.2;  // [N]
+  struct Seal {
+    const char* name;
+    double half_gap;  // [N]
+  };
+  for (const Seal& seal :
+       {Seal{"O-ring257_3bar", 8.5}, Seal{"NAP310_5bar", 7.2}, Seal{"Circle_1bar", 5.6},
+        Seal{"Circle_2bar", 9.3}, Seal{"KDN_5bar", 8.15}, Seal{"Stadium_1bar", 6.85}}) {
+    SCOPED_TRACE(seal.name);
+    const std::string file = "seals/" + std::string(seal.name) + ".csv";
+    const auto rows = testing::ReadMeasured(file, '\t');
+    if (!rows) GTEST_SKIP() << "no " << testing::MeasuredPath(file);
+    Record record;
+    record.displacement = testing::Column(*rows, 4);  // mm
+    record.force = testing::Column(*rows, 6);
+    const LoopFacts facts = FactsOfPrepared(record);
+    EXPECT_NEAR(*facts.half_gap, seal.half_gap, kRead);
+    EXPECT_EQ(facts.cycles.size(), 9U);
+    EXPECT_LT(facts.path_ratio, 1.1);
+  }
+}
+
+TEST(MeasureFacts, OfTheMeasuredSealThatRanInShowAHalfGapThatGrew) {
+  const std::string file = "seals/rerun_2_O-ring257_5bar.csv";
+  const auto rows = testing::ReadMeasured(file, '\t');
+  if (!rows) GTEST_SKIP() << "no " << testing::MeasuredPath(file);
+  Record record;
+  record.displacement = testing::Column(*rows, 4);
+  record.force = testing::Column(*rows, 6);
+  const LoopFacts facts = FactsOfPrepared(record);
+  EXPECT_LT(facts.half_gap_trend->p_value, 1e-4);
+  EXPECT_NEAR(facts.half_gap_trend->slope, (9.5 - 7.8) / 9, 0.05);  // [N a cycle]
+}
+
+TEST(MeasureFacts, OfTheMeasuredTribometerAreItsEnergyAndFriction) {
+  const std::string file = "tribometer/test_data_2.txt";
+  const auto rows = testing::ReadMeasured(file, '\t');
+  if (!rows) GTEST_SKIP() << "no " << testing::MeasuredPath(file);
+  Record record;
+  for (const auto& row : *rows) {
+    if (row[0] < 20 || row[0] > 60) continue;
+    record.normal_load.push_back(1e-6 * row[1]);
+    record.displacement.push_back(1e-3 * row[2]);
+    record.force.push_back(1e-6 * row[3]);
+  }
+  const LoopFacts facts = FactsOfPrepared(record);
+  EXPECT_NEAR(facts.energy_per_cycle, 516e-6, 9e-6);
+  EXPECT_NEAR(*facts.energy_friction_coefficient, 0.47, 0.03);
+  EXPECT_EQ(facts.cycles.size(), 10U);
+}
+
+}  // namespace
+}  // namespace mindahl::loop

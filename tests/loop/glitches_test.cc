@@ -1,0 +1,457 @@
+#include "mindahl/loop/glitches.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory_resource>
+#include <numbers>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "loop/mending.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+#include "support/histories.h"
+#include "support/measured.h"
+
+// Samples that no contact and no drive has made, and those that some contact or drive has.
+namespace mindahl::loop {
+namespace {
+
+using testing::Generator;
+using testing::History;
+using testing::LogUniform;
+using testing::Normal;
+using testing::Uniform;
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+
+History Sine(double cycles, double samples_per_cycle, double phase = 0.0) {
+  History history;
+  for (double i = 0; i <= cycles * samples_per_cycle; ++i) {
+    history.push_back(std::sin(phase + kTwoPi * i / samples_per_cycle));
+  }
+  return history;
+}
+
+History Triangle(double cycles, double samples_per_cycle) {
+  History history = Sine(cycles, samples_per_cycle);
+  for (double& displacement : history)
+    displacement = 2 / std::numbers::pi * std::asin(displacement);
+  return history;
+}
+
+History Resting(const History& history, std::size_t samples) {
+  const std::vector<std::size_t> turns = FindReversals(history, 0.0);
+  History resting;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    const bool turns_here = next < turns.size() && turns[next] == i;
+    resting.insert(resting.end(), turns_here ? 1 + samples : 1, history[i]);
+    next += turns_here ? 1 : 0;
+  }
+  return resting;
+}
+
+/// A contact that slips at a force of 1, of a stiffness that makes it slip soon or never.
+Record Respond(Generator& generator, const History& displacement) {
+  const std::vector<std::pair<const char*, double>> laws = {
+      {"mindlin", 1.0 / 3}, {"jenkins", 0.0}, {"mindlin-dahl", Uniform(generator, 0.05, 3)}};
+  const auto& [name, shape] = laws[generator() % laws.size()];
+  const models::BranchLaw law{LogUniform(generator, 0.3, 300), shape, 1.0};
+  Record record;
+  record.displacement = displacement;
+  record.force = testing::Respond(testing::Model(name), law, displacement);
+  return record;
+}
+
+void AddNoise(Generator& generator, History& values, double deviation) {
+  for (double& value : values) value += deviation * Normal(generator);
+}
+
+void Count(History& values, double step) {
+  for (double& value : values) value = step * std::round(value / step);
+}
+
+GlitchCount CountIn(const Record& record) { return CountGlitches(FindGlitches(record)); }
+
+/// Between one and so many.
+double Cycles(Generator& generator, std::size_t most) {
+  return static_cast<double>(1 + generator() % most);
+}
+
+struct CleanKind {
+  const char* name;
+  std::function<Record(Generator&)> make;
+};
+
+const std::vector<CleanKind>& CleanKinds() {
+  static const std::vector<CleanKind> kinds = {
+      {"Sine",
+       [](Generator& g) { return Respond(g, Sine(Cycles(g, 20), LogUniform(g, 20, 2000))); }},
+      {"FewSamplesACycle",
+       [](Generator& g) { return Respond(g, Sine(Cycles(g, 50), Uniform(g, 5, 10), 0.3)); }},
+      {"Triangle",
+       [](Generator& g) { return Respond(g, Triangle(Cycles(g, 20), LogUniform(g, 5, 2000))); }},
+      {"Noise",
+       [](Generator& g) {
+         Record record = Respond(g, Sine(Cycles(g, 20), LogUniform(g, 10, 1000)));
+         AddNoise(g, record.displacement, LogUniform(g, 1e-5, 3e-2));
+         AddNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
+         return record;
+       }},
+      {"Encoders",
+       [](Generator& g) {
+         Record record = Respond(g, Sine(Cycles(g, 20), LogUniform(g, 10, 3000)));
+         const double step = LogUniform(g, 1e-4, 5e-2);
+         AddNoise(g, record.displacement, (g() % 2 == 0 ? 0.0 : 0.3) * step);
+         Count(record.displacement, step);
+         Count(record.force, LogUniform(g, 1e-4, 0.1));
+         return record;
+       }},
+      {"Rests",
+       [](Generator& g) {
+         Record record = Respond(g, Resting(Sine(3, LogUniform(g, 8, 1000)), 1 + g() % 100));
+         if (g() % 2 == 0) AddNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
+         return record;
+       }},
+      {"AnyHistory", [](Generator& g) { return Respond(g, testing::RandomHistory(g)); }},
+      {"SquareWaves",
+       [](Generator& g) {
+         History history;
+         const std::size_t half = 1 + g() % 40;
+         for (std::size_t i = 0; i < 10 * half; ++i) {
+           history.push_back(i / half % 2 == 0 ? -1.0 : 1.0);
+         }
+         Record record = Respond(g, history);
+         if (g() % 2 == 0) AddNoise(g, record.force, LogUniform(g, 1e-5, 0.1));
+         return record;
+       }},
+      {"BeginsAtRestAtZero",
+       [](Generator& g) {
+         History history(g() % 50, 0.0);
+         const History sine = Sine(3, LogUniform(g, 8, 500));
+         history.insert(history.end(), sine.begin(), sine.end());
+         return Respond(g, history);
+       }},
+      {"StickSlip",
+       [](Generator& g) {
+         // The slider holds, encoder and all, and then jumps with the force.
+         Record record;
+         const double stiffness = LogUniform(g, 5, 30);
+         double slider = 0.0;
+         for (const double drive : Triangle(4, LogUniform(g, 400, 4000))) {
+           double force = stiffness * (drive - slider);
+           if (std::abs(force) > 1) slider = drive - std::copysign(0.3 / stiffness, force);
+           force = stiffness * (drive - slider);
+           record.displacement.push_back(slider);
+           record.force.push_back(force);
+         }
+         return record;
+       }},
+  };
+  return kinds;
+}
+
+class CleanRecord : public ::testing::TestWithParam<CleanKind> {};
+
+TEST_P(CleanRecord, HasNoGlitch) {
+  constexpr int kRecords = 200;
+  Generator generator(1);
+  for (int i = 0; i < kRecords; ++i) {
+    const Record record = GetParam().make(generator);
+    ASSERT_TRUE(FindGlitches(record).empty()) << "record " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CleanRecord, ::testing::ValuesIn(CleanKinds()),
+                         [](const auto& param) { return std::string(param.param.name); });
+
+/// Five cycles of 200 samples with gross slip, and noise of 0.3 % in both channels.
+Record Noisy(std::uint64_t seed = 1) {
+  Generator generator(seed);
+  Record record;
+  record.displacement = Sine(5, 200, 0.2);
+  record.force =
+      testing::Respond(testing::Model("mindlin"), {20, 1.0 / 3, 1.0}, record.displacement);
+  AddNoise(generator, record.displacement, 3e-3);
+  AddNoise(generator, record.force, 3e-3);
+  return record;
+}
+
+TEST(FindGlitches, FindsSpikesOfOneToThreeSamplesWhereTheyAre) {
+  for (const std::size_t at : {std::size_t{5}, std::size_t{390}, std::size_t{995}}) {
+    for (std::size_t samples = 1; samples <= 3; ++samples) {
+      for (const double height : {-1.5, 1.5, 1000.0}) {
+        for (History Record::*channel : {&Record::displacement, &Record::force}) {
+          Record record = Noisy();
+          for (std::size_t k = 0; k < samples; ++k) (record.*channel)[at + k] += height;
+          const std::vector<Glitch> glitches = FindGlitches(record);
+          ASSERT_EQ(glitches.size(), record.size()) << at << ' ' << samples << ' ' << height;
+          for (std::size_t i = 0; i < record.size(); ++i) {
+            EXPECT_EQ(glitches[i], i >= at && i < at + samples ? Glitch::kSpike : Glitch::kNone)
+                << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(FindGlitches, FindsSpikesThatHideOneAnother) {
+  // Of 2 % of spikes many lie within the neighbourhood of two others.
+  constexpr double kFound = 0.95;
+  Generator generator(2);
+  Record record = Noisy();
+  std::vector<std::size_t> spikes;
+  for (std::size_t i = 10; i + 10 < record.size(); i += 3 + generator() % 90) {
+    record.force[i] += i % 2 == 0 ? 3.0 : -3.0;
+    spikes.push_back(i);
+  }
+  const std::vector<Glitch> glitches = FindGlitches(record);
+  std::size_t found = 0;
+  for (const std::size_t spike : spikes) found += glitches[spike] == Glitch::kSpike ? 1 : 0;
+  EXPECT_GE(static_cast<double>(found), kFound * static_cast<double>(spikes.size()));
+  EXPECT_LE(CountGlitches(glitches).total(), spikes.size());
+}
+
+TEST(FindGlitches, FindsDropoutsOfAnyLengthAlsoAtTheEnds) {
+  Generator generator(3);
+  Record record = Noisy();
+  for (double& displacement : record.displacement) displacement -= 110;  // far off
+  std::vector<std::size_t> zeros;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (i > 2 && i + 4 < record.size() && generator() % 20 != 0) continue;
+    zeros.push_back(i);
+  }
+  for (const std::size_t i : zeros) record.displacement[i] = record.force[i] = 0.0;
+  const std::vector<Glitch> glitches = FindGlitches(record);
+  const GlitchCount count = CountGlitches(glitches);
+  EXPECT_EQ(count.dropouts, zeros.size());
+  EXPECT_EQ(count.total(), zeros.size());
+  for (const std::size_t i : zeros) EXPECT_EQ(glitches[i], Glitch::kDropout) << i;
+}
+
+TEST(FindGlitches, FindsAlmostAllDropoutsOfALoopAboutZero) {
+  // One that falls on a crossing of both channels harms as little.
+  constexpr double kFound = 0.95;
+  Generator generator(4);
+  for (const double samples : {20.0, 50.0, 1000.0}) {
+    Record record;
+    record.displacement = Sine(10, samples, 0.2);
+    record.force =
+        testing::Respond(testing::Model("mindlin"), {20, 1.0 / 3, 1.0}, record.displacement);
+    std::size_t zeros = 0;
+    for (std::size_t i = 3; i + 3 < record.size(); ++i) {
+      if (generator() % 20 != 0) continue;
+      record.displacement[i] = record.force[i] = 0.0;
+      ++zeros;
+    }
+    EXPECT_GE(static_cast<double>(CountIn(record).dropouts), kFound * static_cast<double>(zeros))
+        << samples;
+  }
+}
+
+TEST(FindGlitches, FindsAChannelThatIsHeldOnItsWay) {
+  // In mid-stroke; where it turns, or on the plateau, a channel that is held reads what it would.
+  for (History Record::*channel : {&Record::displacement, &Record::force}) {
+    Record record = Noisy();
+    // The steepest way of the force is behind the turn at 144, of the displacement at the centre.
+    const std::size_t at = channel == &Record::force ? 146 : 185;
+    for (std::size_t k = 1; k < 12; ++k) (record.*channel)[at + k] = (record.*channel)[at];
+    const std::vector<Glitch> glitches = FindGlitches(record);
+    const GlitchCount count = CountGlitches(glitches);
+    EXPECT_EQ(count.held, 11U);
+    EXPECT_EQ(count.total(), 11U);
+    EXPECT_EQ(count.examples[0], at + 1);  // the first of the readings is a good one
+  }
+}
+
+TEST(FindGlitches, TakesNothingForAGlitchThatMakesUpAQuarterOfTheRecord) {
+  const auto with_zeros = [](std::size_t every) {
+    Record record = Noisy();
+    for (std::size_t i = 1; i + 1 < record.size(); i += every) {
+      record.displacement[i] = record.force[i] = 0.0;
+    }
+    return CountIn(record).dropouts;
+  };
+  EXPECT_EQ(with_zeros(3), 0U);
+  EXPECT_GT(with_zeros(5), 150U);
+}
+
+TEST(FindGlitches, NamesTheFirstFew) {
+  Record record = Noisy();
+  for (std::size_t k = 0; k < 7; ++k) record.force[100 + 60 * k] += 5;
+  const GlitchCount count = CountIn(record);
+  EXPECT_EQ(count.spikes, 7U);
+  EXPECT_EQ(count.examples, (std::array<std::size_t, 5>{100, 160, 220, 280, 340}));
+}
+
+TEST(FindGlitches, RejectsWhatIsNoRecord) {
+  EXPECT_THROW(FindGlitches(Record{{1, 2}, {1}, {}, {}}), InvalidArgument);
+  EXPECT_THROW(FindGlitches(Record{{1, std::nan("")}, {1, 2}, {}, {}}), InvalidArgument);
+  EXPECT_TRUE(FindGlitches(Record{}).empty());
+  EXPECT_TRUE(FindGlitches(Record{{0, 0}, {0, 0}, {}, {}}).empty());
+}
+
+TEST(FindAndMend, PutsALineInTheChannelsThatHaveGlitches) {
+  Record record = Noisy();
+  record.force[300] = 50;
+  record.force[301] = 51;
+  const Mended mended = FindAndMend(record, {}, std::pmr::get_default_resource());
+  EXPECT_TRUE(mended.displacement.empty());
+  ASSERT_EQ(mended.force.size(), record.size());
+  const double rise = record.force[302] - record.force[299];
+  EXPECT_DOUBLE_EQ(mended.force[300], record.force[299] + rise / 3);
+  EXPECT_DOUBLE_EQ(mended.force[301], record.force[299] + 2 * rise / 3);
+  EXPECT_EQ(mended.force[302], record.force[302]);
+}
+
+TEST(FindGlitches, MeasuredRecordsHaveHardlyAny) {
+  // The laser of some seals steps back for a sample or three, which is a spike; in 10⁵ rows of ten
+  // records there is nothing else.
+  std::size_t spikes = 0;
+  for (const char* seal : {"Circle_2bar", "KDN_5bar", "NAP310_5bar", "Stadium_1bar"}) {
+    const std::string file = "seals/" + std::string(seal) + ".csv";
+    const auto rows = testing::ReadMeasured(file, '\t');
+    if (!rows) GTEST_SKIP() << "no " << testing::MeasuredPath(file);
+    Record record;
+    record.displacement = testing::Column(*rows, 4);
+    record.force = testing::Column(*rows, 6);
+    const GlitchCount count = CountIn(record);
+    EXPECT_EQ(count.total(), count.spikes) << seal;
+    spikes += count.spikes;
+  }
+  EXPECT_LE(spikes, 20U);
+}
+
+/// Each rule at its value, and what comes out at half and at twice.
+struct Rule {
+  const char* name;
+  std::function<void(GlitchRules&, double)> scale;
+  std::function<bool(const GlitchRules&)> holds;
+};
+
+bool HasGlitch(const Record& record, const GlitchRules& rules) {
+  return !FindAndMend(record, rules, std::pmr::get_default_resource()).glitches.empty();
+}
+
+/// A triangle in steps of 1 and −1 with a force that follows it.
+Record Steps(std::size_t samples, std::size_t stroke = 100) {
+  Record record;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const auto at = static_cast<double>(i % (2 * stroke));
+    const auto turn = static_cast<double>(stroke);
+    record.displacement.push_back(7 + (at < turn ? at : 2 * turn - at));
+    record.force.push_back(5 + 2 * record.displacement.back());
+  }
+  return record;
+}
+
+bool HasSpike(const GlitchRules& rules, double height, std::size_t samples, std::size_t size,
+              std::size_t at) {
+  Record record = Steps(size);
+  for (std::size_t k = 0; k < samples; ++k) record.displacement[at + k] += height;
+  return HasGlitch(record, rules);
+}
+
+bool HasDropoutAt(const GlitchRules& rules, double level, std::size_t at) {
+  Record record = Steps(90);
+  const double shift = level - record.displacement[at];
+  for (double& displacement : record.displacement) displacement += shift;
+  for (double& force : record.force) force = 0.01 * (force - record.force[at]);
+  const std::size_t row = at == 0 ? 0 : at + 1;  // its neighbours are at `level` and beyond
+  record.displacement[row] = record.force[row] = 0.0;
+  return HasGlitch(record, rules);
+}
+
+bool HasHeld(const GlitchRules& rules, std::size_t equal, double jump) {
+  Record record = Steps(90);
+  for (std::size_t k = 1; k < equal; ++k) record.displacement[40 + k] = record.displacement[40];
+  const double shift = record.displacement[40] + jump - record.displacement[40 + equal];
+  for (std::size_t i = 40 + equal; i < record.size(); ++i) record.displacement[i] += shift;
+  return HasGlitch(record, rules);
+}
+
+const std::vector<Rule>& Rules() {
+  const auto scaled = [](auto member) {
+    return [member](GlitchRules& rules, double factor) {
+      using Value = std::remove_reference_t<decltype(rules.*member)>;
+      rules.*member = static_cast<Value>(factor * static_cast<double>(rules.*member));
+    };
+  };
+  static const std::vector<Rule> list = {
+      // Over the farther neighbour, which is a step higher.
+      {"spike", scaled(&GlitchRules::spike),
+       [](const GlitchRules& rules) {
+         return HasSpike(rules, 3.5 + 1, 1, 90, 40) && !HasSpike(rules, 2.5 + 1, 1, 90, 40);
+       }},
+      {"longest_spike", scaled(&GlitchRules::longest_spike),
+       [](const GlitchRules& rules) {
+         return HasSpike(rules, 50, 3, 90, 40) && !HasSpike(rules, 50, 4, 90, 40);
+       }},
+      // The first of five square pulses of two samples, so many samples apart, is one of a kind
+      // where two others are near.
+      {"about", scaled(&GlitchRules::about),
+       [](const GlitchRules& rules) {
+         const auto has = [&](std::size_t apart) {
+           Record record = Steps(900);
+           for (std::size_t pulse = 0; pulse < 5; ++pulse) {
+             record.displacement[200 + pulse * apart] += 50;
+             record.displacement[201 + pulse * apart] += 50;
+           }
+           const Mended mended = FindAndMend(record, rules, std::pmr::get_default_resource());
+           return !mended.glitches.empty() && mended.glitches[200] != Glitch::kNone;
+         };
+         return !has(5) && has(9);
+       }},
+      {"dropout", scaled(&GlitchRules::dropout),
+       [](const GlitchRules& rules) {
+         return HasDropoutAt(rules, 2.5, 20) && !HasDropoutAt(rules, 1.5, 20);
+       }},
+      {"end_dropout", scaled(&GlitchRules::end_dropout),
+       [](const GlitchRules& rules) {
+         return HasDropoutAt(rules, 4.5, 0) && !HasDropoutAt(rules, 2.5, 0);
+       }},
+      {"shortest_held", scaled(&GlitchRules::shortest_held),
+       [](const GlitchRules& rules) { return HasHeld(rules, 5, 5) && !HasHeld(rules, 4, 5); }},
+      {"held_jump", scaled(&GlitchRules::held_jump),
+       [](const GlitchRules& rules) {
+         return HasHeld(rules, 10, 3.5) && !HasHeld(rules, 10, 2.5);
+       }},
+      {"most", scaled(&GlitchRules::most),
+       [](const GlitchRules& rules) {
+         const auto has = [&](std::size_t every) {
+           Record record = Steps(900);
+           for (std::size_t i = 1; i < record.size(); i += every) {
+             record.displacement[i] = record.force[i] = 0.0;
+           }
+           return HasGlitch(record, rules);
+         };
+         return has(5) && !has(3);
+       }},
+  };
+  return list;
+}
+
+class GlitchRule : public ::testing::TestWithParam<Rule> {};
+
+TEST_P(GlitchRule, HoldsAtItsValueAndNeitherAtTwiceNorAtHalf) {
+  EXPECT_TRUE(GetParam().holds({}));
+  for (const double factor : {0.5, 2.0}) {
+    GlitchRules rules;
+    GetParam().scale(rules, factor);
+    EXPECT_FALSE(GetParam().holds(rules)) << "at " << factor << " times the value";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GlitchRule, ::testing::ValuesIn(Rules()),
+                         [](const auto& param) { return std::string(param.param.name); });
+
+}  // namespace
+}  // namespace mindahl::loop
