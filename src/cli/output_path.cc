@@ -73,9 +73,9 @@ void RequireDistinctFiles(std::span<const std::string> files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       if (!IsSameFile(files[i], files[k])) continue;
-      throw InputError(fmt::format(
-          "'{}' and '{}' are one file, whose samples would count twice: give it once", files[k],
-          files[i]));
+      throw InputError(
+          fmt::format("'{}' and '{}' are one file, whose samples would count twice: give it once",
+                      files[k], files[i]));
     }
   }
 }

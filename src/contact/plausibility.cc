@@ -9,9 +9,9 @@
 namespace mindahl::contact {
 namespace {
 
-constexpr double kSoftestModulus = 1e6;      // [Pa]
-constexpr double kLargestCompliance = 1.0;   // [1/Pa]
-constexpr double kLargestFriction = 5.0;     // [-]
+constexpr double kSoftestModulus = 1e6;     // [Pa]
+constexpr double kLargestCompliance = 1.0;  // [1/Pa]
+constexpr double kLargestFriction = 5.0;    // [-]
 constexpr double kLargestRadiusShare = 1.0 / 3.0;
 
 double SmallestRadius(const KnownContact& known) {

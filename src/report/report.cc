@@ -34,6 +34,7 @@ void Require(const ReportInput& input) {
 
 std::vector<Warning> FitWarnings(const identification::FitResult& fit, const Units& units) {
   std::vector<Warning> warnings;
+  warnings.reserve(fit.findings.size());
   for (const identification::Finding& finding : fit.findings) {
     warnings.push_back({std::string(finding.code), Sentence(finding, fit, units)});
   }

@@ -58,9 +58,8 @@ TEST_F(Outputs, AreNotWrittenOverTheRecordUnderAnyName) {
 TEST_F(Outputs, AreNotWrittenOverThePathOrTheConfiguration) {
   const std::string path = directory_.Write("path.csv", "x [m]\n0\n1e-6\n0\n").string();
   const Words law = {"--sigma", "4e7", "--slip-force", "40", "--path", path};
-  for (const Words& words : std::vector<Words>{{"simulate", "-o", path},
-                                               {"recommend", "--json", path},
-                                               {"tradeoff", "--csv", path}}) {
+  for (const Words& words : std::vector<Words>{
+           {"simulate", "-o", path}, {"recommend", "--json", path}, {"tradeoff", "--csv", path}}) {
     Words all = words;
     all.insert(all.end(), law.begin(), law.end());
     ExpectRefused(all, "which it would replace");

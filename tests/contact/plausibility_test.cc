@@ -14,8 +14,8 @@ using ::testing::IsEmpty;
 
 const KnownBody kSteelSphere{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.05};
 const KnownBody kSteelPlane{.youngs_modulus = 210e9,
-                                .poisson_ratio = 0.3,
-                                .radius = std::numeric_limits<double>::infinity()};
+                            .poisson_ratio = 0.3,
+                            .radius = std::numeric_limits<double>::infinity()};
 
 KnownContact SteelContact() {
   return {.normal_load = 50, .body_1 = kSteelSphere, .body_2 = kSteelPlane};

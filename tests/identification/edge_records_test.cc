@@ -49,8 +49,7 @@ void ExpectNumbersOrNone(const FitResult& fit) {
 }
 
 TEST(EdgeRecords, FiveSamplesOfWhichThreeAreOneUnderEveryLoss) {
-  const Record record =
-      MakeRecord({1, 1.004, 1.004, 1.004, 1.00393}, {-20, -20, -20, -20, 20});
+  const Record record = MakeRecord({1, 1.004, 1.004, 1.004, 1.00393}, {-20, -20, -20, -20, 20});
   for (const Loss loss : {Loss::kNone, Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
     SCOPED_TRACE(static_cast<int>(loss));
     FitOptions options;
