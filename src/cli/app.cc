@@ -4,14 +4,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <exception>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/toml.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 
@@ -27,6 +32,20 @@ bool IsCommand(const CLI::App& app, std::string_view name) {
       Commands(app), [name](const CLI::App* command) { return command->get_name() == name; });
 }
 
+std::string CommandNames(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* command : Commands(app)) {
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  return names;
+}
+
+/// The file named with --config, or "".
+std::string ConfigFile(const CLI::App& app) {
+  const CLI::Option* option = app.get_config_ptr();
+  return option == nullptr || option->count() == 0 ? "" : option->as<std::string>();
+}
+
 /// TOML whose keys belong to the command being run, with or without its name as a section; the
 /// sections of other commands are theirs. A key that is no option is an error: it is a misspelling.
 class CommandConfig : public CLI::ConfigTOML {
@@ -36,22 +55,30 @@ class CommandConfig : public CLI::ConfigTOML {
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> selected;
     const auto running = app_.get_subcommands();
-    for (CLI::ConfigItem& item : CLI::ConfigTOML::from_config(input)) {
-      if (item.name == "++" || item.name == "--" || running.empty()) continue;
-      const CLI::App& command = *running.front();
-      if (item.parents.empty()) item.parents = {command.get_name()};
-      const std::string& section = item.parents.front();
-      if (!IsCommand(app_, section)) {
-        throw InputError(fmt::format("--config: section '{}' is no command of mindahl", section));
+    if (running.empty()) return selected;
+    const CLI::App& command = *running.front();
+    const std::string text{std::istreambuf_iterator<char>(input), {}};
+    const std::string file = ConfigFile(app_);
+    for (TomlItem& item : ReadToml(text, "--config: " + file)) {
+      const std::string section = item.section.empty() ? command.get_name() : item.section;
+      const std::string where = fmt::format("--config: {}:{}", file, item.line);
+      const std::string first = section.substr(0, section.find('.'));
+      if (!IsCommand(app_, first)) {
+        throw InputError(fmt::format("{}: section '{}' is no command of mindahl: must be one of {}",
+                                     where, first, CommandNames(app_)));
       }
-      if (section != command.get_name()) continue;
-      if (item.parents.size() > 1 || command.get_option_no_throw("--" + item.name) == nullptr) {
+      if (first != command.get_name()) continue;
+      if (section != first || command.get_option_no_throw("--" + item.key) == nullptr) {
         throw InputError(
-            fmt::format("--config: '{}' is no option of {}: keys are those of {} "
-                        "--help without the dashes",
-                        item.fullname(), section, section));
+            fmt::format("{}: '{}.{}' is no option of {}: keys are those of {} --help without the "
+                        "dashes",
+                        where, section, item.key, first, first));
       }
-      selected.push_back(std::move(item));
+      if (item.values.empty()) continue;  // an array of nothing asks for nothing
+      CLI::ConfigItem& option = selected.emplace_back();
+      option.parents = {first};
+      option.name = std::move(item.key);
+      option.inputs = std::move(item.values);
     }
     return selected;
   }
@@ -68,14 +95,6 @@ std::optional<std::string> UnknownCommand(const CLI::App& app, int argc, const c
   return argv[1];
 }
 
-std::string CommandNames(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* command : Commands(app)) {
-    names += (names.empty() ? "" : ", ") + command->get_name();
-  }
-  return names;
-}
-
 std::string OneLine(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   for (char& c : text) {
@@ -89,9 +108,23 @@ std::string CommandName(const CLI::App& app) {
   return running.empty() ? "mindahl" : "mindahl " + running.front()->get_name();
 }
 
+/// @returns `status`, or that of an output which cannot be written
+int Print(std::string_view results, const std::string& program, int status, std::ostream& out,
+          std::ostream& err) {
+  errno = 0;
+  out << results << std::flush;
+  if (out) return status;
+  err << fmt::format("{}: cannot write to standard output: {}\n", program,
+                     errno != 0 ? std::strerror(errno) : "it is closed");
+  return kBadInput;
+}
+
 }  // namespace
 
 int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  // Results go out in one piece at the end: of a run that fails nothing is printed, and what a full
+  // disk does not take is noticed.
+  std::ostringstream results;
   CLI::App app{
       "Identifies the friction parameters of a contact from its measured hysteresis loop:\n"
       "tangential displacement and force in; Dahl's stiffness sigma [N/m], shape exponent alpha "
@@ -111,7 +144,8 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
       ->type_name("FILE");
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
-  Console console{out, err};
+  Console console{results, err};
+  app.parse_complete_callback([&] { console.inputs = {ConfigFile(app)}; });
   AddFitCommand(app, console);
   AddSimulateCommand(app, console);
   AddValidateCommand(app, console);
@@ -126,10 +160,10 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   }
   try {
     app.parse(argc, argv);
-    out.flush();
-    return console.exit_status;
+    return Print(results.view(), CommandName(app), console.exit_status, out, err);
   } catch (const CLI::Success& request) {  // --help, --version
-    return app.exit(request, out, err);
+    const int status = app.exit(request, results, err);
+    return Print(results.view(), CommandName(app), status, out, err);
   } catch (const CLI::ParseError& error) {
     err << fmt::format("{}: {}; see {} --help\n", CommandName(app), OneLine(error.what()),
                        CommandName(app));

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <ostream>
+#include <string>
+#include <vector>
 
 namespace mindahl::cli {
 
@@ -9,6 +11,7 @@ struct Console {
   std::ostream& out;  // results
   std::ostream& err;  // messages and progress
   int exit_status = 0;
+  std::vector<std::string> inputs = {};  // files that were read already: the configuration
 };
 
 inline constexpr int kDone = 0;

@@ -25,8 +25,9 @@ struct ContactCommandOptions {
 
 void RunContact(const ContactCommandOptions& options, Console& console) {
   Validate(options.contact);
-  if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
+  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
   const ContactParameters contact = ResolveContact(options.contact);
+  WarnOfDoubts(options.contact, "contact", console);
   if (!options.json_path.empty()) {
     nlohmann::ordered_json json = {{"schema", "mindahl.contact/1"},
                                    {"version", Version()},

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mindahl/contact/plausibility.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
@@ -161,6 +162,15 @@ void Validate(const ContactOptions& options) {
   require_positive("--friction [-]", options.friction_coefficient);
   RequireBody(options.known.body_1, 1);
   RequireBody(options.known.body_2, 2);
+}
+
+void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console) {
+  const std::optional<double> friction =
+      options.friction_coefficient ? std::optional<double>(options.friction_coefficient->value)
+                                   : std::nullopt;
+  for (const std::string& doubt : contact::DoubtsAbout(options.known, friction)) {
+    console.err << fmt::format("mindahl {}: warning: {}\n", command, doubt);
+  }
 }
 
 }  // namespace mindahl::cli

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "cli/app.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 
 namespace mindahl::cli {
@@ -43,5 +44,8 @@ void Validate(const ContactOptions& options);
 /// A value that may be missing, read from one option.
 CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::optional<double>& target,
                          const std::string& description, const std::string& unit);
+
+/// Says on standard error what is hardly meant; `fit` says it with what it identified.
+void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console);
 
 }  // namespace mindahl::cli

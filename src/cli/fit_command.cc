@@ -152,15 +152,41 @@ void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
   }
 }
 
-/// A start or a bound of a term that the fit does not have would be taken without a word.
-void RequireTerm(std::string_view option, std::string_view name, bool is_automatic,
-                 const FitOptions& fit) {
+/// A start or a bound of what the fit does not move would be taken without a word.
+void RequireFitted(std::string_view option, const std::string& name, bool is_automatic,
+                   const FitOptions& fit) {
+  const auto refuse = [&](std::string_view why) {
+    throw InputError(
+        fmt::format("{}: {} is not fitted, so this has no effect: {}", option, name, why));
+  };
+  if (fit.fixed.contains(name)) refuse("it is held at a value that is given; give one of the two");
+  if (name == "alpha" && !is_automatic && fit.model != nullptr && fit.model->shape_exponent) {
+    refuse(fmt::format("--model {} prescribes it; use --model mindlin-dahl", fit.model->name));
+  }
   const Term* term = identification::FindTerm(identification::TermNameOf(name));
-  if (term == nullptr || term->option.empty()) return;
+  if (term == nullptr) return;  // the fit knows all names
+  if (term->presence == identification::Presence::kOffsets && !fit.offsets) {
+    refuse("--offsets off holds it at 0; use --offsets on");
+  }
+  if (term->name == "displacement_offset" && fit.initial_state == models::InitialState::kSteady) {
+    refuse("that of a steady loop is its centre; use --initial-state virgin");
+  }
+  if (term->option.empty()) return;
   const bool is_tried = is_automatic && term->name == "rig_stiffness";
   if (is_tried || std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
-  throw InputError(fmt::format("{}: {} is not fitted, so this has no effect: add {}{}", option,
-                               name, term->option, term->argument.empty() ? "" : " fit"));
+  refuse(fmt::format("add {}{}", term->option, term->argument.empty() ? "" : " fit"));
+}
+
+/// What is held must lie where it is bounded to lie.
+void RequireWithinBounds(const FitOptions& fit) {
+  for (const auto& [name, interval] : fit.bounds) {
+    const auto fixed = fit.fixed.find(name);
+    if (fixed == fit.fixed.end()) continue;
+    if (fixed->second >= interval.lower && fixed->second <= interval.upper) continue;
+    throw InputError(
+        fmt::format("{} is held at {}, outside its --bound {}:{}: change one of the two", name,
+                    fixed->second, interval.lower, interval.upper));
+  }
 }
 
 Loss FindLoss(std::string_view name) {
@@ -205,8 +231,11 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
   fit.start = ParseAssignments(options.start, "--start");
   fit.bounds = ParseBounds(options.bound);
   const bool is_automatic = options.model == kAutomatic;
-  for (const auto& [name, value] : fit.start) RequireTerm("--start", name, is_automatic, fit);
-  for (const auto& [name, interval] : fit.bounds) RequireTerm("--bound", name, is_automatic, fit);
+  RequireWithinBounds(fit);
+  for (const auto& [name, value] : fit.start) RequireFitted("--start", name, is_automatic, fit);
+  for (const auto& [name, interval] : fit.bounds) {
+    RequireFitted("--bound", name, is_automatic, fit);
+  }
   return fit;
 }
 
@@ -224,6 +253,93 @@ std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& co
     }
   }
   return inputs;
+}
+
+/// "file:line:column" of a sample, and of the whole file where the record does not know its lines.
+std::string PlaceOf(const std::string& file, const RecordFile& input,
+                    const io::ChosenColumn& column, std::size_t sample) {
+  if (sample >= input.lines.size()) return fmt::format("{}:{}", file, column.number);
+  return fmt::format("{}:{}:{}", file, input.lines[sample], column.number);
+}
+
+/// Half the range of a column in SI units; refuses what is beyond any unit that is meant.
+double RequireHalfRange(const std::string& file, const RecordFile& input,
+                        const io::ChosenColumn& column, const std::vector<double>& values,
+                        std::string_view what, std::string_view unit) {
+  constexpr double kSmallest = 1e-100;
+  constexpr double kLargest = 1e100;
+  const auto [least, greatest] = std::ranges::minmax_element(values);
+  const double half_range = *greatest / 2 - *least / 2;
+  if (half_range == 0 || (half_range >= kSmallest && half_range <= kLargest)) return half_range;
+  const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
+  throw InputError(
+      fmt::format("{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
+                  "choose other units",
+                  PlaceOf(file, input, column, static_cast<std::size_t>(widest - values.begin())),
+                  what, half_range, unit));
+}
+
+/// Where a whole file is at fault, it is named too, with a line and a column to look at.
+void RequireLoops(const FitCommandOptions& options, const std::vector<RecordFile>& inputs) {
+  bool is_loaded = false;
+  std::size_t samples = 0;
+  for (std::size_t r = 0; r < inputs.size(); ++r) {
+    const RecordFile& input = inputs[r];
+    const Record& record = input.record;
+    const std::string& file = options.files[r];
+    const bool torsional = input.is_torsional;
+    samples += record.size();
+    if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
+                           torsional ? "rad" : "m") > 0)) {
+      throw InputError(fmt::format(
+          "{}: the displacement never changes, it is {} {} in every row: a fit needs a moving "
+          "contact; choose another column with --displacement",
+          PlaceOf(file, input, input.displacement, 0), record.displacement.front(),
+          torsional ? "rad" : "m"));
+    }
+    is_loaded = RequireHalfRange(file, input, input.force, record.force, "force",
+                                 torsional ? "N m" : "N") > 0 ||
+                is_loaded;
+  }
+  const RecordFile& first = inputs.front();
+  if (!is_loaded) {
+    throw InputError(fmt::format(
+        "{}: the force never changes, it is {} {} in every row: a fit needs a loaded contact; "
+        "choose another column with --force",
+        PlaceOf(options.files.front(), first, first.force, 0), first.record.force.front(),
+        first.is_torsional ? "N m" : "N"));
+  }
+  constexpr std::size_t kLeast = 3;  // as many as the law has parameters
+  if (samples < kLeast && options.fix.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} samples are too few: a fit needs more than it has free parameters; record more",
+        PlaceOf(options.files.back(), inputs.back(), inputs.back().force,
+                inputs.back().record.size() - 1),
+        samples));
+  }
+}
+
+/// A unit of what no file has would be taken without a word; and a joint fit is of one kind.
+void RequireColumns(const FitCommandOptions& options, const std::vector<RecordFile>& inputs) {
+  const auto require = [&](std::string_view option, const io::ColumnChoice& choice,
+                           std::string_view column_option, std::string_view what,
+                           std::optional<io::ChosenColumn> RecordFile::*column) {
+    const bool is_there = std::ranges::any_of(
+        inputs, [column](const RecordFile& input) { return (input.*column).has_value(); });
+    if (choice.unit.empty() || is_there) return;
+    throw InputError(
+        fmt::format("{} {}: {} has no column of the {}, so this has no effect: name it with {}",
+                    option, choice.unit, options.files.front(), what, column_option));
+  };
+  require("--time-unit", options.columns.time, "--time", "time", &RecordFile::time);
+  require("--normal-load-unit", options.columns.normal_load, "--normal-load-column", "normal load",
+          &RecordFile::normal_load);
+  for (std::size_t r = 1; r < inputs.size(); ++r) {
+    if (inputs[r].is_torsional == inputs.front().is_torsional) continue;
+    throw InputError(fmt::format("{} holds a force and {} a torque: fit them apart",
+                                 options.files[inputs[r].is_torsional ? 0 : r],
+                                 options.files[inputs[r].is_torsional ? r : 0]));
+  }
 }
 
 /// What needs a load column must have one, and a window some samples, before the fit says so in its
@@ -282,6 +398,10 @@ void Write(const FitCommandOptions& options, const report::Report& report, Conso
     if (warning.code == "fit_failed") continue;  // an error, below
     console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
   }
+  for (const report::Warning& warning : report.contact_warnings) {
+    if (warning.code != "contact_implausible") continue;  // the others are in the text
+    console.err << fmt::format("mindahl fit: warning: {}\n", warning.message);
+  }
   if (report.failed()) {  // no curve to draw, no residual to list
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.termination);
     if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
@@ -298,11 +418,22 @@ void Write(const FitCommandOptions& options, const report::Report& report, Conso
 
 void RunFit(FitCommandOptions options, Console& console) {
   Validate(options.contact);
-  if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
-  if (!options.residuals_path.empty()) RequireOutputPath("--residuals", options.residuals_path);
-  if (!options.plot_path.empty()) RequireOutputPath("--plot", options.plot_path);
+  RequireDistinctFiles(options.files);
+  std::vector<std::string> read = console.inputs;
+  read.insert(read.end(), options.files.begin(), options.files.end());
+  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
+                      {"--residuals", options.residuals_path},
+                      {"--plot", options.plot_path}},
+                     read);
   const FitOptions fit_options = MakeFitOptions(options);
   std::vector<RecordFile> inputs = ReadInputs(options, console);
+  RequireColumns(options, inputs);
+  if (inputs.front().is_torsional && IsAnythingGiven(options.contact)) {
+    throw InputError(
+        "--normal-load and whatever else describes a contact say nothing of a torque against an "
+        "angle: leave them out");
+  }
+  RequireLoops(options, inputs);
   RequireLoads(options, fit_options.preparation.load_window, inputs);
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
@@ -341,11 +472,12 @@ void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {
   column("--time", options.columns.time, "time column; optional");
   column("--normal-load-column", options.columns.normal_load, "normal load column; optional");
   unit("--displacement-unit", options.columns.displacement,
-       "m, mm, um, nm, in; default the header's, else m");
+       "m, mm, um, nm, in; of an angle rad, mrad, deg, rev;\ndefault the header's, else m");
   unit("--force-unit", options.columns.force,
-       "N, mN, uN, kN, MN, lbf, kgf; default the header's, else N");
+       "N, mN, uN, kN, MN, lbf, kgf, kip; of a torque 'N m', 'mN m', 'uN m',\n"
+       "'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
   unit("--time-unit", options.columns.time, "s, ms, us, min; default the header's, else s");
-  unit("--normal-load-unit", options.columns.normal_load, "as --force-unit");
+  unit("--normal-load-unit", options.columns.normal_load, "as --force-unit of a force");
   command.add_option("--time-window", options.time_window, "fit only samples from LO to HI [s]")
       ->type_name("LO:HI")
       ->group(group);

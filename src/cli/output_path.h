@@ -1,30 +1,28 @@
 #pragma once
 
-#include <fmt/format.h>
-
-#include <filesystem>
+#include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
-
-#include "mindahl/core/error.h"
 
 namespace mindahl::cli {
 
+/// Where an option writes; an empty path is an output that was not asked for.
+struct OutputPath {
+  std::string_view option;
+  const std::string& path;
+  bool dash_is_stdout = false;  ///< "-" is standard output and no file
+};
+
 /// Refuses before the work what could not be written after it: a run with several outputs leaves
-/// none behind.
+/// none behind, takes none for another and none for what it reads.
+/// @param inputs  files that the run reads
 /// @throws InputError naming the option and the path
-inline void RequireOutputPath(std::string_view option, const std::string& path) {
-  if (path.empty()) throw InputError(fmt::format("{}: the path is empty", option));
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(fmt::format("{}: cannot write '{}': it is a directory", option, path));
-  }
-  const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  if (!parent.empty() && !std::filesystem::is_directory(parent, ignored)) {
-    throw InputError(fmt::format("{}: cannot write '{}': there is no directory '{}'", option, path,
-                                 parent.string()));
-  }
-}
+void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
+                        std::span<const std::string> inputs = {});
+
+/// Refuses a file that is given twice, by one name or by two: its samples would count twice.
+/// @throws InputError naming both
+void RequireDistinctFiles(std::span<const std::string> files);
 
 }  // namespace mindahl::cli

@@ -271,8 +271,11 @@ void RunRecommend(const RecommendCommandOptions& options, Console& console) {
                          .largest_cost = options.cost,
                          .transient_cycles = options.transient_cycles};
   if (options.cost) RequirePositive("--cost [ns/sample]", *options.cost);
-  if (!options.json.empty() && options.json != "-") RequireOutputPath("--json", options.json);
+  std::vector<std::string> inputs = console.inputs;
+  inputs.push_back(options.drive.path);
+  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, inputs);
   const BranchLaw law = ResolveLaw(options.law);
+  WarnOfDoubts(options.law.contact, "recommend", console);
   const ImposedMotion motion = MakeMotion(options.drive, law);
   const std::size_t samples = motion.displacement.size();
   const Recommendation recommendation = tradeoff::Recommend(law, motion.drive(), asked);

@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/drive_options.h"
 #include "cli/law_options.h"
+#include "cli/output_path.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/atomic_file.h"
@@ -129,6 +130,9 @@ void AddNoise(std::vector<double>& values, double standard_deviation,
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
   Validate(options.law);
+  std::vector<std::string> inputs = console.inputs;
+  inputs.push_back(options.drive.path);
+  RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, inputs);
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
   const Approximation approximation = ResolveMethod(options);
@@ -147,6 +151,7 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
     models::EvaluateForceUnderLoad(law, motion.displacement, motion.normal_load, force);
   }
 
+  WarnOfDoubts(options.law.contact, "simulate", console);
   boost::random::mt19937_64 engine(options.drive.seed);
   AddNoise(force, options.force_noise, engine);
   AddNoise(motion.displacement, options.displacement_noise, engine);

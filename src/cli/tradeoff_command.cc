@@ -316,17 +316,20 @@ nlohmann::ordered_json ToJson(const BranchLaw& law, const std::vector<MeasuredSc
   return json;
 }
 
-void RequireOutputs(const TradeoffOptions& options) {
-  if (!options.csv.empty()) RequireOutputPath("--csv", options.csv);
-  if (!options.regions_csv.empty()) RequireOutputPath("--regions-csv", options.regions_csv);
-  if (!options.plot.empty()) RequireOutputPath("--plot", options.plot);
-  if (!options.json.empty() && options.json != "-") RequireOutputPath("--json", options.json);
+void RequireOutputs(const TradeoffOptions& options, std::vector<std::string> inputs) {
+  inputs.push_back(options.path);
+  RequireOutputPaths({{"--csv", options.csv},
+                      {"--regions-csv", options.regions_csv},
+                      {"--plot", options.plot},
+                      {"--json", options.json, /*dash_is_stdout=*/true}},
+                     inputs);
 }
 
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
   Validate(options.law);
-  RequireOutputs(options);
+  RequireOutputs(options, console.inputs);
   const BranchLaw law = IsAnythingGiven(options.law) ? ResolveLaw(options.law) : PaperContact();
+  WarnOfDoubts(options.law.contact, "tradeoff", console);
   const std::vector<MeasuredScene> scenes = MeasureScenes(options, law);
   const ModelRegionOptions studied;
   std::vector<ModelRegion> regions;

@@ -78,7 +78,7 @@ std::string Table(const ValidationReport& report) {
 }
 
 void RunValidate(const ValidateOptions& options, Console& console) {
-  if (!options.json_path.empty()) RequireOutputPath("--json", options.json_path);
+  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
   const std::size_t step = std::max<std::size_t>(options.validation.cases / 10, 1);
   const ValidationReport report =
       identification::ValidateMapping(options.validation, [&](std::size_t done) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -147,11 +148,19 @@ void RequireKnown(const KnownContact& known) {
   RequireBody(known.body_2, 2);
 }
 
+/// What the caller has found to be known.
+template <typename Value>
+const Value& Present(const std::optional<Value>& quantity) {
+  if (!quantity) throw std::logic_error("a quantity of the contact that is needed is not known");
+  return *quantity;
+}
+
 bool IsElastic(const KnownBody& body) { return body.youngs_modulus && body.poisson_ratio; }
 
 /// For functions that do not read the radius.
 Body Elastic(const KnownBody& body) {
-  return {.youngs_modulus = *body.youngs_modulus, .poisson_ratio = *body.poisson_ratio};
+  return {.youngs_modulus = Present(body.youngs_modulus),
+          .poisson_ratio = Present(body.poisson_ratio)};
 }
 
 /// A material and the place of its errors.
@@ -170,8 +179,8 @@ std::array<Material, 2> Materials(const KnownContact& known) {
 Quantity EffectiveModulusOf(const KnownContact& known) {
   Quantity modulus{.value = EffectiveModulus(Elastic(known.body_1), Elastic(known.body_2))};
   for (const Material& material : Materials(known)) {
-    const UncertainValue& youngs_modulus = *material.body.youngs_modulus;
-    const UncertainValue& poisson_ratio = *material.body.poisson_ratio;
+    const UncertainValue& youngs_modulus = Present(material.body.youngs_modulus);
+    const UncertainValue& poisson_ratio = Present(material.body.poisson_ratio);
     const double ratio = modulus.value / youngs_modulus.value;
     modulus.change[material.youngs_modulus] =
         ratio * (1.0 - poisson_ratio.value * poisson_ratio.value) *
@@ -186,8 +195,8 @@ Quantity EffectiveModulusOf(const KnownContact& known) {
 Quantity TangentialComplianceOf(const KnownContact& known) {
   Quantity compliance{.value = TangentialCompliance(Elastic(known.body_1), Elastic(known.body_2))};
   for (const Material& material : Materials(known)) {
-    const UncertainValue& youngs_modulus = *material.body.youngs_modulus;
-    const UncertainValue& poisson_ratio = *material.body.poisson_ratio;
+    const UncertainValue& youngs_modulus = Present(material.body.youngs_modulus);
+    const UncertainValue& poisson_ratio = Present(material.body.poisson_ratio);
     const double ratio = 2.0 / (youngs_modulus.value * compliance.value);
     compliance.change[material.youngs_modulus] =
         -ratio * (2.0 - poisson_ratio.value) * (1.0 + poisson_ratio.value) *
@@ -293,7 +302,8 @@ Derived DeriveFromKnown(const KnownContact& known, std::vector<std::string>& red
     }
   }
   if (known.body_1.radius && known.body_2.radius) {
-    derived.equivalent_radius = EquivalentRadiusOf(*known.body_1.radius, *known.body_2.radius);
+    derived.equivalent_radius =
+        EquivalentRadiusOf(Present(known.body_1.radius), Present(known.body_2.radius));
   }
   return derived;
 }
@@ -301,20 +311,21 @@ Derived DeriveFromKnown(const KnownContact& known, std::vector<std::string>& red
 HertzPrediction Predict(const Quantity& stiffness, const Quantity& slip_force,
                         const Derived& derived, const Quantity& measured_gross_slip,
                         double correlation) {
-  const Quantity radius = HertzContactRadiusOf(*derived.normal_load, *derived.equivalent_radius,
-                                               *derived.effective_modulus);
-  const Quantity predicted = TangentialStiffnessOf(radius, *derived.tangential_compliance);
+  const Quantity radius =
+      HertzContactRadiusOf(Present(derived.normal_load), Present(derived.equivalent_radius),
+                           Present(derived.effective_modulus));
+  const Quantity predicted = TangentialStiffnessOf(radius, Present(derived.tangential_compliance));
   const Quantity gross_slip =
-      GrossSlipDisplacementOf(radius, *derived.tangential_compliance, slip_force);
+      GrossSlipDisplacementOf(radius, Present(derived.tangential_compliance), slip_force);
   const auto ratio = [&](const Quantity& measured, const Quantity& other) {
     return Total(Product(measured.value / other.value, {{measured}, {other, -1}}), correlation);
   };
   // Tc cancels in the ratio of displacements, also where it is open: ∞ − ∞ would not.
   const Quantity inverse = Product(1.0, {{predicted}, {stiffness, -1}});
-  return {.effective_modulus = Total(*derived.effective_modulus),
-          .equivalent_radius = Total(*derived.equivalent_radius),
+  return {.effective_modulus = Total(Present(derived.effective_modulus)),
+          .equivalent_radius = Total(Present(derived.equivalent_radius)),
           .contact_radius = Total(radius),
-          .maximum_pressure = Total(MaximumPressureOf(*derived.normal_load, radius)),
+          .maximum_pressure = Total(MaximumPressureOf(Present(derived.normal_load), radius)),
           .tangential_stiffness = Total(predicted),
           .gross_slip_displacement = Total(gross_slip, correlation),
           .sigma_over_hertz_mindlin = ratio(stiffness, predicted),
@@ -430,7 +441,7 @@ PredictedContact PredictContact(const KnownContact& known,
     compliance = TangentialComplianceOf(known);
     const Quantity effective_modulus = EffectiveModulusOf(known);
     const Quantity equivalent_radius =
-        EquivalentRadiusOf(*known.body_1.radius, *known.body_2.radius);
+        EquivalentRadiusOf(Present(known.body_1.radius), Present(known.body_2.radius));
     radius = HertzContactRadiusOf(load, equivalent_radius, effective_modulus);
     predicted.effective_modulus = Total(effective_modulus);
     predicted.equivalent_radius = Total(equivalent_radius);
@@ -469,13 +480,13 @@ IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
   identified.gross_slip_displacement = Total(gross_slip, correlation);
 
   if (derived.normal_load) {
-    identified.friction_coefficient = Total(
-        Product(force.value / derived.normal_load->value, {{force}, {*derived.normal_load, -1}}));
+    identified.friction_coefficient = Total(Product(force.value / derived.normal_load->value,
+                                                    {{force}, {Present(derived.normal_load), -1}}));
   }
   std::optional<Quantity> measured_radius;
   if (derived.tangential_compliance) {
     measured_radius = Product(0.125 * stiffness.value * derived.tangential_compliance->value,
-                              {{stiffness}, {*derived.tangential_compliance}});
+                              {{stiffness}, {Present(derived.tangential_compliance)}});
     identified.contact_radius = Total(*measured_radius);
   }
   std::optional<Quantity> given_radius;
@@ -487,16 +498,19 @@ IdentifiedContact IdentifyContact(const UncertainValue& tangential_stiffness,
 
   const std::optional<Quantity>& radius = given_radius ? given_radius : measured_radius;
   if (radius && derived.normal_load) {
-    identified.maximum_pressure = Total(MaximumPressureOf(*derived.normal_load, *radius));
+    identified.maximum_pressure = Total(MaximumPressureOf(Present(derived.normal_load), *radius));
     if (derived.effective_modulus) {
       identified.equivalent_radius =
           Total(Product(HertzEquivalentRadius(derived.normal_load->value, radius->value,
                                               derived.effective_modulus->value),
-                        {{*derived.effective_modulus}, {*radius, 3}, {*derived.normal_load, -1}}));
+                        {{Present(derived.effective_modulus)},
+                         {*radius, 3},
+                         {Present(derived.normal_load), -1}}));
     }
   }
   if (given_radius && derived.tangential_compliance) {
-    const Quantity predicted = TangentialStiffnessOf(*given_radius, *derived.tangential_compliance);
+    const Quantity predicted =
+        TangentialStiffnessOf(*given_radius, Present(derived.tangential_compliance));
     identified.sigma_over_mindlin =
         Total(Product(stiffness.value / predicted.value, {{stiffness}, {predicted, -1}}));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <span>
 
 namespace mindahl {
@@ -18,9 +19,25 @@ constexpr std::array kLengths = {
     Entry{"nm", 1, 1e9}, Entry{"in", 254, 1e4},
 };
 constexpr std::array kForces = {
-    Entry{"N", 1, 1},         Entry{"mN", 1, 1e3}, Entry{"uN", 1, 1e6},
-    Entry{"kN", 1e3, 1},      Entry{"MN", 1e6, 1}, Entry{"lbf", 4.4482216152605, 1},
-    Entry{"kgf", 9.80665, 1},
+    Entry{"N", 1, 1},         Entry{"mN", 1, 1e3},
+    Entry{"uN", 1, 1e6},      Entry{"kN", 1e3, 1},
+    Entry{"MN", 1e6, 1},      Entry{"lbf", 4.4482216152605, 1},
+    Entry{"kgf", 9.80665, 1}, Entry{"kip", 4448.2216152605, 1},
+};
+constexpr std::array kAngles = {
+    Entry{"rad", 1, 1},
+    Entry{"mrad", 1, 1e3},
+    Entry{"deg", std::numbers::pi, 180},
+    Entry{"rev", 2 * std::numbers::pi, 1},
+};
+constexpr std::array kTorques = {
+    Entry{"N m", 1, 1},
+    Entry{"mN m", 1, 1e3},
+    Entry{"uN m", 1, 1e6},
+    Entry{"kN m", 1e3, 1},
+    Entry{"N mm", 1, 1e3},
+    Entry{"lbf in", 4.4482216152605 * 0.0254, 1},
+    Entry{"lbf ft", 4.4482216152605 * 0.3048, 1},
 };
 constexpr std::array kTimes = {
     Entry{"s", 1, 1},
@@ -44,6 +61,22 @@ std::optional<Unit> Find(std::span<const Entry> table, std::string_view symbol) 
   return Unit{wanted, entry->numerator, entry->denominator};
 }
 
+/// "Nm", "N·m", "N*m" and "N-m" as the table has it, "N m".
+std::string WithBlank(std::string_view symbol) {
+  std::string letters = WithAsciiMicro(symbol);
+  for (const std::string_view sign : {"·", "⋅", "*", "-", " "}) {
+    for (std::size_t at = letters.find(sign); at != std::string::npos; at = letters.find(sign)) {
+      letters.erase(at, sign.size());
+    }
+  }
+  for (const Entry& entry : kTorques) {
+    std::string joined(entry.symbol);
+    std::erase(joined, ' ');
+    if (joined == letters) return std::string(entry.symbol);
+  }
+  return std::string(symbol);
+}
+
 std::string Symbols(std::span<const Entry> table) {
   std::string result;
   for (const Entry& entry : table) {
@@ -56,10 +89,18 @@ std::string Symbols(std::span<const Entry> table) {
 }  // namespace
 
 std::optional<Unit> LengthUnit(std::string_view symbol) { return Find(kLengths, symbol); }
+std::optional<Unit> AngleUnit(std::string_view symbol) {
+  return Find(kAngles, symbol == "°" ? "deg" : symbol);
+}
+std::optional<Unit> TorqueUnit(std::string_view symbol) {
+  return Find(kTorques, WithBlank(symbol));
+}
 std::optional<Unit> ForceUnit(std::string_view symbol) { return Find(kForces, symbol); }
 std::optional<Unit> TimeUnit(std::string_view symbol) { return Find(kTimes, symbol); }
 
 std::string LengthUnitSymbols() { return Symbols(kLengths); }
+std::string AngleUnitSymbols() { return Symbols(kAngles); }
+std::string TorqueUnitSymbols() { return Symbols(kTorques); }
 std::string ForceUnitSymbols() { return Symbols(kForces); }
 std::string TimeUnitSymbols() { return Symbols(kTimes); }
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +21,7 @@
 #include "identification/judge/adequacy.h"
 #include "identification/judge/judge.h"
 #include "identification/problem/problem.h"
+#include "identification/problem/rig_requirement.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
 #include "mindahl/core/arena.h"
@@ -41,6 +44,15 @@ void RequireOptions(const FitOptions& options) {
     ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
   }
   if (options.starts < 1) ThrowInvalid("starts [-]", 0, "must be >= 1");
+}
+
+/// Beyond it squares overflow; it is a unit that is meant otherwise.
+void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
+  constexpr double kLargest = 1e100;  // in half ranges of the force
+  if (!options.force_noise || *options.force_noise / data.force < kLargest) return;
+  ThrowInvalid(
+      "force noise [N]", *options.force_noise,
+      fmt::format("must be below 1e100 times half the range of the force, {:.4g} N", data.force));
 }
 
 void RequireEnoughSamples(const Problem& problem) {
@@ -429,6 +441,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
   const ScaledRecords thin = Thin(data, thin_reversals, &arena);
   const Attempt attempt{options, prepared, data, thin, buffers, &arena};
+  RequireRigStifferThanLoop(options, prepared);
+  RequireNoise(options, data);
   result.force_sense = prepared.force_sense;
   FillRecords(attempt, result);
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "io/temporary_names.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::io {
@@ -57,22 +58,6 @@ class OutputFile {
   int descriptor_;
 };
 
-/// Removes a file unless told to keep it.
-class TemporaryName {
- public:
-  explicit TemporaryName(std::string name) : name_(std::move(name)) {}
-  ~TemporaryName() {
-    if (!kept_) ::unlink(name_.c_str());
-  }
-  TemporaryName(const TemporaryName&) = delete;
-  TemporaryName& operator=(const TemporaryName&) = delete;
-  void Keep() { kept_ = true; }
-
- private:
-  std::string name_;
-  bool kept_ = false;
-};
-
 std::optional<struct stat> Status(const std::filesystem::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return std::nullopt;
@@ -92,8 +77,8 @@ void Replace(const std::filesystem::path& target, const std::optional<struct sta
       (target.parent_path() /
        fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), counter++))
           .string();
-  OutputFile file(name, O_CREAT | O_EXCL, path);
   TemporaryName temporary(name);
+  OutputFile file(name, O_CREAT | O_EXCL, path);
   if (old) file.SetPermissions(old->st_mode);
   file.Write(content);
   file.Close();

@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kLongestUnit = 8;  // bytes; "furlong" is a unit to refuse, not part of a name
 
 bool IsKnownUnit(std::string_view symbol) {
-  return LengthUnit(symbol) || ForceUnit(symbol) || TimeUnit(symbol);
+  return LengthUnit(symbol) || AngleUnit(symbol) || ForceUnit(symbol) || TorqueUnit(symbol) ||
+         TimeUnit(symbol);
 }
 
 bool IsUnitWord(std::string_view word) {
@@ -35,9 +36,9 @@ std::string_view WithoutBrackets(std::string_view cell) {
 }
 
 bool LooksLikeUnit(std::string_view cell) {
-  constexpr std::array<std::string_view, 26> kOtherUnits = {
-      "-",   "%",   "V",   "mV",  "A",  "mA", "bar", "Pa", "kPa", "MPa", "psi",  "Nm", "N·m",
-      "Nmm", "deg", "rad", "rev", "°C", "C",  "K",   "Hz", "kHz", "m/s", "mm/s", "lb", "rpm"};
+  constexpr std::array<std::string_view, 22> kOtherUnits = {
+      "-",  "%", "V", "mV", "A",   "mA",  "bar",  "Pa",   "kPa",  "MPa", "psi",
+      "°C", "C", "K", "Hz", "kHz", "m/s", "mm/s", "um/s", "µm/s", "lb",  "rpm"};
   const std::string_view symbol = WithoutBrackets(cell);
   return symbol.size() != Trimmed(cell).size() || IsKnownUnit(symbol) ||
          std::ranges::find(kOtherUnits, symbol) != kOtherUnits.end();
@@ -60,7 +61,10 @@ ColumnName SplitColumnName(std::string_view header) {
   const std::size_t separator = header.find_last_of("_ ");
   if (separator != std::string_view::npos && separator > 0) {
     ColumnName split = Split(header, separator);
-    if (IsKnownUnit(split.unit)) return split;
+    // "F_rad" is a radial force.
+    constexpr std::size_t kLongestSymbol = 2;
+    const bool is_direction = split.unit == "rad" && split.name.size() <= kLongestSymbol;
+    if (IsKnownUnit(split.unit) && !is_direction) return split;
   }
   return {std::string(header), ""};
 }

@@ -57,6 +57,9 @@ struct Reading {
   std::size_t columns = 0;  ///< of most rows with data; 0 when there are none
   long score = 0;           ///< numbers less broken numbers in the rows with so many columns
   std::size_t open_quote_line = 0;  ///< of a quote that is never closed; 0 when there is none
+
+  /// Number of cells of the last row.
+  [[nodiscard]] std::size_t Width() const { return rows.back().Columns(); }
 };
 
 void Sample(std::string_view text, Reading& reading) {
@@ -208,6 +211,7 @@ class HeaderFinder {
     const std::size_t columns = std::max(row.cells.FilledSize(), data.FilledSize());
     if (columns <= std::min(row.cells.size(), data.size())) {
       std::vector<std::string> cells;
+      cells.reserve(columns);
       for (std::size_t cell = 0; cell < columns; ++cell) {
         cells.emplace_back(Trimmed(row.cells[cell]));
       }
@@ -244,6 +248,28 @@ class HeaderFinder {
   std::size_t data_;  ///< index of the first data row
 };
 
+/// The whole file is at fault: its first row that cannot be a header, and the cell that should have
+/// been a number, stand for it.
+[[noreturn]] void ThrowNoNumbers(const std::string& file, const Reading& reading) {
+  const auto data = std::ranges::find_if(
+      reading.rows, [](const SampledRow& row) { return row.Count(NumberCell::Kind::kText) == 0; });
+  if (data == reading.rows.end() && reading.rows.size() == 1) {
+    throw InputError(fmt::format(
+        "{}:{}: the file ends after its header, with no row of numbers below it: export the data "
+        "too",
+        file, reading.rows.front().cells.line));
+  }
+  const SampledRow& row = data == reading.rows.end() ? reading.rows.back() : *data;
+  const auto cell = static_cast<std::size_t>(
+      std::ranges::find_if(
+          row.kinds, [](NumberCell::Kind kind) { return kind != NumberCell::Kind::kNumber; }) -
+      row.kinds.begin());
+  throw InputError(fmt::format(
+      "{}:{}:{}: '{}' is not a number, nor has any other of the first {} rows numbers: "
+      "expected columns of numbers under an optional header",
+      file, row.cells.line, cell + 1, ForMessage(row.cells[cell]), reading.rows.size()));
+}
+
 }  // namespace
 
 void ThrowOpenQuote(const std::string& file, std::size_t line) {
@@ -252,23 +278,23 @@ void ThrowOpenQuote(const std::string& file, std::size_t line) {
 
 CsvLayout FindCsvLayout(std::string_view text, const std::string& file) {
   std::optional<Reading> best;
-  bool any_row = false;
+  std::optional<Reading> widest;  // of those without a row of numbers
   bool always_open = true;  // under the wrong delimiter, text after a closing quote reopens it
   std::size_t open_quote_line = 0;
   for (const Delimiter delimiter : kDelimiters) {
     Reading reading = ReadAs(text, delimiter);
-    any_row = any_row || !reading.rows.empty();
     always_open = always_open && reading.open_quote_line > 0;
     open_quote_line = reading.open_quote_line;
-    if (reading.columns > 0 && (!best || reading.score > best->score)) best = std::move(reading);
+    if (reading.columns > 0) {
+      if (!best || reading.score > best->score) best = std::move(reading);
+    } else if (!reading.rows.empty() && (!widest || reading.Width() > widest->Width())) {
+      widest = std::move(reading);
+    }
   }
   if (best) return HeaderFinder(text, file, *best).Find();
   if (always_open) ThrowOpenQuote(file, open_quote_line);
-  if (!any_row) throw InputError(fmt::format("{}: holds no data, only blank or '#' lines", file));
-  throw InputError(
-      fmt::format("{}: no row of numbers in its first {} rows: expected columns of "
-                  "numbers under an optional header",
-                  file, kSampledRows));
+  if (!widest) throw InputError(fmt::format("{}: holds no data, only blank or '#' lines", file));
+  ThrowNoNumbers(file, *widest);
 }
 
 }  // namespace mindahl::io

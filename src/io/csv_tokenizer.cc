@@ -10,7 +10,8 @@ namespace {
 
 bool IsBlankOrComment(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\r\n");
-  return first == std::string_view::npos || line[first] == '#';
+  if (first == std::string_view::npos) return true;
+  return line[first] == '#' && !BeginsWithErrorValue(line.substr(first));
 }
 
 }  // namespace

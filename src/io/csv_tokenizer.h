@@ -33,8 +33,9 @@ class CsvRow {
 };
 
 /// Cuts a text into rows of cells (RFC 4180, by libcsv), lines ending in LF, CRLF or CR.
-/// Skips blank lines, rows of delimiters alone, and lines that begin with '#'. A quoted cell may
-/// span lines. The text must outlive the tokenizer.
+/// Skips blank lines, rows of delimiters alone, and lines that begin with '#', unless that is an
+/// error value of a spreadsheet ("#N/A"). A quoted cell may span lines. The text must outlive the
+/// tokenizer.
 class CsvTokenizer {
  public:
   /// @param offset, line  where to start: offset of a line in `text` [bytes] and its number

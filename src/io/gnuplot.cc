@@ -15,34 +15,21 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "io/temporary_names.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::io {
 namespace {
 
-/// A directory of its own, removed with all it holds.
-class ScratchDirectory {
- public:
-  ScratchDirectory() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "mindahl-plot-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) {
-      throw InputError(
-          fmt::format("cannot make the directory '{}': {}", pattern, std::strerror(errno)));
-    }
-    path_ = pattern;
+/// A directory of its own.
+std::string MakeScratchDirectory() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "mindahl-plot-XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr) {
+    throw InputError(
+        fmt::format("cannot make the directory '{}': {}", pattern, std::strerror(errno)));
   }
-  ~ScratchDirectory() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-
-  std::string File(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
+  return pattern;
+}
 
 std::string Content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -84,10 +71,13 @@ int SpawnAndWait(std::string script, const std::string& output, const std::strin
 }  // namespace
 
 std::string RunGnuplot(std::string_view script) {
-  const ScratchDirectory scratch;
-  const std::string script_file = scratch.File("script.gp");
-  const std::string output = scratch.File("output");
-  const std::string messages = scratch.File("messages");
+  const TemporaryName scratch(MakeScratchDirectory());
+  const TemporaryName script_name(scratch.name() + "/script.gp");
+  const TemporaryName output_name(scratch.name() + "/output");
+  const TemporaryName messages_name(scratch.name() + "/messages");
+  const std::string& script_file = script_name.name();
+  const std::string& output = output_name.name();
+  const std::string& messages = messages_name.name();
   if (!(std::ofstream(script_file, std::ios::binary) << script).flush()) {
     throw InputError(fmt::format("cannot write '{}': is the disk full?", script_file));
   }

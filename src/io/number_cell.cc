@@ -17,10 +17,15 @@ bool EqualsIgnoringCase(std::string_view text, std::string_view lower_case) {
   });
 }
 
+// What spreadsheets write for a number that they could not compute.
+constexpr std::array<std::string_view, 7> kErrorValues = {"#n/a",   "#value!", "#div/0!", "#ref!",
+                                                          "#name?", "#num!",   "#null!"};
+
 bool IsMissingValueMark(std::string_view text) {
-  constexpr std::array<std::string_view, 7> kMarks = {"nan", "inf",  "infinity", "na",
-                                                      "n/a", "#n/a", "null"};
-  return std::ranges::any_of(kMarks, [&](auto mark) { return EqualsIgnoringCase(text, mark); });
+  constexpr std::array<std::string_view, 6> kMarks = {"nan", "inf", "infinity",
+                                                      "na",  "n/a", "null"};
+  const auto is_mark = [&](std::string_view mark) { return EqualsIgnoringCase(text, mark); };
+  return std::ranges::any_of(kMarks, is_mark) || std::ranges::any_of(kErrorValues, is_mark);
 }
 
 NumberCell ReadWithPoint(std::string_view unsigned_text, bool negative) {
@@ -44,6 +49,17 @@ NumberCell ReadWithPoint(std::string_view unsigned_text, bool negative) {
 }
 
 }  // namespace
+
+bool BeginsWithErrorValue(std::string_view text) {
+  return std::ranges::any_of(kErrorValues, [&](std::string_view value) {
+    if (text.size() < value.size() || !EqualsIgnoringCase(text.substr(0, value.size()), value)) {
+      return false;
+    }
+    // A cell ends here; "#N/Available" is a remark.
+    return text.size() == value.size() ||
+           std::string_view(" \t\r\n,;\"").find(text[value.size()]) != std::string_view::npos;
+  });
+}
 
 std::string_view Trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");

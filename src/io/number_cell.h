@@ -26,6 +26,10 @@ struct NumberCell {
 /// @param decimal_comma  "1,5" is 1.5; a decimal comma needs a digit on both sides
 NumberCell ReadNumber(std::string_view cell, bool decimal_comma);
 
+/// The text, from its first character on, begins with an error value of a spreadsheet: "#N/A",
+/// "#DIV/0!". That is a broken number, where another '#' begins a remark.
+bool BeginsWithErrorValue(std::string_view text);
+
 /// `text` without the blanks and tabs around it.
 std::string_view Trimmed(std::string_view text);
 

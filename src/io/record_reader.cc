@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -41,6 +42,9 @@ constexpr std::array kDisplacementAliases = {
     Alias{"d", 3},
     Alias{"delta", 3},
     Alias{"δ", 3},
+    Alias{"angle", 4},
+    Alias{"rotation", 4},
+    Alias{"twist", 4},
 };
 constexpr std::array kForceAliases = {
     Alias{"tangential force", 0},
@@ -78,6 +82,8 @@ struct Role {
 constexpr Role kDisplacement{"displacement", kDisplacementAliases, LengthUnit, LengthUnitSymbols,
                              "m"};
 constexpr Role kForce{"force", kForceAliases, ForceUnit, ForceUnitSymbols, "N"};
+constexpr Role kAngle{"displacement", kDisplacementAliases, AngleUnit, AngleUnitSymbols, "rad"};
+constexpr Role kTorque{"force", kForceAliases, TorqueUnit, TorqueUnitSymbols, "N m"};
 constexpr Role kTime{"time", kTimeAliases, TimeUnit, TimeUnitSymbols, "s"};
 constexpr Role kNormalLoad{"normal load", kNormalLoadAliases, ForceUnit, ForceUnitSymbols, "N"};
 
@@ -102,6 +108,13 @@ std::optional<int> Rank(std::span<const Alias> aliases, std::string_view name) {
   const auto alias = std::ranges::find(aliases, Normalized(name), &Alias::name);
   if (alias == aliases.end()) return std::nullopt;
   return alias->rank;
+}
+
+bool IsVelocity(const ColumnName& column) {
+  constexpr std::array<std::string_view, 4> kNames = {"velocity", "speed", "vel", "v"};
+  const std::string name = Normalized(column.name);
+  return std::ranges::find(kNames, name) != kNames.end() || name.ends_with(" velocity") ||
+         name.ends_with(" speed") || column.unit.ends_with("/s");
 }
 
 /// Finds columns and units in one table by name.
@@ -171,6 +184,17 @@ class ColumnFinder {
     return of_name.empty() ? of_row : of_name;
   }
 
+  [[nodiscard]] bool IsAngle(std::size_t column) const {
+    constexpr int kRankOfAngles = 4;
+    if (split_.empty()) return false;
+    const std::optional<int> rank = Rank(kDisplacementAliases, split_[column].name);
+    return rank == kRankOfAngles;
+  }
+
+  [[nodiscard]] bool IsVelocity(std::size_t column) const {
+    return !split_.empty() && io::IsVelocity(split_[column]);
+  }
+
   /// "'x [mm]' (column 2)", or "column 2" without a header.
   std::string Label(std::size_t column) const {
     if (table_.names().empty()) return fmt::format("column {}", column + 1);
@@ -224,7 +248,7 @@ class ColumnReader {
   /// @throws InputError when the choice's unit, or else the header's, is not one for the role.
   Unit FindUnit(const Role& role, std::size_t column, const std::string& chosen) {
     if (!chosen.empty()) {
-      if (auto unit = role.find_unit(chosen)) return *unit;
+      if (const auto unit = role.find_unit(chosen)) return *unit;
       throw InputError(fmt::format("{}: the {} unit '{}' is not known: must be one of {}",
                                    table_.file(), role.name, chosen, role.unit_symbols()));
     }
@@ -232,14 +256,38 @@ class ColumnReader {
     if (stated.empty()) {
       notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}", table_.file(), role.name,
                                    finder_.Label(column), role.si_unit));
-      return *role.find_unit(role.si_unit);
+      return {.symbol = std::string(role.si_unit)};
     }
-    if (auto unit = role.find_unit(stated)) return *unit;
+    if (const auto unit = role.find_unit(stated)) return *unit;
     throw InputError(
         fmt::format("{}:{}: the unit '{}' of {} is not known for the {}: must be one "
                     "of {}, or choose the unit",
                     finder_.Header(), column + 1, stated, finder_.Label(column), role.name,
                     role.unit_symbols()));
+  }
+
+  /// Whether the two are an angle and a torque: by their units, and by name where there is none.
+  /// @throws InputError when only one of them is
+  bool IsTorsional(std::size_t displacement, const ColumnChoice& displacement_choice,
+                   std::size_t force, const ColumnChoice& force_choice) const {
+    const auto stated = [&](std::size_t column, const ColumnChoice& choice) {
+      return choice.unit.empty() ? finder_.HeaderUnit(column) : choice.unit;
+    };
+    const std::string displacement_unit = stated(displacement, displacement_choice);
+    const std::string force_unit = stated(force, force_choice);
+    const bool is_angle = displacement_unit.empty() ? finder_.IsAngle(displacement)
+                                                    : AngleUnit(displacement_unit).has_value();
+    const bool is_torque = TorqueUnit(force_unit).has_value();
+    const bool is_length = LengthUnit(displacement_unit).has_value();
+    const bool is_force = ForceUnit(force_unit).has_value();
+    if ((is_angle && is_force) || (is_torque && is_length)) {
+      throw InputError(fmt::format(
+          "{}: {} in {} and {} in {} do not go together: a torque goes with an angle, a force with "
+          "a length; choose other columns, or units with --displacement-unit and --force-unit",
+          table_.file(), finder_.Label(displacement),
+          displacement_unit.empty() ? "rad" : displacement_unit, finder_.Label(force), force_unit));
+    }
+    return is_angle || is_torque;
   }
 
   std::vector<double> Read(const Role& role, std::size_t column, const Unit& unit) {
@@ -266,9 +314,37 @@ class ColumnReader {
   std::vector<std::string>& notes_;
 };
 
+bool IsStrictlyMonotone(std::span<const double> values) {
+  if (values.size() < 3) return false;
+  const bool grows = values[1] > values[0];
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (!(grows ? values[i] > values[i - 1] : values[i] < values[i - 1])) return false;
+  }
+  return true;
+}
+
+/// Both rises and falls by a good part of its range on the way: noise does not, nor does a friction
+/// force along a single stroke. Half the range is what one cycle from the middle has.
+bool GoesToAndFro(std::span<const double> values) {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -least;
+  double rise = 0.0;
+  double fall = 0.0;
+  for (const double value : values) {
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+    rise = std::max(rise, value - least);
+    fall = std::max(fall, greatest - value);
+  }
+  constexpr double kGoodPart = 0.4;
+  return std::min(rise, fall) > kGoodPart * (greatest - least);
+}
+
 /// Columns from 0, by role.
 struct Assignment {
-  std::optional<std::size_t> displacement, force, time, normal_load;
+  std::size_t displacement = 0;
+  std::size_t force = 1;
+  std::optional<std::size_t> time, normal_load;
 };
 
 class RoleAssigner {
@@ -277,18 +353,21 @@ class RoleAssigner {
       : table_(table), finder_(finder), notes_(notes), taken_(table.columns(), false) {}
 
   Assignment Assign(const RecordColumns& columns) {
-    Assignment assigned{
-        .displacement = TakeChosen(kDisplacement, columns.displacement),
-        .force = TakeChosen(kForce, columns.force),
-        .time = TakeChosen(kTime, columns.time),
-        .normal_load = TakeChosen(kNormalLoad, columns.normal_load),
-    };
-    TakeRecognized(kDisplacement, assigned.displacement);
-    TakeRecognized(kForce, assigned.force);
-    TakeRecognized(kTime, assigned.time);
-    TakeRecognized(kNormalLoad, assigned.normal_load);
-    TakeByPosition(kDisplacement, 0, assigned.displacement);
-    TakeByPosition(kForce, 1, assigned.force);
+    std::optional<std::size_t> displacement = TakeChosen(kDisplacement, columns.displacement);
+    std::optional<std::size_t> force = TakeChosen(kForce, columns.force);
+    std::optional<std::size_t> time = TakeChosen(kTime, columns.time);
+    std::optional<std::size_t> normal_load = TakeChosen(kNormalLoad, columns.normal_load);
+    TakeRecognized(kDisplacement, displacement);
+    TakeRecognized(kForce, force);
+    TakeRecognized(kTime, time);
+    TakeRecognized(kNormalLoad, normal_load);
+    const bool is_guessed = !displacement;
+    const Assignment assigned{
+        .displacement = displacement ? *displacement : TakeByPosition(kDisplacement, 0),
+        .force = force ? *force : TakeByPosition(kForce, 1),
+        .time = time,
+        .normal_load = normal_load};
+    if (is_guessed) RequireDisplacement(assigned.displacement);
     return assigned;
   }
 
@@ -312,20 +391,40 @@ class RoleAssigner {
     if (column) taken_[*column] = true;
   }
 
-  void TakeByPosition(const Role& role, std::size_t position, std::optional<std::size_t>& column) {
-    if (column) return;
-    if (position < taken_.size() && !taken_[position]) {
-      column = position;
-    } else if (std::ranges::count(taken_, false) == 1) {
+  std::size_t TakeByPosition(const Role& role, std::size_t position) {
+    std::size_t column = position;
+    const bool is_free = position < taken_.size() && !taken_[position];
+    if (!is_free && std::ranges::count(taken_, false) == 1) {
       column = static_cast<std::size_t>(std::ranges::find(taken_, false) - taken_.begin());
-    } else {
+    } else if (!is_free) {
       throw InputError(fmt::format(
           "{}: no column for the {}: {}", table_.file(), role.name,
           table_.columns() == 1 ? "the file has 1 column" : finder_.Listing() + ": choose one"));
     }
-    taken_[*column] = true;
+    taken_[column] = true;
     notes_.push_back(fmt::format("{}: no column name is recognised as {}: taken from {}",
-                                 table_.file(), role.name, finder_.Label(*column)));
+                                 table_.file(), role.name, finder_.Label(column)));
+    return column;
+  }
+
+  /// What nobody called the displacement may be something else.
+  void RequireDisplacement(std::size_t column) const {
+    const std::string where = fmt::format("{}:{}:{}: {}", table_.file(), table_.lines().front(),
+                                          column + 1, finder_.Label(column));
+    if (finder_.IsVelocity(column)) {
+      throw InputError(fmt::format(
+          "{} is a velocity: name the column of the displacement with --displacement", where));
+    }
+    if (!IsStrictlyMonotone(table_.NumbersOrNan(column))) return;
+    for (std::size_t other = 0; other < table_.columns(); ++other) {
+      if (!GoesToAndFro(table_.NumbersOrNan(other))) continue;
+      throw InputError(fmt::format(
+          "{} only {} while {} goes to and fro, as a time does: name the column of the "
+          "displacement with --displacement",
+          where,
+          table_.NumbersOrNan(column)[1] > table_.NumbersOrNan(column)[0] ? "grows" : "falls",
+          finder_.Label(other)));
+    }
   }
 
   const CsvTable& table_;
@@ -397,9 +496,13 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
     return read(role, *column, choice, values);
   };
   loop::Record& record = file.record;
-  file.displacement =
-      read(kDisplacement, *assigned.displacement, columns.displacement, record.displacement);
-  file.force = read(kForce, *assigned.force, columns.force, record.force);
+  file.lines = table.lines();
+  file.is_torsional = reader.IsTorsional(assigned.displacement, columns.displacement,
+                                         assigned.force, columns.force);
+  file.displacement = read(file.is_torsional ? kAngle : kDisplacement, assigned.displacement,
+                           columns.displacement, record.displacement);
+  file.force =
+      read(file.is_torsional ? kTorque : kForce, assigned.force, columns.force, record.force);
   file.time = read_optional(kTime, assigned.time, columns.time, record.time);
   file.normal_load =
       read_optional(kNormalLoad, assigned.normal_load, columns.normal_load, record.normal_load);

@@ -16,8 +16,10 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
         fmt::format("{}: --time-window needs a time column: name it with --time", file));
   }
   loop::Record kept;
+  std::vector<std::size_t> lines;
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (record.time[i] < first || record.time[i] > last) continue;
+    if (!input.lines.empty()) lines.push_back(input.lines[i]);
     kept.displacement.push_back(record.displacement[i]);
     kept.force.push_back(record.force[i]);
     kept.time.push_back(record.time[i]);
@@ -32,6 +34,7 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
   input.notes.push_back(fmt::format("{}: {} of {} samples lie in the time window {}:{} s", file,
                                     kept.size(), record.size(), first, last));
   record = std::move(kept);
+  input.lines = std::move(lines);
 }
 
 }  // namespace mindahl::io

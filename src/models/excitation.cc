@@ -48,7 +48,7 @@ std::vector<double> RandomExtremes(std::size_t count, std::uint64_t seed) {
 
 /// As of RandomExtremes.
 std::vector<double> NestedExtremes(std::size_t count) {
-  const auto innermost = static_cast<double>(count / 2);
+  const auto innermost = std::floor(static_cast<double>(count) / 2);
   const auto size = [&](std::size_t k) {
     return std::abs(4 * (static_cast<double>(k) - innermost) + 1);
   };

@@ -83,8 +83,8 @@ const std::vector<ContactField>& ContactFields() {
        WhyNotIdentified<ContactQuantity::kMaximumPressure>},
       {"mindlin_gross_slip_displacement", "m", "gross slip (α = 1/3)", "δc = 3Tc/(2σ)",
        [](const Report& report) {
-         return report.failed() ? std::optional<PropagatedValue>()
-                                : report.contact.gross_slip_displacement;
+         return report.failed() || report.is_torsional() ? std::optional<PropagatedValue>()
+                                                         : report.contact.gross_slip_displacement;
        },
        WhyFailed},
   };

@@ -35,6 +35,10 @@ void AddLoopFields(FieldTable& table);
 void AddContactFields(FieldTable& table);
 void AddMappingFields(FieldTable& table);
 
+/// Why there is no contact behind a torque.
+inline constexpr const char* kWhyNoContact =
+    "of a torque against an angle: Hertz, Mindlin and the mapping are of a force along the contact";
+
 /// Why nothing of a fit that failed is there.
 std::string WhyFailed(const Report& report);
 

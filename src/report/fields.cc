@@ -88,8 +88,10 @@ FieldTable MakeTable() {
   AddMappingFields(table);
   // What a fit that failed has not is null for that reason.
   for (Field<Report>& row : table.rows) {
-    row.why_null = [why = std::move(row.why_null)](const Report& report) {
+    const bool is_of_contact = row.path.starts_with("contact.") || row.path.starts_with("mapping.");
+    row.why_null = [why = std::move(row.why_null), is_of_contact](const Report& report) {
       if (report.failed()) return WhyFailed(report);
+      if (is_of_contact && report.is_torsional()) return std::string(kWhyNoContact);
       return why ? why(report) : std::string("not a finite number");
     };
   }

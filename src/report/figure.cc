@@ -22,7 +22,12 @@ struct LengthAxis {
 };
 
 /// The unit in which an extent has a number between 1 and 1000, as far as there is one.
-LengthAxis AxisFor(double extent) {
+LengthAxis AxisFor(double extent, bool is_angle) {
+  if (is_angle) {
+    if (extent < 1e-3) return {"µrad", 1e6};
+    if (extent < 1) return {"mrad", 1e3};
+    return {"rad", 1.0};
+  }
   if (extent < 1e-6) return {"nm", 1e9};
   if (extent < 1e-3) return {"µm", 1e6};
   if (extent < 1) return {"mm", 1e3};
@@ -43,21 +48,28 @@ io::Plot ToPlot(const Report& report) {
   const ParameterEstimate& sigma = *report.fit.Find("sigma");
   const ParameterEstimate& alpha = *report.fit.Find("alpha");
   const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
-  plot.title = fmt::format("{}: σ = {:.4g} N/m, α = {:.4g}, Tc = {:.4g} N", report.fit.model->name,
-                           sigma.value, alpha.value, slip_force.value);
+  plot.title = fmt::format("{}: σ = {:.4g} {}, α = {:.4g}, Tc = {:.4g} {}", report.fit.model->name,
+                           sigma.value, report.units.stiffness, alpha.value, slip_force.value,
+                           report.units.force);
   double extent = 0.0;
   for (const identification::RecordFit& fit : report.fit.records) {
     extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
   }
-  const LengthAxis axis = AxisFor(extent);
+  const LengthAxis axis = AxisFor(extent, report.is_torsional());
   const auto scaled = [&axis](std::vector<double> values) {
     for (double& value : values) value *= axis.per_metre;
     return values;
   };
-  io::PlotPanel loop{.x_label = "", .y_label = "force [N]", .series = {}, .height = 2.5};
-  io::PlotPanel residual{.x_label = fmt::format("displacement [{}]", axis.unit),
-                         .y_label = "fitted − measured [N]",
-                         .series = {}};
+  io::PlotPanel loop{.x_label = "",
+                     .y_label = fmt::format("{} [{}]", report.is_torsional() ? "torque" : "force",
+                                            report.units.force),
+                     .series = {},
+                     .height = 2.5};
+  io::PlotPanel residual{
+      .x_label =
+          fmt::format("{} [{}]", report.is_torsional() ? "angle" : "displacement", axis.unit),
+      .y_label = fmt::format("fitted − measured [{}]", report.units.force),
+      .series = {}};
   for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
     const identification::RecordFit& fit = report.fit.records[r];
     const loop::Record& record = report.records[r].record;

@@ -47,7 +47,11 @@ void AddLoopFields(FieldTable& table) {
          return std::string("with alpha >= 1 the force only approaches slip_force");
        }},
       {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
-       OfLoop([](const LoopDescription& loop) { return Number(loop.stick_radius_ratio); })},
+       [](const Report& report) {
+         return report.loop && !report.is_torsional() ? Number(report.loop->stick_radius_ratio)
+                                                      : Missing();
+       },
+       [](const Report&) { return std::string(kWhyNoContact); }},
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "mindahl/contact/plausibility.h"
 #include "mindahl/core/error.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/report/sentences.h"
@@ -31,10 +32,11 @@ void Require(const ReportInput& input) {
   }
 }
 
-std::vector<Warning> FitWarnings(const identification::FitResult& fit) {
+std::vector<Warning> FitWarnings(const identification::FitResult& fit, const Units& units) {
   std::vector<Warning> warnings;
+  warnings.reserve(fit.findings.size());
   for (const identification::Finding& finding : fit.findings) {
-    warnings.push_back({std::string(finding.code), Sentence(finding, fit)});
+    warnings.push_back({std::string(finding.code), Sentence(finding, fit, units)});
   }
   return warnings;
 }
@@ -44,6 +46,14 @@ std::vector<Warning> ContactWarnings(const Report& report) {
   std::vector<Warning> warnings;
   if (const auto why = WhyFrictionIsWithheld(report.fit, report.known)) {
     warnings.push_back({"contact_not_identified", "contact: friction coefficient " + *why});
+  }
+  const auto value = [](const std::optional<contact::PropagatedValue>& quantity) {
+    return quantity ? std::optional<double>(quantity->value) : std::nullopt;
+  };
+  for (const std::string& sentence :
+       contact::DoubtsAbout(report.known, value(report.contact.friction_coefficient),
+                            value(report.contact.contact_radius))) {
+    warnings.push_back({"contact_implausible", "contact: " + sentence});
   }
   for (const std::string& sentence : report.contact.redundant) {
     warnings.push_back({"contact_redundant", "contact: " + sentence});
@@ -57,9 +67,17 @@ Report MakeReport(ReportInput input) {
   Require(input);
   Report report;
   static_cast<ReportInput&>(report) = std::move(input);
-  report.fit_warnings = FitWarnings(report.fit);
+  if (report.is_torsional()) {
+    report.units = kUnitsOfTorque;
+    for (identification::ParameterEstimate& estimate : report.fit.parameters) {
+      estimate.unit = UnitIn(report.units, estimate.unit);
+    }
+    report.fit.mindlin_test.reset();
+  }
+  report.fit_warnings = FitWarnings(report.fit, report.units);
   if (report.failed()) return report;
   report.loop = DescribeLoop(report.fit);
+  if (report.is_torsional()) return report;
   report.alpha = TestAlpha(report.fit);
   report.contact = IdentifyFittedContact(report.fit, report.known);
   report.stiffness = TestStiffness(report.fit, report.contact);

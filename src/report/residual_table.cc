@@ -1,6 +1,9 @@
 #include "mindahl/report/residual_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/io/csv_writer.h"
@@ -33,10 +36,13 @@ std::string ResidualsCsv(const Report& report) {
   std::vector<io::CsvColumn> columns;
   if (report.records.size() > 1) columns.push_back({"file", file});
   if (timed) columns.push_back({"time [s]", time});
-  columns.push_back({"displacement [m]", displacement});
-  columns.push_back({"force [N]", force});
-  columns.push_back({"fitted_force [N]", fitted});
-  columns.push_back({"residual [N]", residual});
+  const auto named = [](std::string_view name, std::string_view unit) {
+    return fmt::format("{} [{}]", name, unit);
+  };
+  columns.push_back({named("displacement", report.units.displacement), displacement});
+  columns.push_back({named("force", report.units.force), force});
+  columns.push_back({named("fitted_force", report.units.force), fitted});
+  columns.push_back({named("residual", report.units.force), residual});
   return io::CsvText(columns);
 }
 

@@ -27,27 +27,28 @@ double Needed(const Finding& finding, std::string_view name) {
 
 // --- what the record does not tell
 
-std::string TurningPoints(const Finding& finding, const FitResult&) {
+std::string TurningPoints(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "the motion turns between samples, up to {:.3g} m beyond the outermost: the turning points "
+      "the motion turns between samples, up to {:.3g} {} beyond the outermost: the turning points "
       "were fitted too; sample more densely",
-      Needed(finding, "overshoot"));
+      Needed(finding, "overshoot"), units.displacement);
 }
 
-std::string ShapeOrRig(const Finding& finding, const FitResult&) {
+std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "alpha: a rig of {:.4g} N/m in series and Mindlin's alpha = 1/3 fit as well as alpha = "
+      "alpha: a rig of {:.4g} {} in series and Mindlin's alpha = 1/3 fit as well as alpha = "
       "{:.3g} "
       "on a rigid rig: they are indistinguishable in this record, and sigma is that of contact and "
       "rig together; measure the rig's stiffness and give --rig-stiffness",
-      Needed(finding, "rig_stiffness"), Needed(finding, "alpha"));
+      Needed(finding, "rig_stiffness"), units.stiffness, Needed(finding, "alpha"));
 }
 
-std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&) {
+std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "slip_force: the loop (T* = {:.4g} N at X = {:.4g} m) does not approach gross slip and fits "
+      "slip_force: the loop (T* = {:.4g} {} at X = {:.4g} {}) does not approach gross slip and "
+      "fits "
       "any larger slip force as well; raise the amplitude until the force levels off",
-      Needed(finding, "peak_force"), Needed(finding, "amplitude"));
+      Needed(finding, "peak_force"), units.force, Needed(finding, "amplitude"), units.displacement);
 }
 
 std::string TooWide(const char* parameter, const Finding& finding) {
@@ -57,36 +58,36 @@ std::string TooWide(const char* parameter, const Finding& finding) {
       parameter, Needed(finding, "lower"), Needed(finding, "upper"));
 }
 
-std::string AlphaNotIdentifiable(const Finding& finding, const FitResult&) {
+std::string AlphaNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
   if (finding.kind == "wide") return TooWide("alpha", finding);
   if (finding.kind != "with_slip_force") ThrowKind(finding);
   return "alpha: known only together with slip_force (the ratio alpha/slip_force enters the loop); "
          "raise the amplitude until the force levels off, or fix one of them";
 }
 
-std::string SigmaNotIdentifiable(const Finding& finding, const FitResult&) {
+std::string SigmaNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
   if (finding.kind != "wide") ThrowKind(finding);
   return TooWide("sigma", finding);
 }
 
-std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult&) {
+std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
   if (finding.kind != "wide") ThrowKind(finding);
   return TooWide("slip_force", finding);
 }
 
-std::string SigmaBoundedBelow(const Finding&, const FitResult&) {
+std::string SigmaBoundedBelow(const Finding&, const FitResult&, const Units&) {
   return "sigma: a rigid contact (sigma without limit) fits as well; sample more densely after the "
          "reversals, or lower the amplitude";
 }
 
-std::string UndeterminedParameter(const Finding& finding, const FitResult&) {
+std::string UndeterminedParameter(const Finding& finding, const FitResult&, const Units&) {
   const bool one = finding.parameters.size() == 1;
   return fmt::format("{}: the record does not depend on {}; fix {}, or record another amplitude",
                      fmt::join(finding.parameters, ", "), one ? "it" : "any of them",
                      one ? "it" : "them");
 }
 
-std::string UndeterminedCombination(const Finding& finding, const FitResult&) {
+std::string UndeterminedCombination(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "the record determines only a combination of {}: fix one of them, or record a larger "
       "amplitude",
@@ -112,40 +113,40 @@ constexpr std::array<MisfitKind, 5> kMisfitKinds = {{
     {"asymmetric", "unlike in the two directions: friction that is not symmetric"},
 }};
 
-std::string WhereItRepeats(const Finding& finding) {
+std::string WhereItRepeats(const Finding& finding, const Units& units) {
   for (const MisfitKind& kind : kMisfitKinds) {
     if (kind.kind != finding.kind) continue;
     return fmt::format(
         "{:.0f} % of the residuals' variance is repeatable: it comes back in every stroke, up to "
-        "{:.3g} N {:.0f} % of the way {}; {}",
+        "{:.3g} {} {:.0f} % of the way {}; {}",
         100 * Needed(finding, "repeatable_share"), std::abs(Needed(finding, "largest")),
-        100 * Needed(finding, "position"), Needed(finding, "direction") > 0 ? "up" : "down",
-        kind.words);
+        units.force, 100 * Needed(finding, "position"),
+        Needed(finding, "direction") > 0 ? "up" : "down", kind.words);
   }
   ThrowKind(finding);
 }
 
-std::string NoModelFits(const Finding& finding, const FitResult& fit) {
+std::string NoModelFits(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
       "no parameters of {} follow this record (rms {:.3g} % of the force): {}. Tc and the energy "
       "may still be of use, sigma and alpha not",
-      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding));
+      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding, units));
 }
 
-std::string SystematicResidual(const Finding& finding, const FitResult& fit) {
+std::string SystematicResidual(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
       "{} leaves a repeatable residual (rms {:.3g} % of the force): {}. Intervals are widened for "
       "it; compare with --model auto",
-      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding));
+      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding, units));
 }
 
 // --- what the solver did not reach
 
-std::string WeightsNotSettled(const Finding&, const FitResult&) {
+std::string WeightsNotSettled(const Finding&, const FitResult&, const Units&) {
   return "the weights of the samples did not settle: the fit did not converge; try another --loss";
 }
 
-std::string FitFailed(const Finding&, const FitResult& fit) {
+std::string FitFailed(const Finding&, const FitResult& fit, const Units&) {
   return fmt::format(
       "the fit failed, so no parameter, residual, loop, contact or mapping value was computed: {}",
       fit.termination);
@@ -153,7 +154,7 @@ std::string FitFailed(const Finding&, const FitResult& fit) {
 
 struct Row {
   std::string_view code;
-  std::string (*sentence)(const Finding&, const FitResult&);
+  std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
 constexpr std::array<Row, 13> kSentences = {{
@@ -174,9 +175,9 @@ constexpr std::array<Row, 13> kSentences = {{
 
 }  // namespace
 
-std::string Sentence(const Finding& finding, const FitResult& fit) {
+std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
   for (const Row& row : kSentences) {
-    if (row.code == finding.code) return row.sentence(finding, fit);
+    if (row.code == finding.code) return row.sentence(finding, fit, units);
   }
   throw std::logic_error(fmt::format("the finding '{}' has no sentence", finding.code));
 }

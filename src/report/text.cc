@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "mindahl/models/steady_loop.h"
+#include "report/field_table.h"
 #include "report/fields.h"
 #include "report/names.h"
 #include "report/requirements.h"
@@ -61,10 +62,14 @@ std::string Words(identification::Identifiability identifiability) {
 
 std::string ParameterTable(const FitResult& fit) {
   std::string text;
+  std::size_t width = 4;
+  for (const identification::ParameterEstimate& estimate : fit.parameters) {
+    width = std::max(width, estimate.unit.starts_with("N m") ? estimate.unit.size() : 0);
+  }
   const auto row = [&](std::string_view name, std::string_view unit, std::string_view value,
                        std::string_view error, std::string_view interval,
                        std::string_view verdict) {
-    text += fmt::format("{:<19} {:<4} {:>12} {:>9}  {:<24} {}\n", name, unit, value, error,
+    text += fmt::format("{:<19} {:<{}} {:>12} {:>9}  {:<24} {}\n", name, unit, width, value, error,
                         interval, verdict);
   };
   row("parameter", "unit", "value", "std error", "95 % interval", "verdict");
@@ -139,14 +144,15 @@ std::string BranchShapesText(const FitResult& fit) {
   return text.empty() ? text : Wrapped(text, 4);
 }
 
-std::string SelectionText(const identification::ModelSelection& selection) {
+std::string SelectionText(const identification::ModelSelection& selection, const Units& units) {
   std::string text =
       fmt::format("models compared on {:.0f} effective samples", selection.effective_samples);
   text += selection.held_out_cycles > 0
               ? fmt::format(", and by predicting {} held-out cycles:\n", selection.held_out_cycles)
               : "; too few cycles to hold any out:\n";
-  text += fmt::format("  {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}\n", "model", "free", "rms [N]",
-                      "dAICc", "weight", "held-out rms [N]");
+  text += fmt::format("  {:<22} {:>4} {:>11} {:>8} {:>7} {:>22}\n", "model", "free",
+                      fmt::format("rms [{}]", units.force), "dAICc", "weight",
+                      fmt::format("held-out rms [{}]", units.force));
   for (std::size_t i = 0; i < selection.scores.size(); ++i) {
     const identification::ModelScore& score = selection.scores[i];
     const bool listed =
@@ -168,10 +174,10 @@ std::string SelectionText(const identification::ModelSelection& selection) {
   return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
 }
 
-std::string SlipText(const LoopDescription& loop) {
+std::string SlipText(const LoopDescription& loop, const Units& units) {
   if (loop.gross_slip_displacement) {
-    return fmt::format("{} slip (gross-slip displacement {:.5g} m)", Name(loop.regime),
-                       *loop.gross_slip_displacement);
+    return fmt::format("{} slip (gross-slip displacement {:.5g} {})", Name(loop.regime),
+                       *loop.gross_slip_displacement, units.displacement);
   }
   return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
                      100 * loop.slip_force_share);
@@ -226,6 +232,7 @@ std::string ToText(const Report& report) {
   const FitResult& fit = report.fit;
   const LoopDescription& loop = *report.loop;
   const RecordFit& widest = fit.WidestRecord();
+  const Units& units = report.units;
   std::size_t samples = 0;
   std::size_t reversals = 0;
   std::size_t cycles = 0;
@@ -236,12 +243,12 @@ std::string ToText(const Report& report) {
     cycles += record.measures.cycles;
     left_out += record.left_out;
   }
-  std::string text = report.selection ? SelectionText(*report.selection) : std::string();
+  std::string text = report.selection ? SelectionText(*report.selection, units) : std::string();
   text += fmt::format(
-      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} m), {} cycles; {} "
+      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} {}), {} cycles; {} "
       "of force and displacement\n",
       fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
-      samples, reversals, widest.reversal_gate, cycles,
+      samples, reversals, widest.reversal_gate, units.displacement, cycles,
       fit.force_sense > 0 ? "same sign" : "opposite signs");
   if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
   if (left_out > 0) text += fmt::format("{} samples left out of the fit\n", left_out);
@@ -251,10 +258,11 @@ std::string ToText(const Report& report) {
   }
   const identification::ResidualStatistics& residuals = fit.residuals;
   text += fmt::format(
-      "\nresiduals: rms {:.4g} N ({:.3g} % of Tc), largest {:.4g} N, R² {:.6f}, Durbin-Watson "
+      "\nresiduals: rms {:.4g} {} ({:.3g} % of Tc), largest {:.4g} {}, R² {:.6f}, Durbin-Watson "
       "{:.2f},\n           {:.0f} effective samples of {}\n",
-      residuals.rms, 100 * residuals.normalized_rms, residuals.max_abs, residuals.r_squared,
-      residuals.durbin_watson, residuals.effective_samples, samples - left_out);
+      residuals.rms, units.force, 100 * residuals.normalized_rms, residuals.max_abs, units.force,
+      residuals.r_squared, residuals.durbin_watson, residuals.effective_samples,
+      samples - left_out);
   double repeatable = 0.0;
   for (const RecordFit& record : fit.records) {
     repeatable = std::max(repeatable, record.structure.repeatable_share);
@@ -265,15 +273,15 @@ std::string ToText(const Report& report) {
         100 * repeatable);
   }
   if (widest.displacement_noise > 0) {
-    text += fmt::format("           noise of the displacement {:.3g} m, weighed in\n",
-                        widest.displacement_noise);
+    text += fmt::format("           noise of the displacement {:.3g} {}, weighed in\n",
+                        widest.displacement_noise, units.displacement);
   }
   if (fit.outliers > 0) {
     text += fmt::format("           {} outliers count less than half\n", fit.outliers);
   }
   const loop::LoopMeasures& measures = widest.measures;
-  text += fmt::format("\nloop: X = {:.5g} m, T* = {:.5g} N, {}\n", measures.amplitude,
-                      measures.peak_force, SlipText(loop));
+  text += fmt::format("\nloop: X = {:.5g} {}, T* = {:.5g} {}, {}\n", measures.amplitude,
+                      units.displacement, measures.peak_force, units.force, SlipText(loop, units));
   text += fmt::format(
       "      energy per cycle {} measured, {:.5g} J model\n",
       measures.energy_per_cycle ? fmt::format("{:.5g} J", *measures.energy_per_cycle) : "not",
@@ -285,6 +293,8 @@ std::string ToText(const Report& report) {
                                           models::GrossSlipEnergyRatio(fit.law.shape_exponent))
                             : "");
   }
+  if (report.is_torsional())
+    return text + "\n" + Wrapped(std::string("no contact: ") + kWhyNoContact, 2);
   text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report);
   text += "\nis it Mindlin's contact?\n" + MappingText(report);
   return text;

@@ -186,7 +186,8 @@ TEST(Contract, DocumentsEveryKeyAndCodeOfAFit) {
 TEST(Contract, DocumentsTheWarningsOfTheTranslation) {
   const std::set<std::string> documented =
       Matches(ContractSections().at("mindahl fit"), "\n\\| `([a-z_]+)` \\|");
-  for (const char* code : {"contact_not_identified", "contact_redundant", "fit_failed"}) {
+  for (const char* code :
+       {"contact_implausible", "contact_not_identified", "contact_redundant", "fit_failed"}) {
     EXPECT_TRUE(documented.contains(code)) << code;
   }
 }

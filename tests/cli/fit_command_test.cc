@@ -141,6 +141,7 @@ class FitJsonOf : public ::testing::TestWithParam<Situation> {
     Words words = GetParam().words;
     for (std::string& word : words) {
       if (word == "@") word = SampleRecord();
+      if (word == "copy") word = directory_.Write("copy.csv", FileContent(SampleRecord())).string();
       if (word == "partial") word = Simulated("partial.csv", {"--lambda", "0.15"});
       if (word == "exponential") {
         word = Simulated("exponential.csv",
@@ -227,7 +228,7 @@ INSTANTIATE_TEST_SUITE_P(
         Situation{"Auto", {"short", "--model", "auto", "--starts", "1"}},
         Situation{"FailedWithBodies", Join(kBodies, {"--force-sign", "opposite"})},
         Situation{"Rig", {"@", "--rig-stiffness", "fit", "--model", "mindlin"}},
-        Situation{"Joint", {"@", "@"}}, Situation{"Steady", {"@", "--initial-state", "steady"}},
+        Situation{"Joint", {"@", "copy"}}, Situation{"Steady", {"@", "--initial-state", "steady"}},
         Situation{"Drift", {"@", "--drift"}}, Situation{"NoOffsets", {"@", "--offsets", "off"}}),
     [](const auto& test) { return std::string(test.param.name); });
 
@@ -426,7 +427,9 @@ TEST(FitCommand, TimeWindowKeepsTheSamplesInIt) {
 }
 
 TEST(FitCommand, JointFitNumbersTheOffsetsOfItsRecords) {
-  const json fit = FitJson({SampleRecord(), SampleRecord()});
+  const TemporaryDirectory directory;
+  const std::string copy = directory.Write("copy.csv", FileContent(SampleRecord())).string();
+  const json fit = FitJson({SampleRecord(), copy});
   EXPECT_THAT(fit["input"]["files"], SizeIs(2));
   EXPECT_TRUE(fit["parameters"].contains("force_offset_1"));
   EXPECT_TRUE(fit["parameters"].contains("force_offset_2"));

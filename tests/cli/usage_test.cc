@@ -123,6 +123,40 @@ const std::vector<BadUsage> kBadUsage = {
     {"BoundReversed", {"fit", "@", "--bound", "alpha=1:0"}, "the first number must be the smaller"},
     {"BoundWithText", {"fit", "@", "--bound", "alpha=0:one"}, "'one' is not a number"},
     {"BoundTwice", {"fit", "@", "--bound", "alpha=0:1", "--bound", "alpha=0:2"}, "given twice"},
+    {"StartOfWhatIsFixed",
+     {"fit", "@", "--fix", "alpha=1", "--start", "alpha=1"},
+     "--start: alpha is not fitted, so this has no effect: it is held"},
+    {"StartOfWhatTheModelPrescribes",
+     {"fit", "@", "--model", "mindlin", "--start", "alpha=1"},
+     "--model mindlin prescribes it; use --model mindlin-dahl"},
+    {"StartOfAnOffsetThatIsOff",
+     {"fit", "@", "--offsets", "off", "--start", "force_offset=1"},
+     "use --offsets on"},
+    {"BoundOfTheCentreOfASteadyLoop",
+     {"fit", "@", "--initial-state", "steady", "--bound", "displacement_offset=-1:1"},
+     "use --initial-state virgin"},
+    {"StartOfARigThatIsNotThere",
+     {"fit", "@", "--start", "rig_stiffness=1e9"},
+     "add --rig-stiffness fit"},
+    {"StartOfARigThatIsKnown",
+     {"fit", "@", "--rig-stiffness", "1e9", "--start", "rig_stiffness=1e9"},
+     "it is held at a value that is given"},
+    {"BoundOfADriftThatIsNotThere", {"fit", "@", "--bound", "force_drift=-1:1"}, "add --drift"},
+    {"FixOutsideItsBound",
+     {"fit", "@", "--fix", "alpha=3", "--bound", "alpha=0:2"},
+     "alpha is held at 3, outside its --bound 0:2"},
+    {"BoundOfWhatIsFixed",
+     {"fit", "@", "--fix", "alpha=1", "--bound", "alpha=0:2"},
+     "it is held at a value that is given"},
+    {"UnitOfALoadThatIsNotThere",
+     {"fit", "@", "--normal-load-unit", "kN"},
+     "has no column of the normal load, so this has no effect: name it with --normal-load-column"},
+    {"RigSofterThanTheLoop",
+     {"fit", "@", "--rig-stiffness", "1e3", "--json", "#"},
+     "rig_stiffness [N/m] = 1000 is invalid: must be >"},
+    {"ForceNoiseBeyondSquares",
+     {"fit", "@", "--force-noise", "1e160"},
+     "must be below 1e100 times"},
     {"ForceNoiseZero", {"fit", "@", "--force-noise", "0"}, "--force-noise [N] = 0"},
     {"GateNegative", {"fit", "@", "--reversal-gate", "-1"}, "--reversal-gate [m] = -1"},
     {"LoadNotPositive", {"fit", "@", "--normal-load", "0"}, "--normal-load [N] = 0"},
@@ -169,6 +203,10 @@ const std::vector<BadUsage> kBadUsage = {
     {"SimulateThreeSamples",
      {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--samples-per-cycle", "3"},
      "must be a whole number from 4"},
+    {"SimulateToleranceBelowRounding",
+     {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--method", "dopri5",
+      "--tolerance", "1e-20", "-o", "#"},
+     "tolerance [-] = 1e-20 is invalid: must be >= 8.88178e-16"},
     {"SimulateNegativeSeed",
      {"simulate", "--sigma", "1", "--slip-force", "1", "--lambda", "1", "--seed", "-1"},
      "must be a whole number from 0"},
@@ -211,14 +249,31 @@ struct BadFile {
 TEST(BadFiles, AreRefusedWithOneLineThatSaysWhatIsWrong) {
   const std::vector<BadFile> files = {
       {"empty.csv", "", "the file is empty"},
-      {"header.csv", "x [m],F [N]\n", "no row of numbers"},
-      {"one.csv", "x [m],F [N]\n1,2\n", "the displacement never changes"},
-      {"still.csv", "x [m],F [N]\n1,2\n1,3\n1,4\n", "the displacement never changes"},
-      {"slack.csv", "x [m],F [N]\n1,2\n2,2\n1,2\n", "the force never changes"},
-      {"two.csv", "x [m],F [N]\n0,0\n1,1\n", "2 samples are too few"},
+      {"header.csv", "x [m],F [N]\n", "header.csv:1: the file ends after its header"},
+      {"one.csv", "x [m],F [N]\n1,2\n", "one.csv:2:1: the displacement never changes"},
+      {"still.csv", "#\nx [m],F [N]\n1,2\n1,3\n1,4\n", "still.csv:3:1: the displacement never"},
+      {"mm.csv", "t [s],F [N],x [mm]\n1,2,5\n2,3,5\n",
+       "mm.csv:2:3: the displacement never "
+       "changes, it is 0.005 m in every row"},
+      {"slack.csv", "x [m],F [N]\n1,2\n2,2\n1,2\n", "slack.csv:2:2: the force never changes"},
+      {"two.csv", "x [m],F [N]\n0,0\n1,1\n", "two.csv:3:2: 2 samples are too few"},
+      {"words.csv", "x [m],F [N]\n0,a\n1,b\n0,c\n", "words.csv:2:2: 'a' is not a number"},
+      {"allwords.csv", "x,F\na,b\nc,d\n", "allwords.csv:3:1: 'c' is not a number"},
+      {"nans.csv", "x [m],F [N]\nnan,nan\nnan,nan\n", "nans.csv:2:1: 'nan' is not a number"},
+      {"na.csv", "x [m],F [N]\n0,0\n#N/A,1\n0,2\n1,1\n", "na.csv:3:1: '#N/A' is not a number"},
+      {"clock.csv", "0,0,0\n1,1,5\n2,0,-5\n3,-1,0\n",
+       "clock.csv:1:1: column 1 only grows while column 2 goes to and fro, as a time does: name "
+       "the "
+       "column of the displacement with --displacement"},
+      {"speed.csv", "speed,F [N]\n0,0\n1,1\n0,-1\n",
+       "speed.csv:2:1: 'speed' (column 1) is a "
+       "velocity"},
+      {"unfit.csv", "angle [deg],F [N]\n0,0\n1,1\n0,-1\n", "do not go together"},
       {"nan.csv", "x [m],F [N]\n0,0\n1,nan\n2,1\n", "nan.csv:3:2: 'nan' is not a number"},
       {"text.csv", "x [m],F [N]\n0,0\n1,one\n2,1\n", "text.csv:3:2"},
-      {"huge.csv", "x [m],F [N]\n0,0\n1e300,1\n-1e300,-1\n", "must lie between 1e-100 and 1e100"},
+      {"huge.csv", "x [m],F [N]\n0,0\n1e300,1\n-1e300,-1\n",
+       "huge.csv:3:1: half the range of the "
+       "displacement is 1e+300 m: must lie between 1e-100 and 1e100"},
       {"tiny.csv", "x [m],F [N]\n0,0\n1,1e-300\n-1,-1e-300\n0,0\n", "choose other units"}};
   for (const BadFile& file : files) {
     SCOPED_TRACE(file.name);
@@ -269,17 +324,27 @@ TEST_F(Config, TakesListsAndYieldsToTheCommandLine) {
   EXPECT_EQ(json["parameters"]["force_offset"]["status"], "fixed");
 }
 
+TEST_F(Config, TakesListsOverSeveralLines) {
+  const Outcome outcome =
+      FitWith("fix = [\n  \"alpha=0.3\",  # not Mindlin's\n  \"force_offset=0\",\n]\n");
+  ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
+  const nlohmann::json json = outcome.Json();
+  EXPECT_EQ(json["parameters"]["alpha"]["value"], 0.3);
+  EXPECT_EQ(json["parameters"]["force_offset"]["status"], "fixed");
+}
+
 TEST_F(Config, RefusesWhatItDoesNotKnow) {
   struct Case {
     const char* toml;
     const char* message;
   };
-  for (const Case& c : {Case{"modle = \"mindlin\"\n", "'fit.modle' is no option of fit"},
-                        Case{"[fit]\nmodle = 1\n", "'fit.modle' is no option of fit"},
-                        Case{"[fit.model]\nname = 1\n", "is no option of fit"},
-                        Case{"[fits]\nmodel = \"mindlin\"\n", "section 'fits' is no command"},
-                        Case{"model = \"coulomb\"\n", "--model"},
-                        Case{"normal-load = \"heavy\"\n", "--normal-load"}}) {
+  for (const Case& c :
+       {Case{"modle = \"mindlin\"\n", "'fit.modle' is no option of fit"},
+        Case{"[fit]\nmodle = 1\n", "options.toml:2: 'fit.modle' is no option of fit"},
+        Case{"[fit.model]\nname = 1\n", "is no option of fit"},
+        Case{"[fits]\nmodel = \"mindlin\"\n", "section 'fits' is no command"},
+        Case{"model = \"coulomb\"\n", "--model"},
+        Case{"normal-load = \"heavy\"\n", "--normal-load"}}) {
     SCOPED_TRACE(c.toml);
     const Outcome outcome = FitWith(c.toml);
     EXPECT_EQ(outcome.status, cli::kBadInput);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace mindahl {
 namespace {
 
@@ -37,6 +39,28 @@ TEST(Units, MicrometresDivideByAnExactMillion) {
   EXPECT_NE(2.3 * 1e-6, 2.3e-6);
 }
 
+TEST(Units, AnglesAndTorquesAreTold) {
+  EXPECT_EQ(AngleUnit("rad")->ToSi(2.0), 2.0);
+  EXPECT_EQ(AngleUnit("deg")->ToSi(180.0), std::numbers::pi);
+  EXPECT_EQ(AngleUnit("°")->ToSi(180.0), std::numbers::pi);
+  EXPECT_EQ(AngleUnit("rev")->ToSi(1.0), 2 * std::numbers::pi);
+  EXPECT_FALSE(AngleUnit("m"));
+  for (const char* symbol : {"N m", "Nm", "N·m", "N*m", "N-m"}) {
+    ASSERT_TRUE(TorqueUnit(symbol)) << symbol;
+    EXPECT_EQ(TorqueUnit(symbol)->symbol, "N m");
+    EXPECT_EQ(TorqueUnit(symbol)->ToSi(3.0), 3.0);
+  }
+  EXPECT_EQ(TorqueUnit("Nmm")->ToSi(3.0), 3e-3);
+  EXPECT_EQ(TorqueUnit("mNm")->ToSi(3.0), 3e-3);
+  EXPECT_EQ(TorqueUnit("\u00b5N m")->ToSi(3.0), 3e-6);
+  EXPECT_FALSE(TorqueUnit("N"));
+  EXPECT_FALSE(TorqueUnit("m"));
+}
+
+TEST(Units, AKipIsAThousandPounds) {
+  EXPECT_DOUBLE_EQ(ForceUnit("kip")->ToSi(1.0), 1000 * ForceUnit("lbf")->ToSi(1.0));
+}
+
 TEST(Units, UnknownSymbolsAreNoUnit) {
   EXPECT_FALSE(LengthUnit("furlong"));
   EXPECT_FALSE(LengthUnit("N"));
@@ -46,7 +70,9 @@ TEST(Units, UnknownSymbolsAreNoUnit) {
 
 TEST(Units, ListTheirSymbolsForMessages) {
   EXPECT_EQ(LengthUnitSymbols(), "m, mm, um, nm, in");
-  EXPECT_EQ(ForceUnitSymbols(), "N, mN, uN, kN, MN, lbf, kgf");
+  EXPECT_EQ(AngleUnitSymbols(), "rad, mrad, deg, rev");
+  EXPECT_EQ(ForceUnitSymbols(), "N, mN, uN, kN, MN, lbf, kgf, kip");
+  EXPECT_EQ(TorqueUnitSymbols(), "N m, mN m, uN m, kN m, N mm, lbf in, lbf ft");
   EXPECT_EQ(TimeUnitSymbols(), "s, ms, us, min");
 }
 

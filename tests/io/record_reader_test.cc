@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -135,7 +136,7 @@ TEST(RecordReader, LeavesOutUnaskedNormalLoadInUnknownUnitWithNote) {
   const std::string text = "normal [V],x [m],F [N]\n1.5,2.5,3.5\n";
   EXPECT_FALSE(Read(text).normal_load);
   EXPECT_EQ(Notes(text), (Strings{"loop.csv: normal load 'normal [V]' (column 1) has the unit 'V', "
-                                  "not one of N, mN, uN, kN, MN, lbf, kgf: left out"}));
+                                  "not one of N, mN, uN, kN, MN, lbf, kgf, kip: left out"}));
 }
 
 // --- Units ---------------------------------------------------------------------------------------
@@ -247,9 +248,30 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"UnknownChosenUnit", "x,F\n1,2\n", Choose({"", "furlong"}),
               "loop.csv: the displacement unit 'furlong' is not known: must be one of m, mm, um, "
               "nm, in"},
-        Fault{"UnknownUnitInHeader", "\nt,x [m],Torque [Nm]\n1,2,3\n", Choose({}),
-              "loop.csv:2:3: the unit 'Nm' of 'Torque [Nm]' (column 3) is not known for the "
-              "force: must be one of N, mN, uN, kN, MN, lbf, kgf, or choose the unit"},
+        Fault{
+            "UnknownUnitInHeader", "\nt,x [m],F [V]\n1,2,3\n", Choose({}),
+            "loop.csv:2:3: the unit 'V' of 'F [V]' (column 3) is not known for the force: must be "
+            "one of N, mN, uN, kN, MN, lbf, kgf, kip, or choose the unit"},
+        Fault{"TorqueAgainstALength", "\nt,x [m],Torque [Nm]\n1,2,3\n", Choose({}),
+              "loop.csv: 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in Nm do not go "
+              "together: a torque goes with an angle, a force with a length; choose other columns, "
+              "or units with --displacement-unit and --force-unit"},
+        Fault{"ForceAgainstAnAngle", "angle,F\n1,2\n", Choose({}, {"", "kN"}),
+              "loop.csv: 'angle' (column 1) in rad and 'F' (column 2) in kN do not go together: a "
+              "torque goes with an angle, a force with a length; choose other columns, or units "
+              "with --displacement-unit and --force-unit"},
+        Fault{"TimeWithoutAName", "# clock\n0,0,0\n1,1,5\n2,0,-5\n3,-1,0\n", Choose({}),
+              "loop.csv:2:1: column 1 only grows while column 2 goes to and fro, as a time does: "
+              "name the column of the displacement with --displacement"},
+        Fault{"CountdownUnderAnUnknownName", "left,F\n3,0\n2,5\n1,-5\n", Choose({}),
+              "loop.csv:2:1: 'left' (column 1) only falls while 'F' (column 2) goes to and fro, as "
+              "a time does: name the column of the displacement with --displacement"},
+        Fault{"VelocityByItsName", "sliding speed,F\n1,2\n2,1\n", Choose({}),
+              "loop.csv:2:1: 'sliding speed' (column 1) is a velocity: name the column of the "
+              "displacement with --displacement"},
+        Fault{"VelocityByItsUnit", "drive [mm/s],F\n1,2\n2,1\n", Choose({}),
+              "loop.csv:2:1: 'drive [mm/s]' (column 1) is a velocity: name the column of the "
+              "displacement with --displacement"},
         Fault{"UnknownUnitInUnitsRow", "x,F\nfurlong,N\n1,2\n", Choose({}),
               "loop.csv:1:1: the unit 'furlong' of 'x' (column 1) is not known for the "
               "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
@@ -276,6 +298,48 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"TimeBrokenInOneRow", "time,x [m],F [N]\n1,2,3\nnan,2,3\n", Choose({}),
               "loop.csv:3:1: 'nan' is not a number: write it like -1.5e-3, or remove the row"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(RecordReader, TakesASingleStrokeForOne) {
+  // A noisy force along one stroke wavers, it does not go back by half its range.
+  const Numbers stroke = {0, 1, 2, 3, 4};
+  EXPECT_EQ(Read("0,0\n1,3\n2,2.5\n3,5\n4,4.6\n").record.displacement, stroke);
+  // By name it may be whatever it is.
+  EXPECT_EQ(Read("x,F\n0,0\n1,3\n2,-2\n3,5\n4,0\n").record.displacement, stroke);
+  EXPECT_EQ(Read("0,0\n1,3\n2,-2\n3,5\n4,0\n", Choose({"1", ""})).record.displacement, stroke);
+}
+
+TEST(RecordReader, ReadsATorqueAgainstAnAngle) {
+  struct Case {
+    const char* text;
+    RecordColumns columns;
+    const char* angle_unit;
+    const char* torque_unit;
+  };
+  for (const Case& c : {Case{"angle [deg],torque [N m]\n180,2\n", {}, "deg", "N m"},
+                        Case{"angle_deg,torque_Nm\n180,2\n", {}, "deg", "N m"},
+                        Case{"rotation / rev,T [N·m]\n0.5,2\n", {}, "rev", "N m"},
+                        Case{"rotation,torque\ndeg,Nmm\n180,2000\n", {}, "deg", "N mm"},
+                        Case{"twist [°],torque\n180,2\n", {}, "deg", "N m"},
+                        Case{"angle,torque [kN m]\n3.141592653589793,0.002\n", {}, "rad", "kN m"},
+                        Case{"180,2\n", Choose({"", "deg"}, {"", "Nm"}), "deg", "N m"}}) {
+    SCOPED_TRACE(c.text);
+    const RecordFile file = Read(c.text, c.columns);
+    EXPECT_TRUE(file.is_torsional);
+    EXPECT_DOUBLE_EQ(file.record.displacement[0], std::numbers::pi);
+    EXPECT_DOUBLE_EQ(file.record.force[0], 2.0);
+    EXPECT_EQ(file.displacement.unit, c.angle_unit);
+    EXPECT_EQ(file.force.unit, c.torque_unit);
+  }
+  EXPECT_FALSE(Read("x [mm],torque\n1,2\n").is_torsional) << "a force that is called so";
+}
+
+TEST(RecordReader, DoesNotTakeARadialForceForAnAngle) {
+  EXPECT_EQ(Read("x,F,F_rad\n1,2,3\n").force.number, 2u);
+}
+
+TEST(RecordReader, KnowsTheLineOfEverySample) {
+  EXPECT_EQ(Read("x,F\n1,2\n# a remark\n3,4\n").lines, (std::vector<std::size_t>{2, 4}));
+}
 
 // --- Displacement paths --------------------------------------------------------------------------
 

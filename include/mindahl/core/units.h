@@ -19,15 +19,23 @@ struct Unit {
 /// m, mm, um/µm, nm, in; nullopt when the symbol is not a length.
 std::optional<Unit> LengthUnit(std::string_view symbol);
 
-/// N, mN, uN/µN, kN, MN, lbf, kgf; case decides between mN (10⁻³) and MN (10⁶).
+/// rad, mrad, deg/°, rev.
+std::optional<Unit> AngleUnit(std::string_view symbol);
+
+/// N, mN, uN/µN, kN, MN, lbf, kgf, kip; case decides between mN (10⁻³) and MN (10⁶).
 std::optional<Unit> ForceUnit(std::string_view symbol);
+
+/// N m, mN m, uN m/µN m, kN m, N mm, lbf in, lbf ft; "Nm", "N·m" and "N*m" are N m.
+std::optional<Unit> TorqueUnit(std::string_view symbol);
 
 /// s, ms, us/µs, min.
 std::optional<Unit> TimeUnit(std::string_view symbol);
 
 /// The accepted symbols, for messages: "m, mm, um, nm, in".
 std::string LengthUnitSymbols();
+std::string AngleUnitSymbols();
 std::string ForceUnitSymbols();
+std::string TorqueUnitSymbols();
 std::string TimeUnitSymbols();
 
 }  // namespace mindahl

@@ -16,4 +16,8 @@ namespace mindahl::io {
 /// Safe against a crash of the program, not of the machine: the disk is not told to synchronise.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
+/// For a program: from now on SIGINT, SIGTERM and SIGHUP, unless they are ignored, remove the files
+/// that this module has begun and not yet finished, and then end the program as they would have.
+void RemoveTemporaryFilesOnSignals();
+
 }  // namespace mindahl::io

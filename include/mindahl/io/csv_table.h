@@ -33,6 +33,11 @@ class CsvTable {
   /// @throws InputError at the first cell that is missing or is not a number
   [[nodiscard]] std::span<const double> Numbers(std::size_t column) const;
 
+  /// Likewise, with NaN where a cell is missing or is not a number.
+  [[nodiscard]] std::span<const double> NumbersOrNan(std::size_t column) const {
+    return values_.at(column);
+  }
+
   /// False when not one cell of the column is a number.
   [[nodiscard]] bool HasNumbers(std::size_t column) const;
 
@@ -55,7 +60,8 @@ class CsvTable {
 /// Reads a delimited text as a table.
 ///
 /// *Text.* UTF-8 or ASCII, with or without byte order mark; lines end in LF, CRLF or CR, the last
-/// one optionally. Blank lines, rows of delimiters alone and lines that begin with '#' are skipped.
+/// one optionally. Blank lines, rows of delimiters alone and lines that begin with '#' are skipped,
+/// but for error values of a spreadsheet ("#N/A"), which are cells that hold no number.
 /// Cells may be quoted (RFC 4180). A trailing delimiter is no cell.
 ///
 /// *Delimiter.* Tab, semicolon, comma or runs of blanks: the one under which the first 1000 rows

@@ -33,6 +33,9 @@ struct ChosenColumn {
 /// A record and where it came from.
 struct RecordFile {
   loop::Record record;
+  /// A torque [N m] against an angle [rad]: they are in the record's force and displacement.
+  bool is_torsional = false;
+  std::vector<std::size_t> lines;  ///< of the file, 1-based, one a sample
   ChosenColumn displacement;
   ChosenColumn force;
   std::optional<ChosenColumn> time;
@@ -40,22 +43,27 @@ struct RecordFile {
   std::vector<std::string> notes;  ///< what was assumed, one sentence each
 };
 
-/// Reads a hysteresis record [m, N, s, N] from a delimited file (see csv_table.h).
+/// Reads a hysteresis record [m, N, s, N], or [rad, N m, s, N], from a delimited file (see
+/// csv_table.h).
 ///
 /// *Columns.* As chosen: by number; by header cell, exactly, then whatever the case, then without
 /// its unit. Else by recognised name, the unit taken off, whatever the case (but names of one
 /// letter as written), '_' and '-' as blanks, the first line that matches winning:
 ///   displacement  tangential displacement, relative displacement | displacement, disp |
-///                 position, pos, travel, stroke, extension | x, X, d, delta, δ
+///                 position, pos, travel, stroke, extension | x, X, d, delta, δ |
+///                 angle, rotation, twist
 ///   force         tangential force, friction force, lateral force, shear force | force, friction |
 ///                 torque | Ft | F, f, Q | T | F_N
 ///   time          time, time stamp, timestamp, elapsed time | t
 ///   normal load   normal load, normal force | normal, n load | Fn, F_N, N
 /// A displacement or force that is not recognised is column 1 or 2, or the only one left when that
-/// has another role, with a note. Time and normal load are then absent.
+/// has another role, with a note. Time and normal load are then absent. A column so taken for the
+/// displacement is refused when its name is that of a velocity, or when it only grows or only falls
+/// while another column goes to and fro: that is the time.
 ///
 /// *Units.* As chosen; else of the header, in the name (`x [um]`, `F (kN)`, `Position, mm`,
-/// `x / mm`, `disp_mm`) or in the units row; else m, N, s, with a note.
+/// `x / mm`, `disp_mm`) or in the units row; else m, N, s, with a note. An angle and a torque go
+/// together: one of the two has the other's unit, rad or N m, where it names none.
 ///
 /// A time or normal load that was recognised but not asked for is left out, with a note, when none
 /// of its cells is a number or its unit is not one of core/units.h.

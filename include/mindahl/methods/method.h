@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -27,9 +28,12 @@ models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Driv
 struct Resolution {
   /// Substeps a sample, elements or nodes: what the method says. >= 1
   std::size_t steps = 1;
-  /// Of an adaptive method: largest local error of T/Tc a step. > 0
+  /// Of an adaptive method: largest local error of T/Tc a step. >= kLeastTolerance
   double tolerance = 1e-6;
 };
+
+/// 4 ε: what rounding does to u in [0, 1] over the stages of one step.
+inline constexpr double kLeastTolerance = 4 * std::numeric_limits<double>::epsilon();
 
 /// Force [N] along a drive, from displacement to force: reversals and branches are found within.
 /// The spans must have one length.

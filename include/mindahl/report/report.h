@@ -10,6 +10,7 @@
 #include "mindahl/io/record_reader.h"
 #include "mindahl/report/loop_description.h"
 #include "mindahl/report/mapping_tests.h"
+#include "mindahl/report/units.h"
 #include "mindahl/report/warning.h"
 
 namespace mindahl::report {
@@ -35,6 +36,10 @@ struct Report : ReportInput {
   std::vector<Warning> fit_warnings;      ///< what the fit found
   std::vector<Warning> contact_warnings;  ///< what the translation into the contact found
 
+  Units units;  ///< of all that is said
+
+  /// A torque against an angle has no Hertz-Mindlin contact and no mapping: theirs are of a force.
+  [[nodiscard]] bool is_torsional() const { return records.front().is_torsional; }
   /// A fit that failed has no parameter, residual, loop, contact or mapping.
   [[nodiscard]] bool failed() const { return fit.parameters.empty(); }
 };

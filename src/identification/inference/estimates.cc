@@ -113,6 +113,8 @@ double Estimates::WhiteShare(std::size_t parameter) const {
   const std::size_t j = full_.PlaceOf(parameter);
   if (j == full_.columns.size() || !full_.determined[j]) return 1.0;
   const auto place = static_cast<Eigen::Index>(j);
+  // A correlation that is estimated from a handful of residuals may leave no variance at all.
+  if (!(variance_ * full_.factor(place, place) > 0)) return 1.0;
   return white_variance_ * full_.white_factor[place] / (variance_ * full_.factor(place, place));
 }
 

@@ -90,12 +90,17 @@ class Weighting {
       from_displacement[k] = unit / deviation;  // root weight by noise
       if (counts_[k] != 0) standardised.push_back(residual[k]);
     }
-    const double scale =
-        loss == Loss::kNone || options_.force_noise ? 1.0 : RobustScale(standardised);
+    // Where more than half of the samples are met to the last bit, rounding is their noise.
+    const double scale = loss == Loss::kNone || options_.force_noise
+                             ? 1.0
+                             : std::max(RobustScale(standardised), kRoundingRms / unit);
     SetWeights(residual, from_displacement, scale, loss, unit, noise);
     if (errors_.any()) noise.force_share = from_displacement;
     return noise;
   }
+
+  /// The last weights leave no sample that tells anything.
+  [[nodiscard]] bool is_lost() const { return is_lost_; }
 
  private:
   /// The likeliest σ_F, Σ (r²/s − 1)/s = 0 with s = σ_F² + σ_T²: samples with little noise from the
@@ -164,8 +169,13 @@ class Weighting {
       return;
     }
     const double variance = unit * unit * scale * scale;
-    noise.variance = variance * (influence_squares / degrees_) * (weights / count) /
-                     ((slopes / count) * (slopes / count));
+    // A loss that all samples are far out of has no minimum here, and the rule no meaning.
+    is_lost_ = !(slopes > 0 && weights > 0);
+    const double of_influence = is_lost_ ? 1.0
+                                         : (influence_squares / degrees_) * (weights / count) /
+                                               ((slopes / count) * (slopes / count));
+    // Samples that are met to the last bit are still rounded.
+    noise.variance = std::max(variance * of_influence, kRoundingRms * kRoundingRms);
   }
 
   const Problem& problem_;
@@ -174,6 +184,7 @@ class Weighting {
   const DisplacementErrors& errors_;
   std::vector<unsigned char> counts_;
   double degrees_ = 1.0;
+  bool is_lost_ = false;
 };
 
 }  // namespace
@@ -211,6 +222,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
   for (int round = 0; round < kMostRounds; ++round) {
     const bool first_huber = options.loss != Loss::kNone && round < kHuberRounds;
     noise = weighting.Update(first_huber ? Loss::kHuber : options.loss, solution.theta, response);
+    if (weighting.is_lost()) return false;
     const std::vector<double> start = solution.theta;
     solver.Bind(problem, response);
     solver.Solve(start, solver_options, solution);

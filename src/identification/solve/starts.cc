@@ -206,13 +206,14 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
   for (std::size_t guess = 1; guess < plane.guesses(); ++guess) {
     Look look = *std::ranges::min_element(best, {}, &Look::cost);
     const double least = look.cost;
-    look.guess = guess;
-    plane.At(look);
-    // A grid this coarse is some way from the minimum wherever the contact was unloaded.
-    constexpr double kWorthALook = 4.0;
-    if (look.cost < kWorthALook * least || !std::isfinite(least)) {
-      LookAround(plane, parameters, guess, hopeless, best);
+    if (std::isfinite(least)) {  // else no look led anywhere yet, and there is none to repeat
+      look.guess = guess;
+      plane.At(look);
+      // A grid this coarse is some way from the minimum wherever the contact was unloaded.
+      constexpr double kWorthALook = 4.0;
+      if (!(look.cost < kWorthALook * least)) continue;
     }
+    LookAround(plane, parameters, guess, hopeless, best);
   }
   if (parameters[kShape].fixed) {
     for (Look& look : best) {

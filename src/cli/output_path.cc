@@ -1,0 +1,83 @@
+#include "cli/output_path.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Writing to a device, a terminal or a pipe replaces nothing.
+bool CanBeReplaced(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return !fs::exists(status) || fs::is_regular_file(status);
+}
+
+/// One file under one name or two, of which neither need be there yet.
+bool IsSameFile(const fs::path& first, const fs::path& second) {
+  std::error_code error;
+  if (fs::equivalent(first, second, error)) return CanBeReplaced(first);
+  if (fs::exists(first, error) || fs::exists(second, error)) return false;
+  const auto place = [&](const fs::path& path) {
+    const fs::path parent = path.parent_path();
+    return fs::weakly_canonical(parent.empty() ? fs::path(".") : parent, error) / path.filename();
+  };
+  return place(first) == place(second);
+}
+
+void RequireWritable(const OutputPath& output) {
+  std::error_code ignored;
+  if (fs::is_directory(output.path, ignored)) {
+    throw InputError(
+        fmt::format("{}: cannot write '{}': it is a directory", output.option, output.path));
+  }
+  const fs::path parent = fs::path(output.path).parent_path();
+  if (!parent.empty() && !fs::is_directory(parent, ignored)) {
+    throw InputError(fmt::format("{}: cannot write '{}': there is no directory '{}'", output.option,
+                                 output.path, parent.string()));
+  }
+}
+
+}  // namespace
+
+void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
+                        std::span<const std::string> inputs) {
+  std::vector<OutputPath> files;
+  for (const OutputPath& output : outputs) {
+    if (output.path.empty() || (output.dash_is_stdout && output.path == "-")) continue;
+    RequireWritable(output);
+    for (const std::string& input : inputs) {
+      if (input.empty() || !IsSameFile(output.path, input)) continue;
+      throw InputError(
+          fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
+                      output.option, output.path, input));
+    }
+    for (const OutputPath& other : files) {
+      if (!IsSameFile(output.path, other.path)) continue;
+      throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
+                                   other.option, output.option, output.path));
+    }
+    files.push_back(output);
+  }
+}
+
+void RequireDistinctFiles(std::span<const std::string> files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!IsSameFile(files[i], files[k])) continue;
+      throw InputError(
+          fmt::format("'{}' and '{}' are one file, whose samples would count twice: give it once",
+                      files[k], files[i]));
+    }
+  }
+}
+
+}  // namespace mindahl::cli

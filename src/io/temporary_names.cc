@@ -1,0 +1,68 @@
+#include "io/temporary_names.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <utility>
+
+#include "mindahl/io/atomic_file.h"
+
+namespace mindahl::io {
+namespace {
+
+// What a signal handler may look at. More than these at once are not removed by it.
+constexpr std::size_t kMostNames = 32;
+std::array<std::atomic<const char*>, kMostNames> registered_names{};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+void Replace(const char* old_name, const char* new_name) {
+  for (std::atomic<const char*>& slot : registered_names) {
+    const char* expected = old_name;
+    if (slot.compare_exchange_strong(expected, new_name)) return;
+  }
+}
+
+/// Only what POSIX allows in a handler. The signal is at its default again (SA_RESETHAND) and ends
+/// the program as soon as it is no longer blocked, on return.
+void RemoveAndRaise(int signal) {
+  for (const std::atomic<const char*>& slot : registered_names) {
+    if (const char* const name = slot.load()) ::unlink(name);
+  }
+  for (const std::atomic<const char*>& slot : registered_names) {
+    if (const char* const name = slot.load()) ::rmdir(name);
+  }
+  ::raise(signal);
+}
+
+}  // namespace
+
+TemporaryName::TemporaryName(std::string name) : name_(std::move(name)) {
+  Replace(nullptr, name_.c_str());
+}
+
+TemporaryName::~TemporaryName() {
+  if (kept_) return;
+  if (::unlink(name_.c_str()) != 0) ::rmdir(name_.c_str());
+  Replace(name_.c_str(), nullptr);
+}
+
+void TemporaryName::Keep() {
+  kept_ = true;
+  Replace(name_.c_str(), nullptr);
+}
+
+void RemoveTemporaryFilesOnSignals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    // Who started the program may have told it to ignore the signal, as nohup does.
+    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = &RemoveAndRaise;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    ::sigaction(signal, &action, nullptr);
+  }
+}
+
+}  // namespace mindahl::io

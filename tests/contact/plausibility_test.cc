@@ -1,0 +1,65 @@
+#include "mindahl/contact/plausibility.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace mindahl::contact {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const KnownBody kSteelSphere{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.05};
+const KnownBody kSteelPlane{.youngs_modulus = 210e9,
+                            .poisson_ratio = 0.3,
+                            .radius = std::numeric_limits<double>::infinity()};
+
+KnownContact SteelContact() {
+  return {.normal_load = 50, .body_1 = kSteelSphere, .body_2 = kSteelPlane};
+}
+
+TEST(Doubts, AreNoneOfAnOrdinaryContact) {
+  EXPECT_THAT(DoubtsAbout(SteelContact(), 0.3), IsEmpty());
+  EXPECT_THAT(DoubtsAbout({.contact_radius = 2e-4, .tangential_compliance = 4e-11}, 1.2),
+              IsEmpty());
+  EXPECT_THAT(DoubtsAbout({}, std::nullopt), IsEmpty());
+}
+
+TEST(Doubts, AreOfAModulusThatIsNotInPascal) {
+  KnownContact known = SteelContact();
+  known.body_1.youngs_modulus = 210;  // GPa
+  known.body_2.youngs_modulus = 1e6;  // rubber: at the limit
+  known.normal_load = std::nullopt;
+  EXPECT_THAT(DoubtsAbout(known, 0.3),
+              ElementsAre(HasSubstr("Young's modulus of body 1 = 210 Pa is below 1 MPa")));
+}
+
+TEST(Doubts, AreOfAComplianceThatIsAModulus) {
+  const KnownContact known{.contact_radius = 2e-4, .tangential_compliance = 2.5e10};
+  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("give 4e-11 if it is that")));
+}
+
+TEST(Doubts, AreOfAContactAsLargeAsItsBody) {
+  KnownContact known = SteelContact();
+  known.normal_load = std::nullopt;
+  known.contact_radius = 0.017;
+  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("a = 0.017 m is more than a third")));
+  known.contact_radius = 0.016;
+  EXPECT_THAT(DoubtsAbout(known, 0.3), IsEmpty());
+  EXPECT_THAT(DoubtsAbout(known, 0.3, 0.02), ElementsAre(HasSubstr("a = 0.02 m is more")));
+  known = SteelContact();
+  known.normal_load = 50e9;
+  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("is more than a third")))
+      << "by Hertz's radius";
+}
+
+TEST(Doubts, AreOfAFrictionBeyondWhatSlides) {
+  EXPECT_THAT(DoubtsAbout({}, 5.0), IsEmpty());
+  EXPECT_THAT(DoubtsAbout({}, 6.0), ElementsAre(HasSubstr("mu = 6 is above 5")));
+}
+
+}  // namespace
+}  // namespace mindahl::contact

@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "identification/sample_loop.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "recovery/recovered.h"
+
+// Records of which next to nothing follows, and options that no loop can be under: a result that
+// says so, or a refusal in words; never a broken number.
+namespace mindahl::identification {
+namespace {
+
+using loop::Record;
+using ::testing::HasSubstr;
+using testing::kLaw;
+using testing::Loop;
+using testing::MakeRecord;
+
+std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
+  try {
+    Fit(records, options);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+void ExpectNumbersOrNone(const FitResult& fit) {
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
+    EXPECT_TRUE(!estimate.standard_error || std::isfinite(*estimate.standard_error))
+        << estimate.name;
+    EXPECT_TRUE(!estimate.standard_error || *estimate.standard_error >= 0) << estimate.name;
+  }
+  if (!fit.parameters.empty()) {
+    EXPECT_GT(fit.law.tangential_stiffness, 0);
+    EXPECT_GT(fit.law.slip_force, 0);
+  }
+  if (fit.mindlin_test) {
+    EXPECT_GE(fit.mindlin_test->likelihood_ratio, 0);
+    EXPECT_GE(fit.mindlin_test->p_value, 0);
+    EXPECT_LE(fit.mindlin_test->p_value, 1);
+  }
+}
+
+TEST(EdgeRecords, FiveSamplesOfWhichThreeAreOneUnderEveryLoss) {
+  const Record record = MakeRecord({1, 1.004, 1.004, 1.004, 1.00393}, {-20, -20, -20, -20, 20});
+  for (const Loss loss : {Loss::kNone, Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
+    SCOPED_TRACE(static_cast<int>(loss));
+    FitOptions options;
+    options.loss = loss;
+    ExpectNumbersOrNone(Fit(std::vector{record}, options));
+  }
+}
+
+TEST(EdgeRecords, AsManySamplesAsFreeParameters) {
+  const Record record = MakeRecord({1.0, 1.0002828427124746, 1.0004}, {0, 20, 20});
+  ExpectNumbersOrNone(Fit(std::vector{record}, {}));
+}
+
+TEST(EdgeRecords, AForceNoiseWhoseSquareIsNoNumberIsRefused) {
+  const std::vector<Record> loop = {Loop()};
+  FitOptions options;
+  options.force_noise = 1e160;
+  EXPECT_THAT(RefusalOf(loop, options),
+              HasSubstr("force noise [N] = 1e+160 is invalid: must be below 1e100 times"));
+  for (const double noise : {1e-300, 1e99}) {
+    options.force_noise = noise;
+    ExpectNumbersOrNone(Fit(loop, options));
+  }
+}
+
+TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
+  // The chord over a tenth of the way is softer than σ, and steeper than T*/X.
+  const Record record = Loop();
+  const double secant = kLaw.slip_force / testing::kReach;
+  FitOptions options;
+  for (const double stiffness : {0.5 * secant, 1.01 * secant}) {
+    options.fixed = {{"rig_stiffness", stiffness}};
+    EXPECT_THAT(RefusalOf({record}, options), HasSubstr("rig_stiffness [N/m] = "));
+    EXPECT_THAT(RefusalOf({record}, options), HasSubstr("the stiffness that the loop itself has"));
+  }
+  options.fixed = {{"rig_stiffness", 2 * kLaw.tangential_stiffness}};
+  EXPECT_EQ(RefusalOf({record}, options), "accepted");
+  options.fixed.clear();
+  options.terms = {"rig_stiffness"};
+  EXPECT_EQ(RefusalOf({record}, options), "accepted");
+}
+
+}  // namespace
+}  // namespace mindahl::identification

@@ -1,0 +1,75 @@
+#include "io/temporary_names.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+
+#include "mindahl/io/atomic_file.h"
+#include "temporary_directory.h"
+
+namespace mindahl::io {
+namespace {
+
+TEST(TemporaryName, GoesWithItsObjectUnlessItIsKept) {
+  const TemporaryDirectory directory;
+  for (const bool kept : {false, true}) {
+    {
+      TemporaryName name(directory.Write("begun", "half").string());
+      if (kept) name.Keep();
+    }
+    EXPECT_EQ(directory.FileCount(), kept ? 1u : 0u);
+  }
+}
+
+TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const TemporaryDirectory directory;
+    std::array<int, 2> ready{};
+    ASSERT_EQ(::pipe(ready.data()), 0);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      RemoveTemporaryFilesOnSignals();
+      const TemporaryName scratch((directory.path() / "scratch").string());
+      std::filesystem::create_directory(scratch.name());
+      const TemporaryName within(directory.Write("scratch/output", "half").string());
+      TemporaryName kept(directory.Write("kept", "whole").string());
+      const TemporaryName begun(directory.Write("begun", "half").string());
+      { const TemporaryName gone(directory.Write("gone", "").string()); }
+      kept.Keep();
+      (void)!::write(ready[1], "!", 1);
+      for (;;) ::pause();
+    }
+    char byte = 0;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+    ::close(ready[0]);
+    ::close(ready[1]);
+    ASSERT_EQ(::kill(child, signal), 0);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+    EXPECT_FALSE(std::filesystem::exists(directory.path() / "begun"));
+    EXPECT_FALSE(std::filesystem::exists(directory.path() / "scratch"));
+    EXPECT_TRUE(std::filesystem::exists(directory.path() / "kept"));
+  }
+}
+
+TEST(TemporaryName, LeavesASignalThatIsIgnoredAlone) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    std::signal(SIGHUP, SIG_IGN);
+    RemoveTemporaryFilesOnSignals();
+    ::raise(SIGHUP);
+    ::_exit(7);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7);
+}
+
+}  // namespace
+}  // namespace mindahl::io
