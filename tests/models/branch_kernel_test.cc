@@ -46,7 +46,8 @@ Columns Evaluate(double shape_exponent, const std::vector<double>& displacement,
   DifferentiateGeneralRun(kBranch, GradientOfBranch(), shape_exponent, 1.0, displacement, columns.t,
                           {.log_rate = columns.rate,
                            .shape_exponent = columns.shape,
-                           .unloaded_displacement = columns.unloaded},
+                           .unloaded_displacement = columns.unloaded,
+                           .log_spring_travel = {}},
                           kernel);
   return columns;
 }
