@@ -121,8 +121,9 @@ std::optional<InitialState> GivenState(const Attempt& attempt) {
 }
 
 /// Fits from the past that the options name, or from the one that Akaike's criterion prefers.
+/// @param rival  written: the other past, where the criterion hardly prefers either
 Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second,
-                       std::vector<Descent>* descents) {
+                       std::vector<Descent>* descents, std::optional<Candidate>& rival) {
   const FitOptions& options = attempt.options;
   const auto make = [&](InitialState state, Solution& solution) {
     Candidate candidate(attempt.data, options, state, attempt.memory);
@@ -163,6 +164,8 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   const Candidate& better =
       virgin.solution->sum_of_squares < steady.solution->sum_of_squares ? virgin : steady;
   bool is_virgin = true;
+  rival.reset();
+  bool is_close = false;
   if (std::isfinite(better.solution->sum_of_squares)) {  // else neither was even started
     const Evidence evidence(attempt.data.counted, EffectiveSamples(attempt, better));
     const auto criterion = [&](const Candidate& candidate) {
@@ -170,8 +173,11 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
                            candidate.problem.parameters.free().size());
     };
     is_virgin = criterion(virgin) < criterion(steady);
+    is_close = std::abs(criterion(virgin) - criterion(steady)) < options.thresholds.rival_past &&
+               virgin.solution->converged && steady.solution->converged;
   }
   if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;
+  if (is_close) rival.emplace(is_virgin ? std::move(steady) : std::move(virgin));
   return is_virgin ? std::move(virgin) : std::move(steady);
 }
 
@@ -301,6 +307,40 @@ void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));
 }
 
+/// Intervals that cover what the parameters would be with another past of the contact.
+std::optional<Finding> CoverRivalPast(const Problem& problem, const Candidate& rival,
+                                      const Noise& noise, const Thresholds& thresholds,
+                                      double peak_force, Response& response,
+                                      std::vector<ParameterEstimate>& estimates) {
+  const Estimates others(rival.problem, *rival.solution, noise, {}, thresholds, response);
+  Finding finding{.code = "initial_state_undecided"};
+  for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
+    ParameterEstimate& estimate = estimates[p];
+    if (rival.problem.parameters[p].fixed) continue;
+    ParameterEstimate other = estimate;
+    other.value = rival.problem.parameters[p].ToValue(rival.solution->theta[p]);
+    others.Fill(p, other);
+    // What is open either way is said already.
+    const bool is_apart = estimate.lower95 && estimate.upper95 && other.lower95 && other.upper95 &&
+                          (other.value < *estimate.lower95 || other.value > *estimate.upper95);
+    if (is_apart) finding.parameters.push_back(estimate.name);
+    if (other.lower95 && p == kSlipForce) other.lower95 = std::max(*other.lower95, peak_force);
+    const auto cover = [](std::optional<double>& end, const std::optional<double>& by,
+                          auto choose) {
+      if (!by) {
+        end.reset();
+      } else if (end) {
+        end = choose(*end, *by);
+      }
+    };
+    cover(estimate.lower95, other.lower95, [](double a, double b) { return std::min(a, b); });
+    cover(estimate.upper95, other.upper95, [](double a, double b) { return std::max(a, b); });
+  }
+  response.Bind(problem);
+  if (finding.parameters.empty()) return std::nullopt;
+  return finding;
+}
+
 /// Adequacy, and intervals that cover what its causes would change.
 void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
                         const Estimates& estimates, const Thresholds& thresholds,
@@ -313,9 +353,32 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
                     result.parameters);
 }
 
+/// Under a model that does not describe the record nothing of it is to be believed: no limit, no
+/// test, no advice on how to know its parameters better.
+void SayInadequate(FitResult& result) {
+  result.adequacy.verdict = AdequacyVerdict::kInadequate;
+  result.mindlin_test.reset();
+  result.branch_shapes.clear();
+  std::erase_if(result.findings, [](const Finding& finding) {
+    return !finding.parameters.empty() && VerdictOf(finding) != Identifiability::kIdentifiable &&
+           finding.code != "no_model_fits";
+  });
+  Finding finding{.code = "model_inadequate"};
+  for (ParameterEstimate& estimate : result.parameters) {
+    if (estimate.status == ParameterStatus::kFixed) continue;
+    estimate.standard_error.reset();
+    estimate.lower95.reset();
+    estimate.upper95.reset();
+    finding.parameters.push_back(estimate.name);
+  }
+  result.findings.insert(result.findings.begin(), std::move(finding));
+}
+
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
+/// @param rival  the other past of the contact, where the record hardly tells; else null
 void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution, Noise& noise,
-           const DisplacementErrors& displacement_errors, FitResult& result) {
+           const DisplacementErrors& displacement_errors, const Candidate* rival,
+           FitResult& result) {
   const FitOptions& options = attempt.options;
   SearchBuffers& buffers = attempt.buffers;
   std::vector<double> residual(problem.size());
@@ -376,12 +439,23 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
       }
     }
   }
+  if (rival != nullptr) {
+    Append(result.findings, CoverRivalPast(problem, *rival, noise, options.thresholds,
+                                           result.WidestRecord().measures.peak_force,
+                                           buffers.response, result.parameters));
+  }
   ConsiderDepartures(problem, solution, noise, estimates, options.thresholds, buffers.response,
                      result);
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }
+  if (!options.initial_state) {
+    Append(result.findings, FindUnknownPast(problem, solution, options.thresholds));
+  }
+  Append(result.findings, FindFewPlaces(problem, options.thresholds));
+  Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
+  if (IsInadequate(result, options.thresholds)) SayInadequate(result);
   Judge(result.parameters, result.findings);
 }
 
@@ -448,7 +522,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
 
   const bool full = depth != Depth::kEstimate;
   std::vector<Descent>* const recorded = full ? &descents : nullptr;
-  std::optional<Candidate> best(FitBestState(attempt, first, second, recorded));
+  std::optional<Candidate> rival;
+  std::optional<Candidate> best(FitBestState(attempt, first, second, recorded, rival));
   const DisplacementErrors displacement_errors(prepared, data);
   const bool is_weighted = options.loss != Loss::kNone || displacement_errors.any();
   Noise noise;
@@ -468,7 +543,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
         const ScaledRecords weighted_thin = Thin(data, reversals, &arena);
         const Attempt weighted{options, prepared, data, weighted_thin, buffers, &arena};
         descents.clear();
-        best.emplace(FitBestState(weighted, first, second, recorded));
+        best.emplace(FitBestState(weighted, first, second, recorded, rival));
         fit_with_weights();
       }
     } else {
@@ -522,7 +597,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
     }
     result.findings.push_back(FoundTurningPoints(longest));
   }
-  if (full) Infer(attempt, best->problem, solution, noise, displacement_errors, result);
+  if (full) {
+    Infer(attempt, best->problem, solution, noise, displacement_errors,
+          rival && !turned ? &*rival : nullptr, result);
+  }
 }
 
 Fitter::Fitter(FitOptions options) : state_(std::make_unique<State>(std::move(options))) {}

@@ -23,6 +23,8 @@ std::string_view Name(Identifiability identifiability) {
   switch (identifiability) {
     case Identifiability::kIdentifiable:
       return "identifiable";
+    case Identifiability::kExtrapolated:
+      return "extrapolated";
     case Identifiability::kBoundedBelow:
       return "bounded_below";
     case Identifiability::kNotIdentifiable:

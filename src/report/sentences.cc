@@ -94,6 +94,43 @@ std::string UndeterminedCombination(const Finding& finding, const FitResult&, co
       fmt::join(finding.parameters, ", "));
 }
 
+std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "sigma, alpha: all {:.0f} samples lie in {:.0f} places of the loop, the same in every cycle; "
+      "what lies between, the turning points too, is not seen. Sample out of step with the motion, "
+      "or more often",
+      Needed(finding, "samples"), Needed(finding, "places"));
+}
+
+std::string ModelInadequate(const Finding&, const FitResult& fit, const Units&) {
+  return fmt::format(
+      "{} does not describe this record: its parameters are not to be used; what was measured "
+      "without a model stands",
+      fit.model->name);
+}
+
+std::string SlipForceExtrapolated(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "slip_force: the asymptote of a law with alpha = {:.3g}, of which the loop reaches {:.0f} %: "
+      "no force was measured near it; raise the amplitude until the force levels off",
+      Needed(finding, "alpha"), 100 * Needed(finding, "share"));
+}
+
+std::string NoClosedCycle(const Finding&, const FitResult&, const Units&) {
+  return "alpha, slip_force: the record closes no cycle and does not start where the contact is "
+         "unloaded: how far it had been pushed before is not known; record a whole cycle, or give "
+         "--initial-state virgin if it was at rest";
+}
+
+std::string InitialStateUndecided(const Finding& finding, const FitResult& fit, const Units&) {
+  const bool virgin = fit.initial_state == models::InitialState::kVirgin;
+  return fmt::format(
+      "{}: the record does not tell whether the contact was unloaded before it or in a steady "
+      "loop, and the two differ: the values are of {}, the intervals cover both; give "
+      "--initial-state, or record more cycles",
+      fmt::join(finding.parameters, ", "), virgin ? "an unloaded contact" : "a steady loop");
+}
+
 // --- what the model misses
 
 struct MisfitKind {
@@ -157,7 +194,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 13> kSentences = {{
+constexpr std::array<Row, 18> kSentences = {{
     {"turning_points_between_samples", TurningPoints},
     {"shape_or_rig", ShapeOrRig},
     {"slip_force_bounded_below", SlipForceBoundedBelow},
@@ -167,6 +204,11 @@ constexpr std::array<Row, 13> kSentences = {{
     {"sigma_bounded_below", SigmaBoundedBelow},
     {"undetermined_parameter", UndeterminedParameter},
     {"undetermined_combination", UndeterminedCombination},
+    {"model_inadequate", ModelInadequate},
+    {"slip_force_extrapolated", SlipForceExtrapolated},
+    {"few_places", FewPlaces},
+    {"no_closed_cycle", NoClosedCycle},
+    {"initial_state_undecided", InitialStateUndecided},
     {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
     {"weights_not_settled", WeightsNotSettled},

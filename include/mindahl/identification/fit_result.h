@@ -31,6 +31,7 @@ enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 /// In the order of precedence: of several the last holds.
 enum class Identifiability {
   kIdentifiable,
+  kExtrapolated,     ///< the law's asymptote, which the record stays away from
   kBoundedBelow,     ///< the data give only a lower limit
   kNotIdentifiable,  ///< none, or only in combination with others
 };

@@ -36,7 +36,11 @@ struct Thresholds {
   double known_together = 0.99;
   double doubt = 0.005;
   double cause = 1e-3;
-  double rival_cause = 10.0;
+  double rival_cause = 0.5;
+  double rival_past = 10.0;
+  double fewest_places = 16.0;
+  double starts_unloaded = 0.02;
+  double mobilised_by_asymptote = 0.9;
 };
 
 struct ThresholdRow {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -143,6 +144,73 @@ std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thr
                    .kind = KindOf(structure, peak, thresholds)};
   }
   return std::nullopt;
+}
+
+std::optional<Finding> FindExtrapolated(const FitResult& result, const Thresholds& thresholds) {
+  const double peak_force = result.WidestRecord().measures.peak_force;
+  const ParameterEstimate& slip_force = *result.Find("slip_force");
+  const double share = peak_force / slip_force.value;
+  const bool is_known = slip_force.status == ParameterStatus::kFixed || !slip_force.upper95;
+  if (is_known || result.law.shape_exponent < 1 || share >= thresholds.mobilised_by_asymptote) {
+    return std::nullopt;
+  }
+  return Finding{.code = "slip_force_extrapolated",
+                 .parameters = {"slip_force"},
+                 .numbers = {{"alpha", result.law.shape_exponent}, {"share", share}}};
+}
+
+std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
+                                       const Thresholds& thresholds) {
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const ScaledRecord& record = problem.data->records[r];
+    if (record.reversals.size() >= 2) return std::nullopt;
+    const double unloaded = solution.theta[problem.parameters.PositionOf("displacement_offset", r)];
+    const auto [lowest, highest] = std::ranges::minmax(record.displacement);
+    const double away = std::abs(record.displacement.front() - unloaded);
+    const bool starts_unloaded = problem.state == models::InitialState::kVirgin &&
+                                 away <= thresholds.starts_unloaded * (highest - lowest) / 2;
+    if (starts_unloaded) return std::nullopt;
+  }
+  return Finding{.code = "no_closed_cycle", .parameters = {"alpha", "slip_force"}};
+}
+
+std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
+  constexpr double kSamePlace = 0.005;  // of the range: closer samples say the same
+  std::size_t places = 0;
+  std::size_t samples = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    std::array<std::vector<double>, 2> ways;  // down, up
+    std::size_t turn = 0;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      while (turn < record.reversals.size() && record.reversals[turn] < i) ++turn;
+      const bool is_inserted = !record.inserted.empty() && record.inserted[i] != 0;
+      if (record.counts[i] == 0 || is_inserted) continue;
+      const std::size_t end =
+          turn < record.reversals.size() ? record.reversals[turn] : record.size() - 1;
+      const std::size_t begin = turn > 0 ? record.reversals[turn - 1] : 0;
+      ways[record.displacement[end] > record.displacement[begin] ? 1 : 0].push_back(
+          record.displacement[i]);
+      ++samples;
+    }
+    for (std::vector<double>& way : ways) {
+      std::ranges::sort(way);
+      double last = -std::numeric_limits<double>::infinity();
+      for (const double place : way) {
+        if (place - last <= 2 * kSamePlace) continue;  // the range is 2 in units of the data
+        ++places;
+        last = place;
+      }
+    }
+  }
+  // Few samples alone make wide intervals; these make narrow ones.
+  constexpr std::size_t kAgain = 2;
+  if (static_cast<double>(places) >= thresholds.fewest_places || samples < kAgain * places) {
+    return std::nullopt;
+  }
+  return Finding{.code = "few_places",
+                 .parameters = {"sigma", "alpha"},
+                 .numbers = {{"places", static_cast<double>(places)},
+                             {"samples", static_cast<double>(samples)}}};
 }
 
 Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,

@@ -30,6 +30,18 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 /// explain: where they are, and what kind of friction or rig leaves such a trace.
 std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds);
 
+/// A slip force that is the asymptote of a law with α >= 1, which the record stays away from.
+std::optional<Finding> FindExtrapolated(const FitResult& result, const Thresholds& thresholds);
+
+/// Records that turn less than twice and do not start where the contact is unloaded: the branch
+/// that they start on began before them, and how far it has come is not known.
+std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
+                                       const Thresholds& thresholds);
+
+/// Samples that come back to the same few places of the loop in every cycle, however many they are:
+/// what lies between them, the turning points too, no cycle shows.
+std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
+
 /// Another shape, or a rig in series.
 Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
                             const Thresholds& thresholds);

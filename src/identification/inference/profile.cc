@@ -197,9 +197,11 @@ void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, dou
   if (!profile.open_above) return;
   slip_force.upper95.reset();
   slip_force.standard_error.reset();
-  // A contact that carried T* has at least that slip force, unless the fit is too poor to say.
-  slip_force.lower95 =
-      std::min(slip_force.value, std::max(slip_force.lower95.value_or(0.0), peak_force));
+  // A contact that carried T* has at least that slip force, unless the fit is too poor to say; and
+  // no more where it is the bound of α that ends the valley.
+  const bool by_bound = alpha.status == ParameterStatus::kAtUpperBound;
+  const double profiled = by_bound ? 0.0 : slip_force.lower95.value_or(0.0);
+  if (peak_force < slip_force.value) slip_force.lower95 = std::max(profiled, peak_force);
   if (alpha.status == ParameterStatus::kFixed) return;
   alpha.upper95.reset();
   alpha.standard_error.reset();

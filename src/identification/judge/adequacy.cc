@@ -1,6 +1,7 @@
 #include "identification/judge/adequacy.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mindahl::identification {
 namespace {
@@ -20,9 +21,9 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
     if (fit.p_value < thresholds.cause && fit.delta_aicc < 0) causes.push_back(fit);
   }
   std::ranges::stable_sort(causes, {}, &DepartureFit::delta_aicc);
-  const double best = causes.empty() ? 0.0 : causes.front().delta_aicc;
+  const double best = causes.empty() ? 0.0 : causes.front().explains;
   std::erase_if(causes, [&](const DepartureFit& fit) {
-    return fit.delta_aicc > best + thresholds.rival_cause;
+    return fit.explains < thresholds.rival_cause * best;
   });
   return causes;
 }
@@ -50,6 +51,16 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
   }
   if (adequacy.p_value < thresholds.doubt) adequacy.verdict = AdequacyVerdict::kDoubtful;
   return adequacy;
+}
+
+bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
+  if (result.FindFinding("no_model_fits") != nullptr) return true;
+  const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);
+  // rms² is misfit² and noise².
+  const double ratio = result.adequacy.misfit_over_noise;
+  const double misfit = result.residuals.rms * ratio / std::hypot(1.0, ratio);
+  return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
+         misfit > thresholds.failing_misfit * force;
 }
 
 }  // namespace mindahl::identification

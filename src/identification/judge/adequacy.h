@@ -5,6 +5,7 @@
 
 #include "identification/inference/adequacy_test.h"
 #include "mindahl/identification/adequacy.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
@@ -17,5 +18,8 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
                        std::span<const DepartureFit> causes, const Thresholds& thresholds,
                        std::span<const ParameterEstimate> estimates);
+
+/// A misfit that is no noise and as large as failing_misfit, wherever it comes back.
+bool IsInadequate(const FitResult& result, const Thresholds& thresholds);
 
 }  // namespace mindahl::identification

@@ -10,7 +10,7 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Identifiability>, 11> kVerdicts = {{
+constexpr std::array<std::pair<std::string_view, Identifiability>, 16> kVerdicts = {{
     {"no_model_fits", Identifiability::kNotIdentifiable},
     {"undetermined_parameter", Identifiability::kNotIdentifiable},
     {"undetermined_combination", Identifiability::kNotIdentifiable},
@@ -20,6 +20,11 @@ constexpr std::array<std::pair<std::string_view, Identifiability>, 11> kVerdicts
     {"shape_or_rig", Identifiability::kNotIdentifiable},
     {"slip_force_bounded_below", Identifiability::kBoundedBelow},
     {"sigma_bounded_below", Identifiability::kBoundedBelow},
+    {"model_inadequate", Identifiability::kNotIdentifiable},
+    {"slip_force_extrapolated", Identifiability::kExtrapolated},
+    {"no_closed_cycle", Identifiability::kNotIdentifiable},
+    {"few_places", Identifiability::kNotIdentifiable},
+    {"initial_state_undecided", Identifiability::kIdentifiable},
     {"systematic_residual", Identifiability::kIdentifiable},
     {"turning_points_between_samples", Identifiability::kIdentifiable},
 }};
@@ -42,8 +47,10 @@ void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> find
     const auto worsen = [&](Identifiability verdict) {
       estimate.identifiability = std::max(estimate.identifiability, verdict);
     };
-    if (!estimate.upper95) {
-      worsen(estimate.lower95 ? Identifiability::kBoundedBelow : Identifiability::kNotIdentifiable);
+    if (!estimate.lower95) {
+      worsen(Identifiability::kNotIdentifiable);
+    } else if (!estimate.upper95) {
+      worsen(Identifiability::kBoundedBelow);
     }
     for (const Finding& finding : findings) {
       if (std::ranges::find(finding.parameters, estimate.name) != finding.parameters.end()) {

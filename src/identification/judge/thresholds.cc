@@ -97,9 +97,24 @@ constexpr std::array kTable = {
     ThresholdRow{"cause", &Thresholds::cause, "p",
                  "a departure that noise alone makes less often is a cause",
                  "of the 15 that are tried, one loop in seventy then has one by chance"},
-    ThresholdRow{"rival_cause", &Thresholds::rival_cause, "ΔAICc",
-                 "intervals cover causes that are no worse than the best by more",
-                 "an evidence of e⁵ = 150 to 1"},
+    ThresholdRow{"rival_cause", &Thresholds::rival_cause, "of what the best explains",
+                 "a cause that explains so much is one that intervals cover",
+                 "departures are taken to first order: of two imperfect accounts the better need "
+                 "not be the true one"},
+    ThresholdRow{"rival_past", &Thresholds::rival_past, "ΔAICc",
+                 "virgin and steady are both covered by the intervals if less apart",
+                 "an evidence of e⁵ = 150 to 1: the two differ in a few samples only, where one "
+                 "odd reading decides"},
+    ThresholdRow{"fewest_places", &Thresholds::fewest_places, "places of the loop",
+                 "where fewer are sampled again and again, σ and α are not believed",
+                 "four each for σ, α, Tc and for where the motion turns between them"},
+    ThresholdRow{"starts_unloaded", &Thresholds::starts_unloaded, "of X",
+                 "a contact unloaded that near to the first sample was at rest before it",
+                 "as near as a record's end counts as a turn of the motion"},
+    ThresholdRow{"mobilised_by_asymptote", &Thresholds::mobilised_by_asymptote, "T* over Tc",
+                 "a loop of α >= 1 that reaches less has its slip force from the law alone",
+                 "the last tenth of the way is the longest: for α = 1 as long as all before it "
+                 "once more"},
 };
 
 }  // namespace
