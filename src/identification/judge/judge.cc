@@ -10,8 +10,9 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Identifiability>, 11> kVerdicts = {{
+constexpr std::array<std::pair<std::string_view, Identifiability>, 12> kVerdicts = {{
     {"no_model_fits", Identifiability::kNotIdentifiable},
+    {"energy_contradiction", Identifiability::kNotIdentifiable},
     {"undetermined_parameter", Identifiability::kNotIdentifiable},
     {"undetermined_combination", Identifiability::kNotIdentifiable},
     {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
