@@ -387,6 +387,7 @@ void UseMeasuredNormalLoad(ContactOptions& contact, std::span<const Record> reco
 bool Established(const identification::FitResult& fit, bool strict) {
   if (!fit.converged) return false;
   if (!strict) return true;
+  if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) return false;
   return std::ranges::all_of(fit.parameters, [](const identification::ParameterEstimate& estimate) {
     return estimate.status == identification::ParameterStatus::kFixed ||
            estimate.identifiability == identification::Identifiability::kIdentifiable;
@@ -616,7 +617,8 @@ void AddFitCommand(CLI::App& app, Console& console) {
                                          "contact (several files: one joint fit)\n"
                                          "and translates them into the contact. Exit status 3 when "
                                          "the fit does not converge or, with\n"
-                                         "--strict, a parameter is not identifiable.");
+                                         "--strict, a parameter is not identifiable or the model "
+                                         "inadequate.");
   command->add_option("files", options->files, "CSV records of one contact")
       ->type_name("FILE")
       ->required();
@@ -636,8 +638,9 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->type_name("PATH")
       ->group(group);
   command
-      ->add_flag("--strict", options->strict,
-                 "exit status 3 unless every free parameter is identifiable")
+      ->add_flag(
+          "--strict", options->strict,
+          "exit status 3 unless every free parameter is identifiable and the model not inadequate")
       ->group(group);
   command->callback([options, &console] { RunFit(*options, console); });
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/record_findings.h"
 #include "identification/inference/adequacy_test.h"
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
@@ -210,15 +211,19 @@ void FillForces(const Attempt& attempt, const Problem& problem, const Solution& 
   result.rms = std::sqrt(squares / static_cast<double>(data.counted));
 }
 
-void FillRecords(const Attempt& attempt, FitResult& result) {
+void FillRecords(const Attempt& attempt, Depth depth, FitResult& result) {
   result.records.resize(attempt.prepared.records.size());
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const loop::PreparedRecord& prepared = attempt.prepared.records[r];
     RecordFit& fit = result.records[r];
-    fit.reversal_gate = prepared.reversal_gate;
+    fit.gate = prepared.gate_choice;
+    fit.glitches = prepared.glitches;
     fit.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
     fit.overshoot.clear();
     fit.measures = prepared.measures;
+    fit.facts = depth == Depth::kEstimate
+                    ? loop::LoopFacts()
+                    : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
     fit.displacement_noise = prepared.displacement_noise;
     fit.counts.assign(prepared.counts.begin(), prepared.counts.end());
     fit.left_out = prepared.left_out;
@@ -348,6 +353,7 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   const AdequacyTest test = TestAdequacy(problem, solution, noise, estimates, response);
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
+  result.adequacy.tried = test.fits.size();
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);
@@ -361,7 +367,7 @@ void SayInadequate(FitResult& result) {
   result.branch_shapes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {
     return !finding.parameters.empty() && VerdictOf(finding) != Identifiability::kIdentifiable &&
-           finding.code != "no_model_fits";
+           finding.code != "no_model_fits" && finding.code != "energy_contradiction";
   });
   Finding finding{.code = "model_inadequate"};
   for (ParameterEstimate& estimate : result.parameters) {
@@ -455,6 +461,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindFewPlaces(problem, options.thresholds));
   Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
+  Append(result.findings, FindEnergyContradiction(result, options.thresholds));
   if (IsInadequate(result, options.thresholds)) SayInadequate(result);
   Judge(result.parameters, result.findings);
 }
@@ -508,6 +515,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.residuals = {};
   result.starts.clear();
   result.findings.clear();
+  result.adequacy = {};
   descents.clear();
 
   const loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);
@@ -518,9 +526,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   RequireRigStifferThanLoop(options, prepared);
   RequireNoise(options, data);
   result.force_sense = prepared.force_sense;
-  FillRecords(attempt, result);
+  FillRecords(attempt, depth, result);
 
   const bool full = depth != Depth::kEstimate;
+  if (full) result.findings = FindInRecords(result.records, options.thresholds);
   std::vector<Descent>* const recorded = full ? &descents : nullptr;
   std::optional<Candidate> rival;
   std::optional<Candidate> best(FitBestState(attempt, first, second, recorded, rival));

@@ -184,13 +184,9 @@ std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to)
 
 /// The turning points of the cycles of the widest amplitude, three each.
 std::vector<Points> SteadyCycles(const LoopFacts& facts, Points points) {
-  double widest = 0.0;
-  for (const CycleFacts& cycle : facts.cycles) widest = std::max(widest, cycle.amplitude);
   std::vector<Points> steady;
   for (std::size_t k = 0; k < facts.cycles.size(); ++k) {
-    if (facts.cycles[k].amplitude >= kSteadyAmplitude * widest) {
-      steady.push_back(points.subspan(2 * k, 3));
-    }
+    if (facts.cycles[k].steady) steady.push_back(points.subspan(2 * k, 3));
   }
   return steady;
 }
@@ -296,12 +292,10 @@ struct Series {
 
 template <typename Fact>
 Series SeriesOf(const LoopFacts& facts, Fact fact) {
-  double widest = 0.0;
-  for (const CycleFacts& cycle : facts.cycles) widest = std::max(widest, cycle.amplitude);
   Series series;
   for (std::size_t k = 0; k < facts.cycles.size(); ++k) {
     const std::optional<double> value = fact(facts.cycles[k]);
-    if (facts.cycles[k].amplitude < kSteadyAmplitude * widest || !value) continue;
+    if (!facts.cycles[k].steady || !value) continue;
     series.numbers.push_back(static_cast<double>(k));
     series.values.push_back(*value);
   }
@@ -343,6 +337,10 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   }
   facts.closed = !facts.cycles.empty();
   if (!facts.closed) return facts;
+  const double widest = std::ranges::max(facts.cycles, {}, &CycleFacts::amplitude).amplitude;
+  for (CycleFacts& cycle : facts.cycles) {
+    cycle.steady = cycle.amplitude >= kSteadyAmplitude * widest;
+  }
   Summarise(facts);
   const std::vector<Points> steady = SteadyCycles(facts, points);
   facts.steady_cycles = steady.size();

@@ -49,6 +49,22 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
           backbone::MasingLoopEnergy({stretch * y.high, stretch * y.low}, law.shape_exponent));
 }
 
+double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
+                        double amplitude) {
+  Require(law, amplitude);
+  if (std::isinf(rig.stiffness)) return amplitude;
+  // X − T*(X_c)/k_r falls in X_c.
+  double low = 0.0;
+  double high = amplitude;
+  constexpr int kBisections = 200;
+  for (int i = 0; i < kBisections && high - low > 1e-15 * amplitude; ++i) {
+    const double middle = low + (high - low) / 2;
+    const double whole = middle + SteadyPeakForce(model, law, middle) / rig.stiffness;
+    (whole < amplitude ? low : high) = middle;
+  }
+  return low + (high - low) / 2;
+}
+
 double GrossSlipEnergyRatio(double shape_exponent) {
   RequireNonNegative("shape exponent [-]", shape_exponent);
   return shape_exponent >= 1 ? 1.0 : shape_exponent / (2 - shape_exponent);

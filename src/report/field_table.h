@@ -27,6 +27,8 @@ struct FieldTable {
 };
 
 // Each adds the rows of its subject, in the order of the JSON.
+void AddAdequacyFields(FieldTable& table);
+void AddMeasuredFields(FieldTable& table);
 void AddParameterFields(FieldTable& table);
 void AddResidualFields(FieldTable& table);
 void AddSelectionFields(FieldTable& table);

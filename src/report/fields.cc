@@ -10,6 +10,7 @@
 namespace mindahl::report {
 
 using identification::RecordFit;
+using loop::ReversalGate;
 
 namespace {
 
@@ -23,12 +24,19 @@ std::function<Value(const Report&)> Sum(Get get) {
   };
 }
 
-std::function<Value(const Report&)> OneARecord(double RecordFit::*member) {
-  return [member](const Report& report) {
+template <typename Get>
+std::function<Value(const Report&)> OneARecord(Get get) {
+  return [get](const Report& report) {
     Value::Array array;
-    for (const RecordFit& record : report.fit.records) array.push_back(Number(record.*member));
+    for (const RecordFit& record : report.fit.records) array.push_back(Number(get(record)));
     return Value{std::move(array)};
   };
+}
+
+/// Of the gate of the widest record.
+template <typename Get>
+std::function<Value(const Report&)> OfGate(Get get) {
+  return [get](const Report& report) { return get(report.fit.WidestRecord().gate); };
 }
 
 Value UnitOf(const std::optional<io::ChosenColumn>& column) {
@@ -67,18 +75,40 @@ void AddInputFields(FieldTable& table) {
       {"input.left_out", "", "samples that do not count",
        Sum([](const RecordFit& record) { return record.left_out; })},
       {"input.reversal_gate", "m", "one a file: excursions up to it are noise",
-       OneARecord(&RecordFit::reversal_gate)},
+       OneARecord([](const RecordFit& record) { return record.gate.gate; })},
       {"input.displacement_noise", "m", "one a file: standard deviation, given or estimated",
-       OneARecord(&RecordFit::displacement_noise)},
+       OneARecord([](const RecordFit& record) { return record.displacement_noise; })},
       {"input.force_sign", "",
        "same or opposite: the sign of the force for that of the displacement",
        [](const Report& report) { return Text(report.fit.force_sense > 0 ? "same" : "opposite"); }},
+      {"input.glitches.spikes", "", "samples left out that are far off their neighbours",
+       Sum([](const RecordFit& record) { return record.glitches.spikes; })},
+      {"input.glitches.dropouts", "", "samples left out that read 0 in both channels",
+       Sum([](const RecordFit& record) { return record.glitches.dropouts; })},
+      {"input.glitches.held", "", "samples left out that repeat a value, which then jumps",
+       Sum([](const RecordFit& record) { return record.glitches.held; })},
+      {"reversals.count", "", "turning points of the motion in the widest record",
+       [](const Report& report) { return Count(report.fit.WidestRecord().reversals.size()); }},
+      {"reversals.gate", "m", "excursions up to it are noise",
+       OfGate([](const ReversalGate& gate) { return Number(gate.gate); })},
+      {"reversals.certain", "", "whether no other gate has as good a claim",
+       OfGate([](const ReversalGate& gate) { return Flag(gate.certain); })},
+      {"reversals.other_count", "", "turning points under the other gate; absent where certain",
+       OfGate([](const ReversalGate& gate) {
+         return gate.certain ? Value{} : Count(gate.other_count);
+       })},
+      {"reversals.other_gate", "m", "the other gate; absent where certain",
+       OfGate([](const ReversalGate& gate) {
+         return gate.certain ? Value{} : Number(gate.other_gate);
+       })},
   });
 }
 
 FieldTable MakeTable() {
   FieldTable table;
   AddInputFields(table);
+  AddAdequacyFields(table);
+  AddMeasuredFields(table);
   AddParameterFields(table);
   AddResidualFields(table);
   AddSelectionFields(table);
@@ -115,8 +145,10 @@ std::vector<FieldDescription> DescribeFields() {
   descriptions.insert(descriptions.end(), Table().items.begin(), Table().items.end());
   descriptions.push_back({"nulls[].path", "", "where the null is"});
   descriptions.push_back({"nulls[].why", "", "why it is one"});
-  descriptions.push_back({"warnings[].code", "", "stable, for scripts"});
-  descriptions.push_back({"warnings[].message", "", "for people"});
+  for (const char* list : {"warnings", "notes"}) {
+    descriptions.push_back({std::string(list) + "[].code", "", "stable, for scripts"});
+    descriptions.push_back({std::string(list) + "[].message", "", "for people"});
+  }
   return descriptions;
 }
 

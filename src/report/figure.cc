@@ -7,10 +7,14 @@
 #include <string>
 #include <utility>
 
+#include "report/adequacy.h"
+#include "report/names.h"
 #include "report/requirements.h"
 
 namespace mindahl::report {
 
+using identification::FitResult;
+using identification::Identifiability;
 using identification::ParameterEstimate;
 using io::PlotStyle;
 
@@ -40,17 +44,33 @@ bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t s
   return load >= report.load_window->lower && load <= report.load_window->upper;
 }
 
+/// A parameter by its sign: no number of what is not known.
+std::string ParameterText(const char* sign, const ParameterEstimate& estimate) {
+  const std::string unit = estimate.unit == "-" ? "" : " " + estimate.unit;
+  if (estimate.status == identification::ParameterStatus::kFixed ||
+      estimate.identifiability == Identifiability::kIdentifiable) {
+    return fmt::format("{} = {:.4g}{}", sign, estimate.value, unit);
+  }
+  if (estimate.identifiability == Identifiability::kBoundedBelow && estimate.lower95) {
+    return fmt::format("{} > {:.3g}{}", sign, *estimate.lower95, unit);
+  }
+  return fmt::format("{} not known", sign);
+}
+
+std::string TitleOf(const Report& report) {
+  const FitResult& fit = report.fit;
+  return fmt::format("{}, {}: {}, {}, {}", fit.model->name,
+                     IsJudged(report) ? Name(fit.adequacy.verdict) : std::string_view("not judged"),
+                     ParameterText("σ", *fit.Find("sigma")), ParameterText("α", *fit.Find("alpha")),
+                     ParameterText("Tc", *fit.Find("slip_force")));
+}
+
 }  // namespace
 
 io::Plot ToPlot(const Report& report) {
   RequireFitted(report, "a figure");
   io::Plot plot;
-  const ParameterEstimate& sigma = *report.fit.Find("sigma");
-  const ParameterEstimate& alpha = *report.fit.Find("alpha");
-  const ParameterEstimate& slip_force = *report.fit.Find("slip_force");
-  plot.title = fmt::format("{}: σ = {:.4g} {}, α = {:.4g}, Tc = {:.4g} {}", report.fit.model->name,
-                           sigma.value, report.units.stiffness, alpha.value, slip_force.value,
-                           report.units.force);
+  plot.title = TitleOf(report);
   double extent = 0.0;
   for (const identification::RecordFit& fit : report.fit.records) {
     extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
@@ -88,6 +108,15 @@ io::Plot ToPlot(const Report& report) {
       shown.y.push_back(fit.residual[i]);
     }
   }
+  io::PlotSeries reversals{"reversals", {}, {}, PlotStyle::kMarkers};
+  for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
+    const loop::Record& record = report.records[r].record;
+    for (const std::size_t sample : report.fit.records[r].reversals) {
+      reversals.x.push_back(axis.per_metre * record.displacement[sample]);
+      reversals.y.push_back(record.force[sample]);
+    }
+  }
+  if (!reversals.x.empty()) loop.series.push_back(std::move(reversals));
   plot.panels = {std::move(loop), std::move(residual)};
   return plot;
 }

@@ -9,30 +9,23 @@
 
 namespace mindahl::report {
 
-double ContactAmplitude(const identification::FitResult& fit, double amplitude) {
-  if (std::isinf(fit.rig.stiffness)) return amplitude;
-  // X − T*(X_c)/k_r falls in X_c.
-  double low = 0.0;
-  double high = amplitude;
-  constexpr int kBisections = 200;
-  for (int i = 0; i < kBisections && high - low > 1e-15 * amplitude; ++i) {
-    const double middle = low + (high - low) / 2;
-    const double whole =
-        middle + models::SteadyPeakForce(*fit.model, fit.law, middle) / fit.rig.stiffness;
-    (whole < amplitude ? low : high) = middle;
-  }
-  return low + (high - low) / 2;
+MeasuredLoop MeasuredLoopOf(const identification::RecordFit& record) {
+  const loop::LoopFacts& facts = record.facts;
+  if (facts.closed) return {facts.amplitude, facts.peak_force, facts.energy_per_cycle};
+  const loop::LoopMeasures& measures = record.measures;
+  return {measures.amplitude, measures.peak_force, measures.energy_per_cycle};
 }
 
 LoopDescription DescribeLoop(const identification::FitResult& fit) {
   const models::BranchLaw& law = fit.law;
-  const loop::LoopMeasures& measures = fit.WidestRecord().measures;
   LoopDescription loop;
-  loop.contact_amplitude = ContactAmplitude(fit, measures.amplitude);
+  loop.measured = MeasuredLoopOf(fit.WidestRecord());
+  const MeasuredLoop& measured = loop.measured;
+  loop.contact_amplitude = models::ContactAmplitude(*fit.model, law, fit.rig, measured.amplitude);
   loop.model_energy = models::SteadyLoopEnergy(*fit.model, law, loop.contact_amplitude);
-  const double energy = measures.energy_per_cycle.value_or(loop.model_energy);
-  if (measures.amplitude > 0 && measures.peak_force > 0) {
-    loop.energy_ratio = energy / (4 * measures.amplitude * measures.peak_force);
+  const double energy = measured.energy.value_or(loop.model_energy);
+  if (measured.amplitude > 0 && measured.peak_force > 0) {
+    loop.energy_ratio = energy / (4 * measured.amplitude * measured.peak_force);
   }
   const double gross_slip = GrossSlipDisplacement(law);
   if (std::isfinite(gross_slip)) loop.gross_slip_displacement = gross_slip;

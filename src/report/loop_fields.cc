@@ -3,13 +3,12 @@
 
 namespace mindahl::report {
 
-using loop::LoopMeasures;
-
 namespace {
 
-std::function<Value(const Report&)> Measured(double LoopMeasures::*member) {
-  return
-      [member](const Report& report) { return Number(report.fit.WidestRecord().measures.*member); };
+std::function<Value(const Report&)> Measured(double MeasuredLoop::*member) {
+  return [member](const Report& report) {
+    return Number(MeasuredLoopOf(report.fit.WidestRecord()).*member);
+  };
 }
 
 /// Of the loop's description, where there is one.
@@ -22,13 +21,13 @@ std::function<Value(const Report&)> OfLoop(Get get) {
 
 void AddLoopFields(FieldTable& table) {
   table.Add({
-      {"loop.amplitude", "m", "X of the widest record", Measured(&LoopMeasures::amplitude)},
+      {"loop.amplitude", "m", "X of the widest record", Measured(&MeasuredLoop::amplitude)},
       {"loop.centre", "m", "midway between the extremes of the displacement",
-       Measured(&LoopMeasures::centre)},
-      {"loop.peak_force", "N", "T* of the widest record", Measured(&LoopMeasures::peak_force)},
-      {"loop.energy_per_cycle_measured", "J", "W, mean over closed cycles",
+       [](const Report& report) { return Number(report.fit.WidestRecord().measures.centre); }},
+      {"loop.peak_force", "N", "T* of the widest record", Measured(&MeasuredLoop::peak_force)},
+      {"loop.energy_per_cycle_measured", "J", "W, mean over the widest closed cycles",
        [](const Report& report) {
-         return Number(report.fit.WidestRecord().measures.energy_per_cycle);
+         return Number(MeasuredLoopOf(report.fit.WidestRecord()).energy);
        },
        [](const Report&) { return std::string("the record closes no cycle"); }},
       {"loop.energy_per_cycle_model", "J",

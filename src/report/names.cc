@@ -41,4 +41,16 @@ std::string_view Name(SlipRegime regime) {
   return regime == SlipRegime::kGross ? "gross" : "partial";
 }
 
+std::string_view Name(identification::AdequacyVerdict verdict) {
+  switch (verdict) {
+    case identification::AdequacyVerdict::kAdequate:
+      return "adequate";
+    case identification::AdequacyVerdict::kDoubtful:
+      return "doubtful";
+    case identification::AdequacyVerdict::kInadequate:
+      return "inadequate";
+  }
+  return "";
+}
+
 }  // namespace mindahl::report

@@ -12,5 +12,6 @@ std::string_view Name(identification::ParameterStatus status);
 std::string_view Name(identification::Identifiability identifiability);
 std::string_view Name(models::InitialState state);
 std::string_view Name(SlipRegime regime);
+std::string_view Name(identification::AdequacyVerdict verdict);
 
 }  // namespace mindahl::report

@@ -8,6 +8,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/report/sentences.h"
+#include "report/adequacy.h"
 
 namespace mindahl::report {
 namespace {
@@ -32,13 +33,13 @@ void Require(const ReportInput& input) {
   }
 }
 
-std::vector<Warning> FitWarnings(const identification::FitResult& fit, const Units& units) {
-  std::vector<Warning> warnings;
-  warnings.reserve(fit.findings.size());
-  for (const identification::Finding& finding : fit.findings) {
-    warnings.push_back({std::string(finding.code), Sentence(finding, fit, units)});
+/// Warnings and notes of what the fit found.
+void SayFindings(Report& report) {
+  for (const identification::Finding& finding : report.fit.findings) {
+    const bool is_note = finding.severity == identification::Severity::kNote;
+    (is_note ? report.notes : report.fit_warnings)
+        .push_back({std::string(finding.code), Sentence(finding, report.fit, report.units)});
   }
-  return warnings;
 }
 
 /// What was given and contradicts, or could not be used.
@@ -74,7 +75,9 @@ Report MakeReport(ReportInput input) {
     }
     report.fit.mindlin_test.reset();
   }
-  report.fit_warnings = FitWarnings(report.fit, report.units);
+  AdaptCauses(report.units, !report.records.front().record.time.empty(),
+              report.fit.adequacy.causes);
+  SayFindings(report);
   if (report.failed()) return report;
   report.loop = DescribeLoop(report.fit);
   if (report.is_torsional()) return report;

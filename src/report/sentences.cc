@@ -7,6 +7,9 @@
 #include <cmath>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace mindahl::report {
 
@@ -23,6 +26,58 @@ double Needed(const Finding& finding, std::string_view name) {
 [[noreturn]] void ThrowKind(const Finding& finding) {
   throw std::logic_error(
       fmt::format("the finding '{}' has no kind '{}'", finding.code, finding.kind));
+}
+
+// --- what is wrong with the record
+
+/// "record 2: " of several.
+std::string WhichRecord(const Finding& finding) {
+  const std::optional<double> record = finding.Number("record");
+  return record ? fmt::format("record {:.0f}: ", *record) : std::string();
+}
+
+std::string ReversalsUncertain(const Finding& finding, const FitResult&, const Units& units) {
+  return fmt::format(
+      "{}the reversals are not certain: {:.0f} where excursions up to {:.3g} {} are noise, which "
+      "is "
+      "taken, and {:.0f} where those up to {:.3g} {} are; look at the plot and give "
+      "--reversal-gate",
+      WhichRecord(finding), Needed(finding, "count"), Needed(finding, "gate"), units.displacement,
+      Needed(finding, "other_count"), Needed(finding, "other_gate"), units.displacement);
+}
+
+std::string GlitchesLeftOut(const Finding& finding, const FitResult&, const Units&) {
+  std::vector<std::string> kinds;
+  for (const auto& [name, words] :
+       {std::pair("spikes", "spikes"), std::pair("dropouts", "readings of 0 in both channels"),
+        std::pair("held", "held values")}) {
+    const double count = Needed(finding, name);
+    if (count > 0) kinds.push_back(fmt::format("{:.0f} {}", count, words));
+  }
+  std::vector<std::string> rows;
+  double total = Needed(finding, "spikes") + Needed(finding, "dropouts") + Needed(finding, "held");
+  for (const auto& [name, number] : finding.numbers) {
+    if (name == "row") rows.push_back(fmt::format("{:.0f}", number));
+  }
+  return fmt::format("{}left out as faults of the measurement: {}, {} row{} {} of those read",
+                     WhichRecord(finding), fmt::join(kinds, ", "),
+                     static_cast<double>(rows.size()) < total ? "first in" : "in",
+                     rows.size() == 1 ? "" : "s", fmt::join(rows, ", "));
+}
+
+std::string PathTooLong(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "{}the way between the samples is {:.3g} times that of the strokes: there are reversals that "
+      "were taken for noise, or noise that the contact is taken to follow; record the displacement "
+      "with less noise, or give --reversal-gate or --displacement-noise",
+      WhichRecord(finding), Needed(finding, "path_ratio"));
+}
+
+std::string NoClosedCycle(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "{}no cycle is closed, so that nothing was measured without a model; record at least one and "
+      "a half cycles",
+      WhichRecord(finding));
 }
 
 // --- what the record does not tell
@@ -116,7 +171,7 @@ std::string SlipForceExtrapolated(const Finding& finding, const FitResult&, cons
       Needed(finding, "alpha"), 100 * Needed(finding, "share"));
 }
 
-std::string NoClosedCycle(const Finding&, const FitResult&, const Units&) {
+std::string UnknownPast(const Finding&, const FitResult&, const Units&) {
   return "alpha, slip_force: the record closes no cycle and does not start where the contact is "
          "unloaded: how far it had been pushed before is not known; record a whole cycle, or give "
          "--initial-state virgin if it was at rest";
@@ -177,6 +232,15 @@ std::string SystematicResidual(const Finding& finding, const FitResult& fit, con
       fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding, units));
 }
 
+std::string EnergyContradiction(const Finding& finding, const FitResult& fit, const Units& units) {
+  return fmt::format(
+      "the steady cycles lose {:.4g} J each and {} as fitted {:.4g} J at their amplitude of {:.4g} "
+      "{}: the two are not the same contact; look at the plot for reversals, glitches or a force "
+      "that the model does not have",
+      Needed(finding, "measured"), fit.model->name, Needed(finding, "model"),
+      Needed(finding, "amplitude"), units.displacement);
+}
+
 // --- what the solver did not reach
 
 std::string WeightsNotSettled(const Finding&, const FitResult&, const Units&) {
@@ -194,7 +258,12 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 18> kSentences = {{
+constexpr std::array<Row, 23> kSentences = {{
+    {"reversals_uncertain", ReversalsUncertain},
+    {"glitches_left_out", GlitchesLeftOut},
+    {"path_too_long", PathTooLong},
+    {"no_closed_cycle", NoClosedCycle},
+    {"energy_contradiction", EnergyContradiction},
     {"turning_points_between_samples", TurningPoints},
     {"shape_or_rig", ShapeOrRig},
     {"slip_force_bounded_below", SlipForceBoundedBelow},
@@ -207,7 +276,7 @@ constexpr std::array<Row, 18> kSentences = {{
     {"model_inadequate", ModelInadequate},
     {"slip_force_extrapolated", SlipForceExtrapolated},
     {"few_places", FewPlaces},
-    {"no_closed_cycle", NoClosedCycle},
+    {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},
     {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},

@@ -1,13 +1,16 @@
 #include "mindahl/report/text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
+#include "mindahl/identification/trend.h"
 #include "mindahl/models/steady_loop.h"
+#include "report/adequacy.h"
 #include "report/field_table.h"
 #include "report/fields.h"
 #include "report/names.h"
@@ -225,6 +228,74 @@ std::string MappingText(const Report& report) {
                       : text;
 }
 
+/// A trend over the cycles in words, where it is worth any.
+std::string TrendText(const char* what, const std::optional<loop::Trend>& trend,
+                      const std::optional<double>& mean) {
+  if (!trend || !mean || !identification::IsWorthSaying(*trend, *mean)) return "";
+  return fmt::format("{} changes by {:+.2g} ± {:.1g} % a cycle (p = {:.1g})", what,
+                     100 * trend->slope / std::abs(*mean),
+                     100 * trend->standard_error / std::abs(*mean), trend->p_value);
+}
+
+/// What needs no model.
+std::string MeasuredText(const Report& report) {
+  const RecordFit& widest = report.fit.WidestRecord();
+  const loop::LoopFacts& facts = widest.facts;
+  const MeasuredLoop& loop = report.loop->measured;
+  const Units& units = report.units;
+  std::vector<std::string> parts = {
+      fmt::format("X = {:.5g} {}", loop.amplitude, units.displacement),
+      fmt::format("T* = {:.5g} {}", loop.peak_force, units.force)};
+  const auto add = [&](const char* what, const std::optional<double>& value,
+                       std::string_view unit) {
+    if (value) {
+      parts.push_back(fmt::format("{} {:.4g}{}{}", what, *value, unit.empty() ? "" : " ", unit));
+    }
+  };
+  if (!facts.closed) {
+    parts.emplace_back("no closed cycle");
+    return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
+  }
+  if (facts.half_gap && facts.half_gap_standard_deviation) {
+    parts.push_back(fmt::format("half gap {:.4g} ± {:.2g} {} between cycles", *facts.half_gap,
+                                *facts.half_gap_standard_deviation, units.force));
+  } else {
+    add("half gap", facts.half_gap, units.force);
+  }
+  add("sliding amplitude", facts.sliding_amplitude, units.displacement);
+  parts.push_back(fmt::format("energy {:.5g} J a cycle", facts.energy_per_cycle));
+  parts.push_back(fmt::format("energy ratio {:.4g}", facts.energy_ratio));
+  add("energy friction coefficient", facts.energy_friction_coefficient, "");
+  add("slope after reversals", facts.slope_after_reversal, units.stiffness);
+  add("plateau slope", facts.plateau_slope, units.stiffness);
+  add("asymmetry", facts.asymmetry, "");
+  for (const std::string& trend :
+       {TrendText("half gap", facts.half_gap_trend, facts.half_gap),
+        TrendText("energy", facts.energy_trend, facts.energy_per_cycle)}) {
+    if (!trend.empty()) parts.push_back(trend);
+  }
+  return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
+}
+
+/// The verdict, and causes besides the best.
+std::string AdequacyText(const Report& report) {
+  std::string text = Wrapped(VerdictSentence(report), 2);
+  const identification::Adequacy& adequacy = report.fit.adequacy;
+  if (!IsJudged(report) || adequacy.verdict == identification::AdequacyVerdict::kAdequate) {
+    return text;
+  }
+  for (std::size_t i = 1; i < adequacy.causes.size(); ++i) {
+    text += Wrapped("  or " + Sentence(adequacy.causes[i]), 5);
+  }
+  return text;
+}
+
+std::string NotesText(const Report& report) {
+  std::string text;
+  for (const Warning& note : report.notes) text += Wrapped("note: " + note.message, 6);
+  return text.empty() ? text : "\n" + text;
+}
+
 }  // namespace
 
 std::string ToText(const Report& report) {
@@ -243,12 +314,13 @@ std::string ToText(const Report& report) {
     cycles += record.measures.cycles;
     left_out += record.left_out;
   }
-  std::string text = report.selection ? SelectionText(*report.selection, units) : std::string();
+  std::string text = AdequacyText(report) + MeasuredText(report) + "\n";
+  if (report.selection) text += SelectionText(*report.selection, units);
   text += fmt::format(
       "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} {}), {} cycles; {} "
       "of force and displacement\n",
       fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
-      samples, reversals, widest.reversal_gate, units.displacement, cycles,
+      samples, reversals, widest.gate.gate, units.displacement, cycles,
       fit.force_sense > 0 ? "same sign" : "opposite signs");
   if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
   if (left_out > 0) text += fmt::format("{} samples left out of the fit\n", left_out);
@@ -279,25 +351,19 @@ std::string ToText(const Report& report) {
   if (fit.outliers > 0) {
     text += fmt::format("           {} outliers count less than half\n", fit.outliers);
   }
-  const loop::LoopMeasures& measures = widest.measures;
-  text += fmt::format("\nloop: X = {:.5g} {}, T* = {:.5g} {}, {}\n", measures.amplitude,
-                      units.displacement, measures.peak_force, units.force, SlipText(loop, units));
-  text += fmt::format(
-      "      energy per cycle {} measured, {:.5g} J model\n",
-      measures.energy_per_cycle ? fmt::format("{:.5g} J", *measures.energy_per_cycle) : "not",
-      loop.model_energy);
-  if (loop.energy_ratio) {
-    text += fmt::format("      energy ratio {:.4g}{}\n", *loop.energy_ratio,
-                        loop.gross_slip_displacement
-                            ? fmt::format(", gross slip from {:.4g}",
-                                          models::GrossSlipEnergyRatio(fit.law.shape_exponent))
-                            : "");
+  text += fmt::format("\nloop: {}\n      energy per cycle {:.5g} J of the model",
+                      SlipText(loop, units), loop.model_energy);
+  text += loop.gross_slip_displacement
+              ? fmt::format(", gross slip from an energy ratio of {:.4g}\n",
+                            models::GrossSlipEnergyRatio(fit.law.shape_exponent))
+              : "\n";
+  if (report.is_torsional()) {
+    return text + "\n" + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) +
+           NotesText(report);
   }
-  if (report.is_torsional())
-    return text + "\n" + Wrapped(std::string("no contact: ") + kWhyNoContact, 2);
   text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report);
   text += "\nis it Mindlin's contact?\n" + MappingText(report);
-  return text;
+  return text + NotesText(report);
 }
 
 }  // namespace mindahl::report

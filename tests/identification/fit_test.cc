@@ -158,7 +158,7 @@ TEST(Fit, CorrelationOfSigmaAndAlphaHasTheSignOfTheScatter) {
 TEST(Fit, CyclesOfReversalsAndGateAreReported) {
   const FitResult fit = FitOne(Loop(2.0));
   EXPECT_EQ(fit.records[0].reversals, (std::vector<std::size_t>{30, 90, 150, 210}));
-  EXPECT_EQ(fit.records[0].reversal_gate, 0.0);
+  EXPECT_EQ(fit.records[0].gate.gate, 0.0);
   EXPECT_EQ(fit.records[0].measures.cycles, 2u);
 
   FitOptions options;

@@ -28,6 +28,7 @@ ParameterEstimate Known(const char* name) {
 const std::map<std::string_view, Identifiability>& Verdicts() {
   static const std::map<std::string_view, Identifiability> verdicts = {
       {"no_model_fits", Identifiability::kNotIdentifiable},
+      {"energy_contradiction", Identifiability::kNotIdentifiable},
       {"undetermined_parameter", Identifiability::kNotIdentifiable},
       {"undetermined_combination", Identifiability::kNotIdentifiable},
       {"sigma_not_identifiable", Identifiability::kNotIdentifiable},

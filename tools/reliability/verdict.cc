@@ -119,8 +119,7 @@ std::string ResidualsText(const FitResult& fit) {
       "   {} samples, {} reversals (gate {:.2g} X), {}, {}; T* {:.3g} % of Tc, rms {:.3g}, "
       "largest {:.3g}, "
       "Durbin-Watson {:.2f}, {:.0f} effective; {:.0f} % repeatable\n",
-      fit.residuals.samples, record.reversals.size(),
-      record.reversal_gate / record.measures.amplitude,
+      fit.residuals.samples, record.reversals.size(), record.gate.gate / record.measures.amplitude,
       fit.initial_state == models::InitialState::kVirgin ? "virgin" : "steady",
       fit.converged ? "converged" : "NOT CONVERGED: " + fit.termination,
       100 * record.measures.peak_force / fit.law.slip_force, 100 * fit.residuals.normalized_rms,

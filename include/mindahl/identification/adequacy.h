@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,7 @@ struct Adequacy {
   double misfit_over_noise = 0.0;
   double p_value = 1.0;       ///< that noise alone looks like that
   std::vector<Cause> causes;  ///< those that help, the best first
+  std::size_t tried = 0;      ///< causes that the record could tell; 0: there is no verdict
 };
 
 }  // namespace mindahl::identification

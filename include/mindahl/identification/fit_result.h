@@ -11,6 +11,9 @@
 #include "mindahl/identification/residual_statistics.h"
 #include "mindahl/identification/residual_structure.h"
 #include "mindahl/loop/cycles.h"
+#include "mindahl/loop/facts.h"
+#include "mindahl/loop/glitches.h"
+#include "mindahl/loop/reversals.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
@@ -78,12 +81,14 @@ struct StartReport {
 
 /// One record as the fit sees it.
 struct RecordFit {
-  double reversal_gate = 0.0;          ///< [m]
+  loop::ReversalGate gate;             ///< `certain` where it was given
+  loop::GlitchCount glitches;          ///< that are left out
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
   /// record is sampled so coarsely that it had to be fitted.
   std::vector<double> overshoot;
   loop::LoopMeasures measures;        ///< with the force in the displacement's sense
+  loop::LoopFacts facts;              ///< likewise, cycle by cycle; from depth kIntervals on
   double displacement_noise = 0.0;    ///< [m] of the readings; 0 where they count as exact
   std::vector<unsigned char> counts;  ///< of each sample, 1 where it counts, else 0
   std::size_t left_out = 0;           ///< samples that do not count

@@ -21,6 +21,11 @@ struct Thresholds {
   double main_stroke = 0.75;
   double same_directions = 0.6;
   double early_in_stroke = 0.25;
+  double path_excess = 0.25;
+  double energy_difference = 0.2;
+  double energy_errors = 5.0;
+  double trend_size = 0.01;
+  double trend_chance = 0.01;
   double widest_ratio = 9.0;
   double widest_shape = 1.0;
   double open_slip_force = 25.0;

@@ -18,6 +18,7 @@ struct CycleFacts {
   double peak_force = 0.0;    ///< T* [N]: half the range of the force, as in LoopMeasures
   double energy = 0.0;        ///< W [J] = ∮ T dδ, closed by a chord
   double energy_ratio = 0.0;  ///< W/(4XT*) [-]: 1 of a rectangle, 0 of a line
+  bool steady = false;        ///< as wide as the record's widest, to 5 %
   /// [N]: half the force between the strokes, in the middle third of the stroke: the median of the
   /// means over five parts of it. Of a loop that slips it is the slip force, whatever the
   /// stiffness.

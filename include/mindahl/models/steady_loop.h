@@ -2,6 +2,7 @@
 
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
+#include "mindahl/models/response.h"
 
 namespace mindahl::models {
 
@@ -20,6 +21,14 @@ double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double 
 /// For Dahl's own law below (16 + α) ε, for α < 0.05 and X within 10 % of the elastic limit, where
 /// W is a difference of nearly equal numbers, of 4XT*.
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude);
+
+/// The part of an amplitude [m] that is the contact's where a rig in series shares in it:
+///   X_c = X − T*(X_c)/k_r
+/// @param amplitude  [m] of contact and rig, finite, >= 0
+/// @throws InvalidArgument for an invalid law or amplitude
+/// Relative error 1e-15; the amplitude itself for a rigid rig.
+double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
+                        double amplitude);
 
 /// Energy ratio A = W/(4·X·T*) at the onset of gross slip of a Masing law: α/(2−α), 0.2 for
 /// Mindlin, the fretting community's limit between partial and gross slip (Fouvry). NaN-free: 1 for

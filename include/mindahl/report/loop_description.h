@@ -8,8 +8,16 @@ namespace mindahl::report {
 
 enum class SlipRegime { kPartial, kGross };
 
+/// What a record shows of its loop.
+struct MeasuredLoop {
+  double amplitude = 0.0;        ///< X [m]
+  double peak_force = 0.0;       ///< T* [N]
+  std::optional<double> energy;  ///< W [J] per cycle; empty where the record closes none
+};
+
 /// The steady loop of the fitted law at the amplitude of the widest record.
 struct LoopDescription {
+  MeasuredLoop measured;
   double contact_amplitude = 0.0;  ///< X [m] of the contact alone, the rig's travel taken off
   double model_energy = 0.0;       ///< W [J] per cycle
   /// A = W/(4XT*) [-] with the measured X and T* and the measured W, or the model's where the
@@ -26,11 +34,8 @@ struct LoopDescription {
 /// does: no record tells 1 % of the force.
 inline constexpr double kAsGoodAsSlip = 0.99;
 
-/// The part of an amplitude [m] that is the contact's where a rig in series shares in it:
-///   X_c = X − T*(X_c)/k_r
-/// @param amplitude  [m] of contact and rig, finite, >= 0
-/// Relative error 1e-15; the amplitude itself for a rigid rig.
-double ContactAmplitude(const identification::FitResult& fit, double amplitude);
+/// Of the widest steady cycles; where none is closed, of the main swings.
+MeasuredLoop MeasuredLoopOf(const identification::RecordFit& record);
 
 /// @param fit  one that did not fail
 LoopDescription DescribeLoop(const identification::FitResult& fit);

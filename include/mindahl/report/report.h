@@ -33,8 +33,9 @@ struct Report : ReportInput {
   contact::IdentifiedContact contact;   ///< empty where the fit failed
   AlphaTest alpha;
   std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit
-  std::vector<Warning> fit_warnings;      ///< what the fit found
+  std::vector<Warning> fit_warnings;      ///< what the fit found, and a person should act on
   std::vector<Warning> contact_warnings;  ///< what the translation into the contact found
+  std::vector<Warning> notes;             ///< what the fit found, and is only worth knowing
 
   Units units;  ///< of all that is said
 

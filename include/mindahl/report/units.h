@@ -11,6 +11,8 @@ struct Units {
   std::string_view stiffness = "N/m";
   std::string_view drift = "N/s";
   std::string_view viscous = "N s/m";
+  std::string_view compliance = "m/N";
+  std::string_view inertia = "kg";
 };
 
 inline constexpr Units kUnitsOfForce{};
@@ -18,7 +20,9 @@ inline constexpr Units kUnitsOfTorque{.force = "N m",
                                       .displacement = "rad",
                                       .stiffness = "N m/rad",
                                       .drift = "N m/s",
-                                      .viscous = "N m s/rad"};
+                                      .viscous = "N m s/rad",
+                                      .compliance = "rad/(N m)",
+                                      .inertia = "kg m²"};
 
 /// The unit in which a quantity is that has `unit` where the record has a force: "N/m" is N m/rad
 /// of a torque. Energies are in J either way.
@@ -28,6 +32,8 @@ constexpr std::string_view UnitIn(const Units& units, std::string_view unit) {
   if (unit == kUnitsOfForce.stiffness) return units.stiffness;
   if (unit == kUnitsOfForce.drift) return units.drift;
   if (unit == kUnitsOfForce.viscous) return units.viscous;
+  if (unit == kUnitsOfForce.compliance) return units.compliance;
+  if (unit == kUnitsOfForce.inertia) return units.inertia;
   return unit;
 }
 

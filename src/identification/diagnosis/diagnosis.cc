@@ -171,7 +171,7 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
                                  away <= thresholds.starts_unloaded * (highest - lowest) / 2;
     if (starts_unloaded) return std::nullopt;
   }
-  return Finding{.code = "no_closed_cycle", .parameters = {"alpha", "slip_force"}};
+  return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}};
 }
 
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {

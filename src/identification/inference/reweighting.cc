@@ -99,6 +99,20 @@ class Weighting {
     return noise;
   }
 
+  /// The weights of all samples' residuals, root and all.
+  void Copy(std::vector<double>& weights) const {
+    weights.clear();
+    for (const ScaledRecord& record : data_.records) {
+      weights.insert(weights.end(), record.root_weight.begin(), record.root_weight.end());
+    }
+  }
+  void MeetHalfWay(std::span<const double> weights) {
+    std::size_t i = 0;
+    for (ScaledRecord& record : data_.records) {
+      for (double& weight : record.root_weight) weight = (weight + weights[i++]) / 2;
+    }
+  }
+
   /// The last weights leave no sample that tells anything.
   [[nodiscard]] bool is_lost() const { return is_lost_; }
 
@@ -216,6 +230,7 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
   // Tukey's loss has several minima: it starts from Huber's, which has one.
   constexpr int kHuberRounds = 10;
   std::vector<double> last_force(problem.size());
+  std::vector<double> last_weight;
   response.Bind(problem);
   Predict(problem, solution.theta, response, last_force);
   std::vector<double> force(problem.size());
@@ -223,6 +238,9 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     const bool first_huber = options.loss != Loss::kNone && round < kHuberRounds;
     noise = weighting.Update(first_huber ? Loss::kHuber : options.loss, solution.theta, response);
     if (weighting.is_lost()) return false;
+    // Weights and forces that chase each other meet half-way.
+    if (round >= kHuberRounds) weighting.MeetHalfWay(last_weight);
+    weighting.Copy(last_weight);
     const std::vector<double> start = solution.theta;
     solver.Bind(problem, response);
     solver.Solve(start, solver_options, solution);

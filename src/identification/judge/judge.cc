@@ -10,8 +10,9 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Identifiability>, 16> kVerdicts = {{
+constexpr std::array<std::pair<std::string_view, Identifiability>, 17> kVerdicts = {{
     {"no_model_fits", Identifiability::kNotIdentifiable},
+    {"energy_contradiction", Identifiability::kNotIdentifiable},
     {"undetermined_parameter", Identifiability::kNotIdentifiable},
     {"undetermined_combination", Identifiability::kNotIdentifiable},
     {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
@@ -22,7 +23,7 @@ constexpr std::array<std::pair<std::string_view, Identifiability>, 16> kVerdicts
     {"sigma_bounded_below", Identifiability::kBoundedBelow},
     {"model_inadequate", Identifiability::kNotIdentifiable},
     {"slip_force_extrapolated", Identifiability::kExtrapolated},
-    {"no_closed_cycle", Identifiability::kNotIdentifiable},
+    {"unknown_past", Identifiability::kNotIdentifiable},
     {"few_places", Identifiability::kNotIdentifiable},
     {"initial_state_undecided", Identifiability::kIdentifiable},
     {"systematic_residual", Identifiability::kIdentifiable},

@@ -12,10 +12,10 @@ namespace mindahl::identification {
 ///
 /// | precedence | from | verdict |
 /// |---|---|---|
-/// | 1 | an estimate without error or interval, and the findings no_model_fits, undetermined_…,
-/// |   | …_not_identifiable, shape_or_rig | not identifiable |
-/// | 2 | slip_force_bounded_below, sigma_bounded_below, or an interval open above | bounded below |
-/// | 3 | nothing of it | identifiable |
+/// | 1 | an estimate without error or interval, and the findings no_model_fits,
+/// |   | energy_contradiction, undetermined_…, …_not_identifiable, shape_or_rig | not identifiable
+/// | | 2 | slip_force_bounded_below, sigma_bounded_below, or an interval open above | bounded below
+/// | | 3 | nothing of it | identifiable |
 ///
 /// What the user holds fixed is identifiable. A finding that names no parameter changes none.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);

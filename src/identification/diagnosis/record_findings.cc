@@ -1,0 +1,120 @@
+#include "identification/diagnosis/record_findings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "mindahl/identification/trend.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl::identification {
+namespace {
+
+constexpr std::array<std::string_view, 3> kLawParameters = {"sigma", "alpha", "slip_force"};
+
+Finding UncertainReversals(const loop::ReversalGate& gate) {
+  return {.code = "reversals_uncertain",
+          .numbers = {{"count", static_cast<double>(gate.count)},
+                      {"gate", gate.gate},
+                      {"other_count", static_cast<double>(gate.other_count)},
+                      {"other_gate", gate.other_gate}}};
+}
+
+Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
+  Finding finding{.code = "glitches_left_out",
+                  .severity = Severity::kNote,
+                  .numbers = {{"spikes", static_cast<double>(glitches.spikes)},
+                              {"dropouts", static_cast<double>(glitches.dropouts)},
+                              {"held", static_cast<double>(glitches.held)}}};
+  const std::size_t examples = std::min(glitches.total(), glitches.examples.size());
+  for (std::size_t i = 0; i < examples; ++i) {
+    finding.numbers.emplace_back("row", static_cast<double>(glitches.examples[i] + 1));
+  }
+  return finding;
+}
+
+/// Mean energy [J] of the widest steady cycles, of those most of whose samples count.
+std::optional<double> EnergyThatCounts(const RecordFit& record) {
+  const std::vector<loop::CycleFacts>& cycles = record.facts.cycles;
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t k = 0; k < cycles.size(); ++k) {
+    if (!cycles[k].steady) continue;
+    const std::size_t end = k + 1 < cycles.size() ? cycles[k + 1].start : record.counts.size();
+    const auto samples = std::span(record.counts).subspan(cycles[k].start, end - cycles[k].start);
+    if (2 * static_cast<std::size_t>(std::ranges::count(samples, 0)) > samples.size()) continue;
+    sum += cycles[k].energy;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return sum / count;
+}
+
+/// Whether the fit sets both limits to a parameter of the law that nothing found so far is about.
+bool ClaimsAnAnswer(const FitResult& result) {
+  return std::ranges::any_of(kLawParameters, [&](std::string_view name) {
+    const ParameterEstimate* estimate = result.Find(name);
+    if (estimate == nullptr || estimate->status == ParameterStatus::kFixed) return false;
+    if (!estimate->lower95 || !estimate->upper95) return false;
+    return std::ranges::none_of(result.findings, [&](const Finding& finding) {
+      return std::ranges::find(finding.parameters, name) != finding.parameters.end();
+    });
+  });
+}
+
+}  // namespace
+
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
+                                   const Thresholds& thresholds) {
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const RecordFit& record = records[r];
+    const auto append = [&](Finding finding) {
+      if (records.size() > 1) {
+        finding.numbers.emplace_back("record", static_cast<double>(r + 1));
+      }
+      findings.push_back(std::move(finding));
+    };
+    if (!record.gate.certain) append(UncertainReversals(record.gate));
+    if (record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
+      append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
+    }
+    if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
+    if (!record.facts.closed) append({.code = "no_closed_cycle", .severity = Severity::kNote});
+  }
+  return findings;
+}
+
+std::optional<Finding> FindEnergyContradiction(const FitResult& result,
+                                               const Thresholds& thresholds) {
+  const RecordFit& record = result.WidestRecord();
+  const std::optional<double> measured = EnergyThatCounts(record);
+  if (!measured || !ClaimsAnAnswer(result)) return std::nullopt;
+  const ParameterEstimate* viscous = result.Find("viscous");
+  if (viscous != nullptr && viscous->value != 0) return std::nullopt;
+  const double amplitude = record.facts.amplitude;
+  const double model = models::SteadyLoopEnergy(
+      *result.model, result.law,
+      models::ContactAmplitude(*result.model, result.law, result.rig, amplitude));
+  const double difference = std::abs(*measured - model);
+  if (!(difference > thresholds.energy_difference * std::max(std::abs(*measured), model))) {
+    return std::nullopt;
+  }
+  // ∮ T dδ sums forces over a way of 4X.
+  const double error = 4 * amplitude * result.force_noise /
+                       std::sqrt(std::max(1.0, result.residuals.effective_samples));
+  if (!(difference > thresholds.energy_errors * error)) return std::nullopt;
+  return Finding{.code = "energy_contradiction",
+                 .parameters = {"sigma", "alpha", "slip_force"},
+                 .numbers = {{"measured", *measured}, {"model", model}, {"amplitude", amplitude}}};
+}
+
+bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds) {
+  return trend.p_value < thresholds.trend_chance &&
+         std::abs(trend.slope) > thresholds.trend_size * std::abs(mean);
+}
+
+}  // namespace mindahl::identification

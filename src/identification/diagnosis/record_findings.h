@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
+
+/// What is to be said of the records themselves, and of a model that they contradict, as data: pure
+/// functions of a result.
+namespace mindahl::identification {
+
+/// Reversals that are not certain, glitches that are left out, a way that is longer than the
+/// strokes, and that no cycle is closed: whatever is fitted. Numbers of a record count from 1.
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
+                                   const Thresholds& thresholds);
+
+/// Energy of the widest steady cycles that count against that of the fitted law at their amplitude,
+/// where the fit claims to know a parameter of the law, and no viscous force takes part of it.
+std::optional<Finding> FindEnergyContradiction(const FitResult& result,
+                                               const Thresholds& thresholds);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,157 @@
+#include "report/adequacy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace mindahl::report {
+
+using identification::Adequacy;
+using identification::AdequacyVerdict;
+using identification::Cause;
+
+namespace {
+
+struct CauseRow {
+  std::string_view code;
+  const char* looks;     // like what, with its size; an argument is left unused where it has none
+  const char* negative;  // likewise of a negative size; null where the sign is shown
+  const char* remedy;    // where no option takes it into account
+};
+
+constexpr std::array<CauseRow, 15> kCauses = {{
+    {"channel_lag", "a force that is read {} after the displacement",
+     "a displacement that is read {} after the force",
+     "compare the delays and filters of the two channels"},
+    {"viscous_force", "a viscous force of {} beside the contact's", nullptr,
+     "record the time, and give --viscous fit"},
+    {"plateau_slope", "a force beside the contact's that grows by {} with the displacement",
+     nullptr, "give --plateau-slope"},
+    {"force_drift", "a force that drifts by {}", nullptr, "give --drift"},
+    {"shape_of_law", "branches of another shape than the law's", nullptr,
+     "compare the laws with --model auto"},
+    {"guide_friction", "a friction of {} beside the contact's that turns at once with the motion",
+     "a friction whose jump at each turn is {} too small",
+     "look for a guide or a seal that rubs, and measure it without the contact"},
+    {"rig_in_series", "a rig in series that gives way by {}",
+     "a rig in series that gives way by {} less than was taken off", "give --rig-stiffness fit"},
+    {"backlash", "a backlash of {} after each reversal", "an overtravel of {} after each reversal",
+     "look for play between the contact and the displacement sensor"},
+    {"displacement_sensor", "a displacement that is not read linearly", nullptr,
+     "calibrate the displacement sensor over the whole stroke"},
+    {"inertia", "a mass of {} between the contact and the force sensor", nullptr,
+     "move more slowly, or take the inertia off the force"},
+    {"unequal_directions", "a friction that differs by {} from the mean in either direction",
+     "a friction that differs by {} from the mean in either direction",
+     "look whether the load changes with the direction of the motion"},
+    {"running_in", "a friction that grows by {} from the middle of the record to its end",
+     "a friction that falls by {} from the middle of the record to its end",
+     "leave the first cycles out with --skip-cycles, or fit parts of the record"},
+    {"force_saturates", "a force reading that saturates near its peaks", nullptr,
+     "look at the ranges of the force sensor and its amplifier"},
+    {"load_varies", "a friction that varies along the stroke", nullptr,
+     "look whether the normal load varies with the position; where it is recorded, give "
+     "--follow-load"},
+    {"force_of_position", "a force that depends on the position", nullptr,
+     "look for a spring, a cable or a tilt beside the contact, and measure it without it"},
+}};
+
+const CauseRow& RowOf(const Cause& cause) {
+  const auto row = std::ranges::find(kCauses, cause.code, &CauseRow::code);
+  if (row == kCauses.end()) {
+    throw std::logic_error(fmt::format("the cause '{}' has no sentence", cause.code));
+  }
+  return *row;
+}
+
+std::string SizeText(const Cause& cause, double size) {
+  if (cause.unit == "-") return fmt::format("{:.3g} %", 100 * size);
+  return fmt::format("{:.3g} {}", size, cause.unit);
+}
+
+/// What the residuals look like.
+std::string Looks(const Cause& cause) {
+  const CauseRow& row = RowOf(cause);
+  const bool turns = cause.size < 0 && row.negative != nullptr;
+  return fmt::format(fmt::runtime(turns ? row.negative : row.looks),
+                     SizeText(cause, turns ? -cause.size : cause.size));
+}
+
+std::string ChanceText(double p_value) {
+  return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.2g}", p_value);
+}
+
+/// What units are called where the record has no time.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kWithoutTime = {{
+    {"s", "samples"},
+    {"N/s", "N/sample"},
+    {"N s/m", "N samples/m"},
+    {"kg", "N samples²/m"},
+    {"N m/s", "N m/sample"},
+    {"N m s/rad", "N m samples/rad"},
+    {"kg m²", "N m samples²/rad"},
+}};
+
+}  // namespace
+
+bool IsJudged(const Report& report) { return !report.failed() && report.fit.adequacy.tried > 0; }
+
+std::string WhyNoOption(const Cause& cause) {
+  return cause.code == "viscous_force" ? "needs a column of the time"
+                                       : "no option takes it into account yet";
+}
+
+void AdaptCauses(const Units& units, bool has_time, std::vector<Cause>& causes) {
+  for (Cause& cause : causes) {
+    cause.unit = UnitIn(units, cause.unit);
+    if (has_time) continue;
+    if (cause.code == "viscous_force") cause.option = {};
+    for (const auto& [with, without] : kWithoutTime) {
+      if (cause.unit != with) continue;
+      cause.unit = without;
+      break;
+    }
+  }
+}
+
+std::string Sentence(const Cause& cause) {
+  return fmt::format(
+      "{}, which explains {:.0f} % of the residuals' variance: {}", Looks(cause),
+      100 * cause.explains,
+      cause.option.empty() ? std::string(RowOf(cause).remedy) : fmt::format("give {}", cause.option));
+}
+
+std::vector<std::string_view> CauseCodes() {
+  std::vector<std::string_view> codes;
+  for (const CauseRow& row : kCauses) codes.push_back(row.code);
+  return codes;
+}
+
+std::string VerdictSentence(const Report& report) {
+  if (!IsJudged(report)) return fmt::format("not judged: {}", kWhyNotJudged);
+  const Adequacy& adequacy = report.fit.adequacy;
+  const std::string misfit = fmt::format("{:.2g} times the noise ({})", adequacy.misfit_over_noise,
+                                         ChanceText(adequacy.p_value));
+  std::string found;
+  switch (adequacy.verdict) {
+    case AdequacyVerdict::kAdequate:
+      return fmt::format("adequate: what the model misses is {}, and looks like noise", misfit);
+    case AdequacyVerdict::kDoubtful:
+      found = fmt::format("doubtful: what the model misses is {}, and does not look like noise",
+                          misfit);
+      break;
+    case AdequacyVerdict::kInadequate:
+      found = fmt::format(
+          "inadequate: what the model misses is {}; its parameters mean nothing for this record",
+          misfit);
+      break;
+  }
+  if (adequacy.causes.empty()) return found + ", nor like anything else that was tried";
+  return found + ". It looks like " + Sentence(adequacy.causes.front());
+}
+
+}  // namespace mindahl::report

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/report/report.h"
+
+namespace mindahl::report {
+
+inline constexpr const char* kWhyNotJudged =
+    "the record has too few samples for anything beside the model to be told";
+
+/// Whether the adequacy was judged: the fit did not fail, and something beside the model was tried.
+bool IsJudged(const Report& report);
+
+/// Why no option takes a cause into account.
+std::string WhyNoOption(const identification::Cause& cause);
+
+/// Units of the causes for a record of a torque, or without a time, and without the options that
+/// this record has no column for.
+void AdaptCauses(const Units& units, bool has_time, std::vector<identification::Cause>& causes);
+
+/// A cause in words, without an end of line: what it looks like with its size, how much it explains,
+/// and the option that takes it into account or, where there is none, what to look at.
+/// @throws std::logic_error for a code without a row
+std::string Sentence(const identification::Cause& cause);
+
+/// Every code that has a sentence.
+std::vector<std::string_view> CauseCodes();
+
+/// The verdict in words, in one paragraph: what was found, the best cause and what to do.
+std::string VerdictSentence(const Report& report);
+
+}  // namespace mindahl::report

@@ -1,0 +1,61 @@
+#include "report/adequacy.h"
+#include "report/field_table.h"
+#include "report/names.h"
+
+namespace mindahl::report {
+
+using identification::Adequacy;
+using identification::Cause;
+
+namespace {
+
+const std::vector<Field<Cause>>& CauseFields() {
+  using Item = Cause;
+  static const std::vector<Field<Item>> fields = {
+      {"code", "", "stable, for scripts", [](const Item& item) { return Text(item.code); }},
+      {"try", "", "option of the command line that takes it into account",
+       [](const Item& item) { return item.option.empty() ? Missing() : Text(item.option); },
+       WhyNoOption},
+      {"delta_aicc", "-", "of the fit with it less that without: negative where it helps",
+       [](const Item& item) { return Number(item.delta_aicc); }},
+      {"explains", "-", "share of the residuals' variance",
+       [](const Item& item) { return Number(item.explains); }},
+      {"size", "of the cause", "how large it is; of several numbers the first",
+       [](const Item& item) { return item.unit.empty() ? Missing() : Number(item.size); },
+       [](const Item&) { return std::string("it is of several numbers, none of which says much"); }},
+      {"unit", "", "unit of the size",
+       [](const Item& item) { return item.unit.empty() ? Missing() : Text(item.unit); },
+       [](const Item&) { return std::string("it has no size"); }},
+      {"moves", "-", "sigma, alpha or slip_force with it, in halves of their intervals: the most",
+       [](const Item& item) { return Number(item.moves); }},
+  };
+  return fields;
+}
+
+/// Of the adequacy, where there is a verdict.
+template <typename Get>
+Field<Report> Row(const char* path, const char* unit, const char* label, Get get) {
+  return {path, unit, label,
+          [get](const Report& report) {
+            return IsJudged(report) ? get(report.fit.adequacy) : Missing();
+          },
+          [](const Report&) { return std::string(kWhyNotJudged); }};
+}
+
+}  // namespace
+
+void AddAdequacyFields(FieldTable& table) {
+  table.Add({
+      Row("adequacy.verdict", "", "adequate, doubtful or inadequate",
+          [](const Adequacy& adequacy) { return Text(Name(adequacy.verdict)); }),
+      Row("adequacy.misfit_over_noise", "-", "rms of what the model misses over that of the noise",
+          [](const Adequacy& adequacy) { return Number(adequacy.misfit_over_noise); }),
+      Row("adequacy.p_value", "-", "that noise alone looks like that",
+          [](const Adequacy& adequacy) { return Number(adequacy.p_value); }),
+      Row("adequacy.causes", "", "what the residuals look like, the best first; may be empty",
+          [](const Adequacy& adequacy) { return List(CauseFields(), adequacy.causes); }),
+  });
+  table.Describe("adequacy.causes[].", CauseFields());
+}
+
+}  // namespace mindahl::report
