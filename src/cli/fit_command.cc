@@ -15,6 +15,7 @@
 
 #include "cli/commands.h"
 #include "cli/contact_options.h"
+#include "cli/established.h"
 #include "cli/output_path.h"
 #include "cli/text_output.h"
 #include "cli/whole_number.h"
@@ -382,16 +383,6 @@ void UseMeasuredNormalLoad(ContactOptions& contact, std::span<const Record> reco
   contact.known.normal_load = *mean;
   console.err << fmt::format("mindahl fit: note: normal load: the mean of its column, {:.6g} N\n",
                              *mean);
-}
-
-bool Established(const identification::FitResult& fit, bool strict) {
-  if (!fit.converged) return false;
-  if (!strict) return true;
-  if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) return false;
-  return std::ranges::all_of(fit.parameters, [](const identification::ParameterEstimate& estimate) {
-    return estimate.status == identification::ParameterStatus::kFixed ||
-           estimate.identifiability == identification::Identifiability::kIdentifiable;
-  });
 }
 
 void Write(const FitCommandOptions& options, const report::Report& report, Console& console) {

@@ -48,12 +48,14 @@ constexpr std::array<CauseRow, 15> kCauses = {{
     {"unequal_directions", "a friction that differs by {} from the mean in either direction",
      "a friction that differs by {} from the mean in either direction",
      "look whether the load changes with the direction of the motion"},
-    {"running_in", "a friction that grows by {} from the middle of the record to its end",
-     "a friction that falls by {} from the middle of the record to its end",
+    {"running_in", "a friction that grows by {} over the record",
+     "a friction that falls by {} over the record",
      "leave the first cycles out with --skip-cycles, or fit parts of the record"},
-    {"force_saturates", "a force reading that saturates near its peaks", nullptr,
+    {"force_saturates", "a force reading that loses {} of what is beyond nine tenths of its peak",
+     "a force reading that gains {} of what is beyond nine tenths of its peak",
      "look at the ranges of the force sensor and its amplifier"},
-    {"load_varies", "a friction that varies along the stroke", nullptr,
+    {"load_varies", "a friction that grows by {} from the middle of the stroke to its end",
+     "a friction that falls by {} from the middle of the stroke to its end",
      "look whether the normal load varies with the position; where it is recorded, give "
      "--follow-load"},
     {"force_of_position", "a force that depends on the position", nullptr,
@@ -85,15 +87,11 @@ std::string ChanceText(double p_value) {
   return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.2g}", p_value);
 }
 
-/// What units are called where the record has no time.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kWithoutTime = {{
-    {"s", "samples"},
-    {"N/s", "N/sample"},
-    {"N s/m", "N samples/m"},
-    {"kg", "N samples²/m"},
-    {"N m/s", "N m/sample"},
-    {"N m s/rad", "N m samples/rad"},
-    {"kg m²", "N m samples²/rad"},
+/// Units by sample of a record without a time, of a force and of a torque.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kBySample = {{
+    {"N/sample", "N m/sample"},
+    {"N samples/m", "N m samples/rad"},
+    {"N samples²/m", "N m samples²/rad"},
 }};
 
 }  // namespace
@@ -107,22 +105,20 @@ std::string WhyNoOption(const Cause& cause) {
 
 void AdaptCauses(const Units& units, bool has_time, std::vector<Cause>& causes) {
   for (Cause& cause : causes) {
+    if (!has_time && cause.code == "viscous_force") cause.option = {};
     cause.unit = UnitIn(units, cause.unit);
-    if (has_time) continue;
-    if (cause.code == "viscous_force") cause.option = {};
-    for (const auto& [with, without] : kWithoutTime) {
-      if (cause.unit != with) continue;
-      cause.unit = without;
-      break;
+    if (units.force == kUnitsOfForce.force) continue;
+    for (const auto& [of_force, of_torque] : kBySample) {
+      if (cause.unit == of_force) cause.unit = of_torque;
     }
   }
 }
 
 std::string Sentence(const Cause& cause) {
-  return fmt::format(
-      "{}, which explains {:.0f} % of the residuals' variance: {}", Looks(cause),
-      100 * cause.explains,
-      cause.option.empty() ? std::string(RowOf(cause).remedy) : fmt::format("give {}", cause.option));
+  return fmt::format("{}, which explains {:.0f} % of the residuals' variance: {}", Looks(cause),
+                     100 * cause.explains,
+                     cause.option.empty() ? std::string(RowOf(cause).remedy)
+                                          : fmt::format("give {}", cause.option));
 }
 
 std::vector<std::string_view> CauseCodes() {

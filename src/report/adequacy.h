@@ -18,12 +18,11 @@ bool IsJudged(const Report& report);
 /// Why no option takes a cause into account.
 std::string WhyNoOption(const identification::Cause& cause);
 
-/// Units of the causes for a record of a torque, or without a time, and without the options that
-/// this record has no column for.
+/// Units of the causes in those of the record, and without the options that it has no column for.
 void AdaptCauses(const Units& units, bool has_time, std::vector<identification::Cause>& causes);
 
-/// A cause in words, without an end of line: what it looks like with its size, how much it explains,
-/// and the option that takes it into account or, where there is none, what to look at.
+/// A cause in words, without an end of line: what it looks like with its size, how much it
+/// explains, and the option that takes it into account or, where there is none, what to look at.
 /// @throws std::logic_error for a code without a row
 std::string Sentence(const identification::Cause& cause);
 

@@ -22,7 +22,9 @@ const std::vector<Field<Cause>>& CauseFields() {
        [](const Item& item) { return Number(item.explains); }},
       {"size", "of the cause", "how large it is; of several numbers the first",
        [](const Item& item) { return item.unit.empty() ? Missing() : Number(item.size); },
-       [](const Item&) { return std::string("it is of several numbers, none of which says much"); }},
+       [](const Item&) {
+         return std::string("it is of several numbers, none of which says much");
+       }},
       {"unit", "", "unit of the size",
        [](const Item& item) { return item.unit.empty() ? Missing() : Text(item.unit); },
        [](const Item&) { return std::string("it has no size"); }},

@@ -162,7 +162,9 @@ Runs RunFits() {
     all.insert(all.end(), words.begin(), words.end());
     const json fit = RunCommand(all).Json();
     CollectLeaves(fit, "", runs.leaves);
-    for (const json& warning : fit.at("warnings")) runs.codes.insert(warning.at("code"));
+    for (const char* list : {"warnings", "notes"}) {
+      for (const json& warning : fit.at(list)) runs.codes.insert(warning.at("code"));
+    }
   }
   return runs;
 }
@@ -174,7 +176,7 @@ TEST(Contract, DocumentsEveryKeyAndCodeOfAFit) {
   for (const std::string& leaf : runs.leaves) {
     const std::string path = AsInTheContract(leaf);
     // A list that is empty, or all of a failed fit's, has a row of its own.
-    EXPECT_TRUE(fields.contains(path) || path == "nulls" || path == "warnings")
+    EXPECT_TRUE(fields.contains(path) || path == "nulls" || path == "warnings" || path == "notes")
         << leaf << " has no row in the table of fields, and so none in docs/contract.md";
   }
   const std::set<std::string> documented =

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/record_findings.h"
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/profile.h"
@@ -20,6 +21,8 @@
 #include "identification/inference/turning_point_test.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/trend.h"
+#include "mindahl/models/steady_loop.h"
 
 // What each threshold decides: a case a row, whose expectations are written for the value that the
 // row states, and which no longer hold when it is twice or half of it.
@@ -118,6 +121,29 @@ bool IsWide(const Thresholds& thresholds, std::size_t parameter, double lower, d
   result.parameters[parameter].lower95 = lower;
   result.parameters[parameter].upper95 = upper;
   return !FindWideIntervals(result, thresholds).empty();
+}
+
+bool WayIsTooLong(const Thresholds& thresholds, double excess) {
+  FitResult result = Made();
+  result.records[0].facts.closed = true;
+  result.records[0].facts.path_ratio = 1 + excess;
+  return !FindInRecords(result.records, thresholds).empty();
+}
+
+/// A loop whose measured energy is so much less than the model's, known to so many of its own.
+bool EnergyContradicts(const Thresholds& thresholds, double difference, double error) {
+  FitResult result = Made();
+  result.model = &Model("mindlin-dahl");
+  RecordFit& record = result.records[0];
+  record.counts.assign(10, 1);
+  record.facts.amplitude = 1e-6;
+  const double energy = SteadyLoopEnergy(*result.model, result.law, 1e-6);
+  record.facts.cycles.resize(1);
+  record.facts.cycles[0].energy = (1 - difference) * energy;
+  record.facts.cycles[0].steady = true;
+  result.residuals.effective_samples = 100;
+  result.force_noise = error * energy * 10 / 4e-6;
+  return FindEnergyContradiction(result, thresholds).has_value();
 }
 
 // --- tests and profiles on stages
@@ -526,6 +552,29 @@ const std::map<std::string_view, Case>& Cases() {
                 KindOf(t, 0, 0, kAbove * 0.25) == "asymmetric" &&
                 KindOf(t, 0, -0.9, kBelow * 0.25) == "mirrored_early" &&
                 KindOf(t, 0, -0.9, kAbove * 0.25) == "mirrored";
+       }},
+      {"path_excess",
+       [](const Thresholds& t) {
+         return !WayIsTooLong(t, kBelow * 0.25) && WayIsTooLong(t, kAbove * 0.25);
+       }},
+      {"energy_difference",
+       [](const Thresholds& t) {
+         return !EnergyContradicts(t, kBelow * 0.2, 0) && EnergyContradicts(t, kAbove * 0.2, 0);
+       }},
+      {"energy_errors",
+       [](const Thresholds& t) {
+         return EnergyContradicts(t, 0.5, 0.5 / (kAbove * 5)) &&
+                !EnergyContradicts(t, 0.5, 0.5 / (kBelow * 5));
+       }},
+      {"trend_size",
+       [](const Thresholds& t) {
+         return !IsWorthSaying({-kBelow * 0.01 * 3, 0, 0}, 3, t) &&
+                IsWorthSaying({-kAbove * 0.01 * 3, 0, 0}, 3, t);
+       }},
+      {"trend_chance",
+       [](const Thresholds& t) {
+         return IsWorthSaying({1, 0.1, kBelow * 0.01}, 3, t) &&
+                !IsWorthSaying({1, 0.1, kAbove * 0.01}, 3, t);
        }},
       {"widest_ratio",
        [](const Thresholds& t) {

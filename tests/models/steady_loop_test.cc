@@ -180,6 +180,19 @@ TEST(SteadyLoop, OfDahlLosesUpToTwiceMindlins) {
   }
 }
 
+TEST(SteadyLoop, OfContactAndRigSharesItsAmplitude) {
+  const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
+  const BranchLaw law{4e7, 1.0 / 3, 40.0};
+  EXPECT_EQ(ContactAmplitude(model, law, {}, 1.2e-6), 1.2e-6);
+  constexpr double kRig = 3e7;         // [N/m]
+  constexpr double kBisected = 1e-14;  // the search ends at 1e-15 of the whole
+  for (const double contact : {0.4e-6, 1.5e-6, 2.5e-6}) {
+    const double whole = contact + SteadyPeakForce(model, law, contact) / kRig;
+    EXPECT_NEAR(ContactAmplitude(model, law, {kRig}, whole) / contact, 1, kBisected);
+  }
+  EXPECT_THROW(ContactAmplitude(model, law, {}, -1.0), InvalidArgument);
+}
+
 TEST(SteadyLoop, GrossSlipStartsAtTheFrettingCommunitysRatio) {
   constexpr double kRounding = 1e-14;
   EXPECT_DOUBLE_EQ(GrossSlipEnergyRatio(1.0 / 3.0), 0.2);

@@ -44,6 +44,7 @@ TEST(Figure, DrawsDisplacementsInTheUnitThatItsAxisNames) {
     EXPECT_LT(per_metre * amplitude, 1000.0);
     for (const PlotPanel& panel : plot.panels) {
       for (const PlotSeries& series : panel.series) {
+        if (series.label == "reversals") continue;
         ASSERT_THAT(series.x, SizeIs(record.size()));
         for (std::size_t i = 0; i < record.size(); ++i) {
           EXPECT_EQ(series.x[i], per_metre * record.displacement[i]);
@@ -56,7 +57,7 @@ TEST(Figure, DrawsDisplacementsInTheUnitThatItsAxisNames) {
 TEST(Figure, HasMeasuredAndFittedForceAboveTheResidual) {
   const report::Report report = report::MakeReport(MadeInput());
   const Plot plot = ToPlot(report);
-  ASSERT_THAT(plot.panels[0].series, SizeIs(2));
+  ASSERT_THAT(plot.panels[0].series, SizeIs(3));
   EXPECT_EQ(plot.panels[0].series[0].y, report.records[0].record.force);
   EXPECT_EQ(plot.panels[0].series[1].y, report.fit.records[0].fitted_force);
   ASSERT_THAT(plot.panels[1].series, SizeIs(1));
@@ -79,6 +80,36 @@ TEST(Figure, NamesTheFilesOfAJointFit) {
   const Plot plot = ToPlot(report::MakeReport(MadeInput({record, record}, 1e-6)));
   EXPECT_EQ(plot.panels[0].series[0].label, "measured loop_1.csv");
   EXPECT_EQ(plot.panels[0].series[3].label, "fitted loop_2.csv");
+}
+
+TEST(Figure, MarksTheReversalsOfEveryRecord) {
+  report::ReportInput input =
+      MadeInput({MadeRecord(1e-6), MadeRecord(2e-6)}, 2e-6);  // each turns in its middle
+  const report::Report report = report::MakeReport(std::move(input));
+  const Plot plot = ToPlot(report);
+  const PlotSeries& reversals = plot.panels[0].series.back();
+  EXPECT_EQ(reversals.label, "reversals");
+  EXPECT_EQ(reversals.style, PlotStyle::kMarkers);
+  ASSERT_THAT(reversals.x, SizeIs(2));
+  for (std::size_t r = 0; r < 2; ++r) {
+    const Record& record = report.records[r].record;
+    EXPECT_EQ(reversals.x[r], 1e6 * record.displacement[4]);
+    EXPECT_EQ(reversals.y[r], record.force[4]);
+  }
+}
+
+TEST(Figure, HasTheVerdictAndNoNumberOfWhatIsNotKnownInItsTitle) {
+  report::ReportInput input = MadeInput();
+  input.fit.adequacy.tried = 15;
+  EXPECT_EQ(ToPlot(report::MakeReport(input)).title,
+            "mindlin-dahl, adequate: σ = 4e+07 N/m, α = 0.3333, Tc = 40 N");
+  input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
+  input.fit.parameters[0].identifiability = identification::Identifiability::kNotIdentifiable;
+  input.fit.parameters[1].status = identification::ParameterStatus::kFixed;
+  input.fit.parameters[2].identifiability = identification::Identifiability::kBoundedBelow;
+  input.fit.parameters[2].lower95 = 12.5;
+  EXPECT_EQ(ToPlot(report::MakeReport(input)).title,
+            "mindlin-dahl, inadequate: σ not known, α = 0.3333, Tc > 12.5 N");
 }
 
 TEST(Figure, OfAFitThatFailedIsRefused) {

@@ -101,5 +101,21 @@ TEST(LoopDescription, EnergyRatioUsesTheMeasuredEnergyWhereThereIsOne) {
   EXPECT_FALSE(DescribeLoop(fit).energy_ratio);
 }
 
+TEST(LoopDescription, IsMeasuredOnTheWidestSteadyCyclesWhereOneIsClosed) {
+  FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
+  fit.records[0].measures.energy_per_cycle = 8e-6;
+  fit.records[0].facts.amplitude = 1.5e-6;
+  fit.records[0].facts.peak_force = 20.0;
+  fit.records[0].facts.energy_per_cycle = 6e-6;
+  EXPECT_EQ(DescribeLoop(fit).measured.amplitude, 1e-6);
+  fit.records[0].facts.closed = true;
+  const LoopDescription loop = DescribeLoop(fit);
+  EXPECT_EQ(loop.measured.amplitude, 1.5e-6);
+  EXPECT_EQ(loop.contact_amplitude, 1.5e-6);
+  EXPECT_EQ(loop.measured.peak_force, 20.0);
+  EXPECT_EQ(loop.measured.energy, 6e-6);
+  EXPECT_DOUBLE_EQ(*loop.energy_ratio, 6e-6 / (4 * 1.5e-6 * 20.0));
+}
+
 }  // namespace
 }  // namespace mindahl::report

@@ -11,6 +11,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "report/made_report.h"
@@ -34,10 +35,31 @@ Finding Complete(std::string_view code, std::string_view kind = "") {
   finding.code = code;
   finding.kind = kind;
   finding.parameters = {"alpha", "force_offset"};
-  finding.numbers = {{"overshoot", 1.25e-7}, {"rig_stiffness", 4.5e4}, {"alpha", 0.0625},
-                     {"peak_force", 12.5},   {"amplitude", 1.75e-6},   {"lower", 0.5},
-                     {"upper", 21.0},        {"misfit", 0.04},         {"repeatable_share", 0.83},
-                     {"largest", -2.5},      {"position", 0.24},       {"direction", -1.0}};
+  finding.numbers = {{"overshoot", 1.25e-7},
+                     {"rig_stiffness", 4.5e4},
+                     {"alpha", 0.0625},
+                     {"peak_force", 12.5},
+                     {"amplitude", 1.75e-6},
+                     {"lower", 0.5},
+                     {"upper", 21.0},
+                     {"misfit", 0.04},
+                     {"repeatable_share", 0.83},
+                     {"largest", -2.5},
+                     {"position", 0.24},
+                     {"direction", -1.0},
+                     {"count", 19},
+                     {"gate", 8.5e-4},
+                     {"other_count", 148},
+                     {"other_gate", 2.5e-6},
+                     {"record", 2},
+                     {"path_ratio", 1.75},
+                     {"spikes", 3},
+                     {"dropouts", 0},
+                     {"held", 1},
+                     {"row", 17},
+                     {"row", 240},
+                     {"measured", 0.015},
+                     {"model", 0.0325}};
   return finding;
 }
 
@@ -66,6 +88,14 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"sigma_bounded_below", "", {"rigid contact"}},
       {"undetermined_parameter", "", {"alpha, force_offset", "any of them"}},
       {"undetermined_combination", "", {"combination of alpha, force_offset"}},
+      {"reversals_uncertain",
+       "",
+       {"record 2: ", "19 where excursions up to 0.00085 m", "148 where those up to 2.5e-06 m",
+        "--reversal-gate"}},
+      {"glitches_left_out", "", {"record 2: ", "3 spikes, 1 held values", "first in rows 17, 240"}},
+      {"path_too_long", "", {"record 2: ", "1.75 times"}},
+      {"no_closed_cycle", "", {"record 2: no cycle is closed"}},
+      {"energy_contradiction", "", {"0.015 J", "0.0325 J", "1.75e-06 m", "jenkins"}},
       {"weights_not_settled", "", {"weights"}},
       {"fit_failed", "", {"no start led anywhere"}},
   };
@@ -79,6 +109,14 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
   for (const std::string_view code : FindingCodes()) {
     EXPECT_TRUE(codes.contains(std::string(code))) << code << " is not tested";
   }
+}
+
+TEST(Sentence, OfAGlitchSaysItsRowAndOfOneRecordNotWhich) {
+  const Finding one{.code = "glitches_left_out",
+                    .numbers = {{"spikes", 0}, {"dropouts", 1}, {"held", 0}, {"row", 8}}};
+  EXPECT_EQ(Say(one),
+            "left out as faults of the measurement: 1 readings of 0 in both channels, in row 8 of "
+            "those read");
 }
 
 TEST(Sentence, OfAMisfitSaysWhereItIsAndOfWhatKind) {
@@ -95,7 +133,8 @@ TEST(Sentence, OfAMisfitSaysWhereItIsAndOfWhatKind) {
     EXPECT_TRUE(endings.insert(ending).second) << kind;
   }
   Finding up = Complete("systematic_residual", "mirrored");
-  up.numbers.back() = {"direction", 1.0};
+  std::ranges::replace(up.numbers, std::pair<std::string_view, double>("direction", -1.0),
+                       std::pair<std::string_view, double>("direction", 1.0));
   EXPECT_THAT(Say(up), HasSubstr("of the way up; "));
 }
 
@@ -171,7 +210,8 @@ TEST(FindingCodes, CoverWhatTheIdentificationFinds) {
 TEST(FindingCodes, HaveAVerdictUnlessTheyAreOfNoParameter) {
   // The judge would throw for a code that names a parameter and has no row.
   std::set<std::string> of_parameters = EmittedCodes();
-  for (const char* of_the_whole_fit : {"fit_failed", "weights_not_settled"}) {
+  for (const char* of_the_whole_fit : {"fit_failed", "weights_not_settled", "reversals_uncertain",
+                                       "glitches_left_out", "path_too_long", "no_closed_cycle"}) {
     EXPECT_EQ(of_parameters.erase(of_the_whole_fit), 1U) << of_the_whole_fit;
   }
   const std::string judge = Content(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src" /

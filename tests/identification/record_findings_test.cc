@@ -1,0 +1,205 @@
+#include "identification/diagnosis/record_findings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string_view>
+#include <vector>
+
+#include "identification/sample_loop.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/identification/trend.h"
+#include "mindahl/models/steady_loop.h"
+
+// What is found in records, from facts made by hand, and what a whole fit makes of them.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using testing::kLaw;
+using testing::kReach;
+
+std::vector<std::string_view> Codes(const std::vector<Finding>& findings) {
+  std::vector<std::string_view> codes;
+  for (const Finding& finding : findings) codes.push_back(finding.code);
+  return codes;
+}
+
+RecordFit Flawless() {
+  RecordFit record;
+  record.facts.closed = true;
+  record.facts.path_ratio = 1.0;
+  return record;
+}
+
+std::vector<Finding> FindIn(const RecordFit& record) { return FindInRecords({&record, 1}, {}); }
+
+TEST(FindInRecords, NothingInAFlawlessOne) { EXPECT_THAT(FindIn(Flawless()), IsEmpty()); }
+
+TEST(FindInRecords, UncertainReversalsHaveBothCountsAndGates) {
+  RecordFit record = Flawless();
+  record.gate = {8e-4, 19, false, 148, 3e-6};
+  const std::vector<Finding> findings = FindIn(record);
+  ASSERT_THAT(Codes(findings), ElementsAre("reversals_uncertain"));
+  EXPECT_EQ(findings[0].severity, Severity::kWarning);
+  EXPECT_EQ(findings[0].Number("count"), 19);
+  EXPECT_EQ(findings[0].Number("gate"), 8e-4);
+  EXPECT_EQ(findings[0].Number("other_count"), 148);
+  EXPECT_EQ(findings[0].Number("other_gate"), 3e-6);
+}
+
+TEST(FindInRecords, GlitchesAreANoteWithRowsCountedFromOne) {
+  RecordFit record = Flawless();
+  record.glitches = {.spikes = 1, .dropouts = 0, .held = 6, .examples = {4, 10, 11, 12, 13}};
+  std::vector<Finding> findings = FindIn(record);
+  ASSERT_THAT(Codes(findings), ElementsAre("glitches_left_out"));
+  EXPECT_EQ(findings[0].severity, Severity::kNote);
+  EXPECT_EQ(findings[0].Number("spikes"), 1);
+  EXPECT_EQ(findings[0].Number("held"), 6);
+  EXPECT_EQ(findings[0].Number("row"), 5);
+  EXPECT_THAT(findings[0].numbers, SizeIs(3 + 5));
+  record.glitches.held = 1;
+  EXPECT_THAT(FindIn(record)[0].numbers, SizeIs(3 + 2));
+}
+
+TEST(FindInRecords, WayLongerThanTheStrokesIsWarnedOf) {
+  RecordFit record = Flawless();
+  record.facts.path_ratio = 1.5;
+  const std::vector<Finding> findings = FindIn(record);
+  ASSERT_THAT(Codes(findings), ElementsAre("path_too_long"));
+  EXPECT_EQ(findings[0].Number("path_ratio"), 1.5);
+}
+
+TEST(FindInRecords, RecordWithoutAClosedCycleIsNotedAndOfSeveralNamed) {
+  RecordFit open;
+  EXPECT_THAT(Codes(FindIn(open)), ElementsAre("no_closed_cycle"));
+  EXPECT_EQ(FindIn(open)[0].severity, Severity::kNote);
+  EXPECT_FALSE(FindIn(open)[0].Number("record"));
+  const std::vector<RecordFit> records = {Flawless(), open};
+  EXPECT_EQ(FindInRecords(records, {}).at(0).Number("record"), 2);
+}
+
+// --- energies
+
+/// A fit whose law loses `share` of what was measured.
+FitResult FitThatLoses(double share) {
+  FitResult fit;
+  fit.model = &testing::Model("mindlin-dahl");
+  fit.law = kLaw;
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    ParameterEstimate& estimate = fit.parameters.emplace_back();
+    estimate.name = name;
+    estimate.lower95 = 1.9;
+    estimate.upper95 = 2.1;
+    estimate.status = ParameterStatus::kFree;
+  }
+  fit.residuals.effective_samples = 100;
+  RecordFit& record = fit.records.emplace_back(Flawless());
+  record.counts.assign(20, 1);
+  record.measures.amplitude = record.facts.amplitude = kReach;
+  const double energy = SteadyLoopEnergy(*fit.model, kLaw, kReach) / share;
+  record.facts.cycles.resize(2);
+  record.facts.cycles[0].energy = energy;
+  record.facts.cycles[0].steady = true;
+  record.facts.cycles[1].start = 10;
+  record.facts.cycles[1].energy = 0.1 * energy;
+  return fit;
+}
+
+TEST(FindEnergyContradiction, WithholdsTheLawWhereItLosesMoreOrLessThanWasMeasured) {
+  for (const double share : {0.02, 0.7, 1.5, 45.0}) {
+    const auto finding = FindEnergyContradiction(FitThatLoses(share), {});
+    ASSERT_TRUE(finding) << share;
+    EXPECT_THAT(finding->parameters, ElementsAre("sigma", "alpha", "slip_force"));
+    EXPECT_DOUBLE_EQ(*finding->Number("model") / *finding->Number("measured"), share);
+    EXPECT_EQ(finding->Number("amplitude"), kReach);
+  }
+  for (const double share : {0.85, 1.0, 1.15}) {
+    EXPECT_FALSE(FindEnergyContradiction(FitThatLoses(share), {})) << share;
+  }
+}
+
+TEST(FindEnergyContradiction, TakesTheTravelOfTheRigOff) {
+  FitResult fit = FitThatLoses(1.0);
+  fit.rig.stiffness = fit.law.tangential_stiffness / 4;
+  EXPECT_TRUE(FindEnergyContradiction(fit, {}));
+  fit.records[0].facts.amplitude =
+      kReach + SteadyPeakForce(*fit.model, fit.law, kReach) / fit.rig.stiffness;
+  EXPECT_FALSE(FindEnergyContradiction(fit, {}));
+}
+
+TEST(FindEnergyContradiction, AsksOnlyOfCyclesThatCount) {
+  FitResult fit = FitThatLoses(0.5);
+  std::fill_n(fit.records[0].counts.begin(), 4, 0);  // of 10
+  EXPECT_TRUE(FindEnergyContradiction(fit, {}));
+  std::fill_n(fit.records[0].counts.begin(), 6, 0);
+  EXPECT_FALSE(FindEnergyContradiction(fit, {}));
+}
+
+TEST(FindEnergyContradiction, IsSilentWhereTheFitClaimsNothingOrAnotherForceTakesPart) {
+  FitResult named = FitThatLoses(0.5);
+  named.findings = {{.code = "no_model_fits", .parameters = {"sigma", "alpha"}}};
+  EXPECT_TRUE(FindEnergyContradiction(named, {})) << "the slip force is still claimed";
+  named.parameters[2].upper95.reset();
+  EXPECT_FALSE(FindEnergyContradiction(named, {}));
+  FitResult viscous = FitThatLoses(0.5);
+  viscous.parameters.emplace_back().name = "viscous";
+  viscous.parameters.back().value = 2.0;
+  EXPECT_FALSE(FindEnergyContradiction(viscous, {}));
+}
+
+TEST(FindEnergyContradiction, IsSilentWhereNoiseMakesTheDifference) {
+  FitResult fit = FitThatLoses(0.5);
+  // A force of half the energy over the way, a tenth of it with a hundred samples.
+  fit.force_noise = SteadyLoopEnergy(*fit.model, kLaw, kReach) / (4 * kReach);
+  EXPECT_TRUE(FindEnergyContradiction(fit, {}));
+  fit.force_noise *= 4;
+  EXPECT_FALSE(FindEnergyContradiction(fit, {}));
+}
+
+TEST(IsWorthSaying, NeedsASizeAndACertainty) {
+  EXPECT_TRUE(IsWorthSaying({.slope = -0.05, .p_value = 1e-4}, 1.0));
+  EXPECT_FALSE(IsWorthSaying({.slope = -0.05, .p_value = 0.2}, 1.0));
+  EXPECT_FALSE(IsWorthSaying({.slope = -0.005, .p_value = 1e-4}, 1.0));
+}
+
+// --- whole fits
+
+Record Loop() {
+  const testing::History displacement =
+      testing::Cycling(testing::Wave::kSine, kReach, 3.0, 200);
+  return testing::MakeRecord(displacement,
+                             testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
+}
+
+TEST(FitOfARecord, HasItsFactsFromIntervalsOn) {
+  const Record record = Loop();
+  const std::vector<RecordView> views = {record};
+  Fitter fitter;
+  const FitResult& intervals = fitter.Fit(views, Depth::kIntervals);
+  EXPECT_TRUE(intervals.records[0].facts.closed);
+  EXPECT_NEAR(intervals.records[0].facts.amplitude / kReach, 1, 1e-3);
+  EXPECT_EQ(intervals.records[0].gate.count, intervals.records[0].reversals.size());
+  EXPECT_THAT(intervals.findings, IsEmpty());
+  EXPECT_FALSE(fitter.Fit(views, Depth::kEstimate).records[0].facts.closed);
+}
+
+TEST(FitOfARecord, SaysWhichGlitchesItLeavesOut) {
+  Record record = Loop();
+  record.force[123] += 20 * kLaw.slip_force;
+  const std::vector<RecordView> views = {record};
+  Fitter fitter;
+  const FitResult& fit = fitter.Fit(views, Depth::kIntervals);
+  EXPECT_EQ(fit.records[0].glitches.spikes, 1U);
+  const Finding* finding = fit.FindFinding("glitches_left_out");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->Number("row"), 124);
+}
+
+}  // namespace
+}  // namespace mindahl::identification
