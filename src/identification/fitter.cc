@@ -346,6 +346,19 @@ std::optional<Finding> CoverRivalPast(const Problem& problem, const Candidate& r
   return finding;
 }
 
+/// Where the shape of a loop is doubtful, the plateau that anyone reads off it is as good a slip
+/// force as the law's.
+void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
+  ParameterEstimate& slip_force = result.parameters[kSlipForce];
+  const RecordFit& widest = result.WidestRecord();
+  const std::optional<double>& half_gap = widest.facts.half_gap;
+  const bool slips =
+      widest.measures.peak_force >= thresholds.mobilised_by_asymptote * slip_force.value;
+  if (!half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
+  slip_force.lower95 = std::min(*slip_force.lower95, *half_gap);
+  slip_force.upper95 = std::max(*slip_force.upper95, *half_gap);
+}
+
 /// Adequacy, and intervals that cover what its causes would change.
 void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
                         const Estimates& estimates, const Thresholds& thresholds,
@@ -357,6 +370,7 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);
+  CoverPlateau(result, thresholds);
 }
 
 /// Under a model that does not describe the record nothing of it is to be believed: no limit, no

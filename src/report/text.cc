@@ -83,6 +83,16 @@ std::string ParameterTable(const FitResult& fit) {
     }
     std::string verdict = Words(estimate.identifiability);
     if (estimate.status != identification::ParameterStatus::kFree) verdict += ", at bound";
+    // A number beside "not identifiable" would be read as one all the same.
+    using identification::Identifiability;
+    if (estimate.identifiability == Identifiability::kNotIdentifiable) {
+      row(estimate.name, estimate.unit, "-", "-", "-", verdict);
+      continue;
+    }
+    if (estimate.identifiability == Identifiability::kBoundedBelow) {
+      row(estimate.name, estimate.unit, "> " + Bound(estimate.lower95), "-", "-", verdict);
+      continue;
+    }
     row(estimate.name, estimate.unit, Significant(estimate.value),
         estimate.standard_error ? fmt::format("{:.2g}", *estimate.standard_error) : "-",
         fmt::format("{} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
