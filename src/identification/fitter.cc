@@ -174,7 +174,7 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
                            candidate.problem.parameters.free().size());
     };
     is_virgin = criterion(virgin) < criterion(steady);
-    is_close = std::abs(criterion(virgin) - criterion(steady)) < options.thresholds.rival_past &&
+    is_close = PastIsUndecided(criterion(virgin) - criterion(steady), options.thresholds) &&
                virgin.solution->converged && steady.solution->converged;
   }
   if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "identification/inference/reweighting.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
+#include "identification/judge/adequacy.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/trend.h"
@@ -144,6 +146,41 @@ bool EnergyContradicts(const Thresholds& thresholds, double difference, double e
   result.residuals.effective_samples = 100;
   result.force_noise = error * energy * 10 / 4e-6;
   return FindEnergyContradiction(result, thresholds).has_value();
+}
+
+/// A law of α = 1 whose asymptote the loop reaches to a share.
+bool IsExtrapolated(const Thresholds& thresholds, double share) {
+  FitResult result = Made();
+  result.law.shape_exponent = 1.0;
+  result.parameters[kSlipForce].lower95 = 0.9 * result.parameters[kSlipForce].value;
+  result.parameters[kSlipForce].upper95 = 1.1 * result.parameters[kSlipForce].value;
+  result.records[0].measures.peak_force = share * result.parameters[kSlipForce].value;
+  return FindExtrapolated(result, thresholds).has_value();
+}
+
+/// A push and a way back, of a contact that was unloaded away from the first sample [of X].
+bool PastIsUnknown(const Thresholds& thresholds, double away) {
+  History displacement;
+  for (int i = 0; i <= 40; ++i) displacement.push_back(1e-6 * i / 40);
+  for (int i = 39; i >= 0; --i) displacement.push_back(1e-6 * i / 40);
+  Stages stages(LoopOf(kMindlin, displacement));
+  Solution solution = stages.Solve();
+  const ScaledRecord& record = stages.data.records[0];
+  const auto [lowest, highest] = std::ranges::minmax(record.displacement);
+  solution.theta[stages.problem.parameters.PositionOf("displacement_offset", 0)] =
+      record.displacement.front() + away * (highest - lowest) / 2;
+  return FindUnknownPast(stages.problem, solution, thresholds).has_value();
+}
+
+/// Cycles of so many samples, in step with the motion and apart from each other.
+bool HasFewPlaces(const Thresholds& thresholds, std::size_t samples_a_cycle) {
+  History displacement;
+  for (std::size_t i = 0; i < 10 * samples_a_cycle; ++i) {
+    const double phase = (static_cast<double>(i) + 0.3) / static_cast<double>(samples_a_cycle);
+    displacement.push_back(3e-6 * std::sin(2 * std::numbers::pi * phase));
+  }
+  Stages stages(LoopOf(kMindlin, displacement));
+  return FindFewPlaces(stages.problem, thresholds).has_value();
 }
 
 // --- tests and profiles on stages
@@ -607,6 +644,18 @@ const std::map<std::string_view, Case>& Cases() {
        }},
       {"known_together",
        [](const Thresholds& t) { return KnownTogether(t, 0.6) && !KnownTogether(t, 3.0); }},
+      {"rival_past",
+       [](const Thresholds& t) {
+         return PastIsUndecided(-kBelow * 10, t) && !PastIsUndecided(kAbove * 10, t);
+       }},
+      {"fewest_places",
+       [](const Thresholds& t) { return HasFewPlaces(t, 10) && !HasFewPlaces(t, 22); }},
+      {"starts_unloaded",
+       [](const Thresholds& t) {
+         return !PastIsUnknown(t, kBelow * 0.02) && PastIsUnknown(t, kAbove * 0.02);
+       }},
+      {"mobilised_by_asymptote",
+       [](const Thresholds& t) { return IsExtrapolated(t, 0.7) && !IsExtrapolated(t, 0.95); }},
   };
   return cases;
 }

@@ -53,6 +53,10 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
   return adequacy;
 }
 
+bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
+  return std::abs(delta_aicc) < thresholds.rival_past;
+}
+
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
   const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);

@@ -19,6 +19,10 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
                        std::span<const DepartureFit> causes, const Thresholds& thresholds,
                        std::span<const ParameterEstimate> estimates);
 
+/// Does the record hardly tell whether the contact was virgin or in a steady loop?
+/// @param delta_aicc  of the two
+bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds);
+
 /// A misfit that is no noise and as large as failing_misfit, wherever it comes back.
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds);
 
