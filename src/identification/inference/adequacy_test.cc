@@ -145,6 +145,9 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
     const double after = (residual + both * step).squaredNorm();
     DepartureFit fit;
     fit.departure = d;
+    const Departure& departure = Departures()[d];
+    fit.unit = departures.timed || departure.unit_by_sample.empty() ? departure.unit
+                                                                    : departure.unit_by_sample;
     const Eigen::MatrixXd correlated =
         CorrelatedProduct(*problem.data, autocorrelation, free_of_law);
     fit.p_value = PValue(WaldF(free_of_law.transpose() * residual, correlated, variance),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "identification/inference/departures.h"
@@ -15,6 +16,7 @@ struct DepartureFit {
   double delta_aicc = 0.0;    // against the fit without
   double explains = 0.0;      // share of the sum of squares
   double size = 0.0;          // of its first column, in its unit
+  std::string_view unit;
   std::vector<double> step;   // of θ, one a free parameter
   std::vector<double> error;  // standard error of θ with it, likewise
 };

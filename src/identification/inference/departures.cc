@@ -3,27 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <ranges>
 
 namespace mindahl::identification {
 namespace {
 
-/// A sample as the departures see it, in units of the data.
+/// A sample as the departures see it, in units of the data; time in that of the clock.
 struct Place {
   double displacement = 0.0;
-  double time = 0.0;          // −1 … 1
-  double velocity = 0.0;      // by sample, or by time
-  double acceleration = 0.0;  // likewise
-  double force = 0.0;         // of the contact, over the slip force
-  double force_rate = 0.0;    // its derivative by time
-  double slope = 0.0;         // its derivative by displacement
-  double peak = 0.0;          // largest |force|
-  double direction = 1.0;     // of the branch
-  double span = 1.0;          // 1 on the virgin curve, 2 on others
-  // Where the branch starts:
+  double time = 0.0;  // from the record's middle
+  double velocity = 0.0;
+  double acceleration = 0.0;
+  double force_rate = 0.0;  // of the whole force
+  double force = 0.0;       // of the contact, over the slip force
+  double peak = 0.0;        // largest |force| of all records
+  double direction = 1.0;   // of the branch
+  // Without the load that a force may follow:
+  double response = 0.0;  // the contact's force over the slip force
+  double slope = 0.0;     // its derivative by displacement
+  double gain = 1.0;      // and by that at the origin of the branch
+  // The branch:
+  bool sets_out = false;  // on the virgin curve, the way that it was first run
+  double reach = 1.0;     // what it has to go from its origin to slip
   double origin = 0.0;
-  double origin_force = 0.0;
+  double origin_response = 0.0;
 };
 
 /// How a column follows from its values.
@@ -59,31 +64,46 @@ enum Row : std::size_t {
 };
 
 constexpr std::array<Departure, 15> kDepartures = {{
-    {"channel_lag", "s", ""},
-    {"viscous_force", "N s/m", "--viscous fit", "viscous"},
+    // The force's channel is late by so much.
+    {"channel_lag", "s", "", "", "samples"},
+    // C of C·dδ/dt; it dissipates where it is positive.
+    {"viscous_force", "N s/m", "--viscous fit", "viscous", "N samples/m"},
+    // Of a spring beside the contact.
     {"plateau_slope", "N/m", "--plateau-slope", "plateau_slope"},
-    {"force_drift", "N/s", "--drift", "force_drift"},
+    // Of the force as the file has it.
+    {"force_drift", "N/s", "--drift", "force_drift", "N/sample"},
+    // Of each branch, over its reach to slip: where half of the reach is gone.
     {"shape_of_law", "", ""},
+    // Coulomb's, beside the contact; it dissipates where it is positive.
     {"guide_friction", "N", ""},
     {"rig_in_series", "m/N", "--rig-stiffness fit", "rig_stiffness"},
+    // The whole way that is lost at a reversal; none is before the first.
     {"backlash", "m", ""},
+    // The contact sees x + size·x²/L, x from the middle of the record and L the half range.
     {"displacement_sensor", "", ""},
-    {"inertia", "kg", ""},
+    // In front of the sensor of the force: m·d²δ/dt².
+    {"inertia", "kg", "", "", "N samples²/m"},
+    // (1 ± size)·T, + where the force is in the sense of a positive displacement.
     {"unequal_directions", "-", ""},
+    // Growth of the contact's force from the beginning of the first record to its end.
     {"running_in", "-", ""},
+    // Lost of what is beyond nine tenths of the largest force.
     {"force_saturates", "-", ""},
+    // Growth of the contact's force from the middle of the record to its end, L further.
     {"load_varies", "-", ""},
+    // size·Tc·(x/L)²
     {"force_of_position", "", ""},
 }};
 
 /// How far the branch has come, of the way to slip.
 double Mobilised(const Place& at) {
-  return std::clamp(std::abs(at.force - at.origin_force) / at.span, 0.0, 1.0);
+  if (!(at.reach > 0)) return 1.0;
+  return std::clamp(std::abs(at.response - at.origin_response) / at.reach, 0.0, 1.0);
 }
 
 template <int kHalfWaves>
 double Bulge(const Place& at) {
-  return at.direction * at.span * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
+  return at.direction * at.reach * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
 }
 
 constexpr std::array<Column, 22> kColumns = {{
@@ -96,9 +116,9 @@ constexpr std::array<Column, 22> kColumns = {{
     {kShapeOfLaw, Along::kBranch, Bulge<3>},
     {kGuide, Along::kForce, [](const Place& at) { return at.direction; }},
     {kRig, Along::kBranch,
-     [](const Place& at) { return -at.slope * (at.force - at.origin_force); }},
+     [](const Place& at) { return -at.slope * (at.response - at.origin_response); }},
     {kBacklash, Along::kBranch,
-     [](const Place& at) { return at.span > 1 ? -at.slope * at.direction : 0.0; }},
+     [](const Place& at) { return at.sets_out ? 0.0 : -at.slope * at.direction; }},
     {kSensor, Along::kBranch,
      [](const Place& at) {
        return at.slope * (at.displacement * at.displacement - at.origin * at.origin);
@@ -124,136 +144,266 @@ constexpr std::array<Column, 22> kColumns = {{
     {kPosition, Along::kForce, [](const Place& at) { return std::pow(at.displacement, 3); }},
 }};
 
-/// Derivative by `time` of values at it, by differences to both sides within a stroke.
+/// Samples that a derivative at one of them may look at: turning points that were put in between
+/// have no time of their own.
+struct Neighbours {
+  std::vector<std::size_t> samples;        // that were measured
+  std::vector<unsigned char> turns_after;  // of each: the motion turns there or before the next one
+  std::vector<unsigned char> turned;       // of each: it turned between it and the one before
+};
+
+Neighbours NeighboursOf(const ScaledRecord& record) {
+  Neighbours neighbours;
+  std::size_t next = 0;
+  bool turned = false;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const bool turns = next < record.reversals.size() && record.reversals[next] == i;
+    if (turns) ++next;
+    if (!record.inserted.empty() && record.inserted[i] != 0) {
+      turned = turns;
+      if (turns && !neighbours.samples.empty()) neighbours.turns_after.back() = 1;
+      continue;
+    }
+    neighbours.samples.push_back(i);
+    neighbours.turned.push_back(turned ? 1 : 0);
+    neighbours.turns_after.push_back(turns ? 1 : 0);
+    turned = false;
+  }
+  return neighbours;
+}
+
+/// When each sample was read, from the middle of its record, in a unit that all records share.
+struct Clock {
+  bool timed = true;  // else by sample
+  double unit = 1.0;  // [s], or samples
+  std::vector<std::vector<double>> time;
+};
+
+Clock ClockOf(const ScaledRecords& data, std::span<const Neighbours> neighbours) {
+  Clock clock;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    const auto grows = [&](std::size_t one, std::size_t next) {
+      return record.time[next] > record.time[one];
+    };
+    const auto& samples = neighbours[r].samples;
+    clock.timed = clock.timed && !record.velocity.empty() &&
+                  std::ranges::adjacent_find(samples, std::not_fn(grows)) == samples.end();
+  }
+  const double first = static_cast<double>(neighbours[0].samples.size()) - 1;
+  clock.unit = clock.timed ? data.records[0].units.half_duration : std::max(first, 1.0) / 2;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    std::vector<double>& time = clock.time.emplace_back(record.size());
+    const auto& samples = neighbours[r].samples;
+    const double middle = (static_cast<double>(samples.size()) - 1) / 2;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      const std::size_t i = samples[k];
+      time[i] = clock.timed ? record.time[i] * record.units.half_duration / clock.unit
+                            : (static_cast<double>(k) - middle) / clock.unit;
+    }
+  }
+  return clock;
+}
+
+/// Derivative by time, by differences to both sides.
+/// @param within_strokes  never beyond a turn; a turn is the stroke's that ends there
 void Derive(std::span<const double> values, std::span<const double> time,
-            std::span<const unsigned char> turns, std::span<double> rate) {
-  const std::size_t count = values.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    // At a turn the motion's derivative is that of the stroke that ends there.
-    const std::size_t before = i > 0 ? i - 1 : 0;
-    const std::size_t after = i + 1 < count && (turns[i] == 0 || i == 0) ? i + 1 : i;
+            const Neighbours& neighbours, bool within_strokes, std::span<double> rate) {
+  const auto& samples = neighbours.samples;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const bool looks_back = k > 0 && !(within_strokes && neighbours.turned[k] != 0);
+    const bool looks_on =
+        k + 1 < samples.size() && !(within_strokes && neighbours.turns_after[k] != 0 && k > 0);
+    const std::size_t before = samples[looks_back ? k - 1 : k];
+    const std::size_t after = samples[looks_on ? k + 1 : k];
     const double step = time[after] - time[before];
-    rate[i] = step > 0 ? (values[after] - values[before]) / step : 0.0;
+    rate[samples[k]] = step > 0 ? (values[after] - values[before]) / step : 0.0;
   }
 }
 
-/// Time that grows from sample to sample: by sample where the record's does not.
-std::vector<double> GrowingTime(const ScaledRecord& record) {
-  std::vector<double> time(record.time.begin(), record.time.end());
-  if (std::ranges::adjacent_find(time, std::ranges::greater_equal()) != time.end()) {
-    const double step = 2 / std::max(1.0, static_cast<double>(time.size()) - 1);
-    for (std::size_t i = 0; i < time.size(); ++i) time[i] = -1 + step * static_cast<double>(i);
+/// Second derivative by time, of the parabola through every other sample: one between neighbours
+/// would see four times as much of the displacement's noise.
+void DeriveTwice(std::span<const double> values, std::span<const double> time,
+                 std::span<const std::size_t> samples, std::span<double> second) {
+  constexpr std::size_t kStep = 2;
+  if (samples.size() < 2 * kStep + 1) return;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const std::size_t middle = std::clamp(k, kStep, samples.size() - 1 - kStep);
+    const std::size_t i = samples[middle];
+    const std::size_t before = samples[middle - kStep];
+    const std::size_t after = samples[middle + kStep];
+    const double back = time[i] - time[before];
+    const double on = time[after] - time[i];
+    second[samples[k]] =
+        2 * ((values[after] - values[i]) / on - (values[i] - values[before]) / back) / (back + on);
   }
-  return time;
 }
 
-std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> force,
-                            std::span<const double> slope) {
+/// Places of a record's samples, branches yet unknown.
+/// @param force     of the contact, over the slip force and at its load
+/// @param complete  that of the whole model
+std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> time,
+                            const Neighbours& neighbours, std::span<const double> force,
+                            std::span<const double> complete,
+                            const models::OriginSensitivity& sensitivity, double peak) {
   const std::size_t count = record.size();
-  const std::vector<double> time = GrowingTime(record);
-  std::vector<unsigned char> turns(count, 0);
-  for (const std::size_t reversal : record.reversals) turns[reversal] = 1;
   std::vector<double> velocity(count);
-  std::vector<double> rate(count);
   std::vector<double> acceleration(count);
-  const std::vector<unsigned char> none(count, 0);
-  Derive(record.displacement, time, none, velocity);
-  Derive(velocity, time, none, acceleration);
-  Derive(force, time, turns, rate);
-  double peak = 0.0;
-  for (const double value : force) peak = std::max(peak, std::abs(value));
+  std::vector<double> rate(count);
+  Derive(record.displacement, time, neighbours, false, velocity);
+  DeriveTwice(record.displacement, time, neighbours.samples, acceleration);
+  Derive(complete, time, neighbours, true, rate);
   std::vector<Place> places(count);
   for (std::size_t i = 0; i < count; ++i) {
+    const double load = record.load_ratio.empty() ? 1.0 : record.load_ratio[i];
     places[i] = {.displacement = record.displacement[i],
                  .time = time[i],
                  .velocity = velocity[i],
                  .acceleration = acceleration[i],
-                 .force = force[i],
                  .force_rate = rate[i],
-                 .slope = slope[i],
-                 .peak = peak};
+                 .force = force[i],
+                 .peak = peak,
+                 .response = load != 0 ? force[i] / load : 0.0,
+                 .slope = sensitivity.sample_slope[i],
+                 .gain = sensitivity.sample_gain[i]};
   }
   return places;
 }
 
+/// Sets what a place has of a branch.
+/// @param response  at the branch's origin
+void PutOn(const models::Branch& branch, double response, const models::FrictionModel& model,
+           Place& at) {
+  const bool virgin = models::IsVirgin(branch.start);
+  at.direction = virgin ? std::copysign(1.0, at.displacement - branch.origin)
+                        : static_cast<double>(branch.direction);
+  at.sets_out = virgin && at.direction * branch.direction > 0;
+  const models::BranchScale scale = model.scale(at.direction * response, 0.0, virgin);
+  at.reach = scale.span * scale.remaining;
+  at.origin = branch.origin;
+  at.origin_response = response;
+}
+
 /// Gives each sample its branch, and returns the place of each branch's origin on its parent.
-std::vector<Place> FollowBranches(const ScaledRecord& record, const models::LoadingPath& path,
-                                  std::span<const double> origin_slope,
+/// @param peak  of a steady loop, over the slip force
+std::vector<Place> FollowBranches(const ScaledRecord& record, const models::FrictionModel& model,
+                                  const models::LoadingPath& path,
+                                  const models::OriginSensitivity& sensitivity, double peak,
                                   std::vector<Place>& places) {
   const std::size_t count = path.branches.size();
   std::vector<Place> origins(count);
+  const bool virgin = path.branches.front().start == models::BranchStart::kUnloaded;
   // Branches beyond those that are open at the start follow the reversals.
   const std::size_t initial = count - std::min(count, record.reversals.size());
-  const double peak = places.empty() ? 0.0 : places.front().peak;
   for (std::size_t b = 0; b < count; ++b) {
     const models::Branch& branch = path.branches[b];
     Place& origin = origins[b];
     if (b >= initial) {
-      origin = places[record.reversals[b - initial]];
-    } else if (branch.start != models::BranchStart::kUnloaded &&
-               branch.start != models::BranchStart::kSteadyCentre) {
-      origin.force = -branch.direction * peak;
-      origin.peak = peak;
+      origin.response = places[record.reversals[b - initial]].response;
+    } else if (!models::IsVirgin(branch.start)) {
+      // A virgin contact turned at the first sample, a steady one at the record's extremes.
+      origin.response = virgin ? places.front().response : -branch.direction * peak;
     }
     origin.displacement = branch.origin;
-    origin.slope = origin_slope[b];
-    if (branch.parent >= 0) {
-      const auto parent = static_cast<std::size_t>(branch.parent);
-      origin.direction = path.branches[parent].direction;
-      origin.span = models::IsVirgin(path.branches[parent].start) ? 1.0 : 2.0;
-      origin.origin = origins[parent].displacement;
-      origin.origin_force = origins[parent].force;
-    }
+    origin.slope = sensitivity.slope[b];
+    origin.gain = sensitivity.gain[b];
+    if (branch.parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(branch.parent);
+    PutOn(path.branches[parent], origins[parent].response, model, origin);
   }
   for (const models::BranchRun& run : path.runs) {
     const auto b = static_cast<std::size_t>(run.branch);
-    const models::Branch& branch = path.branches[b];
-    const bool virgin = models::IsVirgin(branch.start);
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      Place& at = places[i];
-      at.span = virgin ? 1.0 : 2.0;
-      at.origin = branch.origin;
-      at.origin_force = origins[b].force;
-      at.direction = virgin ? std::copysign(1.0, at.displacement - branch.origin)
-                            : static_cast<double>(branch.direction);
+      PutOn(path.branches[b], origins[b].response, model, places[i]);
     }
   }
   return origins;
 }
 
-void FillColumn(const Column& column, const models::LoadingPath& path,
+/// What a column is where branches start, from what it is on the first of them.
+std::vector<double> StartsOf(const Column& column, const models::LoadingPath& path,
+                             std::span<const Place> origins, double first) {
+  std::vector<double> start(origins.size(), first);
+  for (std::size_t b = 0; b < origins.size(); ++b) {
+    const std::int32_t parent = path.branches[b].parent;
+    if (parent < 0) continue;
+    start[b] = origins[b].gain * start[static_cast<std::size_t>(parent)] + column.value(origins[b]);
+  }
+  return start;
+}
+
+/// The upper extreme of the steady loop, on the branch from the lower one.
+Place SteadyExtreme(const Problem& problem, const LawPoint& point,
+                    std::span<const double> displacement) {
+  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const std::array<double, 2> stroke = {lowest, highest};
+  const models::LoadingPath path = models::MakeLoadingPath(
+      stroke, {}, problem.model->memory, {.state = models::InitialState::kSteady});
+  const models::NormalizedLaw law{
+      .rate = std::exp(point.log_rate),
+      .shape_exponent = point.shape,
+      .spring_travel = problem.parameters.has_rig() ? std::exp(point.log_travel) : 0.0};
+  models::NormalizedResponse response;
+  std::array<double, 2> t{};
+  response.Evaluate(*problem.model, law, path, stroke, t);
+  models::OriginSensitivity sensitivity;
+  response.DifferentiateByOrigins(*problem.model, law, path, stroke, sensitivity);
+  Place at{.displacement = highest,
+           .response = t[1],
+           .slope = sensitivity.sample_slope[1],
+           .gain = sensitivity.sample_gain[1]};
+  PutOn(path.branches[static_cast<std::size_t>(path.runs.back().branch)], t[0], *problem.model, at);
+  return at;
+}
+
+/// On the first branch: nothing where the contact was unloaded; a steady loop stays symmetric.
+double FirstStart(const Column& column, const models::LoadingPath& path, const Place& extreme,
+                  std::span<const Place> origins) {
+  switch (path.branches.front().start) {
+    case models::BranchStart::kSteadyCentre: {
+      const std::vector<double> start = StartsOf(column, path, origins, 0.0);
+      return -(start[1] + start[2]) / 2;
+    }
+    case models::BranchStart::kSteadyExtreme:
+      return -path.branches.front().direction * column.value(extreme) / (1 + extreme.gain);
+    default:
+      return 0.0;
+  }
+}
+
+/// @param first  what the column is on the first branch
+void FillColumn(const Column& column, const models::LoadingPath& path, double first,
                 std::span<const Place> places, std::span<const Place> origins,
-                std::span<double> values) {
+                std::span<const double> load_ratio, std::span<double> values) {
   if (column.along == Along::kForce) {
     for (std::size_t i = 0; i < places.size(); ++i) values[i] = column.value(places[i]);
     return;
   }
-  std::vector<double> start(origins.size(), 0.0);
-  for (std::size_t b = 0; b < origins.size(); ++b) {
-    const std::int32_t parent = path.branches[b].parent;
-    if (parent < 0) continue;
-    start[b] = start[static_cast<std::size_t>(parent)] + column.value(origins[b]);
-  }
+  const std::vector<double> start = StartsOf(column, path, origins, first);
   for (const models::BranchRun& run : path.runs) {
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      values[i] = start[static_cast<std::size_t>(run.branch)] + column.value(places[i]);
+      values[i] =
+          places[i].gain * start[static_cast<std::size_t>(run.branch)] + column.value(places[i]);
+      if (!load_ratio.empty()) values[i] *= load_ratio[i];
     }
   }
 }
 
 /// What a factor of one is, forces being in units of the data and the contact's over Tc.
-double UnitOfSize(std::size_t departure, const ScaledRecords& data, double slip_force) {
-  const TermUnits& units = data.records.front().units;
+/// @param clock  its unit
+double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock,
+                  double slip_force) {
   const double newton = data.force;
   switch (departure) {
     case kLag:
-      return units.half_duration / slip_force;
+      return clock;
     case kViscous:
-      return newton / data.length * units.half_duration;
+      return newton / data.length * clock;
     case kPlateauSlope:
       return newton / data.length;
     case kDrift:
-      return newton / units.half_duration;
+      return data.sense * newton / clock;
     case kGuide:
       return newton;
     case kRig:
@@ -261,7 +411,9 @@ double UnitOfSize(std::size_t departure, const ScaledRecords& data, double slip_
     case kBacklash:
       return data.length / slip_force;
     case kInertia:
-      return newton / data.length * units.half_duration * units.half_duration;
+      return newton / data.length * clock * clock;
+    case kRunningIn:
+      return 2 / slip_force;
     default:
       return 1 / slip_force;
   }
@@ -274,7 +426,12 @@ std::span<const Departure> Departures() { return kDepartures; }
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      Response& response, std::size_t most) {
   const double slip_force = std::exp(theta[kSlipForce]);
+  const std::pmr::vector<ScaledRecord>& records = problem.data->records;
+  std::vector<Neighbours> neighbours;
+  for (const ScaledRecord& record : records) neighbours.push_back(NeighboursOf(record));
+  const Clock clock = ClockOf(*problem.data, neighbours);
   DepartureColumns result;
+  result.timed = clock.timed;
   std::vector<const Column*> wanted;
   for (std::size_t d = 0; d < kDepartures.size(); ++d) {
     const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
@@ -287,28 +444,38 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     for (const Column& column : kColumns | std::views::filter(is_of)) {
       wanted.push_back(&column);
       result.of.push_back(d);
-      result.unit_of_size.push_back(UnitOfSize(d, *problem.data, slip_force));
+      result.unit_of_size.push_back(UnitOfSize(d, *problem.data, clock.unit, slip_force));
     }
   }
   const LawPoint point = PointAt(problem, theta);
   std::vector<double> force(problem.size());
+  std::vector<double> complete(problem.size());
   response.Bind(problem);
   response.Evaluate(point, force);
+  Predict(problem, theta, response, complete);
+  double peak = 0.0;
+  for (const double value : force) peak = std::max(peak, std::abs(value));
   result.columns.resize(static_cast<Eigen::Index>(problem.size()),
                         static_cast<Eigen::Index>(wanted.size()));
   std::size_t begin = 0;
-  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
-    const ScaledRecord& record = problem.data->records[r];
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const ScaledRecord& record = records[r];
     models::OriginSensitivity sensitivity;
     response.DifferentiateByOrigins(point, r, sensitivity);
-    std::vector<Place> places =
-        PlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity.sample_slope);
+    std::vector<Place> places = PlacesOf(
+        record, clock.time[r], neighbours[r], std::span(force).subspan(begin, record.size()),
+        std::span(complete).subspan(begin, record.size()), sensitivity, peak);
     const models::LoadingPath& path = response.PathOf(r, theta);
-    const std::vector<Place> origins = FollowBranches(record, path, sensitivity.slope, places);
+    const Place extreme = problem.state == models::InitialState::kSteady
+                              ? SteadyExtreme(problem, point, record.displacement)
+                              : Place{};
+    const std::vector<Place> origins = FollowBranches(record, *problem.model, path, sensitivity,
+                                                      std::abs(extreme.response), places);
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       const std::span<double> values(
           result.columns.col(static_cast<Eigen::Index>(c)).data() + begin, record.size());
-      FillColumn(*wanted[c], path, places, origins, values);
+      const double first = FirstStart(*wanted[c], path, extreme, origins);
+      FillColumn(*wanted[c], path, first, places, origins, record.load_ratio, values);
       for (std::size_t i = 0; i < record.size(); ++i) values[i] *= record.root_weight[i];
     }
     begin += record.size();

@@ -10,13 +10,15 @@
 namespace mindahl::identification {
 
 /// A way in which a record may depart from the model, to first order: forces in proportion to one
-/// to three columns.
+/// to three columns. What is taken for what, and the sign of its size, beside each in the table of
+/// departures.cc.
 struct Departure {
   std::string_view code;
-  std::string_view unit;    // of the first column's factor; empty where it says little
+  std::string_view unit;    // of the size, which is the first column's; empty where it says little
   std::string_view option;  // of the command line; empty where there is none
   /// Names the term of a fit that is the same; it is not looked for where that is fitted.
   std::string_view term = {};
+  std::string_view unit_by_sample = {};  // where records have no time; empty where it is the same
 };
 
 /// Columns of all departures at a solution.
@@ -24,6 +26,7 @@ struct DepartureColumns {
   Eigen::MatrixXd columns;           // weighted, rows as the Jacobian's
   std::vector<std::size_t> of;       // of each column: its place in Departures()
   std::vector<double> unit_of_size;  // of each: what a factor of one is, in the departure's unit
+  bool timed = true;                 // else sizes are by sample
 };
 
 /// In the order in which they are given up where a record has few samples.

@@ -41,7 +41,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
                                                       .delta_aicc = fit.delta_aicc,
                                                       .explains = fit.explains,
                                                       .size = fit.size,
-                                                      .unit = departure.unit,
+                                                      .unit = fit.unit,
                                                       .option = departure.option});
     for (std::size_t k = 0; k < reported.size(); ++k) {
       if (reported[k] > kSlipForce) continue;

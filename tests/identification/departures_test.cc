@@ -1,0 +1,653 @@
+#include "identification/inference/departures.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identification/solve/turning_points.h"
+#include "identification/stages.h"
+
+// Each column against records in which the contact departs so, by a little.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::History;
+using testing::Model;
+using testing::Stages;
+
+/// Above 1/2, so that the slope is continuous where slip begins.
+constexpr double kShapeExponent = 0.6;
+constexpr double kSlipForce = 40.0;
+constexpr double kLength = 4.5e-6;  // [m], the motion's half range
+constexpr BranchLaw kSlipping{4e7, kShapeExponent, kSlipForce};    // 1.8 of gross slip
+constexpr BranchLaw kSticking{1.4e7, kShapeExponent, kSlipForce};  // 0.6 of it
+constexpr double kDuration = 0.8;    // [s]
+constexpr double kCentre = 2e-6;     // [m]
+constexpr std::size_t kSamples = 1201;
+
+/// Of the sizes below, the change of the force. Second order is some 1e-5 of the first then, and
+/// rounding 1e-10.
+constexpr double kSmall = 1e-6;
+
+/// A motion with inner loops that lie apart, off centre, which begins on its way.
+double MotionAt(double time, double duration) {
+  const double phase = 2 * std::acos(-1.0) * (2.2 * time / duration + 0.03);
+  return std::sin(phase) - 0.55 * std::sin(3 * phase) + 0.1 * std::sin(2 * phase);
+}
+
+struct Motion {
+  History displacement;  // [m]
+  std::vector<double> time;
+};
+
+/// @param uneven  of the step, by which samples are read before or after their time
+Motion Move(double length, double duration, double uneven) {
+  testing::Generator generator(3);
+  Motion motion;
+  double most = 0.0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    const double step = duration / (kSamples - 1);
+    const bool inside = i > 0 && i + 1 < kSamples;
+    const double off = inside ? uneven * step * testing::Uniform(generator, -1, 1) : 0.0;
+    motion.time.push_back(step * static_cast<double>(i) + off);
+    motion.displacement.push_back(MotionAt(motion.time.back(), duration));
+    most = std::max(most, std::abs(motion.displacement.back()));
+  }
+  for (double& x : motion.displacement) x = kCentre + x * length / most;
+  return motion;
+}
+
+/// What the contact does: a model, its law and its past.
+struct Contact {
+  const FrictionModel* model;
+  BranchLaw law;
+  InitialState state;
+  double unloaded;  // [m]
+
+  /// @param at_rest  where it is unloaded
+  [[nodiscard]] std::vector<double> Force(const History& displacement, double at_rest,
+                                          const SeriesSpring& rig = {}) const {
+    std::vector<double> force(displacement.size());
+    const LoadingPath path = testing::PathOf(*model, displacement,
+                                             {.state = state, .unloaded_displacement = at_rest});
+    EvaluateForce(*model, law, path, displacement, force, rig);
+    return force;
+  }
+  [[nodiscard]] std::vector<double> Force(const History& displacement) const {
+    return Force(displacement, unloaded);
+  }
+};
+
+/// A record as it is when the contact departs by `size`.
+struct Departed {
+  const Contact& contact;
+  const Motion& motion;
+  double middle;     // [m] of the motion
+  double whole;      // [s], of the first record
+  double peak;       // [N], the largest force of all records
+
+  [[nodiscard]] std::size_t size() const { return motion.displacement.size(); }
+
+  /// The force as it is made of time, displacement and what the contact gives.
+  template <typename Function>
+  std::vector<double> Made(Function function) const {
+    std::vector<double> force = contact.Force(motion.displacement);
+    const double from = (motion.time.front() + motion.time.back()) / 2;
+    for (std::size_t i = 0; i < size(); ++i) {
+      force[i] = function(force[i], (motion.displacement[i] - middle) / kLength,
+                          motion.time[i] - from);
+    }
+    return force;
+  }
+  /// The force where the contact sees another displacement than the record has.
+  template <typename Function>
+  std::vector<double> Seen(Function function) const {
+    History displacement;
+    for (const double x : motion.displacement) displacement.push_back(function(x));
+    return contact.Force(displacement, function(contact.unloaded));
+  }
+};
+
+using Simulate = std::function<std::vector<double>(const Departed&, double size)>;
+
+/// The backbone's share of Tc, ψ(φ) on top of φ, with Masing's rules or Dahl's, in steps from
+/// reversal to reversal: shares nothing with the library but φ.
+std::vector<double> WithBackbone(const Departed& departed,
+                                 const std::function<double(double)>& added) {
+  const BranchLaw& law = departed.contact.law;
+  const auto backbone = [&](double travel) {
+    const double left =
+        std::max(0.0, 1 - (1 - kShapeExponent) * law.tangential_stiffness * travel /
+                              kSlipForce);
+    const double phi = 1 - std::pow(left, 1 / (1 - kShapeExponent));
+    return phi + added(phi);
+  };
+  const bool is_masing = departed.contact.model->memory == Memory::kReturnPoint;
+  struct Turn {
+    double displacement;
+    double force;  // over Tc
+  };
+  std::vector<Turn> turns;  // that are remembered, after the virgin curve's origin
+  double origin = departed.contact.unloaded;
+  double last = origin;
+  int direction = 0;
+  const auto force_at = [&](double x) {
+    if (turns.empty()) return std::copysign(backbone(std::abs(x - origin)), x - origin);
+    const Turn& from = turns.back();
+    const double sense = x > from.displacement ? 1.0 : -1.0;
+    const double way = std::abs(x - from.displacement);
+    if (is_masing) return from.force + 2 * sense * backbone(way / 2);
+    const double room = 1 - sense * from.force;
+    return from.force +
+           sense * room * backbone(std::pow(room, kShapeExponent - 1) * way);
+  };
+  const auto move_to = [&](double x) {
+    if (x == last) return;
+    const int sense = x > last ? 1 : -1;
+    if (direction != 0 && sense != direction) turns.push_back({last, force_at(last)});
+    direction = sense;
+    while (is_masing && turns.size() > 1 &&
+           sense * (x - turns[turns.size() - 2].displacement) >= 0) {
+      turns.resize(turns.size() - 2);
+    }
+    if (is_masing && turns.size() == 1 &&
+        std::abs(x - origin) >= std::abs(turns[0].displacement - origin)) {
+      turns.clear();
+    }
+    last = x;
+  };
+  const History& displacement = departed.motion.displacement;
+  if (departed.contact.state == InitialState::kSteady) {
+    const auto [lowest, highest] = std::ranges::minmax(displacement);
+    const bool sets_out_upward = displacement[1] > displacement[0];
+    origin = last = lowest + (highest - lowest) / 2;
+    for (int cycle = 0; cycle < 30; ++cycle) {
+      move_to(sets_out_upward ? highest : lowest);
+      move_to(sets_out_upward ? lowest : highest);
+    }
+  }
+  std::vector<double> force;
+  for (const double x : displacement) {
+    move_to(x);
+    force.push_back(kSlipForce * force_at(x));
+  }
+  return force;
+}
+
+Simulate Bulged(int half_waves) {
+  return [half_waves](const Departed& departed, double size) {
+    return WithBackbone(departed, [&](double phi) {
+      return size * std::sin(half_waves * std::acos(-1.0) * std::min(phi, 1.0));
+    });
+  };
+}
+
+/// The force between samples, from fifty times as many.
+std::vector<double> Late(const Departed& departed, double lag) {
+  constexpr std::size_t kFiner = 50;
+  Motion fine;
+  const Motion& motion = departed.motion;
+  const double scale = kLength;
+  for (std::size_t i = 0; i < departed.size(); ++i) {
+    for (std::size_t k = 0; k < (i + 1 < departed.size() ? kFiner : 1); ++k) {
+      const double share = static_cast<double>(k) / kFiner;
+      if (k == 0) {
+        fine.time.push_back(motion.time[i]);
+        fine.displacement.push_back(motion.displacement[i]);
+        continue;
+      }
+      // Between reversals the motion is that of the samples, by the parabolas through them.
+      const std::size_t j = std::clamp<std::size_t>(i, 1, departed.size() - 2);
+      const double time = motion.time[i] + share * (motion.time[i + 1] - motion.time[i]);
+      double x = 0.0;
+      for (std::size_t a = j - 1; a <= j + 1; ++a) {
+        double weight = 1.0;
+        for (std::size_t b = j - 1; b <= j + 1; ++b) {
+          if (b != a) weight *= (time - motion.time[b]) / (motion.time[a] - motion.time[b]);
+        }
+        x += weight * motion.displacement[a] / scale;
+      }
+      fine.time.push_back(time);
+      fine.displacement.push_back(x * scale);
+    }
+  }
+  const std::vector<double> force = departed.contact.Force(fine.displacement);
+  std::vector<double> late;
+  for (const double time : motion.time) {
+    const double at = std::max(time - lag, 0.0);
+    const auto next = std::ranges::upper_bound(fine.time, at);
+    const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(next - fine.time.begin()), 1,
+                                           fine.time.size() - 1);
+    const double share = (at - fine.time[i - 1]) / (fine.time[i] - fine.time[i - 1]);
+    late.push_back(force[i - 1] + share * (force[i] - force[i - 1]));
+  }
+  return late;
+}
+
+double Differentiated(double time, double duration, int order) {
+  const double step = 1e-4 * duration;
+  const auto at = [&](int k) { return MotionAt(time + k * step, duration); };
+  return order == 1 ? (at(1) - at(-1)) / (2 * step)
+                    : (at(1) - 2 * at(0) + at(-1)) / (step * step);
+}
+
+/// C or m times a derivative of the motion, which is known.
+Simulate WithDerivative(int order) {
+  return [order](const Departed& departed, double size) {
+    const Motion& motion = departed.motion;
+    const double duration = motion.time.back();
+    const auto [lowest, highest] = std::ranges::minmax(motion.displacement);
+    double low = 0.0;
+    double high = 0.0;
+    for (const double time : motion.time) {
+      low = std::min(low, MotionAt(time, duration));
+      high = std::max(high, MotionAt(time, duration));
+    }
+    const double scale = (highest - lowest) / (high - low);
+    std::vector<double> force = departed.contact.Force(motion.displacement);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      force[i] += size * scale * Differentiated(motion.time[i], duration, order);
+    }
+    return force;
+  };
+}
+
+/// A motion that loses `gap` at each reversal.
+std::vector<double> WithGap(const Departed& departed, double gap) {
+  const History& drive = departed.motion.displacement;
+  const double first = drive.front() > departed.contact.unloaded ? 1.0 : -1.0;
+  const double other = departed.contact.state == InitialState::kVirgin ? first : 1.0;
+  History contact;
+  double at = drive.front();
+  for (const double x : drive) {
+    at = std::clamp(at, std::min(x, x + other * gap), std::max(x, x + other * gap));
+    contact.push_back(at);
+  }
+  return departed.contact.Force(contact);
+}
+
+struct Case {
+  std::string_view code;
+  std::size_t column;  // of this departure
+  double unit;         // of the size, in SI: what makes a change of the force's order
+  Simulate simulate;
+  double tolerance = 1e-3;
+};
+
+/// Differences of the motion err by the square of a step of 0.035 of its third harmonic, where
+/// steps are uneven by their difference: a fifth of that.
+constexpr double kDifferences = 0.02;
+
+std::vector<Case> Cases() {
+  const auto made = [](auto function) -> Simulate {
+    return [function](const Departed& departed, double size) {
+      return departed.Made([&](double force, double x, double time) {
+        return function(departed, size, force, x, time);
+      });
+    };
+  };
+  const auto seen = [](int power) -> Simulate {
+    return [power](const Departed& departed, double size) {
+      return departed.Seen([&](double x) {
+        const double share = (x - departed.middle) / kLength;
+        return x + size * kLength * std::pow(share, power);
+      });
+    };
+  };
+  return {
+      {"channel_lag", 0, kDuration, Late, kDifferences},
+      {"viscous_force", 0, kSlipForce / kLength * kDuration, WithDerivative(1), kDifferences},
+      {"plateau_slope", 0, kSlipForce / kLength,
+       made([](auto&, double size, double force, double x, double) {
+         return force + size * x * kLength;
+       })},
+      {"force_drift", 0, kSlipForce / kDuration,
+       made([](auto&, double size, double force, double, double time) {
+         return force + size * time;
+       })},
+      {"shape_of_law", 0, 1, Bulged(1)},
+      {"shape_of_law", 1, 1, Bulged(2)},
+      {"shape_of_law", 2, 1, Bulged(3)},
+      {"guide_friction", 0, kSlipForce,
+       [](const Departed& departed, double size) {
+         std::vector<double> force = departed.contact.Force(departed.motion.displacement);
+         const History& x = departed.motion.displacement;
+         for (std::size_t i = 0; i < force.size(); ++i) {
+           const bool up = i == 0 ? x[1] > x[0] : x[i] > x[i - 1];
+           force[i] += up ? size : -size;
+         }
+         return force;
+       }},
+      {"rig_in_series", 0, kLength / kSlipForce,
+       [](const Departed& departed, double size) {
+         return departed.contact.Force(departed.motion.displacement, departed.contact.unloaded,
+                                       {size > 0 ? 1 / size : HUGE_VAL});
+       }},
+      {"backlash", 0, kLength, WithGap},
+      {"displacement_sensor", 0, 1, seen(2)},
+      {"displacement_sensor", 1, 1, seen(3)},
+      {"inertia", 0, kSlipForce / kLength * kDuration * kDuration, WithDerivative(2),
+       2 * kDifferences},
+      {"unequal_directions", 0, 1,
+       made([](auto&, double size, double force, double, double) {
+         return force > 0 ? (1 + size) * force : (1 - size) * force;
+       })},
+      {"running_in", 0, 1,
+       made([](const Departed& departed, double size, double force, double, double time) {
+         return force * (1 + size * time / departed.whole);
+       })},
+      {"force_saturates", 0, 1,
+       made([](const Departed& departed, double size, double force, double, double) {
+         const double from = 0.9 * departed.peak;
+         const double beyond = std::max(std::abs(force) - from, 0.0);
+         return std::copysign(std::abs(force) - size * beyond, force);
+       })},
+      {"force_saturates", 1, 1,
+       made([](auto&, double size, double force, double, double) {
+         return force + size * kSlipForce * std::pow(force / kSlipForce, 3);
+       })},
+      {"load_varies", 0, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force * (1 + size * x);
+       })},
+      {"load_varies", 1, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force * (1 + size * x * x);
+       })},
+      {"load_varies", 2, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force + std::abs(force) * size * x;
+       })},
+      {"force_of_position", 0, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force + size * kSlipForce * x * x;
+       })},
+      {"force_of_position", 1, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force + size * kSlipForce * x * x * x;
+       })},
+  };
+}
+
+/// θ of the truth.
+std::vector<double> TrueTheta(const Stages& stages, const Contact& contact) {
+  const Parameters& parameters = stages.problem.parameters;
+  std::vector<double> theta;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const std::string_view name = parameters[p].term->name;
+    const double value = name == "sigma"                 ? contact.law.tangential_stiffness
+                         : name == "alpha"               ? kShapeExponent
+                         : name == "slip_force"          ? kSlipForce
+                         : name == "rig_stiffness"       ? 1e9
+                         : name == "displacement_offset" ? contact.unloaded
+                                                         : 0.0;
+    theta.push_back(parameters[p].absent ? parameters[p].theta : parameters[p].ToTheta(value));
+  }
+  return theta;
+}
+
+/// The motion begins near 1.8e-6 m, downward: a contact that was unloaded below has turned there.
+constexpr double kAhead = 2.4e-6;
+constexpr double kBehind = -3e-7;
+
+struct Setting {
+  const char* name;
+  const char* model;
+  InitialState state;
+  BranchLaw law = kSlipping;
+  double unloaded = kAhead;
+  double uneven = 0.0;
+  bool two_records = false;
+  int sense = 1;
+};
+
+class DepartureColumn : public ::testing::TestWithParam<Setting> {};
+
+double Middle(const Motion& motion) {
+  const auto [lowest, highest] = std::ranges::minmax(motion.displacement);
+  return lowest + (highest - lowest) / 2;
+}
+
+TEST_P(DepartureColumn, IsTheChangeOfTheForceByItsSize) {
+  const Setting& setting = GetParam();
+  const Contact contact{&Model(setting.model), setting.law, setting.state, setting.unloaded};
+  std::vector<Motion> motions = {Move(kLength, kDuration, setting.uneven)};
+  if (setting.two_records) motions.push_back(Move(0.7 * kLength, 2.5 * kDuration, setting.uneven));
+  // The motion's half range is what is made to be kLength.
+  double half = 0.0;
+  for (Motion& motion : motions) {
+    const auto [lowest, highest] = std::ranges::minmax(motion.displacement);
+    half = std::max(half, (highest - lowest) / 2);
+  }
+  for (Motion& motion : motions) {
+    for (double& x : motion.displacement) x = kCentre + (x - kCentre) * kLength / half;
+  }
+  double peak = 0.0;
+  for (const Motion& motion : motions) {
+    for (const double force : contact.Force(motion.displacement)) {
+      peak = std::max(peak, std::abs(force));
+    }
+  }
+  std::vector<Departed> departed;
+  std::vector<Record> records;
+  for (const Motion& motion : motions) {
+    departed.push_back({contact, motion, Middle(motion), motions.front().time.back(), peak});
+    Record& record = records.emplace_back();
+    record.displacement = motion.displacement;
+    record.time = motion.time;
+    for (const double force : contact.Force(motion.displacement)) {
+      record.force.push_back(setting.sense * force);
+    }
+  }
+  FitOptions options;
+  options.model = contact.model;
+  options.preparation.force_sense = setting.sense;
+  Stages stages(records, options, setting.state);
+  ASSERT_NEAR(stages.data.length / kLength, 1, 1e-9);
+  const std::vector<double> theta = TrueTheta(stages, contact);
+  const DepartureColumns columns =
+      ColumnsOfDepartures(stages.problem, theta, stages.buffers.response, 100);
+  ASSERT_TRUE(columns.timed);
+  ASSERT_EQ(static_cast<std::size_t>(columns.columns.cols()), Cases().size());
+
+  std::size_t c = 0;
+  for (const Case& tested : Cases()) {
+    SCOPED_TRACE(std::string(tested.code) + ", column " + std::to_string(tested.column));
+    ASSERT_EQ(Departures()[columns.of[c]].code, tested.code);
+    ASSERT_TRUE(tested.column == 0 || columns.of[c - tested.column] == columns.of[c]);
+    // A drift is the file's, everything else is in the sense of the displacement.
+    const double sense = tested.code == "force_drift" ? setting.sense : 1;
+    const double size = kSmall * tested.unit;
+    double largest = 0.0;
+    double worst = 0.0;
+    std::size_t where = 0;
+    Eigen::Index row = 0;
+    for (std::size_t r = 0; r < records.size(); ++r) {
+      const std::vector<double> with = tested.simulate(departed[r], size);
+      const std::vector<double> without = tested.simulate(departed[r], 0.0);
+      const LoadingPath& path = stages.buffers.response.PathOf(r, theta);
+      for (std::size_t i = 0; i < with.size(); ++i, ++row) {
+        // Next to a reversal, and where a loop closes, differences see both branches, and a gap or
+        // a lag is not yet over: the force is not of first order in them there.
+        const auto is_near = [&](std::size_t sample) {
+          return std::max(i, sample) - std::min(i, sample) <= 3;
+        };
+        const bool turns =
+            std::ranges::any_of(path.runs, [&](const auto& run) { return is_near(run.begin); });
+        if (turns || i + 3 >= with.size()) continue;
+        const double expected = (with[i] - without[i]) / kSmall;
+        const double found = sense * columns.columns(row, static_cast<Eigen::Index>(c)) /
+                             columns.unit_of_size[c] * tested.unit * stages.data.force;
+        largest = std::max(largest, std::abs(expected));
+        if (std::abs(found - expected) > worst) {
+          worst = std::abs(found - expected);
+          where = i;
+        }
+      }
+    }
+    EXPECT_GT(largest, 0.01 * kSlipForce) << "the case needs it";
+    EXPECT_LT(worst / largest, tested.tolerance) << "at sample " << where;
+    ++c;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, DepartureColumn,
+    ::testing::Values(
+        Setting{"AVirginContact", "mindlin-dahl", InitialState::kVirgin},
+        Setting{"AVirginContactThatSticks", "mindlin-dahl", InitialState::kVirgin, kSticking},
+        Setting{"AContactThatTurnedAtTheFirstSample", "mindlin-dahl", InitialState::kVirgin,
+                kSticking, kBehind},
+        Setting{"ASteadyLoop", "mindlin-dahl", InitialState::kSteady},
+        Setting{"ASteadyLoopThatSticks", "mindlin-dahl", InitialState::kSteady, kSticking},
+        Setting{"DahlsLaw", "dahl", InitialState::kVirgin, kSticking, kBehind},
+        Setting{"DahlsSteadyLoop", "dahl", InitialState::kSteady, kSticking},
+        Setting{.name = "UnevenSteps",
+                .model = "mindlin-dahl",
+                .state = InitialState::kVirgin,
+                .uneven = 0.2},
+        Setting{.name = "TwoRecords",
+                .model = "mindlin-dahl",
+                .state = InitialState::kVirgin,
+                .two_records = true},
+        Setting{.name = "TheOtherSense",
+                .model = "mindlin-dahl",
+                .state = InitialState::kSteady,
+                .sense = -1}),
+    [](const auto& setting) { return std::string(setting.param.name); });
+
+/// A loop whose extremes lie on samples, with what a record may have beside force and displacement.
+Record Complete() {
+  Record record;
+  record.displacement = testing::Cycling(testing::Wave::kSine, kLength, 2.0, 80);
+  record.force = testing::Respond(Model("mindlin-dahl"), kSticking, record.displacement);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(static_cast<double>(i));
+    record.normal_load.push_back(100.0 + 20.0 * std::sin(0.1 * static_cast<double>(i)));
+  }
+  return record;
+}
+
+DepartureColumns ColumnsOf(Stages& stages) {
+  const Contact contact{&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0};
+  return ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact), stages.buffers.response,
+                             100);
+}
+
+std::size_t PlaceOf(const DepartureColumns& columns, std::string_view code) {
+  const auto found = std::ranges::find_if(
+      columns.of, [&](std::size_t departure) { return Departures()[departure].code == code; });
+  return static_cast<std::size_t>(found - columns.of.begin());
+}
+
+constexpr double kRounding = 1e-9;  // of differences of differences
+
+TEST(Departures, WithoutTimeAreBySample) {
+  Record record = Complete();  // a sample a second
+  Stages with(record);
+  record.time.clear();
+  Stages without(record);
+  const DepartureColumns timed = ColumnsOf(with);
+  const DepartureColumns by_sample = ColumnsOf(without);
+  EXPECT_TRUE(timed.timed);
+  EXPECT_FALSE(by_sample.timed);
+  EXPECT_LT((timed.columns - by_sample.columns).cwiseAbs().maxCoeff(),
+            kRounding * timed.columns.cwiseAbs().maxCoeff());
+  for (std::size_t c = 0; c < timed.of.size(); ++c) {
+    EXPECT_NEAR(by_sample.unit_of_size[c] / timed.unit_of_size[c], 1.0, kRounding);
+  }
+}
+
+TEST(Departures, WhereTimeStandsStillAreBySample) {
+  Record record = Complete();
+  record.time[31] = record.time[30];
+  Stages stages(record);
+  EXPECT_FALSE(ColumnsOf(stages).timed);
+}
+
+TEST(Departures, TurningPointsThatWerePutInTakeNoTime) {
+  // Where they do not overshoot, nothing else changes but next to a turn, which no difference is
+  // then taken across.
+  Stages stages(Complete());
+  const DepartureColumns plain = ColumnsOf(stages);
+  const ScaledRecord record = stages.data.records[0];
+  const std::unique_ptr<TurnedRecords> turned =
+      PutInTurningPoints(stages.data, std::vector<double>(record.reversals.size(), 0.0));
+  stages.problem.data = &turned->data;
+  const DepartureColumns with = ColumnsOf(stages);
+  EXPECT_TRUE(with.timed);
+  ASSERT_EQ(with.columns.rows(),
+            plain.columns.rows() + static_cast<Eigen::Index>(record.reversals.size()));
+  const auto& inserted = turned->data.records[0].inserted;
+  std::size_t i = 0;  // of the plain record
+  for (std::size_t k = 0; k < inserted.size(); ++k) {
+    if (inserted[k] != 0) continue;
+    const auto row = static_cast<Eigen::Index>(k);
+    const std::size_t sample = i++;
+    if (std::ranges::any_of(record.reversals, [&](std::size_t reversal) {
+          return sample + 1 >= reversal && sample <= reversal + 1;
+        })) {
+      continue;
+    }
+    EXPECT_LT((with.columns.row(row) - plain.columns.row(static_cast<Eigen::Index>(sample)))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              kRounding * plain.columns.cwiseAbs().maxCoeff())
+        << sample;
+  }
+}
+
+TEST(Departures, OfAForceThatFollowsTheLoadFollowItToo) {
+  FitOptions options;
+  Stages constant(Complete(), options);
+  options.follow_load = true;
+  Stages following(Complete(), options);
+  const DepartureColumns plain = ColumnsOf(constant);
+  const DepartureColumns loaded = ColumnsOf(following);
+  const auto& ratio = following.data.records[0].load_ratio;
+  for (const std::string_view code :
+       {"shape_of_law", "rig_in_series", "backlash", "displacement_sensor"}) {
+    const auto c = static_cast<Eigen::Index>(PlaceOf(plain, code));
+    for (std::size_t i = 0; i < ratio.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      EXPECT_NEAR(loaded.columns(row, c), ratio[i] * plain.columns(row, c), kRounding) << code;
+    }
+  }
+}
+
+TEST(Departures, AreNotLookedForWhereTheyAreFitted) {
+  FitOptions options;
+  options.terms = {"viscous", "force_drift", "plateau_slope", "rig_stiffness"};
+  Stages stages(Complete(), options);
+  const DepartureColumns columns = ColumnsOf(stages);
+  for (const std::string_view code :
+       {"viscous_force", "force_drift", "plateau_slope", "rig_in_series"}) {
+    EXPECT_EQ(PlaceOf(columns, code), columns.of.size()) << code;
+  }
+  EXPECT_LT(PlaceOf(columns, "channel_lag"), columns.of.size());
+}
+
+TEST(Departures, AreGivenUpFromTheLastWhereTheColumnsAreFew) {
+  Stages stages(Complete());
+  const std::vector<double> theta =
+      TrueTheta(stages, {&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0});
+  const auto most = [&](std::size_t columns) {
+    return ColumnsOfDepartures(stages.problem, theta, stages.buffers.response, columns).of;
+  };
+  EXPECT_EQ(most(3), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(most(6), (std::vector<std::size_t>{0, 1, 2, 3})) << "the law's shape has three";
+  EXPECT_EQ(most(7), (std::vector<std::size_t>{0, 1, 2, 3, 4, 4, 4}));
+}
+
+}  // namespace
+}  // namespace mindahl::identification
