@@ -23,7 +23,7 @@ struct CauseRow {
   const char* remedy;    // where no option takes it into account
 };
 
-constexpr std::array<CauseRow, 15> kCauses = {{
+constexpr std::array<CauseRow, 16> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
@@ -32,6 +32,8 @@ constexpr std::array<CauseRow, 15> kCauses = {{
     {"plateau_slope", "a force beside the contact's that grows by {} with the displacement",
      nullptr, "give --plateau-slope"},
     {"force_drift", "a force that drifts by {}", nullptr, "give --drift"},
+    {"normal_load", "a force that follows the measured load, which varies, to {}", nullptr,
+     "give --load-window, or --follow-load"},
     {"shape_of_law", "branches of another shape than the law's", nullptr,
      "compare the laws with --model auto"},
     {"guide_friction", "a friction of {} beside the contact's that turns at once with the motion",

@@ -21,9 +21,10 @@ struct Place {
   double peak = 0.0;        // largest |force| of all records
   double direction = 1.0;   // of the branch
   // Without the load that a force may follow:
-  double response = 0.0;  // the contact's force over the slip force
-  double slope = 0.0;     // its derivative by displacement
-  double gain = 1.0;      // and by that at the origin of the branch
+  double response = 0.0;     // the contact's force over the slip force
+  double slope = 0.0;        // its derivative by displacement
+  double load_change = 0.0;  // of the measured load, over its mean
+  double gain = 1.0;         // and by that at the origin of the branch
   // The branch:
   bool sets_out = false;  // on the virgin curve, the way that it was first run
   double reach = 1.0;     // what it has to go from its origin to slip
@@ -50,6 +51,7 @@ enum Row : std::size_t {
   kViscous,
   kPlateauSlope,
   kDrift,
+  kMeasuredLoad,
   kShapeOfLaw,
   kGuide,
   kRig,
@@ -63,7 +65,7 @@ enum Row : std::size_t {
   kPosition,
 };
 
-constexpr std::array<Departure, 15> kDepartures = {{
+constexpr std::array<Departure, 16> kDepartures = {{
     // The force's channel is late by so much.
     {"channel_lag", "s", "", "", "samples"},
     // C of C·dδ/dt; it dissipates where it is positive.
@@ -72,6 +74,8 @@ constexpr std::array<Departure, 15> kDepartures = {{
     {"plateau_slope", "N/m", "--plateau-slope", "plateau_slope"},
     // Of the force as the file has it.
     {"force_drift", "N/s", "--drift", "force_drift", "N/sample"},
+    // Of the contact's force for as much of the measured load, over its mean: 1 in proportion.
+    {"normal_load", "-", "--follow-load"},
     // Of each branch, over its reach to slip: where half of the reach is gone.
     {"shape_of_law", "", ""},
     // Coulomb's, beside the contact; it dissipates where it is positive.
@@ -106,11 +110,12 @@ double Bulge(const Place& at) {
   return at.direction * at.reach * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
 }
 
-constexpr std::array<Column, 22> kColumns = {{
+constexpr std::array<Column, 23> kColumns = {{
     {kLag, Along::kForce, [](const Place& at) { return -at.force_rate; }},
     {kViscous, Along::kForce, [](const Place& at) { return at.velocity; }},
     {kPlateauSlope, Along::kForce, [](const Place& at) { return at.displacement; }},
     {kDrift, Along::kForce, [](const Place& at) { return at.time; }},
+    {kMeasuredLoad, Along::kForce, [](const Place& at) { return at.force * at.load_change; }},
     {kShapeOfLaw, Along::kBranch, Bulge<1>},
     {kShapeOfLaw, Along::kBranch, Bulge<2>},
     {kShapeOfLaw, Along::kBranch, Bulge<3>},
@@ -243,6 +248,11 @@ void DeriveTwice(std::span<const double> values, std::span<const double> time,
 /// Places of a record's samples, branches yet unknown.
 /// @param force     of the contact, over the slip force and at its load
 /// @param complete  that of the whole model
+/// Turning points between the samples have no load of their own.
+bool HasLoadChange(const ScaledRecord& record) {
+  return !record.load_change.empty() && record.load_change.size() == record.size();
+}
+
 std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> time,
                             const Neighbours& neighbours, std::span<const double> force,
                             std::span<const double> complete,
@@ -266,6 +276,7 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
                  .peak = peak,
                  .response = load != 0 ? force[i] / load : 0.0,
                  .slope = sensitivity.sample_slope[i],
+                 .load_change = HasLoadChange(record) ? record.load_change[i] : 0.0,
                  .gain = sensitivity.sample_gain[i]};
   }
   return places;
@@ -437,7 +448,8 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
       return problem.parameters[p].term->name == kDepartures[d].term;
     });
-    if (is_fitted) continue;
+    const bool is_unknown = d == kMeasuredLoad && std::ranges::none_of(records, &HasLoadChange);
+    if (is_fitted || is_unknown) continue;
     const auto is_of = [&](const Column& column) { return column.departure == d; };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(kColumns, is_of));
     if (wanted.size() + count > most) break;

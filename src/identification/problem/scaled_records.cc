@@ -65,6 +65,18 @@ void FollowLoad(ScaledRecords& data, const loop::PreparedRecords& records) {
   }
 }
 
+/// For the question whether the force follows a load that was measured.
+void NoteLoad(ScaledRecord& target, std::span<const double> load) {
+  constexpr double kSteady = 0.01;  // of the mean: a load that keeps to it is constant
+  if (load.empty()) return;
+  double sum = 0.0;
+  for (const double value : load) sum += value;
+  const double mean = sum / static_cast<double>(load.size());
+  const auto [least, greatest] = std::ranges::minmax(load);
+  if (!(greatest - least > kSteady * mean)) return;
+  for (const double value : load) target.load_change.push_back(value / mean - 1);
+}
+
 /// Samples of a stroke that are kept, at growing shares of its way: (k/n)².
 constexpr std::size_t kKeptOfAStroke = 12;
 /// Strokes that are thinned so: more are thinned to their ends and one sample in between.
@@ -127,6 +139,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
       target.root_weight.push_back(prepared.counts[i] != 0 ? 1.0 : 0.0);
     }
     target.counts.assign(prepared.counts.begin(), prepared.counts.end());
+    if (!follow_load) NoteLoad(target, prepared.record.normal_load);
     if (!time.empty()) FillVelocity(target, scaled.records.front().units.half_duration);
   }
   if (follow_load) FollowLoad(scaled, records);

@@ -18,6 +18,7 @@ struct ScaledRecord {
         time(memory),
         velocity(memory),
         load_ratio(memory),
+        load_change(memory),
         root_weight(memory),
         counts(memory),
         inserted(memory) {}
