@@ -629,9 +629,9 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->type_name("PATH")
       ->group(group);
   command
-      ->add_flag(
-          "--strict", options->strict,
-          "exit status 3 unless every free parameter is identifiable and the model not inadequate")
+      ->add_flag("--strict", options->strict,
+                 "exit status 3 unless every free parameter is identifiable\n"
+                 "and the model not inadequate")
       ->group(group);
   command->callback([options, &console] { RunFit(*options, console); });
 }

@@ -41,9 +41,10 @@ std::string Wrapped(std::string_view text, std::size_t indent) {
   std::string wrapped;
   std::size_t column = 0;
   for (std::size_t begin = 0; begin < text.size();) {
-    // A word takes the blanks before it along.
+    // A word takes the blanks before it along, and a number its per cent.
     const std::size_t letter = std::min(text.find_first_not_of(' ', begin), text.size());
-    const std::size_t end = std::min(text.find(' ', letter), text.size());
+    std::size_t end = std::min(text.find(' ', letter), text.size());
+    if (text.substr(end).starts_with(" %")) end = std::min(text.find(' ', end + 1), text.size());
     const std::string_view word = text.substr(begin, end - begin);
     if (column > indent && column + width(word) > kColumns) {
       wrapped += '\n' + std::string(indent, ' ') + std::string(text.substr(letter, end - letter));

@@ -20,9 +20,9 @@ using namespace models;
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-using ::testing::SizeIs;
 using testing::kLaw;
 using testing::kReach;
+using ::testing::SizeIs;
 
 std::vector<std::string_view> Codes(const std::vector<Finding>& findings) {
   std::vector<std::string_view> codes;
@@ -171,8 +171,7 @@ TEST(IsWorthSaying, NeedsASizeAndACertainty) {
 // --- whole fits
 
 Record Loop() {
-  const testing::History displacement =
-      testing::Cycling(testing::Wave::kSine, kReach, 3.0, 200);
+  const testing::History displacement = testing::Cycling(testing::Wave::kSine, kReach, 3.0, 200);
   return testing::MakeRecord(displacement,
                              testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
 }

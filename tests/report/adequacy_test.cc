@@ -99,7 +99,9 @@ TEST(CauseSentence, HasSizeUnitShareAndRemedy) {
 }
 
 TEST(AdaptedCauses, AreInTheUnitsOfATorque) {
-  std::vector<Cause> causes = {Viscous(), MadeCause("rig_in_series", 1, "m/N"), MadeCause("inertia", 1, "kg"), MadeCause("force_drift", 1, "N/sample")};
+  std::vector<Cause> causes = {Viscous(), MadeCause("rig_in_series", 1, "m/N"),
+                               MadeCause("inertia", 1, "kg"),
+                               MadeCause("force_drift", 1, "N/sample")};
   AdaptCauses(kUnitsOfTorque, /*has_time=*/true, causes);
   EXPECT_EQ(causes[0].unit, "N m s/rad");
   EXPECT_EQ(causes[1].unit, "rad/(N m)");
@@ -139,8 +141,8 @@ TEST(AdequacyText, OfARecordTooShortToTryAnythingSaysSo) {
 }
 
 TEST(AdequacyJson, HasVerdictMisfitAndCauses) {
-  const json adequacy = json::parse(
-      ToJson(ReportWith(AdequacyVerdict::kDoubtful, {Lag(), Viscous()})))["adequacy"];
+  const json adequacy =
+      json::parse(ToJson(ReportWith(AdequacyVerdict::kDoubtful, {Lag(), Viscous()})))["adequacy"];
   EXPECT_EQ(adequacy["verdict"], "doubtful");
   EXPECT_EQ(adequacy["misfit_over_noise"], 1.75);
   EXPECT_EQ(adequacy["p_value"], 1e-9);
@@ -163,8 +165,7 @@ TEST(AdequacyJson, SaysWhyThereIsNoOptionNoSizeAndNoVerdict) {
     return ::testing::Value(report["nulls"],
                             ::testing::Contains(json{{"path", path}, {"why", why}}));
   };
-  EXPECT_TRUE(
-      has(fit, "adequacy.causes[0].try", "no option takes it into account yet"));
+  EXPECT_TRUE(has(fit, "adequacy.causes[0].try", "no option takes it into account yet"));
   const json unjudged = json::parse(ToJson(MakeReport(MadeInput())));
   EXPECT_TRUE(unjudged["adequacy"]["verdict"].is_null());
   EXPECT_TRUE(has(unjudged, "adequacy.verdict", kWhyNotJudged));

@@ -83,12 +83,12 @@ TEST(Measured, NullsSayWhatIsMissing) {
   const auto null = [](const char* path, const char* why) {
     return json{{"path", path}, {"why", why}};
   };
-  EXPECT_THAT(fit["nulls"],
-              AllOf(Contains(null("measured.trend.half_gap.slope", "needs three steady cycles")),
-                    Contains(null("measured.half_gap.standard_deviation",
-                                  "needs two steady cycles")),
-                    Contains(null("measured.energy_friction_coefficient",
-                                  "needs a column of the normal load, and a sliding amplitude"))));
+  EXPECT_THAT(
+      fit["nulls"],
+      AllOf(Contains(null("measured.trend.half_gap.slope", "needs three steady cycles")),
+            Contains(null("measured.half_gap.standard_deviation", "needs two steady cycles")),
+            Contains(null("measured.energy_friction_coefficient",
+                          "needs a column of the normal load, and a sliding amplitude"))));
   const json open = Parsed(MadeInput());
   EXPECT_EQ(open["measured"]["closed"], false);
   EXPECT_EQ(open["measured"]["cycles"], json::array());
