@@ -28,6 +28,7 @@ struct ScaledRecord {
   std::pmr::vector<double> time;      // −1 … 1 over the record; by sample where it has no time
   std::pmr::vector<double> velocity;  // in the first record's time; empty where there is none
   std::pmr::vector<double> load_ratio;     // N over its mean; empty where it is taken as constant
+  std::pmr::vector<double> load_change;    // N over its mean less 1; empty where it is followed
   std::pmr::vector<double> root_weight;    // of each residual; 0 where the sample does not count
   std::pmr::vector<unsigned char> counts;  // 1 where the sample counts, else 0
   /// 1 for a turning point between the samples, which counts for nothing but makes history; empty
