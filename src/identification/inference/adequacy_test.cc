@@ -200,9 +200,11 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
     const std::size_t place = PlaceOf(problem, p);
     for (const DepartureFit& fit : fits) {
       if (place == fit.step.size()) continue;
-      const double theta = solution.theta[p] + fit.step[place];
-      const double one = parameter.ToValue(theta - quantile * fit.error[place]);
-      const double other = parameter.ToValue(theta + quantile * fit.error[place]);
+      const double step = fit.step[place];
+      // One linear step errs by the like of its square.
+      const double half = quantile * fit.error[place] + step * step;
+      const double one = parameter.ToValue(solution.theta[p] + step - half);
+      const double other = parameter.ToValue(solution.theta[p] + step + half);
       if (estimate.lower95) estimate.lower95 = std::min({*estimate.lower95, one, other});
       if (estimate.upper95) estimate.upper95 = std::max({*estimate.upper95, one, other});
       if (p == kShape && estimate.lower95) estimate.lower95 = std::max(*estimate.lower95, 0.0);
