@@ -356,7 +356,7 @@ std::vector<std::size_t> Rank(std::span<const ModelScore> scores) {
   return eligible.empty() ? ranking : eligible;
 }
 
-std::string Judge(const ModelSelection& selection, const SelectionOptions& options,
+std::string Judge(const ModelSelection& selection, const Thresholds& thresholds,
                   std::span<const std::size_t> ranking) {
   const std::vector<ModelScore>& scores = selection.scores;
   const ModelScore& chosen = scores[selection.chosen];
@@ -369,7 +369,7 @@ std::string Judge(const ModelSelection& selection, const SelectionOptions& optio
     for (const std::size_t i : selection.indistinguishable) names.push_back(Label(scores[i]));
     verdict = fmt::format(
         "The records do not tell apart {}: ΔAICc below {:g}{}. The simplest, {}, is reported.",
-        fmt::join(names, ", "), options.largest_delta,
+        fmt::join(names, ", "), thresholds.indistinguishable,
         selection.held_out_cycles > 0
             ? fmt::format(", and {} cycles held out are predicted alike to a standard error",
                           selection.held_out_cycles)
@@ -387,7 +387,7 @@ std::string Judge(const ModelSelection& selection, const SelectionOptions& optio
     if (next != ranking.end()) {
       verdict += fmt::format(", by ΔAICc = {:.3g} before {}", scores[*next].aicc - chosen.aicc,
                              Label(scores[*next]));
-      if (scores[*next].aicc - chosen.aicc < options.largest_delta) {
+      if (scores[*next].aicc - chosen.aicc < thresholds.indistinguishable) {
         verdict += ", which predicts cycles held out worse by more than a standard error";
       }
     }
@@ -395,7 +395,7 @@ std::string Judge(const ModelSelection& selection, const SelectionOptions& optio
   }
   for (const ModelScore& score : scores) {
     if (!score.converged || !score.at_bound || score.redundant) continue;
-    if (chosen.aicc - score.aicc < options.largest_delta) continue;
+    if (chosen.aicc - score.aicc < thresholds.indistinguishable) continue;
     verdict += fmt::format(
         " {} comes nearer by ΔAICc = {:.3g}, but with a parameter at its bound: none of the models "
         "has the shape of the loop.",
@@ -421,7 +421,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   if (selection.folds < 2) {
     ThrowInvalid("folds [-]", static_cast<double>(selection.folds), "must be >= 2");
   }
-  RequireNonNegative("largest ΔAICc [-]", selection.largest_delta);
+  RequireNonNegative("largest ΔAICc [-]", options.thresholds.indistinguishable);
 
   ModelSelection result;
   result.scores = ListCandidates(options);
@@ -436,7 +436,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   }
   if (std::ranges::none_of(fits, IsFitted)) {
     result.fit = std::move(fits.front());
-    result.verdict = Judge(result, selection, {});
+    result.verdict = Judge(result, options.thresholds, {});
     return result;
   }
 
@@ -485,7 +485,8 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   } else {
     const std::size_t best = ranking.front();
     for (const std::size_t i : ranking) {
-      const bool close = result.scores[i].aicc - result.scores[best].aicc < selection.largest_delta;
+      const bool close =
+          result.scores[i].aicc - result.scores[best].aicc < options.thresholds.indistinguishable;
       if (i == best || (close && !PredictsWorse(predictions[i], predictions[best], cycles,
                                                 result.folds, samples.rounding))) {
         result.indistinguishable.push_back(i);
@@ -499,7 +500,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   }
   Fitter chosen(OptionsOf(result.scores[result.chosen], options));
   result.fit = chosen.Fit(records, Depth::kFull);
-  result.verdict = Judge(result, selection, ranking);
+  result.verdict = Judge(result, options.thresholds, ranking);
   return result;
 }
 

@@ -10,9 +10,9 @@
 #include <random>
 #include <string>
 
-#include "message_of.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
+#include "support/message_of.h"
 
 namespace mindahl::contact {
 namespace {

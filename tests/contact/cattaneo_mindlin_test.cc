@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "message_of.h"
 #include "printed_equations.h"
+#include "support/message_of.h"
 
 namespace mindahl::contact {
 namespace {

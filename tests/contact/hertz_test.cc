@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "message_of.h"
+#include "support/message_of.h"
 
 namespace mindahl::contact {
 namespace {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "message_of.h"
+#include "support/message_of.h"
 
 namespace mindahl::contact {
 namespace {

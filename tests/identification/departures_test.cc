@@ -28,11 +28,11 @@ using testing::Stages;
 /// Above 1/2, so that the slope is continuous where slip begins.
 constexpr double kShapeExponent = 0.6;
 constexpr double kSlipForce = 40.0;
-constexpr double kLength = 4.5e-6;  // [m], the motion's half range
+constexpr double kLength = 4.5e-6;                                 // [m], the motion's half range
 constexpr BranchLaw kSlipping{4e7, kShapeExponent, kSlipForce};    // 1.8 of gross slip
 constexpr BranchLaw kSticking{1.4e7, kShapeExponent, kSlipForce};  // 0.6 of it
-constexpr double kDuration = 0.8;    // [s]
-constexpr double kCentre = 2e-6;     // [m]
+constexpr double kDuration = 0.8;                                  // [s]
+constexpr double kCentre = 2e-6;                                   // [m]
 constexpr std::size_t kSamples = 1201;
 
 /// Of the sizes below, the change of the force. Second order is some 1e-5 of the first then, and
@@ -78,8 +78,8 @@ struct Contact {
   [[nodiscard]] std::vector<double> Force(const History& displacement, double at_rest,
                                           const SeriesSpring& rig = {}) const {
     std::vector<double> force(displacement.size());
-    const LoadingPath path = testing::PathOf(*model, displacement,
-                                             {.state = state, .unloaded_displacement = at_rest});
+    const LoadingPath path =
+        testing::PathOf(*model, displacement, {.state = state, .unloaded_displacement = at_rest});
     EvaluateForce(*model, law, path, displacement, force, rig);
     return force;
   }
@@ -92,9 +92,9 @@ struct Contact {
 struct Departed {
   const Contact& contact;
   const Motion& motion;
-  double middle;     // [m] of the motion
-  double whole;      // [s], of the first record
-  double peak;       // [N], the largest force of all records
+  double middle;  // [m] of the motion
+  double whole;   // [s], of the first record
+  double peak;    // [N], the largest force of all records
 
   [[nodiscard]] std::size_t size() const { return motion.displacement.size(); }
 
@@ -104,8 +104,8 @@ struct Departed {
     std::vector<double> force = contact.Force(motion.displacement);
     const double from = (motion.time.front() + motion.time.back()) / 2;
     for (std::size_t i = 0; i < size(); ++i) {
-      force[i] = function(force[i], (motion.displacement[i] - middle) / kLength,
-                          motion.time[i] - from);
+      force[i] =
+          function(force[i], (motion.displacement[i] - middle) / kLength, motion.time[i] - from);
     }
     return force;
   }
@@ -127,8 +127,7 @@ std::vector<double> WithBackbone(const Departed& departed,
   const BranchLaw& law = departed.contact.law;
   const auto backbone = [&](double travel) {
     const double left =
-        std::max(0.0, 1 - (1 - kShapeExponent) * law.tangential_stiffness * travel /
-                              kSlipForce);
+        std::max(0.0, 1 - (1 - kShapeExponent) * law.tangential_stiffness * travel / kSlipForce);
     const double phi = 1 - std::pow(left, 1 / (1 - kShapeExponent));
     return phi + added(phi);
   };
@@ -148,8 +147,7 @@ std::vector<double> WithBackbone(const Departed& departed,
     const double way = std::abs(x - from.displacement);
     if (is_masing) return from.force + 2 * sense * backbone(way / 2);
     const double room = 1 - sense * from.force;
-    return from.force +
-           sense * room * backbone(std::pow(room, kShapeExponent - 1) * way);
+    return from.force + sense * room * backbone(std::pow(room, kShapeExponent - 1) * way);
   };
   const auto move_to = [&](double x) {
     if (x == last) return;
@@ -237,8 +235,7 @@ std::vector<double> Late(const Departed& departed, double lag) {
 double Differentiated(double time, double duration, int order) {
   const double step = 1e-4 * duration;
   const auto at = [&](int k) { return MotionAt(time + k * step, duration); };
-  return order == 1 ? (at(1) - at(-1)) / (2 * step)
-                    : (at(1) - 2 * at(0) + at(-1)) / (step * step);
+  return order == 1 ? (at(1) - at(-1)) / (2 * step) : (at(1) - 2 * at(0) + at(-1)) / (step * step);
 }
 
 /// C or m times a derivative of the motion, which is known.
@@ -338,8 +335,7 @@ std::vector<Case> Cases() {
       {"displacement_sensor", 1, 1, seen(3)},
       {"inertia", 0, kSlipForce / kLength * kDuration * kDuration, WithDerivative(2),
        2 * kDifferences},
-      {"unequal_directions", 0, 1,
-       made([](auto&, double size, double force, double, double) {
+      {"unequal_directions", 0, 1, made([](auto&, double size, double force, double, double) {
          return force > 0 ? (1 + size) * force : (1 - size) * force;
        })},
       {"running_in", 0, 1,
@@ -352,28 +348,22 @@ std::vector<Case> Cases() {
          const double beyond = std::max(std::abs(force) - from, 0.0);
          return std::copysign(std::abs(force) - size * beyond, force);
        })},
-      {"force_saturates", 1, 1,
-       made([](auto&, double size, double force, double, double) {
+      {"force_saturates", 1, 1, made([](auto&, double size, double force, double, double) {
          return force + size * kSlipForce * std::pow(force / kSlipForce, 3);
        })},
-      {"load_varies", 0, 1,
-       made([](auto&, double size, double force, double x, double) {
+      {"load_varies", 0, 1, made([](auto&, double size, double force, double x, double) {
          return force * (1 + size * x);
        })},
-      {"load_varies", 1, 1,
-       made([](auto&, double size, double force, double x, double) {
+      {"load_varies", 1, 1, made([](auto&, double size, double force, double x, double) {
          return force * (1 + size * x * x);
        })},
-      {"load_varies", 2, 1,
-       made([](auto&, double size, double force, double x, double) {
+      {"load_varies", 2, 1, made([](auto&, double size, double force, double x, double) {
          return force + std::abs(force) * size * x;
        })},
-      {"force_of_position", 0, 1,
-       made([](auto&, double size, double force, double x, double) {
+      {"force_of_position", 0, 1, made([](auto&, double size, double force, double x, double) {
          return force + size * kSlipForce * x * x;
        })},
-      {"force_of_position", 1, 1,
-       made([](auto&, double size, double force, double x, double) {
+      {"force_of_position", 1, 1, made([](auto&, double size, double force, double x, double) {
          return force + size * kSlipForce * x * x * x;
        })},
   };

@@ -14,23 +14,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// α, σ and Tc that are well known; a loop far below slip: T* = 2 N, Tc = 10 N.
-FitResult Made() {
-  FitResult result;
-  result.law = {1e7, 0.4, 10.0};
-  for (const char* name : {"sigma", "alpha", "slip_force"}) {
-    ParameterEstimate& estimate = result.parameters.emplace_back();
-    estimate.name = name;
-    estimate.value = 2.0;
-    estimate.lower95 = 1.9;
-    estimate.upper95 = 2.1;
-    estimate.status = ParameterStatus::kFree;
-  }
-  RecordFit& record = result.records.emplace_back();
-  record.measures.amplitude = 1e-6;
-  record.measures.peak_force = 2.0;
-  return result;
-}
+/// Far below slip.
+FitResult Made() { return testing::MadeFit(/*peak_force=*/2.0); }
 
 TEST(FindMisfit, IsOfTheForceThatWasReachedOrOfSlip) {
   FitResult result = Made();

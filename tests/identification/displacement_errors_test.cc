@@ -109,5 +109,76 @@ TEST(DisplacementErrors, OfAnEncoderAreThoseOfItsRoundingAlone) {
   EXPECT_NEAR(ErrorOfASpring(stages) / expected, 1.0, kDrawn);
 }
 
+TEST(DisplacementErrors, MoveTheTurningPointToWhatIsTheOutermostThen) {
+  // A slider that slips stands at its slip force where it turns; on the way back its force is off
+  // by the errors of the sample and of the turning point, which is the outermost of what is drawn.
+  constexpr double kNoise = 0.05;
+  constexpr double kSigma = 4.0;  // sticks for half the amplitude
+  constexpr std::size_t kDraws = 2000;
+  constexpr std::size_t kCycle = 80;
+  constexpr std::size_t kNear = kCycle / 5;
+  Generator generator(5);
+  Record record;
+  record.displacement = Cycling(Wave::kSine, 1.0, 6.0, kCycle);
+  record.force = testing::Respond(Model("jenkins"), {kSigma, 0.0, 1.0}, record.displacement);
+  for (double& x : record.displacement) x += kNoise * Normal(generator);
+  Stages stages(record, Jenkins(kNoise));
+  const PreparedRecord& prepared = stages.prepared.records[0];
+  const std::span<const double> truth = prepared.displacement();
+  const std::vector<std::size_t> reversals(prepared.reversals.begin(), prepared.reversals.end());
+  ASSERT_EQ(reversals.size(), 12U);
+  const auto sense = [&](std::size_t reversal) { return truth[reversal] > 0 ? 1.0 : -1.0; };
+  const auto sticks = [&](std::size_t reversal, std::size_t i) {
+    const double back = std::abs(truth[reversal] - truth[i]);
+    return 0.15 < back && back < 0.35;
+  };
+
+  double expected = 0.0;
+  double kept = 0.0;  // with the sample that was the outermost
+  double samples = 0.0;
+  for (std::size_t k = 0; k < kDraws; ++k) {
+    std::vector<double> reading(truth.begin(), truth.end());
+    for (double& x : reading) x += kNoise * Normal(generator);
+    const std::vector<double> drawn = prepared.smoother->Smooth(reading);
+    for (const std::size_t reversal : reversals) {
+      const double s = sense(reversal);
+      double outermost = s * drawn[reversal];
+      for (std::size_t i = reversal - kNear; i < reversal + kNear; ++i) {
+        outermost = std::max(outermost, s * drawn[i]);
+      }
+      for (std::size_t i = reversal; i < reversal + kNear; ++i) {
+        if (!sticks(reversal, i)) continue;
+        const double own = s * (drawn[i] - truth[i]);
+        expected += own - (outermost - s * truth[reversal]);
+        kept += own - s * (drawn[reversal] - truth[reversal]);
+        ++samples;
+      }
+    }
+  }
+
+  std::vector<double> theta;
+  const Parameters& parameters = stages.problem.parameters;
+  for (std::size_t p = 0; p < parameters.size(); ++p) theta.push_back(parameters[p].theta);
+  theta[kStiffness] = parameters[kStiffness].ToTheta(kSigma);
+  theta[kSlipForce] = parameters[kSlipForce].ToTheta(1.0);
+  theta[kShape] = 0.0;
+  const DisplacementErrors errors(stages.prepared, stages.data);
+  const Eigen::MatrixXd force = errors.ForceErrors(stages.problem, theta) * stages.data.force;
+  double found = 0.0;
+  for (const std::size_t reversal : reversals) {
+    for (std::size_t i = reversal; i < reversal + kNear; ++i) {
+      if (!sticks(reversal, i)) continue;
+      found += sense(reversal) * force.row(static_cast<Eigen::Index>(i)).mean() / kSigma;
+    }
+  }
+  expected /= samples;
+  kept /= samples;
+  found /= samples / kDraws;
+  // 200 draws of twelve turning points, whose errors are some 0.02: to 0.02/√2400.
+  constexpr double kOfTheMean = 3 * 0.0004;
+  EXPECT_GT(std::abs(expected - kept), 2 * kOfTheMean) << "the case needs it";
+  EXPECT_NEAR(found, expected, kOfTheMean);
+}
+
 }  // namespace
 }  // namespace mindahl::identification

@@ -59,16 +59,16 @@ FitOptions Virgin() {
   return options;
 }
 
-/// Over seeded loops: the share of 95 % intervals that hold the truth and the mean error over its
+/// Over seeded loops: the share of 95 % intervals that cover the truth and the mean error over its
 /// scatter, of σ, α and Tc.
 struct Honesty {
-  std::array<double, 3> held{};
+  std::array<double, 3> covered{};
   std::array<double, 3> bias{};
 };
 
 constexpr std::size_t kLoops = 40;
 // 95 % of 40 loops less three standard deviations √(0.95·0.05/40).
-constexpr double kLeastHeld = 0.95 - 3 * 0.0345;
+constexpr double kLeastCovered = 0.95 - 3 * 0.0345;
 // A bias of half the scatter, and three standard deviations 1/√40 of its mean.
 constexpr double kMostBias = 0.5 + 3 * 0.158;
 
@@ -88,9 +88,9 @@ Honesty Measure(MakeNoisy make_noisy, const FitOptions& options) {
     EXPECT_EQ(fit.records[0].reversals.size(), kReversals);
     for (std::size_t k = 0; k < names.size(); ++k) {
       const ParameterEstimate& estimate = *fit.Find(names[k]);
-      const bool holds = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
-                         (!estimate.upper95 || truth[k] <= *estimate.upper95);
-      honesty.held[k] += holds ? 1.0 / kLoops : 0.0;
+      const bool covers = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
+                          (!estimate.upper95 || truth[k] <= *estimate.upper95);
+      honesty.covered[k] += covers ? 1.0 / kLoops : 0.0;
       const double error = estimate.value - truth[k];
       sum[k] += error / kLoops;
       squares[k] += error * error / kLoops;
@@ -103,13 +103,13 @@ Honesty Measure(MakeNoisy make_noisy, const FitOptions& options) {
 }
 
 void ExpectHonest(const Honesty& honesty) {
-  for (std::size_t k = 0; k < honesty.held.size(); ++k) {
-    EXPECT_GE(honesty.held[k], kLeastHeld) << "parameter " << k;
+  for (std::size_t k = 0; k < honesty.covered.size(); ++k) {
+    EXPECT_GE(honesty.covered[k], kLeastCovered) << "parameter " << k;
     EXPECT_LE(std::abs(honesty.bias[k]), kMostBias) << "parameter " << k;
   }
 }
 
-TEST(DisplacementNoise, IntervalsHoldTheTruthWhereItIsKnown) {
+TEST(DisplacementNoise, IntervalsCoverTheTruthWhereItIsKnown) {
   constexpr double kNoise = 0.02 * kReach;
   FitOptions options = Virgin();
   options.preparation.displacement_noise = kNoise;
@@ -118,14 +118,14 @@ TEST(DisplacementNoise, IntervalsHoldTheTruthWhereItIsKnown) {
       options));
 }
 
-TEST(DisplacementNoise, IntervalsHoldTheTruthWhereItIsFound) {
+TEST(DisplacementNoise, IntervalsCoverTheTruthWhereItIsFound) {
   ExpectHonest(
       Measure([](const Record& clean,
                  Generator& generator) { return WithNoise(clean, 0.02 * kReach, generator); },
               Virgin()));
 }
 
-TEST(DisplacementNoise, IntervalsHoldTheTruthWhereAnEncoderMakesIt) {
+TEST(DisplacementNoise, IntervalsCoverTheTruthWhereAnEncoderMakesIt) {
   ExpectHonest(
       Measure([](const Record& clean,
                  Generator& generator) { return Counted(clean, 0.01 * kReach, generator); },

@@ -259,9 +259,10 @@ TEST(ModelSelection, OptionsThatBreakARuleAreNamed) {
     return std::string("accepted");
   };
   EXPECT_EQ(refusal({}, {.folds = 1}), "folds [-] = 1 is invalid: must be >= 2");
-  EXPECT_EQ(refusal({}, {.largest_delta = -1}),
-            "largest ΔAICc [-] = -1 is invalid: must be finite and >= 0");
   FitOptions options;
+  options.thresholds.indistinguishable = -1;
+  EXPECT_EQ(refusal(options, {}), "largest ΔAICc [-] = -1 is invalid: must be finite and >= 0");
+  options = {};
   options.preparation.held_out = {{}, {}};
   EXPECT_EQ(refusal(options, {}), "held-out masks has 2 values and records has 1: must be equal");
   options.preparation.held_out = {{true}};

@@ -90,6 +90,29 @@ TEST(ResidualStructure, ShareIsThatOfTheVarianceThatRepeats) {
   }
 }
 
+TEST(ResidualStructure, NoiseOfTheMeansIsNotTakenForWhatRepeats) {
+  // Two strokes a direction and one sample a bin: the means alone have a half of the noise's
+  // variance too, 0.2 of all. A share scatters by some 0.1, its mean over the seeds by 0.02.
+  constexpr double kShareError = 0.06;
+  constexpr int kSeeds = 30;
+  constexpr double kNoise = 0.7;
+  const History displacement = Cycling(Wave::kTriangle, 1.0, 2.75, 40);
+  double shares = 0.0;
+  double squares = 0.0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    Generator generator(static_cast<std::uint64_t>(seed));
+    std::vector<double> residual =
+        ResidualsOf(displacement, [](double x, int) { return 1.3 * std::sin(3 * x); });
+    squares = 0.0;
+    for (double& value : residual) {
+      squares += value * value / static_cast<double>(residual.size());
+      value += kNoise * Normal(generator);
+    }
+    shares += StructureOf(displacement, residual).repeatable_share / kSeeds;
+  }
+  EXPECT_NEAR(shares, squares / (squares + kNoise * kNoise), kShareError);
+}
+
 TEST(ResidualStructure, BinsHaveTheMeanAndSignOfEachDirection) {
   // Growing: linear in the position. Falling: constant, of the other sign. Off centre.
   constexpr double kOffset = 37.0;

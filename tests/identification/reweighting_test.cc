@@ -17,25 +17,11 @@ namespace {
 using namespace loop;
 using namespace models;
 
+using testing::FitWeighted;
 using testing::Generator;
 using testing::kLaw;
 using testing::Loop;
 using testing::Stages;
-
-struct Weighted {
-  Noise noise;
-  Solution solution;
-};
-
-Weighted FitWeighted(Stages& stages) {
-  Weighted result;
-  result.solution = stages.Solve();
-  const DisplacementErrors errors(stages.prepared, stages.data);
-  EXPECT_TRUE(FitWithWeights(stages.problem, stages.data, stages.options, errors,
-                             stages.buffers.solver, stages.buffers.response,
-                             SolverOptionsOf(stages.options), result.solution, result.noise));
-  return result;
-}
 
 Record WithOutliers(double share) {
   Generator generator(5);

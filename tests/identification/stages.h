@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/displacement_errors.h"
 #include "identification/inference/noise.h"
+#include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"
@@ -105,6 +107,23 @@ class Stages {
   identification::SearchBuffers buffers;
 };
 
+struct WeightedFit {
+  identification::Noise noise;
+  identification::Solution solution;
+};
+
+/// With the weights that the options ask for.
+inline WeightedFit FitWeighted(Stages& stages) {
+  WeightedFit result;
+  result.solution = stages.Solve();
+  const identification::DisplacementErrors errors(stages.prepared, stages.data);
+  EXPECT_TRUE(identification::FitWithWeights(stages.problem, stages.data, stages.options, errors,
+                                             stages.buffers.solver, stages.buffers.response,
+                                             identification::SolverOptionsOf(stages.options),
+                                             result.solution, result.noise));
+  return result;
+}
+
 /// White noise of a known variance [units of the data²].
 inline identification::Noise KnownNoise(double variance, std::size_t samples) {
   identification::Noise noise;
@@ -124,6 +143,24 @@ inline identification::Autocorrelation FirstOrder(double rho) {
   process.correlations[1] = rho;
   process.innovation_share = 1 - rho * rho;
   return process;
+}
+
+/// A result made by hand: σ, α and Tc that are well known, one record. Tc = 10 N.
+inline identification::FitResult MadeFit(double peak_force) {
+  identification::FitResult result;
+  result.law = {1e7, 0.4, 10.0};
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    identification::ParameterEstimate& estimate = result.parameters.emplace_back();
+    estimate.name = name;
+    estimate.value = 2.0;
+    estimate.lower95 = 1.9;
+    estimate.upper95 = 2.1;
+    estimate.status = identification::ParameterStatus::kFree;
+  }
+  identification::RecordFit& record = result.records.emplace_back();
+  record.measures.amplitude = 1e-6;
+  record.measures.peak_force = peak_force;
+  return result;
 }
 
 }  // namespace mindahl::testing

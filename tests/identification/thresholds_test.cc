@@ -10,14 +10,13 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/record_findings.h"
-#include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/reweighting.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
 #include "identification/judge/adequacy.h"
@@ -74,23 +73,8 @@ FitOptions With(const Thresholds& thresholds) {
 
 // --- diagnosis: pure functions of a result made by hand
 
-FitResult Made() {
-  FitResult result;
-  result.law = {1e7, 0.4, 10.0};
-  for (const char* name : {"sigma", "alpha", "slip_force"}) {
-    ParameterEstimate& estimate = result.parameters.emplace_back();
-    estimate.name = name;
-    estimate.value = 2.0;
-    estimate.lower95 = 1.9;
-    estimate.upper95 = 2.1;
-    estimate.status = ParameterStatus::kFree;
-  }
-  RecordFit record;
-  record.measures.amplitude = 1e-6;
-  record.measures.peak_force = 20.0;
-  result.records.push_back(record);
-  return result;
-}
+/// At gross slip.
+FitResult Made() { return testing::MadeFit(/*peak_force=*/20.0); }
 
 std::string MisfitOf(const Thresholds& thresholds, double misfit, double share) {
   FitResult result = Made();
@@ -416,11 +400,7 @@ bool NoiseIsToldByItsOwnSamples(const Thresholds& thresholds) {
   FitOptions options = Virgin(thresholds);
   options.preparation.displacement_noise = kDither;
   Stages stages(record, options);
-  Solution solution = stages.Solve();
-  const DisplacementErrors errors(stages.prepared, stages.data);
-  Noise weights;
-  FitWithWeights(stages.problem, stages.data, options, errors, stages.buffers.solver,
-                 stages.buffers.response, SolverOptionsOf(options), solution, weights);
+  const auto [weights, solution] = testing::FitWeighted(stages);
   const Eigen::VectorXd residual = stages.ResidualsAt(solution.theta);
   std::vector<unsigned char> counts;
   for (const double share : weights.force_share) counts.push_back(share * share >= 0.8 ? 1 : 0);
@@ -511,6 +491,36 @@ bool TriesARigidContactBeyondAnErrorOf03(const Thresholds& thresholds) {
   return !passes(kBelow * 0.3) && passes(kAbove * 0.3);
 }
 
+AdequacyTest TestWith(std::vector<DepartureFit> fits, double p_value = 1.0) {
+  AdequacyTest test;
+  test.p_value = p_value;
+  test.fits = std::move(fits);
+  return test;
+}
+
+/// Whether residuals of such a chance are doubted.
+bool IsDoubted(const Thresholds& thresholds, double chance) {
+  const Stages stages(SlippingLoop(), With(thresholds));
+  const auto judge = [&](double p_value) {
+    return JudgeAdequacy(stages.problem, {}, TestWith({}, p_value), {}, thresholds, {});
+  };
+  // The chance that is judged is some multiple of the test's.
+  constexpr double kSmall = 1e-6;
+  const double multiple = judge(kSmall).p_value / kSmall;
+  return judge(chance / multiple).verdict != AdequacyVerdict::kAdequate;
+}
+
+DepartureFit FitWith(double p_value, double delta_aicc) {
+  DepartureFit fit;
+  fit.p_value = p_value;
+  fit.delta_aicc = delta_aicc;
+  return fit;
+}
+
+std::size_t CausesAmong(const Thresholds& thresholds, std::vector<DepartureFit> fits) {
+  return CausesOf(TestWith(std::move(fits)), thresholds).size();
+}
+
 /// Whether everything is as the stated value of the threshold makes it.
 using Case = std::function<bool(const Thresholds&)>;
 
@@ -521,6 +531,15 @@ const std::map<std::string_view, Case>& Cases() {
          const Record record = testing::SprungLoop(kMindlin, 6e7);
          return RigIsFound(t, record, kBelow * 0.05, 1e-4) &&
                 !RigIsFound(t, record, kAbove * 0.05, 1e-4);
+       }},
+      {"shape_effect",
+       [](const Thresholds& t) {
+         const auto looks_for_a_rig = [&](double effect) {
+           const BranchLaw law{4e7, 1.0 / 3 - effect, 40.0};
+           return RigIsFound(t, testing::SprungLoop(law, HUGE_VAL), /*p_value=*/0.0,
+                             /*variance=*/1.0);
+         };
+         return !looks_for_a_rig(kBelow * 0.05) && looks_for_a_rig(kAbove * 0.05);
        }},
       {"indistinguishable",
        [](const Thresholds& t) {
@@ -644,6 +663,28 @@ const std::map<std::string_view, Case>& Cases() {
        }},
       {"known_together",
        [](const Thresholds& t) { return KnownTogether(t, 0.6) && !KnownTogether(t, 3.0); }},
+      {"doubt",
+       [](const Thresholds& t) {
+         return IsDoubted(t, kBelow * 0.005) && !IsDoubted(t, kAbove * 0.005);
+       }},
+      {"cause",
+       [](const Thresholds& t) {
+         const auto causes = [&](double p_value) {
+           return CausesAmong(t, {FitWith(p_value, -20)});
+         };
+         return causes(kBelow * 1e-3) == 1 && causes(kAbove * 1e-3) == 0;
+       }},
+      {"rival_cause",
+       [](const Thresholds& t) {
+         const auto causes = [&](double share) {
+           DepartureFit best = FitWith(1e-9, -90);
+           best.explains = 0.6;
+           DepartureFit other = FitWith(1e-9, -30);
+           other.explains = share * best.explains;
+           return CausesAmong(t, {other, best});
+         };
+         return causes(kBelow * 0.5) == 1 && causes(kAbove * 0.5) == 2;
+       }},
       {"rival_past",
        [](const Thresholds& t) {
          return PastIsUndecided(-kBelow * 10, t) && !PastIsUndecided(kAbove * 10, t);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "../support/histories.h"
+#include "../support/message_of.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
@@ -467,15 +468,6 @@ TEST(ContactState, AllocatesNothingWithinItsReserve) {
 
 // --- Refusals ------------------------------------------------------------------------------------
 
-std::string RefusalOf(auto call) {
-  try {
-    call();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(ContactState, RefusesADisplacementByItsValueAndStaysWhereItWas) {
   for (const Case& c : Cases()) {
     for (const History& before : {History{}, History{0.5}, History{0.5, -0.25, 0.125}}) {
@@ -490,9 +482,9 @@ TEST(ContactState, RefusesADisplacementByItsValueAndStaysWhereItWas) {
         const std::string expected = std::string("displacement [m] = ") + value +
                                      " is invalid: must be finite and within +-1e307 m";
         const double at = displacement;
-        EXPECT_EQ(RefusalOf([&] { contact.Move(at); }), expected);
-        EXPECT_EQ(RefusalOf([&] { static_cast<void>(contact.Peek(at)); }), expected);
-        EXPECT_EQ(RefusalOf([&] { static_cast<void>(contact.PeekTangentStiffness(at)); }),
+        EXPECT_EQ(MessageOf([&] { contact.Move(at); }), expected);
+        EXPECT_EQ(MessageOf([&] { static_cast<void>(contact.Peek(at)); }), expected);
+        EXPECT_EQ(MessageOf([&] { static_cast<void>(contact.PeekTangentStiffness(at)); }),
                   expected);
       }
       EXPECT_EQ(contact.Force(), copy.Force());
@@ -507,14 +499,14 @@ TEST(ContactState, RefusesAForceThatStillGrowsBeyondItsReach) {
   using ::testing::HasSubstr;
   ContactState contact(Model("mindlin-dahl"), {1.0, 2.0, 1.0});
   contact.Move(1e200);
-  EXPECT_THAT(RefusalOf([&] { contact.Move(1e201); }),
+  EXPECT_THAT(MessageOf([&] { contact.Move(1e201); }),
               HasSubstr("displacement [m] = 1e+201 is invalid: must be within 1.8e+200 elastic"));
   EXPECT_EQ(contact.Displacement(), 1e200);
   EXPECT_NO_THROW(contact.Move(-1e200));
 }
 
 TEST(ContactState, RefusesAModelThatHasToKnowTheAmplitude) {
-  EXPECT_EQ(RefusalOf([] {
+  EXPECT_EQ(MessageOf([] {
               ContactState(Model("simplified-dahl"), {1.0, 0.5, 1.0});
             }),
             "model simplified-dahl is scaled by the peak of the steady loop: must be given the "
@@ -525,7 +517,7 @@ TEST(ContactState, RefusesAModelThatHasToKnowTheAmplitude) {
 TEST(ContactState, RefusesALawASpringOrAnOriginThatIsNone) {
   using ::testing::HasSubstr;
   const auto refusal = [](const BranchLaw& law, const ContactStateOptions& options) {
-    return RefusalOf([&] { ContactState(Model("dahl"), law, options); });
+    return MessageOf([&] { ContactState(Model("dahl"), law, options); });
   };
   const BranchLaw law{1.0, 0.5, 1.0};
   EXPECT_THAT(refusal({-1.0, 0.5, 1.0}, {}), HasSubstr("tangential stiffness [N/m] = -1"));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../support/histories.h"
+#include "../support/message_of.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/variable_load.h"
@@ -145,15 +146,6 @@ TEST(LoadedContactState, AddsOneZoneForALoadThatRisesAtRest) {
   EXPECT_LE(contact.RememberedZones(), zones + 1);
 }
 
-std::string RefusalOf(auto call) {
-  try {
-    call();
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST(LoadedContactState, RefusesAStepByItsValueAndStaysWhereItWas) {
   using ::testing::HasSubstr;
   LoadDependentLaw soft = UnitLaw(1.0 / 3.0);
@@ -162,8 +154,8 @@ TEST(LoadedContactState, RefusesAStepByItsValueAndStaysWhereItWas) {
   contact.Move(0.5, 1.0);
   const double force = contact.Force();
   const auto refusal = [&](double displacement, double load) {
-    const std::string by_move = RefusalOf([&] { contact.Move(displacement, load); });
-    EXPECT_EQ(RefusalOf([&] { static_cast<void>(contact.Peek(displacement, load)); }), by_move);
+    const std::string by_move = MessageOf([&] { contact.Move(displacement, load); });
+    EXPECT_EQ(MessageOf([&] { static_cast<void>(contact.Peek(displacement, load)); }), by_move);
     EXPECT_EQ(contact.Force(), force);
     EXPECT_EQ(contact.Displacement(), 0.5);
     EXPECT_EQ(contact.NormalLoad(), 1.0);

@@ -15,11 +15,6 @@ namespace mindahl::identification {
 struct SelectionOptions {
   /// Parts into which the cycles are divided for prediction; fewer where there are fewer cycles.
   std::size_t folds = 5;
-
-  /// Models within this ΔAICc of the best are not told apart by it alone: the evidence for the best
-  /// is exp(ΔAICc/2), at 4 less than e² = 7.4 to 1. Noise makes a superfluous parameter look better
-  /// by more than 4 with a chance of P(χ²₁ > 2 + 4) = 1.4 %.
-  double largest_delta = 4.0;
 };
 
 /// A model fitted to all samples that count, and what speaks for it. Pessimistic by default.
@@ -70,11 +65,12 @@ struct ModelSelection {
 /// turn; each fold is predicted by fits to the rest that start from the full fit, the samples held
 /// out still making history. Records with fewer than two closed cycles are never held out.
 ///
-/// *Choice.* The least AICc among converged fits; but those within `largest_delta` of it whose mean
-/// square error of prediction is not larger by a standard error of the difference (paired over
-/// cycles) are indistinguishable from it, and the simplest of these is reported: fewest free
-/// parameters, then rigid, then the least AICc. Without held-out cycles AICc alone decides.
-/// Candidates that are redundant or at a bound are listed, but not chosen while there are others.
+/// *Choice.* The least AICc among converged fits; but those within Thresholds::indistinguishable of
+/// it whose mean square error of prediction is not larger by a standard error of the difference
+/// (paired over cycles) are indistinguishable from it, and the simplest of these is reported:
+/// fewest free parameters, then rigid, then the least AICc. Without held-out cycles AICc alone
+/// decides. Candidates that are redundant or at a bound are listed, but not chosen while there are
+/// others.
 ///
 /// With a robust loss, samples that the best candidate puts beyond 4.685 robust standard deviations
 /// are not scored in any.

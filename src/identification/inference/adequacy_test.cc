@@ -200,13 +200,14 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
     const std::size_t place = PlaceOf(problem, p);
     for (const DepartureFit& fit : fits) {
       if (place == fit.step.size()) continue;
-      // Beyond a factor of e³ a linear step says only that little is known.
+      // Beyond a factor of e³ a linear step says only that little is known; short of it, it errs
+      // by the like of its square.
       constexpr double kFarthest = 3.0;
       const double step = std::clamp(fit.step[place], -kFarthest, kFarthest);
-      const double error = std::min(fit.error[place], kFarthest);
-      const double theta = solution.theta[p] + step;
-      const double one = parameter.ToValue(theta - quantile * error);
-      const double other = parameter.ToValue(theta + quantile * error);
+      const double half = quantile * std::min(fit.error[place], kFarthest) +
+                          std::min(step * step, kFarthest);
+      const double one = parameter.ToValue(solution.theta[p] + step - half);
+      const double other = parameter.ToValue(solution.theta[p] + step + half);
       if (estimate.lower95) estimate.lower95 = std::min({*estimate.lower95, one, other});
       if (estimate.upper95) estimate.upper95 = std::max({*estimate.upper95, one, other});
       if (p == kShape && estimate.lower95) estimate.lower95 = std::max(*estimate.lower95, 0.0);

@@ -10,6 +10,7 @@ namespace {
 double ChanceOfNoise(const AdequacyTest& test) {
   double best = 1.0;
   for (const DepartureFit& fit : test.fits) best = std::min(best, fit.p_value);
+  if (test.fits.empty()) return std::min(1.0, 2 * test.p_value);
   return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
 }
 

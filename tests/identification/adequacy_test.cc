@@ -1,0 +1,261 @@
+#include "mindahl/identification/adequacy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "recovery/recovered.h"
+
+// Whether a fit knows that its model is the wrong one, and what is beside it.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::Generator;
+using testing::History;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Normal;
+using testing::Respond;
+using testing::Wave;
+
+constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+constexpr double kReach = 3e-6;  // [m], twice gross slip
+constexpr double kNoise = 0.002 * kLaw.slip_force;
+constexpr int kCycle = 200;      // samples
+constexpr double kStep = 0.005;  // [s]
+
+FitResult Fitted(const Record& record, const FitOptions& options = {}) {
+  return Fit({&record, 1}, options, Depth::kIntervals);
+}
+
+// --- Loops that the model describes
+
+/// Noise of unit variance, each value `memory` times the last and something new.
+std::vector<double> NoiseOf(double memory, std::size_t samples, Generator& generator) {
+  std::vector<double> noise;
+  double value = Normal(generator);
+  for (std::size_t i = 0; i < samples; ++i) {
+    noise.push_back(value);
+    value = memory * value + std::sqrt(1 - memory * memory) * Normal(generator);
+  }
+  return noise;
+}
+
+constexpr int kLoops = 200;
+
+struct Shares {
+  double below_5_percent = 0.0;
+  double doubted = 0.0;
+};
+
+Shares OfCleanLoops(double memory, double cycles) {
+  Shares shares;
+  const History displacement = Cycling(Wave::kSine, kReach, cycles, kCycle);
+  const std::vector<double> force = Respond(Model("mindlin-dahl"), kLaw, displacement);
+  for (int seed = 1; seed <= kLoops; ++seed) {
+    Generator generator(static_cast<std::uint64_t>(seed));
+    const std::vector<double> noise = NoiseOf(memory, force.size(), generator);
+    Record record = MakeRecord(displacement, force);
+    for (std::size_t i = 0; i < force.size(); ++i) record.force[i] += 4 * kNoise * noise[i];
+    const Adequacy adequacy = Fitted(record).adequacy;
+    shares.below_5_percent += adequacy.p_value < 0.05 ? 1.0 / kLoops : 0.0;
+    shares.doubted += adequacy.verdict != AdequacyVerdict::kAdequate ? 1.0 / kLoops : 0.0;
+  }
+  return shares;
+}
+
+// Of 200 loops at 5 %, three standard deviations √(0.05·0.95/200) above. Below there is no limit:
+// the chance is Bonferroni's, of two tests and of the best of all causes.
+constexpr double kMostBelow = 0.05 + 3 * 0.0154;
+// At 0.5 %, likewise.
+constexpr double kMostDoubted = 0.005 + 3 * 0.005;
+
+TEST(Adequacy, OfLoopsWithWhiteNoiseIsSeldomDoubted) {
+  const Shares shares = OfCleanLoops(/*memory=*/0.0, /*cycles=*/2.0);
+  EXPECT_LE(shares.below_5_percent, kMostBelow);
+  EXPECT_LE(shares.doubted, kMostDoubted);
+}
+
+TEST(Adequacy, OfLoopsWithAutocorrelatedNoiseIsSeldomDoubted) {
+  const Shares shares = OfCleanLoops(/*memory=*/0.9, /*cycles=*/4.0);
+  EXPECT_LE(shares.below_5_percent, kMostBelow);
+  EXPECT_LE(shares.doubted, kMostDoubted);
+}
+
+// --- Contacts that are not alone, by a known size
+
+constexpr double kOmega = 2 * 3.14159265358979323846 / (kCycle * kStep);  // [1/s]
+
+/// A sine and some of its third harmonic, by which what grows with the displacement is told from
+/// what grows with its second derivative; it turns where the sine does.
+/// @param order  of the derivative by time
+double MotionAt(double time, int order = 0) {
+  const double quarter = order * std::acos(-1.0) / 2;
+  const auto wave = [&](int harmonic) {
+    return std::pow(harmonic * kOmega, order) * std::sin(harmonic * kOmega * time + quarter);
+  };
+  return kReach * (wave(1) + 0.1 * wave(3)) / 0.9;
+}
+
+/// Four cycles, begun on the way.
+Record Alone(const SeriesSpring& rig = {}) {
+  constexpr int kFirst = 70;
+  Record record;
+  for (int i = 0; i <= 4 * kCycle; ++i) {
+    record.time.push_back(kStep * i);
+    record.displacement.push_back(MotionAt(record.time.back()));
+  }
+  record.force.resize(record.size());
+  const FrictionModel& model = Model("mindlin-dahl");
+  EvaluateForce(model, kLaw, testing::PathOf(model, record.displacement), record.displacement,
+                record.force, rig);
+  return testing::From(record, kFirst);
+}
+
+/// The force is that of so many samples before.
+Record LateBy(std::size_t samples) {
+  Record record = Alone();
+  for (std::size_t i = record.size(); i-- > samples;) record.force[i] = record.force[i - samples];
+  return testing::From(record, samples);
+}
+
+/// Each reversal loses so much of the way.
+Record WithGap(double gap) {
+  Record record = Alone();
+  double at = record.displacement.front();
+  History contact;
+  for (const double x : record.displacement) contact.push_back(at = std::clamp(at, x, x + gap));
+  record.force = Respond(Model("mindlin-dahl"), kLaw, contact,
+                         {.state = InitialState::kSteady, .unloaded_displacement = 0.0});
+  return record;
+}
+
+struct Known {
+  std::string_view code;
+  double size;
+  std::string_view unit;
+  Record record;
+  FitOptions options = {};
+  double noise = 1.0;  // over kNoise
+};
+
+/// Wider ones are not of first order near the reversals, where a sine is slow: a gap of half a per
+/// cent of the reach is taken for three quarters of it.
+constexpr double kGap = 5e-4 * kReach;
+
+std::vector<Known> KnownDepartures() {
+  const double stiffness = kLaw.slip_force / kReach;
+  const auto known = [](std::string_view code, double size, std::string_view unit,
+                        const std::function<double(double time)>& column) {
+    Record record = Alone();
+    for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += size * column(record.time[i]);
+    return Known{code, size, unit, record};
+  };
+  const auto derivative = [](int order) {
+    return [order](double time) { return MotionAt(time, order); };
+  };
+  FitOptions mindlin;  // or the shape takes what the rig does
+  mindlin.model = &Model("mindlin");
+  return {
+      {"channel_lag", 2 * kStep, "s", LateBy(2)},
+      known("viscous_force", 0.03 * stiffness / kOmega, "N s/m", derivative(1)),
+      known("plateau_slope", 0.03 * stiffness, "N/m", derivative(0)),
+      known("force_drift", -0.01 * kLaw.slip_force, "N/s", [](double time) { return time; }),
+      known("inertia", 0.01 * stiffness / (kOmega * kOmega), "kg", derivative(2)),
+      {"backlash", kGap, "m", WithGap(kGap), {}, 0.1},
+      {"rig_in_series", 0.1 / kLaw.tangential_stiffness, "m/N",
+       Alone({kLaw.tangential_stiffness / 0.1}), mindlin},
+  };
+}
+
+const Cause* Find(const FitResult& fit, std::string_view code) {
+  const auto found = std::ranges::find(fit.adequacy.causes, code, &Cause::code);
+  return found == fit.adequacy.causes.end() ? nullptr : &*found;
+}
+
+TEST(Adequacy, CausesHaveTheirSizeInTheirUnit) {
+  constexpr double kSizeError = 0.1;  // of first order as they are
+  for (const Known& known : KnownDepartures()) {
+    for (const int sense : {1, -1}) {
+      SCOPED_TRACE(std::string(known.code) + (sense < 0 ? ", the other sense" : ""));
+      Record record = known.record;
+      // A drift is of the force as it is recorded, everything else is the contact's.
+      const double size = known.code == "force_drift" ? sense * known.size : known.size;
+      Generator generator(7);
+      for (double& force : record.force) force = sense * (force + known.noise * kNoise * Normal(generator));
+      const FitResult fit = Fitted(record, known.options);
+      EXPECT_EQ(fit.force_sense, sense);
+      EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kDoubtful);
+      const Cause* cause = Find(fit, known.code);
+      ASSERT_NE(cause, nullptr);
+      EXPECT_EQ(cause->unit, known.unit);
+      EXPECT_NEAR(cause->size / size, 1.0, kSizeError);
+      if (known.noise < 1) continue;  // less than what first order leaves
+      for (const auto& [name, truth] : {std::pair{"sigma", kLaw.tangential_stiffness},
+                                        std::pair{"alpha", kLaw.shape_exponent},
+                                        std::pair{"slip_force", kLaw.slip_force}}) {
+        const ParameterEstimate& estimate = *fit.Find(name);
+        if (estimate.status == ParameterStatus::kFixed) continue;
+        EXPECT_LE(estimate.lower95.value_or(truth), truth) << name << " covers the truth";
+        EXPECT_GE(estimate.upper95.value_or(truth), truth) << name << " covers the truth";
+      }
+    }
+  }
+}
+
+TEST(Adequacy, LagOfTwoSamplesIsTheFirstOfTheCauses) {
+  Record record = LateBy(2);
+  Generator generator(3);
+  for (double& force : record.force) force += kNoise * Normal(generator);
+  for (const bool timed : {true, false}) {
+    if (!timed) record.time.clear();
+    const FitResult fit = Fitted(record);
+    ASSERT_FALSE(fit.adequacy.causes.empty());
+    const Cause& cause = fit.adequacy.causes.front();
+    EXPECT_EQ(cause.code, "channel_lag");
+    EXPECT_EQ(cause.unit, timed ? "s" : "samples");
+    EXPECT_NEAR(cause.size / (timed ? kStep : 1.0), 2.0, 0.2);
+    EXPECT_GT(cause.explains, 0.5);
+    EXPECT_GT(cause.moves, 1.0) << "the parameters";
+  }
+}
+
+TEST(Adequacy, OfARecordTooShortForAnyCauseIsNotDoubted) {
+  const History displacement = Cycling(Wave::kSine, kReach, 1.0, 12);
+  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  Generator generator(3);
+  for (double& force : record.force) force += kNoise * Normal(generator);
+  const Adequacy adequacy = Fitted(record).adequacy;
+  EXPECT_EQ(adequacy.verdict, AdequacyVerdict::kAdequate);
+  EXPECT_EQ(adequacy.p_value, 1.0);
+}
+
+TEST(Adequacy, CauseThatIsFittedIsNoneAnyLonger) {
+  for (const Known& known : KnownDepartures()) {
+    const bool viscous = known.code == "viscous_force";
+    if (!viscous && known.code != "force_drift" && known.code != "plateau_slope") continue;
+    Record record = known.record;
+    Generator generator(7);
+    for (double& force : record.force) force += kNoise * Normal(generator);
+    FitOptions options;
+    options.terms.emplace_back(viscous ? "viscous" : known.code);
+    const FitResult fit = Fitted(record, options);
+    EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << known.code;
+    EXPECT_LT(fit.adequacy.misfit_over_noise, 0.2) << known.code;
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::identification
