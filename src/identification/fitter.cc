@@ -133,8 +133,8 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
     return candidate;
   };
   const auto find_starts = [&](Candidate& candidate,
-                               double rival = std::numeric_limits<double>::infinity()) {
-    return FindStartsOf(candidate, attempt.thin, options, rival, attempt.buffers, attempt.memory);
+                               double look = std::numeric_limits<double>::infinity()) {
+    return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers, attempt.memory);
   };
   if (const std::optional<InitialState> given = GivenState(attempt)) {
     Candidate candidate = make(*given, first);
