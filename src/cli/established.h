@@ -9,13 +9,12 @@ namespace mindahl::cli {
 /// Whether a fit is done, for the exit status: it converged and, where it is strict, every free
 /// parameter is identifiable and the model is not inadequate.
 inline bool Established(const identification::FitResult& fit, bool strict) {
-  using namespace identification;
   if (!fit.converged) return false;
   if (!strict) return true;
-  if (fit.adequacy.verdict == AdequacyVerdict::kInadequate) return false;
-  return std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
-    return estimate.status == ParameterStatus::kFixed ||
-           estimate.identifiability == Identifiability::kIdentifiable;
+  if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) return false;
+  return std::ranges::all_of(fit.parameters, [](const identification::ParameterEstimate& estimate) {
+    return estimate.status == identification::ParameterStatus::kFixed ||
+           estimate.identifiability == identification::Identifiability::kIdentifiable;
   });
 }
 

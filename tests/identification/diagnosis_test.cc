@@ -93,6 +93,12 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   EXPECT_EQ(findings[1].code, "alpha_not_identifiable");
   EXPECT_EQ(findings[1].kind, "with_slip_force");
   EXPECT_THAT(findings[1].parameters, ElementsAre("alpha"));
+  result.records[0].facts.closed = true;
+  result.records[0].facts.peak_force = 1.75;
+  result.records[0].facts.amplitude = 0.5e-6;
+  findings = FindOpenSlipForce(result, {.open_above = true});
+  EXPECT_EQ(findings[0].Number("peak_force"), 1.75) << "as the report has it";
+  EXPECT_EQ(findings[0].Number("amplitude"), 0.5e-6);
   result.parameters[1].status = ParameterStatus::kFixed;
   EXPECT_EQ(FindOpenSlipForce(result, {.open_above = true}).size(), 1U);
 }

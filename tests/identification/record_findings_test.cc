@@ -43,7 +43,8 @@ TEST(FindInRecords, NothingInAFlawlessOne) { EXPECT_THAT(FindIn(Flawless()), IsE
 
 TEST(FindInRecords, UncertainReversalsHaveBothCountsAndGates) {
   RecordFit record = Flawless();
-  record.gate = {8e-4, 19, false, 148, 3e-6};
+  record.gate = {8e-4, 21, false, 148, 3e-6};
+  record.reversals.resize(19);  // after smoothing
   const std::vector<Finding> findings = FindIn(record);
   ASSERT_THAT(Codes(findings), ElementsAre("reversals_uncertain"));
   EXPECT_EQ(findings[0].severity, Severity::kWarning);
@@ -198,6 +199,35 @@ TEST(FitOfARecord, SaysWhichGlitchesItLeavesOut) {
   const Finding* finding = fit.FindFinding("glitches_left_out");
   ASSERT_NE(finding, nullptr);
   EXPECT_EQ(finding->Number("row"), 124);
+}
+
+TEST(FitOfARecord, WhoseReversalsAreNoiseKnowsNothingOfTheLaw) {
+  Record record = Loop();
+  testing::Generator generator(5);
+  for (double& x : record.displacement) x += 0.01 * kReach * testing::Normal(generator);
+  FitOptions options;
+  options.preparation.reversal_gate = 0.0;
+  options.preparation.displacement_noise = 0.0;
+  const std::vector<RecordView> views = {record};
+  Fitter fitter(options);
+  const FitResult& fit = fitter.Fit(views, Depth::kIntervals);
+  ASSERT_GT(fit.records[0].reversals.size(), 50U) << "of six";
+  EXPECT_NE(fit.FindFinding("energy_contradiction"), nullptr);
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    EXPECT_EQ(fit.Find(name)->identifiability, Identifiability::kNotIdentifiable) << name;
+  }
+}
+
+TEST(FitOfARecord, WhoseNoiseTheContactIsTakenToFollowIsWarnedOf) {
+  Record record = Loop();
+  testing::Generator generator(5);
+  for (double& x : record.displacement) x += 0.02 * kReach * testing::Normal(generator);
+  const std::vector<RecordView> views = {record};
+  FitOptions options;
+  EXPECT_EQ(Fitter(options).Fit(views, Depth::kIntervals).FindFinding("path_too_long"), nullptr)
+      << "it is smoothed";
+  options.preparation.displacement_noise = 0.0;
+  EXPECT_NE(Fitter(options).Fit(views, Depth::kIntervals).FindFinding("path_too_long"), nullptr);
 }
 
 }  // namespace

@@ -27,6 +27,13 @@ Report TorqueReport() {
   input.records[0].displacement.unit = "deg";
   input.records[0].force.unit = "N m";
   input.known.normal_load = 100.0;
+  loop::LoopFacts& facts = input.fit.records[0].facts;
+  facts.closed = true;
+  facts.amplitude = 0.5;
+  facts.peak_force = facts.half_gap.emplace(3.0);
+  facts.sliding_amplitude = 0.25;
+  facts.slope_after_reversal = 12.0;
+  facts.plateau_slope = 1.0;
   input.fit.findings = {{.code = "slip_force_bounded_below",
                          .parameters = {"slip_force"},
                          .numbers = {{"peak_force", 3.0}, {"amplitude", 0.5}}}};

@@ -76,11 +76,14 @@ std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncer
 std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile) {
   std::vector<Finding> findings;
   if (!profile.open_above) return findings;
+  // Those of the report, which are of closed cycles where there are any.
+  const loop::LoopFacts& facts = result.WidestRecord().facts;
   const loop::LoopMeasures& measures = result.WidestRecord().measures;
   findings.push_back(
       {.code = "slip_force_bounded_below",
        .parameters = {"slip_force"},
-       .numbers = {{"peak_force", measures.peak_force}, {"amplitude", measures.amplitude}}});
+       .numbers = {{"peak_force", facts.closed ? facts.peak_force : measures.peak_force},
+                   {"amplitude", facts.closed ? facts.amplitude : measures.amplitude}}});
   if (result.Find("alpha")->status != ParameterStatus::kFixed) {
     findings.push_back(
         {.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "with_slip_force"});

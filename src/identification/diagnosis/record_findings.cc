@@ -15,9 +15,11 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kLawParameters = {"sigma", "alpha", "slip_force"};
 
-Finding UncertainReversals(const loop::ReversalGate& gate) {
+/// Counted as the report does, after smoothing.
+Finding UncertainReversals(const RecordFit& record) {
+  const loop::ReversalGate& gate = record.gate;
   return {.code = "reversals_uncertain",
-          .numbers = {{"count", static_cast<double>(gate.count)},
+          .numbers = {{"count", static_cast<double>(record.reversals.size())},
                       {"gate", gate.gate},
                       {"other_count", static_cast<double>(gate.other_count)},
                       {"other_gate", gate.other_gate}}};
@@ -78,7 +80,7 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
       }
       findings.push_back(std::move(finding));
     };
-    if (!record.gate.certain) append(UncertainReversals(record.gate));
+    if (!record.gate.certain) append(UncertainReversals(record));
     if (record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
       append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
     }
