@@ -19,7 +19,7 @@
 #include "identification/inference/reweighting.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
-#include "identification/judge/adequacy.h"
+#include "identification/diagnosis/adequacy.h"
 #include "identification/judge/judge.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/rig_requirement.h"

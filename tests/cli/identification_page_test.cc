@@ -5,12 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "identification/inference/departures.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
 #include "support/contract.h"
 
-// docs/identification.md against the library: its tables are those of the parameters and of the
-// thresholds, row by row.
+// docs/identification.md against the library: its tables are those of the parameters, of the
+// departures and of the thresholds, row by row.
 namespace mindahl::identification {
 namespace {
 
@@ -64,6 +65,26 @@ TEST(IdentificationPage, HasARowForEveryThresholdAndNoOther) {
                                    Thresholds().*row.value, row.unit, row.meaning, row.reason));
   }
   EXPECT_EQ(RowsOf("Thresholds"), expected);
+}
+
+/// In a table, where a bar would end the cell.
+std::string Cell(std::string_view text) {
+  std::string cell;
+  for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
+  return cell;
+}
+
+TEST(IdentificationPage, HasARowForEveryDepartureAndNoOther) {
+  Rows expected;
+  for (const Departure& departure : Departures()) {
+    const std::string option =
+        departure.option.empty() ? "" : fmt::format("`{}`", departure.option);
+    const std::string_view by_sample =
+        departure.unit_by_sample.empty() ? departure.unit : departure.unit_by_sample;
+    expected.push_back(fmt::format("| `{}` | {} | {} | {} | {} |", departure.code, departure.unit,
+                                   by_sample, Cell(departure.meaning), option));
+  }
+  EXPECT_EQ(RowsOf("Departures"), expected);
 }
 
 }  // namespace

@@ -160,7 +160,8 @@ std::vector<Known> KnownDepartures() {
   const auto known = [](std::string_view code, double size, std::string_view unit,
                         const std::function<double(double time)>& column) {
     Record record = Alone();
-    for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += size * column(record.time[i]);
+    for (std::size_t i = 0; i < record.size(); ++i)
+      record.force[i] += size * column(record.time[i]);
     return Known{code, size, unit, record};
   };
   const auto derivative = [](int order) {
@@ -194,7 +195,8 @@ TEST(Adequacy, CausesHaveTheirSizeInTheirUnit) {
       // A drift is of the force as it is recorded, everything else is the contact's.
       const double size = known.code == "force_drift" ? sense * known.size : known.size;
       Generator generator(7);
-      for (double& force : record.force) force = sense * (force + known.noise * kNoise * Normal(generator));
+      for (double& force : record.force)
+        force = sense * (force + known.noise * kNoise * Normal(generator));
       const FitResult fit = Fitted(record, known.options);
       EXPECT_EQ(fit.force_sense, sense);
       EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kDoubtful);
@@ -203,9 +205,9 @@ TEST(Adequacy, CausesHaveTheirSizeInTheirUnit) {
       EXPECT_EQ(cause->unit, known.unit);
       EXPECT_NEAR(cause->size / size, 1.0, kSizeError);
       if (known.noise < 1) continue;  // less than what first order leaves
-      for (const auto& [name, truth] : {std::pair{"sigma", kLaw.tangential_stiffness},
-                                        std::pair{"alpha", kLaw.shape_exponent},
-                                        std::pair{"slip_force", kLaw.slip_force}}) {
+      for (const auto& [name, truth] :
+           {std::pair{"sigma", kLaw.tangential_stiffness}, std::pair{"alpha", kLaw.shape_exponent},
+            std::pair{"slip_force", kLaw.slip_force}}) {
         const ParameterEstimate& estimate = *fit.Find(name);
         if (estimate.status == ParameterStatus::kFixed) continue;
         EXPECT_LE(estimate.lower95.value_or(truth), truth) << name << " covers the truth";

@@ -19,7 +19,7 @@
 #include "identification/inference/profile.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
-#include "identification/judge/adequacy.h"
+#include "identification/diagnosis/adequacy.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/trend.h"

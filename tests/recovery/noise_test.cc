@@ -163,6 +163,7 @@ TEST(Noise, LoopFarFromSlipNeverHasAnIdentifiableSlipForce) {
   const Record clean = LoopOf(kMindlin, Cycling(Wave::kSine, kLambda * kGrossSlip, 1.5, 100));
   const double peak = *std::ranges::max_element(clean.force);
   int confident = 0;
+  int stiff = 0;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     Generator generator(static_cast<std::uint64_t>(seed));
     const FitResult fit = FitOne(WithForceNoise(clean, 0.01 * peak, generator));
@@ -171,9 +172,11 @@ TEST(Noise, LoopFarFromSlipNeverHasAnIdentifiableSlipForce) {
       ++confident;
       ADD_FAILURE() << "seed " << seed << ": " << slip_force.value;
     }
-    // What it does show is the stiffness.
-    EXPECT_EQ(fit.Find("sigma")->identifiability, Identifiability::kIdentifiable) << seed;
+    // What it does show is the stiffness: of contact and rig, where it cannot tell these.
+    stiff += fit.Find("sigma")->identifiability == Identifiability::kIdentifiable ||
+             fit.FindFinding("shape_or_rig") != nullptr;
   }
+  EXPECT_EQ(stiff, kSeeds);
   EXPECT_EQ(confident, 0);
 }
 

@@ -65,38 +65,78 @@ enum Row : std::size_t {
   kPosition,
 };
 
+// Sizes are of the first column; where there are several, the meaning says what the others are.
 constexpr std::array<Departure, 16> kDepartures = {{
-    // The force's channel is late by so much.
-    {"channel_lag", "s", "", "", "samples"},
-    // C of C·dδ/dt; it dissipates where it is positive.
-    {"viscous_force", "N s/m", "--viscous fit", "viscous", "N samples/m"},
-    // Of a spring beside the contact.
-    {"plateau_slope", "N/m", "--plateau-slope", "plateau_slope"},
-    // Of the force as the file has it.
-    {"force_drift", "N/s", "--drift", "force_drift", "N/sample"},
-    // Of the contact's force for as much of the measured load, over its mean: 1 in proportion.
-    {"normal_load", "-", "--follow-load"},
-    // Of each branch, over its reach to slip: where half of the reach is gone.
-    {"shape_of_law", "", ""},
-    // Coulomb's, beside the contact; it dissipates where it is positive.
-    {"guide_friction", "N", ""},
-    {"rig_in_series", "m/N", "--rig-stiffness fit", "rig_stiffness"},
-    // The whole way that is lost at a reversal; none is before the first.
-    {"backlash", "m", ""},
-    // The contact sees x + size·x²/L, x from the middle of the record and L the half range.
-    {"displacement_sensor", "", ""},
-    // In front of the sensor of the force: m·d²δ/dt².
-    {"inertia", "kg", "", "", "N samples²/m"},
-    // (1 ± size)·T, + where the force is in the sense of a positive displacement.
-    {"unequal_directions", "-", ""},
-    // Growth of the contact's force from the beginning of the first record to its end.
-    {"running_in", "-", ""},
-    // Lost of what is beyond nine tenths of the largest force.
-    {"force_saturates", "-", ""},
-    // Growth of the contact's force from the middle of the record to its end, L further.
-    {"load_varies", "-", ""},
-    // size·Tc·(x/L)²
-    {"force_of_position", "", ""},
+    {.code = "channel_lag",
+     .meaning = "by which the force's channel is late",
+     .unit = "s",
+     .option = "",
+     .unit_by_sample = "samples"},
+    {.code = "viscous_force",
+     .meaning = "C of a force C·dδ/dt; it dissipates where positive",
+     .unit = "N s/m",
+     .option = "--viscous fit",
+     .term = "viscous",
+     .unit_by_sample = "N samples/m"},
+    {.code = "plateau_slope",
+     .meaning = "of a spring beside the contact",
+     .unit = "N/m",
+     .option = "--plateau-slope",
+     .term = "plateau_slope"},
+    {.code = "force_drift",
+     .meaning = "of the force as the file has it",
+     .unit = "N/s",
+     .option = "--drift",
+     .term = "force_drift",
+     .unit_by_sample = "N/sample"},
+    {.code = "normal_load",
+     .meaning = "of the contact's force for as much of the measured load: 1 in proportion",
+     .unit = "-",
+     .option = "--follow-load"},
+    {.code = "shape_of_law",
+     .meaning = "bulge of each branch over its way to slip, where half of it is gone",
+     .unit = "",
+     .option = ""},
+    {.code = "guide_friction",
+     .meaning = "Coulomb's, beside the contact; it dissipates where positive",
+     .unit = "N",
+     .option = ""},
+    {.code = "rig_in_series",
+     .meaning = "compliance of a spring in series",
+     .unit = "m/N",
+     .option = "--rig-stiffness fit",
+     .term = "rig_stiffness"},
+    {.code = "backlash",
+     .meaning = "the whole way that is lost at a reversal",
+     .unit = "m",
+     .option = ""},
+    {.code = "displacement_sensor",
+     .meaning = "the contact sees x + size·x²/L, x from the record's middle; and x³",
+     .unit = "",
+     .option = ""},
+    {.code = "inertia",
+     .meaning = "mass in front of the sensor of the force, m·d²δ/dt²",
+     .unit = "kg",
+     .option = "",
+     .unit_by_sample = "N samples²/m"},
+    {.code = "unequal_directions",
+     .meaning = "(1 ± size)·T, + where it is in the sense of a positive displacement",
+     .unit = "-",
+     .option = ""},
+    {.code = "running_in",
+     .meaning = "growth of the contact's force from the first record's beginning to its end",
+     .unit = "-",
+     .option = ""},
+    {.code = "force_saturates",
+     .meaning = "lost of what is beyond nine tenths of the largest force; and T³",
+     .unit = "-",
+     .option = ""},
+    {.code = "load_varies",
+     .meaning =
+         "growth of the contact's force over L from the record's middle; and over x², and of |T|",
+     .unit = "-",
+     .option = ""},
+    {.code = "force_of_position", .meaning = "size·Tc·(x/L)²; and x³", .unit = "", .option = ""},
 }};
 
 /// How far the branch has come, of the way to slip.

@@ -10,12 +10,12 @@
 namespace mindahl::identification {
 
 /// A way in which a record may depart from the model, to first order: forces in proportion to one
-/// to three columns. What is taken for what, and the sign of its size, beside each in the table of
-/// departures.cc.
+/// to three columns.
 struct Departure {
   std::string_view code;
-  std::string_view unit;    // of the size, which is the first column's; empty where it says little
-  std::string_view option;  // of the command line; empty where there is none
+  std::string_view meaning;  // of the size, with its sign; L is the half range of displacement
+  std::string_view unit;     // of the size, which is the first column's; empty where it says little
+  std::string_view option;   // of the command line; empty where there is none
   /// Names the term of a fit that is the same; it is not looked for where that is fitted.
   std::string_view term = {};
   std::string_view unit_by_sample = {};  // where records have no time; empty where it is the same

@@ -1,4 +1,4 @@
-#include "identification/judge/adequacy.h"
+#include "identification/diagnosis/adequacy.h"
 
 #include <algorithm>
 #include <cmath>
