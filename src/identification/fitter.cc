@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/adequacy_test.h"
@@ -19,7 +20,6 @@
 #include "identification/inference/reweighting.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
-#include "identification/diagnosis/adequacy.h"
 #include "identification/judge/judge.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/rig_requirement.h"

@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
-#include "identification/diagnosis/adequacy.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/trend.h"

@@ -204,8 +204,8 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
       // by the like of its square.
       constexpr double kFarthest = 3.0;
       const double step = std::clamp(fit.step[place], -kFarthest, kFarthest);
-      const double half = quantile * std::min(fit.error[place], kFarthest) +
-                          std::min(step * step, kFarthest);
+      const double half =
+          quantile * std::min(fit.error[place], kFarthest) + std::min(step * step, kFarthest);
       const double one = parameter.ToValue(solution.theta[p] + step - half);
       const double other = parameter.ToValue(solution.theta[p] + step + half);
       if (estimate.lower95) estimate.lower95 = std::min({*estimate.lower95, one, other});
