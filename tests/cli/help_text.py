@@ -35,7 +35,10 @@ EXEMPT = {
 }
 
 # Options of other programs in the documentation.
-OF_OTHERS = {"--preset", "--build", "--target", "--peers"}
+OF_OTHERS = {
+    "--preset", "--build", "--target", "--peers",
+    "--details", "--half", "--jobs", "--kind", "--loops", "--write",
+}
 
 
 def help_of(program, command):

@@ -288,11 +288,6 @@ void DeriveTwice(std::span<const double> values, std::span<const double> time,
 /// Places of a record's samples, branches yet unknown.
 /// @param force     of the contact, over the slip force and at its load
 /// @param complete  that of the whole model
-/// Turning points between the samples have no load of their own.
-bool HasLoadChange(const ScaledRecord& record) {
-  return !record.load_change.empty() && record.load_change.size() == record.size();
-}
-
 std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> time,
                             const Neighbours& neighbours, std::span<const double> force,
                             std::span<const double> complete,
@@ -316,7 +311,7 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
                  .peak = peak,
                  .response = load != 0 ? force[i] / load : 0.0,
                  .slope = sensitivity.sample_slope[i],
-                 .load_change = HasLoadChange(record) ? record.load_change[i] : 0.0,
+                 .load_change = record.load_change.empty() ? 0.0 : record.load_change[i],
                  .gain = sensitivity.sample_gain[i]};
   }
   return places;
@@ -488,7 +483,10 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
       return problem.parameters[p].term->name == kDepartures[d].term;
     });
-    const bool is_unknown = d == kMeasuredLoad && std::ranges::none_of(records, &HasLoadChange);
+    const bool is_unknown =
+        d == kMeasuredLoad && std::ranges::all_of(records, [](const ScaledRecord& record) {
+          return record.load_change.empty();
+        });
     if (is_fitted || is_unknown) continue;
     const auto is_of = [&](const Column& column) { return column.departure == d; };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(kColumns, is_of));

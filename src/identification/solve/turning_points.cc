@@ -145,6 +145,7 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
       target.inserted.push_back(0);
       if (!record.velocity.empty()) target.velocity.push_back(record.velocity[i]);
       if (!record.load_ratio.empty()) target.load_ratio.push_back(record.load_ratio[i]);
+      if (!record.load_change.empty()) target.load_change.push_back(record.load_change[i]);
     };
     const auto put_in = [&](std::size_t i, double sense) {
       turned->reversals[r].push_back(target.size());
