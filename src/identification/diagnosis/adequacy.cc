@@ -34,6 +34,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
                        std::span<const ParameterEstimate> estimates) {
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
+  adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->force;
   adequacy.p_value = ChanceOfNoise(test);
   const auto& reported = problem.parameters.reported();
   for (const DepartureFit& fit : causes) {
@@ -61,11 +62,8 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
   const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);
-  // rms² is misfit² and noise².
-  const double ratio = result.adequacy.misfit_over_noise;
-  const double misfit = result.residuals.rms * ratio / std::hypot(1.0, ratio);
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         misfit > thresholds.failing_misfit * force;
+         result.adequacy.misfit > thresholds.failing_misfit * force;
 }
 
 }  // namespace mindahl::identification
