@@ -126,7 +126,10 @@ std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thr
   // Where the slip force is open it says nothing of how well the loop is followed.
   const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);
   if (!(force > 0)) return std::nullopt;
-  const double misfit = result.residuals.rms / force;
+  // What a robust loss has weighed down is not the model's.
+  const double rms = result.outliers > 0 ? std::hypot(result.adequacy.misfit, result.force_noise)
+                                         : result.residuals.rms;
+  const double misfit = rms / force;
   if (!(misfit > thresholds.poor_misfit)) return std::nullopt;
   const bool fails = misfit > thresholds.failing_misfit;
   for (const RecordFit& record : result.records) {

@@ -94,7 +94,8 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                                                const Thresholds& thresholds) {
   const RecordFit& record = result.WidestRecord();
   const std::optional<double> measured = EnergyThatCounts(record);
-  if (!measured || !ClaimsAnAnswer(result)) return std::nullopt;
+  // What a robust loss weighs down is in the measured energy all the same.
+  if (!measured || !ClaimsAnAnswer(result) || result.outliers > 0) return std::nullopt;
   const ParameterEstimate* viscous = result.Find("viscous");
   if (viscous != nullptr && viscous->value != 0) return std::nullopt;
   const double amplitude = record.facts.amplitude;
