@@ -21,11 +21,16 @@ using identification::Severity;
 namespace {
 
 /// Findings that only say what a record leaves open, which a clean one may.
-constexpr std::array<std::string_view, 10> kLeftOpen = {
-    "slip_force_bounded_below", "sigma_bounded_below",         "alpha_not_identifiable",
-    "sigma_not_identifiable",   "slip_force_not_identifiable", "undetermined_parameter",
-    "undetermined_combination", "slip_force_extrapolated",     "unknown_past",
-    "few_places"};
+constexpr std::array<std::string_view, 10> kLeftOpen = {"slip_force_bounded_below",
+                                                        "sigma_bounded_below",
+                                                        "alpha_not_identifiable",
+                                                        "sigma_not_identifiable",
+                                                        "slip_force_not_identifiable",
+                                                        "undetermined_parameter",
+                                                        "undetermined_combination",
+                                                        "slip_force_extrapolated",
+                                                        "unknown_past",
+                                                        "few_places"};
 
 std::string_view Words(Identifiability identifiability) {
   switch (identifiability) {
