@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "identification/inference/evidence.h"
@@ -21,37 +23,6 @@ double PValue(double f, double numerator, double denominator) {
   if (!(f > 0)) return 1.0;
   const boost::math::fisher_f distribution(numerator, std::max(denominator, 1.0));
   return boost::math::cdf(boost::math::complement(distribution, f));
-}
-
-void TakeOut(const Eigen::Ref<const Eigen::MatrixXd>& orthonormal, Eigen::VectorXd& column) {
-  const Eigen::VectorXd shares = orthonormal.transpose() * column;
-  column -= orthonormal * shares;
-}
-
-/// Orthonormal columns that with `basis` span what `columns` do.
-/// @param own_share  a column of which less is left beside the basis is left out
-/// @param kept       written: those that are not
-Eigen::MatrixXd Orthonormal(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& columns,
-                            double own_share, std::vector<Eigen::Index>& kept) {
-  Eigen::MatrixXd result(columns.rows(), columns.cols());
-  Eigen::Index count = 0;
-  for (Eigen::Index c = 0; c < columns.cols(); ++c) {
-    Eigen::VectorXd column = columns.col(c);
-    const double norm = column.norm();
-    if (!(norm > 0) || !std::isfinite(norm)) continue;
-    column /= norm;
-    TakeOut(basis, column);
-    if (column.norm() < own_share) continue;
-    TakeOut(result.leftCols(count), column);
-    const double left = column.norm();
-    if (left < kIndependent) continue;
-    column /= left;
-    TakeOut(basis, column);
-    TakeOut(result.leftCols(count), column);
-    result.col(count++) = column.normalized();
-    kept.push_back(c);
-  }
-  return result.leftCols(count);
 }
 
 Autocorrelation AutocorrelationOf(const ScaledRecords& data, const Eigen::VectorXd& residual) {
@@ -77,6 +48,88 @@ double WaldF(const Eigen::VectorXd& coefficients, const Eigen::MatrixXd& correla
   return (along.square() / axes.eigenvalues().array().max(1.0)).mean() / variance;
 }
 
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& symmetric) {
+  if (symmetric.size() == 0) return symmetric;
+  return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(symmetric).pseudoInverse();
+}
+
+/// The columns A of law and departures, of unit norm, and their products with each other and with
+/// the residuals: all that any question below asks for, whatever the number of samples.
+struct Products {
+  Products(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& departures,
+           const Eigen::VectorXd& residuals)
+      : law(jacobian.cols()),
+        sum_of_squares(residuals.squaredNorm()),
+        columns(jacobian.rows(), law + departures.cols()) {
+    columns << jacobian, departures;
+    for (auto column : columns.colwise()) {
+      if (!column.allFinite()) column.setZero();  // overflow: nothing to be told
+    }
+    norms = columns.colwise().norm().transpose();
+    for (double& norm : norms) norm = norm > 0 ? norm : 1.0;
+    columns = columns * norms.cwiseInverse().asDiagonal();
+    plain = columns.transpose() * columns;
+    residual = columns.transpose() * residuals;
+    inverse_of_law = Inverse(plain.topLeftCorner(law, law));
+  }
+
+  /// Coefficients in A of orthonormal columns that span what some departures have beside the law;
+  /// none where that is less than kOwnShare.
+  [[nodiscard]] Eigen::MatrixXd FreeOfLaw(std::span<const Eigen::Index> places) const {
+    Eigen::MatrixXd result(plain.rows(), static_cast<Eigen::Index>(places.size()));
+    Eigen::Index count = 0;
+    const auto norm = [&](const Eigen::VectorXd& v) {
+      return std::sqrt(std::max(0.0, v.dot(plain * v)));
+    };
+    const auto take_out = [&](Eigen::VectorXd& v) {
+      const Eigen::VectorXd shares = result.leftCols(count).transpose() * (plain * v);
+      v -= result.leftCols(count) * shares;
+    };
+    for (const Eigen::Index place : places) {
+      Eigen::VectorXd v = Eigen::VectorXd::Unit(plain.rows(), place);
+      v.head(law) = -inverse_of_law * plain.col(place).head(law);
+      if (!(norm(v) >= kOwnShare)) continue;
+      take_out(v);
+      if (!(norm(v) >= kIndependent)) continue;
+      v /= norm(v);
+      take_out(v);
+      result.col(count++) = v / norm(v);
+    }
+    return result.leftCols(count);
+  }
+
+  /// The linear step that lets some departures in: what it explains, its first size, and the law's
+  /// part of it.
+  [[nodiscard]] DepartureFit Step(std::span<const Eigen::Index> places, double variance) const {
+    std::vector<Eigen::Index> both;
+    for (Eigen::Index j = 0; j < law; ++j) both.push_back(j);
+    both.insert(both.end(), places.begin(), places.end());
+    const Eigen::MatrixXd products = plain(both, both);
+    const Eigen::MatrixXd factor = Inverse(products);
+    const Eigen::VectorXd step = -factor * residual(both);
+    const Eigen::MatrixXd covariance = variance * factor * correlated(both, both) * factor;
+    DepartureFit fit;
+    const double gain = -step.dot(products * step) - 2 * step.dot(residual(both));
+    fit.explains = sum_of_squares > 0 ? std::clamp(gain / sum_of_squares, 0.0, 1.0) : 0.0;
+    fit.size = step[law] / norms[places[0]];
+    for (Eigen::Index j = 0; j < law; ++j) {
+      fit.step.push_back(step[j] / norms[j]);
+      fit.error.push_back(std::sqrt(std::max(covariance(j, j), variance * factor(j, j))) /
+                          norms[j]);
+    }
+    return fit;
+  }
+
+  Eigen::Index law;
+  double sum_of_squares;
+  Eigen::MatrixXd columns;  // A
+  Eigen::VectorXd norms;
+  Eigen::MatrixXd plain;       // AᵀA
+  Eigen::MatrixXd correlated;  // AᵀRA, once R is known
+  Eigen::VectorXd residual;    // Aᵀr
+  Eigen::MatrixXd inverse_of_law;
+};
+
 }  // namespace
 
 AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
@@ -91,20 +144,21 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
       (problem.data->counted - problem.parameters.free().size()) / kSamplesAColumn;
   const DepartureColumns departures = ColumnsOfDepartures(problem, solution.theta, response, most);
 
-  std::vector<Eigen::Index> ignored;
-  const Eigen::MatrixXd none(jacobian.rows(), 0);
-  const Eigen::MatrixXd basis = Orthonormal(none, jacobian, 0.0, ignored);
-  std::vector<Eigen::Index> kept;
-  const Eigen::MatrixXd all = Orthonormal(basis, departures.columns, kOwnShare, kept);
-  const Eigen::VectorXd explained = all.transpose() * residual;
-  const Eigen::VectorXd rest = residual - all * explained;
+  Products products(jacobian, departures.columns, residual);
+  std::vector<Eigen::Index> everything(departures.of.size());
+  std::iota(everything.begin(), everything.end(), jacobian.cols());
+  const Eigen::MatrixXd all = products.FreeOfLaw(everything);
+  const Eigen::VectorXd explained = all.transpose() * products.residual;
+  const Eigen::VectorXd rest = residual - products.columns * (all * explained);
   const Autocorrelation autocorrelation = AutocorrelationOf(*problem.data, rest);
+  products.correlated = CorrelatedProduct(*problem.data, autocorrelation, products.columns);
+  const Eigen::MatrixXd own = all.transpose() * products.correlated * all;
 
   // Of correlated noise a fit takes up more than its parameters' number.
-  Eigen::MatrixXd together(jacobian.rows(), basis.cols() + all.cols());
-  together << basis, all;
-  const Eigen::MatrixXd product = CorrelatedProduct(*problem.data, autocorrelation, together);
-  const double absorbed = std::min(product.trace(), samples / 2);
+  const Eigen::Index law = products.law;
+  const double by_law =
+      (products.inverse_of_law * products.correlated.topLeftCorner(law, law)).trace();
+  const double absorbed = std::min(by_law + own.trace(), samples / 2);
   const double variance =
       noise.is_known ? noise.variance : rest.squaredNorm() / (samples - absorbed);
   const double effective = samples / std::max(1.0, autocorrelation.SquaredCorrelations());
@@ -112,7 +166,6 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
   test.noise = std::sqrt(variance);
   test.degrees_of_freedom = std::max(1.0, effective - parameters - columns);
   if (all.cols() == 0 || !(variance > 0)) return test;
-  const Eigen::MatrixXd own = product.bottomRightCorner(all.cols(), all.cols());
   test.p_value = PValue(WaldF(explained, own, variance), columns, test.degrees_of_freedom);
   test.misfit_over_noise =
       std::sqrt(std::max(0.0, explained.squaredNorm() / variance - own.trace()) / samples);
@@ -122,48 +175,22 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
   for (std::size_t d = 0; d < Departures().size(); ++d) {
     std::vector<Eigen::Index> places;
     for (std::size_t c = 0; c < departures.of.size(); ++c) {
-      if (departures.of[c] == d) places.push_back(static_cast<Eigen::Index>(c));
+      if (departures.of[c] == d) places.push_back(jacobian.cols() + static_cast<Eigen::Index>(c));
     }
-    if (places.empty()) continue;
-    const Eigen::MatrixXd columns_of_it = departures.columns(Eigen::all, places);
-    std::vector<Eigen::Index> used;
-    const Eigen::MatrixXd free_of_law = Orthonormal(basis, columns_of_it, kOwnShare, used);
-    if (used.empty()) continue;
-    const auto count = static_cast<Eigen::Index>(used.size());
-    // Model and departure together, scaled to unit columns.
-    Eigen::MatrixXd both(jacobian.rows(), jacobian.cols() + count);
-    both << jacobian, columns_of_it(Eigen::all, used);
-    Eigen::VectorXd norms = both.colwise().norm().transpose();
-    for (double& norm : norms) norm = norm > 0 ? norm : 1.0;
-    both = both * norms.cwiseInverse().asDiagonal();
-    const Eigen::MatrixXd factor =
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(both.transpose() * both)
-            .pseudoInverse();
-    const Eigen::VectorXd step = -factor * (both.transpose() * residual);
-    const Eigen::MatrixXd covariance =
-        variance * factor * CorrelatedProduct(*problem.data, autocorrelation, both) * factor;
-    const double after = (residual + both * step).squaredNorm();
-    DepartureFit fit;
+    const Eigen::MatrixXd free_of_law = products.FreeOfLaw(places);
+    if (free_of_law.cols() == 0) continue;
+    const auto count = static_cast<double>(free_of_law.cols());
+    DepartureFit fit = products.Step(places, variance);
     fit.departure = d;
     const Departure& departure = Departures()[d];
     fit.unit = departures.timed || departure.unit_by_sample.empty() ? departure.unit
                                                                     : departure.unit_by_sample;
-    const Eigen::MatrixXd correlated =
-        CorrelatedProduct(*problem.data, autocorrelation, free_of_law);
-    fit.p_value = PValue(WaldF(free_of_law.transpose() * residual, correlated, variance),
-                         static_cast<double>(count), test.degrees_of_freedom);
-    fit.delta_aicc = 2.0 * static_cast<double>(count) - evidence.LikelihoodRatio(before, after);
-    fit.explains = before > 0 ? 1 - after / before : 0.0;
-    const Eigen::Index first = jacobian.cols();
-    fit.size =
-        step[first] / norms[first] *
-        departures
-            .unit_of_size[static_cast<std::size_t>(places[static_cast<std::size_t>(used.front())])];
-    for (Eigen::Index j = 0; j < jacobian.cols(); ++j) {
-      fit.step.push_back(step[j] / norms[j]);
-      fit.error.push_back(std::sqrt(std::max(covariance(j, j), variance * factor(j, j))) /
-                          norms[j]);
-    }
+    fit.size *= departures.unit_of_size[static_cast<std::size_t>(places[0] - jacobian.cols())];
+    const Eigen::MatrixXd correlated = free_of_law.transpose() * products.correlated * free_of_law;
+    const Eigen::VectorXd in_residual = free_of_law.transpose() * products.residual;
+    fit.p_value = PValue(WaldF(in_residual, correlated, variance), count, test.degrees_of_freedom);
+    const double after = before * (1 - fit.explains);
+    fit.delta_aicc = 2 * count - evidence.LikelihoodRatio(before, after);
     test.fits.push_back(std::move(fit));
   }
   return test;
