@@ -123,7 +123,8 @@ TEST(Preparation, ASpikeInDisplacementMakesNeitherReversalNorHistory) {
   const Record clean = Made();
   Record spiked = clean;
   spiked.displacement[120] += 3;
-  const PreparedRecords prepared = PrepareAll({spiked}, {});
+  const std::vector<Record> records = {spiked};
+  const PreparedRecords prepared = PrepareAll(records, {});
   const PreparedRecord& one = prepared.records[0];
   EXPECT_EQ(one.glitches.spikes, 1U);
   EXPECT_EQ(one.glitches.examples[0], 120U);
@@ -146,8 +147,10 @@ TEST(Preparation, DropoutsDoNotCountNorChangeTheLoop) {
     broken.displacement[i] = broken.force[i] = 0.0;
     ++zeros;
   }
-  const PreparedRecords whole = PrepareAll({clean}, {});
-  const PreparedRecords prepared = PrepareAll({broken}, {});
+  const std::vector<Record> cleans = {clean};
+  const std::vector<Record> brokens = {broken};
+  const PreparedRecords whole = PrepareAll(cleans, {});
+  const PreparedRecords prepared = PrepareAll(brokens, {});
   const PreparedRecord& one = prepared.records[0];
   EXPECT_GE(one.glitches.dropouts + 1, zeros);
   EXPECT_EQ(one.left_out, one.glitches.total());
