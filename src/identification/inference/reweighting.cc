@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,8 @@ namespace {
 
 constexpr int kMostRounds = 50;
 constexpr double kSettled = 1e-4;  // rms change of the forces, over the noise: a valley has no end
+constexpr double kHarmless =
+    1e-2;  // what goes on for ever moves the forces by less, and matters not
 
 /// ψ(z)/z and ψ'(z).
 struct Influence {
@@ -106,10 +109,14 @@ class Weighting {
       weights.insert(weights.end(), record.root_weight.begin(), record.root_weight.end());
     }
   }
-  void MeetHalfWay(std::span<const double> weights) {
+  /// Goes only a share of the way from the last weights.
+  void GoOnlyPartOfTheWay(std::span<const double> last, double share) {
     std::size_t i = 0;
     for (ScaledRecord& record : data_.records) {
-      for (double& weight : record.root_weight) weight = (weight + weights[i++]) / 2;
+      for (double& weight : record.root_weight) {
+        weight = last[i] + share * (weight - last[i]);
+        ++i;
+      }
     }
   }
 
@@ -234,12 +241,15 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
   response.Bind(problem);
   Predict(problem, solution.theta, response, last_force);
   std::vector<double> force(problem.size());
+  double last_change = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
     const bool first_huber = options.loss != Loss::kNone && round < kHuberRounds;
     noise = weighting.Update(first_huber ? Loss::kHuber : options.loss, solution.theta, response);
     if (weighting.is_lost()) return false;
-    // Weights and forces that chase each other meet half-way.
-    if (round >= kHuberRounds) weighting.MeetHalfWay(last_weight);
+    // Weights and forces that chase each other meet at the weights' mean.
+    if (round >= kHuberRounds) {
+      weighting.GoOnlyPartOfTheWay(last_weight, 1.0 / (round - kHuberRounds + 2));
+    }
     weighting.Copy(last_weight);
     const std::vector<double> start = solution.theta;
     solver.Bind(problem, response);
@@ -251,11 +261,12 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     }
     std::swap(force, last_force);
     const double change = std::sqrt(squares / static_cast<double>(force.size()));
+    last_change = change;
     const bool settled = change < kSettled * std::max(noise.force, kRoundingRms);
     if (settled && (!first_huber || options.loss == Loss::kHuber)) return true;
     if (settled && first_huber) round = kHuberRounds - 1;
   }
-  return false;
+  return last_change < kHarmless * std::max(noise.force, kRoundingRms);
 }
 
 }  // namespace mindahl::identification
