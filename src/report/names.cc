@@ -1,5 +1,7 @@
 #include "report/names.h"
 
+#include <algorithm>
+
 namespace mindahl::report {
 
 using identification::Identifiability;
@@ -31,6 +33,12 @@ std::string_view Name(Identifiability identifiability) {
       return "not_identifiable";
   }
   return "";
+}
+
+std::string Words(Identifiability identifiability) {
+  std::string words(Name(identifiability));
+  std::ranges::replace(words, '_', ' ');
+  return words;
 }
 
 std::string_view Name(models::InitialState state) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "mindahl/identification/fit.h"
@@ -10,6 +11,8 @@ namespace mindahl::report {
 // How the reports call what the library has as enumerations.
 std::string_view Name(identification::ParameterStatus status);
 std::string_view Name(identification::Identifiability identifiability);
+/// The name with blanks, for people.
+std::string Words(identification::Identifiability identifiability);
 std::string_view Name(models::InitialState state);
 std::string_view Name(SlipRegime regime);
 std::string_view Name(identification::AdequacyVerdict verdict);

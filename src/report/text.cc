@@ -58,12 +58,6 @@ std::string Wrapped(std::string_view text, std::size_t indent) {
   return wrapped + '\n';
 }
 
-std::string Words(identification::Identifiability identifiability) {
-  std::string words(Name(identifiability));
-  std::ranges::replace(words, '_', ' ');
-  return words;
-}
-
 std::string ParameterTable(const FitResult& fit) {
   std::string text;
   std::size_t width = 4;

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "mindahl/core/error.h"
+#include "report/names.h"
 
 namespace mindahl::reliability {
 
@@ -31,20 +32,6 @@ constexpr std::array<std::string_view, 10> kLeftOpen = {"slip_force_bounded_belo
                                                         "slip_force_extrapolated",
                                                         "unknown_past",
                                                         "few_places"};
-
-std::string_view Words(Identifiability identifiability) {
-  switch (identifiability) {
-    case Identifiability::kIdentifiable:
-      return "identifiable";
-    case Identifiability::kExtrapolated:
-      return "extrapolated";
-    case Identifiability::kBoundedBelow:
-      return "bounded below";
-    case Identifiability::kNotIdentifiable:
-      return "not identifiable";
-  }
-  return "";
-}
 
 double Distance(double value, const Range& truth) {
   return std::max({truth.lowest - value, value - truth.highest, 0.0});
@@ -90,7 +77,7 @@ std::string ParameterText(const ParameterEstimate& estimate, const std::optional
   std::string text =
       fmt::format("  {}{:<10} truth {:<20} fitted {:<12.5g} 95 % {} … {}, {}", is_wrong ? '!' : ' ',
                   estimate.name, TruthText(truth), estimate.value, EndText(estimate.lower95),
-                  EndText(estimate.upper95), Words(estimate.identifiability));
+                  EndText(estimate.upper95), report::Words(estimate.identifiability));
   if (estimate.status != ParameterStatus::kFree) text += ", at bound";
   if (truth && IsFalseLimit(estimate, *truth)) text += ", FALSE LIMIT";
   if (truth) {
