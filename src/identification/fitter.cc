@@ -73,39 +73,13 @@ struct Attempt {
   std::pmr::memory_resource* memory;
 };
 
-/// Autocorrelation of residuals of all samples; those that `passes` refuses tell nothing.
-template <typename Passes>
-Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
-                                  std::pmr::memory_resource* memory, Passes passes) {
-  std::pmr::vector<std::span<const double>> series(memory);
-  std::pmr::vector<std::pmr::vector<unsigned char>> masks(memory);
-  std::pmr::vector<std::span<const unsigned char>> counts(memory);
-  series.reserve(data.records.size());
-  masks.reserve(data.records.size());
-  counts.reserve(data.records.size());
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    series.push_back(residual.subspan(begin, record.size()));
-    std::pmr::vector<unsigned char>& mask = masks.emplace_back(record.counts);
-    for (std::size_t i = 0; i < record.size(); ++i) {
-      if (!passes(begin + i)) mask[i] = 0;
-    }
-    counts.emplace_back(mask);
-    begin += record.size();
-  }
-  return EstimateAutocorrelation(series, counts);
-}
-
-bool EverySample(std::size_t /*sample*/) { return true; }
-
 /// As many independent samples as tell the variance of a solution's residuals.
 double EffectiveSamples(const Attempt& attempt, const Candidate& candidate) {
   std::pmr::vector<double> residual(candidate.problem.size(), attempt.memory);
   EvaluateResidual(candidate.problem, candidate.solution->theta, attempt.buffers.response,
                    residual);
   return static_cast<double>(attempt.data.counted) /
-         AutocorrelationOf(attempt.data, residual, attempt.memory, EverySample)
-             .SquaredCorrelations();
+         AutocorrelationOf(attempt.data, residual, {}, attempt.memory).SquaredCorrelations();
 }
 
 /// The past that the options name; nothing where both have to be tried.
@@ -366,7 +340,6 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   const AdequacyTest test = TestAdequacy(problem, solution, noise, estimates, response);
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
-  result.adequacy.tried = test.fits.size();
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);
@@ -394,6 +367,21 @@ void SayInadequate(FitResult& result) {
   result.findings.insert(result.findings.begin(), std::move(finding));
 }
 
+/// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
+/// the displacement's, residuals are autocorrelated as its errors are, and their draws know that.
+std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const Noise& noise,
+                                               const Thresholds& thresholds) {
+  std::vector<unsigned char> tells;
+  if (noise.force_share.empty()) return tells;
+  for (const ScaledRecord& record : data.records) {
+    for (const unsigned char counts : record.counts) {
+      const double share = noise.force_share[tells.size()];
+      tells.push_back(share * share >= thresholds.force_noise_share ? counts : 0);
+    }
+  }
+  return tells;
+}
+
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
 /// @param rival  the other past of the contact, where the record hardly tells; else null
 void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution, Noise& noise,
@@ -408,13 +396,9 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
       std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
   const bool only_rounding = rms < 10 * kRoundingRms;
   if (!only_rounding) {
-    // Where most is the displacement's, residuals are autocorrelated as its errors are, and their
-    // draws know that already.
-    noise.autocorrelation = AutocorrelationOf(
-        *problem.data, residual, std::pmr::get_default_resource(), [&](std::size_t i) {
-          return noise.force_share.empty() || noise.force_share[i] * noise.force_share[i] >=
-                                                  options.thresholds.force_noise_share;
-        });
+    const std::vector<unsigned char> tells =
+        SamplesOfForceNoise(*problem.data, noise, options.thresholds);
+    noise.autocorrelation = AutocorrelationOf(*problem.data, residual, tells);
   }
   const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
   noise.repeating = only_rounding ? 1.0 : repeating;

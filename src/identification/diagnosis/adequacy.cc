@@ -36,6 +36,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
   adequacy.misfit_over_noise = test.misfit_over_noise;
   adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->force;
   adequacy.p_value = ChanceOfNoise(test);
+  adequacy.tried = test.fits.size();
   const auto& reported = problem.parameters.reported();
   for (const DepartureFit& fit : causes) {
     const Departure& departure = Departures()[fit.departure];

@@ -1,7 +1,6 @@
 #include "identification/inference/adequacy_test.h"
 
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -19,22 +18,9 @@ constexpr double kOwnShare = 0.02;
 /// Likewise beside the departures before it.
 constexpr double kIndependent = 1e-3;
 
-double PValue(double f, double numerator, double denominator) {
-  if (!(f > 0)) return 1.0;
-  const boost::math::fisher_f distribution(numerator, std::max(denominator, 1.0));
-  return boost::math::cdf(boost::math::complement(distribution, f));
-}
-
-Autocorrelation AutocorrelationOf(const ScaledRecords& data, const Eigen::VectorXd& residual) {
-  std::vector<std::span<const double>> series;
-  std::vector<std::span<const unsigned char>> counts;
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    series.emplace_back(residual.data() + begin, record.size());
-    counts.emplace_back(record.counts);
-    begin += record.size();
-  }
-  return EstimateAutocorrelation(series, counts);
+/// Where nothing is explained, by rounding less, noise alone makes it.
+double PValueOf(double f, double columns, double degrees_of_freedom) {
+  return f > 0 ? PValueOfF(f, columns, degrees_of_freedom) : 1.0;
 }
 
 /// Wald's statistic, over their number, of the coefficients of orthonormal columns U in the
@@ -150,7 +136,8 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
   const Eigen::MatrixXd all = products.FreeOfLaw(everything);
   const Eigen::VectorXd explained = all.transpose() * products.residual;
   const Eigen::VectorXd rest = residual - products.columns * (all * explained);
-  const Autocorrelation autocorrelation = AutocorrelationOf(*problem.data, rest);
+  const Autocorrelation autocorrelation =
+      AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
   products.correlated = CorrelatedProduct(*problem.data, autocorrelation, products.columns);
   const Eigen::MatrixXd own = all.transpose() * products.correlated * all;
 
@@ -166,7 +153,7 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
   test.noise = std::sqrt(variance);
   test.degrees_of_freedom = std::max(1.0, effective - parameters - columns);
   if (all.cols() == 0 || !(variance > 0)) return test;
-  test.p_value = PValue(WaldF(explained, own, variance), columns, test.degrees_of_freedom);
+  test.p_value = PValueOf(WaldF(explained, own, variance), columns, test.degrees_of_freedom);
   test.misfit_over_noise =
       std::sqrt(std::max(0.0, explained.squaredNorm() / variance - own.trace()) / samples);
 
@@ -188,7 +175,8 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
     fit.size *= departures.unit_of_size[static_cast<std::size_t>(places[0] - jacobian.cols())];
     const Eigen::MatrixXd correlated = free_of_law.transpose() * products.correlated * free_of_law;
     const Eigen::VectorXd in_residual = free_of_law.transpose() * products.residual;
-    fit.p_value = PValue(WaldF(in_residual, correlated, variance), count, test.degrees_of_freedom);
+    fit.p_value =
+        PValueOf(WaldF(in_residual, correlated, variance), count, test.degrees_of_freedom);
     const double after = before * (1 - fit.explains);
     fit.delta_aicc = 2 * count - evidence.LikelihoodRatio(before, after);
     test.fits.push_back(std::move(fit));

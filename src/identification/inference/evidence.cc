@@ -31,9 +31,13 @@ double Evidence::Aicc(double sum_of_squares, std::size_t parameters) const {
          2 * k * (k + 1) / std::max(samples_ - k - 1, 1.0);
 }
 
-double PValueOfF(double f, double degrees_of_freedom) {
-  const boost::math::fisher_f distribution(1.0, degrees_of_freedom);
+double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom) {
+  const boost::math::fisher_f distribution(numerator_degrees, degrees_of_freedom);
   return boost::math::cdf(boost::math::complement(distribution, f));
+}
+
+double PValueOfF(double f, double degrees_of_freedom) {
+  return PValueOfF(f, 1.0, degrees_of_freedom);
 }
 
 double ChiSquaredQuantile(double degrees_of_freedom, double chance) {

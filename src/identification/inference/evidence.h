@@ -36,6 +36,8 @@ class Evidence {
   double effective_;
 };
 
+/// P(F(k, ν) > f)
+double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom);
 /// P(F(1, ν) > f)
 double PValueOfF(double f, double degrees_of_freedom);
 

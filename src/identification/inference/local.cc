@@ -36,6 +36,23 @@ Eigen::MatrixXd JacobianAt(const Problem& problem, std::span<const double> theta
   return jacobian;
 }
 
+Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
+                                  std::span<const unsigned char> tells,
+                                  std::pmr::memory_resource* memory) {
+  std::pmr::vector<std::span<const double>> series(memory);
+  std::pmr::vector<std::span<const unsigned char>> counts(memory);
+  series.reserve(data.records.size());
+  counts.reserve(data.records.size());
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    series.push_back(residual.subspan(begin, record.size()));
+    counts.push_back(tells.empty() ? std::span<const unsigned char>(record.counts)
+                                   : tells.subspan(begin, record.size()));
+    begin += record.size();
+  }
+  return EstimateAutocorrelation(series, counts);
+}
+
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
                                   const Eigen::MatrixXd& jacobian) {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());

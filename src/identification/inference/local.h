@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,14 @@ struct DisplacementEffect {
   Eigen::MatrixXd residuals;  // drawn, weighted: rows as the Jacobian's; none where exact
   double variance = 1.0;      // of a residual, in whose units factors are
 };
+
+/// Autocorrelation of the residuals of all records, one after the other.
+/// @param residual  of every sample
+/// @param tells     of every sample, 0 where it tells nothing; empty: those that count tell
+Autocorrelation AutocorrelationOf(
+    const ScaledRecords& data, std::span<const double> residual,
+    std::span<const unsigned char> tells = {},
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 /// (JᵀRJ) of all records.
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,

@@ -2,28 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "identification/inference/evidence.h"
-#include "identification/inference/noise.h"
+#include "identification/inference/local.h"
 #include "identification/solve/search.h"
 
 namespace mindahl::identification {
 namespace {
 
 /// Effective samples of residuals, weighted or not, one record after the other.
-double EffectiveSamples(const ScaledRecords& data, const double* residual) {
-  std::vector<std::span<const double>> series;
-  std::vector<std::span<const unsigned char>> counts;
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : data.records) {
-    series.emplace_back(residual + begin, record.size());
-    counts.emplace_back(record.counts);
-    begin += record.size();
-  }
+double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual) {
   return static_cast<double>(data.counted) /
-         EstimateAutocorrelation(series, counts).SquaredCorrelations();
+         AutocorrelationOf(data, residual).SquaredCorrelations();
 }
 
 /// How far the motion may turn beyond any sample; as LongestOvershoots, the longest of them.
@@ -61,7 +54,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
       ChiSquaredQuantile(static_cast<double>(reversals), options.thresholds.turning_point_chance);
   TurningPointStep step = StepTurningPoints(problem, best, response);
   const std::unique_ptr<TurnedRecords> turned = PutInTurningPoints(data, step.overshoot);
-  const double left = EffectiveSamples(turned->data, step.left.data());
+  const double left = EffectiveSamples(turned->data, {step.left.data(), turned->data.samples()});
   if (!(Evidence(data.counted, left).LikelihoodRatio(best.sum_of_squares, step.left.squaredNorm()) >
         needed)) {
     return {};
@@ -72,7 +65,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   refitted.data = &fit.records->data;
   std::vector<double> residual(refitted.size());
   EvaluateResidual(refitted, fit.solution.theta, response, residual);
-  const Evidence evidence(data.counted, EffectiveSamples(*refitted.data, residual.data()));
+  const Evidence evidence(data.counted, EffectiveSamples(*refitted.data, residual));
   const double price = 2 * static_cast<double>(reversals);
   const double gain = evidence.LikelihoodRatio(best.sum_of_squares, fit.solution.sum_of_squares);
   if (!fit.solution.converged || !(gain > std::max(price, needed))) return {};
