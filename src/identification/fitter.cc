@@ -337,7 +337,7 @@ void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
 void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
                         const Estimates& estimates, const Thresholds& thresholds,
                         Response& response, FitResult& result) {
-  const AdequacyTest test = TestAdequacy(problem, solution, noise, estimates, response);
+  const AdequacyTest test = TestAdequacy(problem, solution, noise, estimates, thresholds, response);
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;

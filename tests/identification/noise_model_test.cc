@@ -200,14 +200,8 @@ TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
   Generator generator(9);
   std::vector<double> jacobian;
   for (std::size_t i = 0; i < kRows * kColumns; ++i) jacobian.push_back(Normal(generator));
-  std::vector<std::vector<double>> values(kColumns);
-  std::vector<std::span<const double>> columns;
-  for (std::size_t column = 0; column < kColumns; ++column) {
-    for (std::size_t i = 0; i < kRows; ++i) {
-      values[column].push_back(jacobian[i * kColumns + column]);
-    }
-    columns.emplace_back(values[column]);
-  }
+  const Eigen::MatrixXd columns =
+      Eigen::Map<const Eigen::MatrixXd>(jacobian.data(), kColumns, kRows).transpose();
   // JᵀRJ with every R_ij = ρ_|i−j| written out.
   const auto explicit_form = [&](const std::vector<double>& rho) {
     std::vector<double> form(kColumns * kColumns, 0.0);
@@ -231,19 +225,19 @@ TEST(NoiseModel, QuadraticFormIsThatOfTheCorrelationMatrix) {
     const Autocorrelation noise =
         Process({first, second}, SecondOrderCorrelations(first, second, 3),
                 SecondOrderShare(first, second));
-    const std::vector<double> form = noise.Quadratic(columns);
+    const Eigen::MatrixXd form = noise.Quadratic(columns);
     const std::vector<double> exact = explicit_form(SecondOrderCorrelations(first, second, kRows));
-    ASSERT_EQ(form.size(), exact.size());
+    ASSERT_EQ(static_cast<std::size_t>(form.size()), exact.size());
     for (std::size_t k = 0; k < exact.size(); ++k) {
-      EXPECT_NEAR(form[k], exact[k], kForgotten * (std::abs(exact[0]) + std::abs(exact[4])))
+      EXPECT_NEAR(form.data()[k], exact[k], kForgotten * (std::abs(exact[0]) + std::abs(exact[4])))
           << first << ", " << second;
     }
   }
   std::vector<double> uncorrelated(kRows, 0.0);
   uncorrelated[0] = 1.0;
-  const std::vector<double> white = Autocorrelation{}.Quadratic(columns);
+  const Eigen::MatrixXd white = Autocorrelation{}.Quadratic(columns);
   const std::vector<double> exact = explicit_form(uncorrelated);
-  for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(white[k], exact[k], 1e-12);
+  for (std::size_t k = 0; k < exact.size(); ++k) EXPECT_NEAR(white.data()[k], exact[k], 1e-12);
 }
 
 /// Root mean square of Tc's stated standard errors, and of its errors, over many loops.

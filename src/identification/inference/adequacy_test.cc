@@ -53,57 +53,77 @@ struct Products {
     }
     norms = columns.colwise().norm().transpose();
     for (double& norm : norms) norm = norm > 0 ? norm : 1.0;
-    columns = columns * norms.cwiseInverse().asDiagonal();
+    columns *= norms.cwiseInverse().asDiagonal();
     plain = columns.transpose() * columns;
     residual = columns.transpose() * residuals;
     inverse_of_law = Inverse(plain.topLeftCorner(law, law));
+    shares = inverse_of_law * plain.topRightCorner(law, departures.cols());
+    free_plain = FreedOfLaw(plain);
+    free_residual = residual.tail(departures.cols()) - shares.transpose() * residual.head(law);
   }
 
-  /// Coefficients in A of orthonormal columns that span what some departures have beside the law;
-  /// none where that is less than kOwnShare.
-  [[nodiscard]] Eigen::MatrixXd FreeOfLaw(std::span<const Eigen::Index> places) const {
-    Eigen::MatrixXd result(plain.rows(), static_cast<Eigen::Index>(places.size()));
+  /// Once R is known: AᵀRA.
+  void Correlate(Eigen::MatrixXd products) {
+    correlated = std::move(products);
+    free_correlated = FreedOfLaw(correlated);
+  }
+
+  /// Of the departures, each less what the law has of it.
+  /// @param products  of A
+  [[nodiscard]] Eigen::MatrixXd FreedOfLaw(const Eigen::MatrixXd& products) const {
+    const Eigen::Index count = columns.cols() - law;
+    const Eigen::MatrixXd mixed = shares.transpose() * products.topRightCorner(law, count);
+    return products.bottomRightCorner(count, count) - mixed - mixed.transpose() +
+           shares.transpose() * products.topLeftCorner(law, law) * shares;
+  }
+
+  /// Coefficients, in departures freed of the law, of orthonormal columns that span some of them;
+  /// none where a departure has less than kOwnShare of its own.
+  [[nodiscard]] Eigen::MatrixXd Orthonormal(std::span<const Eigen::Index> places) const {
+    Eigen::MatrixXd result =
+        Eigen::MatrixXd::Zero(free_plain.rows(), static_cast<Eigen::Index>(places.size()));
+    Eigen::MatrixXd image = result;  // free_plain·result
     Eigen::Index count = 0;
-    const auto norm = [&](const Eigen::VectorXd& v) {
-      return std::sqrt(std::max(0.0, v.dot(plain * v)));
-    };
-    const auto take_out = [&](Eigen::VectorXd& v) {
-      const Eigen::VectorXd shares = result.leftCols(count).transpose() * (plain * v);
-      v -= result.leftCols(count) * shares;
-    };
     for (const Eigen::Index place : places) {
-      Eigen::VectorXd v = Eigen::VectorXd::Unit(plain.rows(), place);
-      v.head(law) = -inverse_of_law * plain.col(place).head(law);
-      if (!(norm(v) >= kOwnShare)) continue;
-      take_out(v);
-      if (!(norm(v) >= kIndependent)) continue;
-      v /= norm(v);
-      take_out(v);
-      result.col(count++) = v / norm(v);
+      if (!(free_plain(place, place) >= kOwnShare * kOwnShare)) continue;
+      Eigen::VectorXd v = Eigen::VectorXd::Unit(free_plain.rows(), place);
+      Eigen::VectorXd of_v = free_plain.col(place);
+      const auto take_out = [&] {
+        const Eigen::VectorXd parts = result.leftCols(count).transpose() * of_v;
+        v.noalias() -= result.leftCols(count) * parts;
+        of_v.noalias() -= image.leftCols(count) * parts;
+      };
+      take_out();
+      const double left = v.dot(of_v);
+      if (!(left >= kIndependent * kIndependent)) continue;
+      v /= std::sqrt(left);
+      of_v /= std::sqrt(left);
+      take_out();
+      const double norm = std::sqrt(v.dot(of_v));
+      result.col(count) = v / norm;
+      image.col(count++) = of_v / norm;
     }
     return result.leftCols(count);
   }
 
-  /// The linear step that lets some departures in: what it explains, its first size, and the law's
-  /// part of it.
-  [[nodiscard]] DepartureFit Step(std::span<const Eigen::Index> places, double variance) const {
+  /// Fills in the linear step that lets some departures in: what it explains, its first size, and
+  /// the law's part of it.
+  void Step(std::span<const Eigen::Index> places, double variance, DepartureFit& fit) const {
     std::vector<Eigen::Index> both;
     for (Eigen::Index j = 0; j < law; ++j) both.push_back(j);
-    both.insert(both.end(), places.begin(), places.end());
+    for (const Eigen::Index place : places) both.push_back(law + place);
     const Eigen::MatrixXd products = plain(both, both);
     const Eigen::MatrixXd factor = Inverse(products);
     const Eigen::VectorXd step = -factor * residual(both);
     const Eigen::MatrixXd covariance = variance * factor * correlated(both, both) * factor;
-    DepartureFit fit;
     const double gain = -step.dot(products * step) - 2 * step.dot(residual(both));
     fit.explains = sum_of_squares > 0 ? std::clamp(gain / sum_of_squares, 0.0, 1.0) : 0.0;
-    fit.size = step[law] / norms[places[0]];
+    fit.size = step[law] / norms[law + places[0]];
     for (Eigen::Index j = 0; j < law; ++j) {
       fit.step.push_back(step[j] / norms[j]);
       fit.error.push_back(std::sqrt(std::max(covariance(j, j), variance * factor(j, j))) /
                           norms[j]);
     }
-    return fit;
   }
 
   Eigen::Index law;
@@ -111,15 +131,20 @@ struct Products {
   Eigen::MatrixXd columns;  // A
   Eigen::VectorXd norms;
   Eigen::MatrixXd plain;       // AᵀA
-  Eigen::MatrixXd correlated;  // AᵀRA, once R is known
+  Eigen::MatrixXd correlated;  // AᵀRA
   Eigen::VectorXd residual;    // Aᵀr
   Eigen::MatrixXd inverse_of_law;
+  Eigen::MatrixXd shares;           // of the law's columns in each departure
+  Eigen::MatrixXd free_plain;       // the same products of the departures freed of the law
+  Eigen::MatrixXd free_correlated;  //
+  Eigen::VectorXd free_residual;    //
 };
 
 }  // namespace
 
 AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
-                          const Estimates& estimates, Response& response) {
+                          const Estimates& estimates, const Thresholds& thresholds,
+                          Response& response) {
   AdequacyTest test;
   const Eigen::MatrixXd& jacobian = estimates.jacobian();
   const Eigen::VectorXd& residual = estimates.residual();
@@ -132,17 +157,22 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
 
   Products products(jacobian, departures.columns, residual);
   std::vector<Eigen::Index> everything(departures.of.size());
-  std::iota(everything.begin(), everything.end(), jacobian.cols());
-  const Eigen::MatrixXd all = products.FreeOfLaw(everything);
-  const Eigen::VectorXd explained = all.transpose() * products.residual;
-  const Eigen::VectorXd rest = residual - products.columns * (all * explained);
+  std::iota(everything.begin(), everything.end(), Eigen::Index{0});
+  const Eigen::MatrixXd all = products.Orthonormal(everything);
+  const Eigen::VectorXd explained = all.transpose() * products.free_residual;
+  const Eigen::Index law = products.law;
+  Eigen::VectorXd in_columns(products.columns.cols());
+  in_columns.tail(all.rows()) = all * explained;
+  in_columns.head(law) = -products.shares * in_columns.tail(all.rows());
+  const Eigen::VectorXd rest = residual - products.columns * in_columns;
   const Autocorrelation autocorrelation =
       AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
-  products.correlated = CorrelatedProduct(*problem.data, autocorrelation, products.columns);
-  const Eigen::MatrixXd own = all.transpose() * products.correlated * all;
+  products.Correlate(autocorrelation.order == 0
+                         ? products.plain
+                         : CorrelatedProduct(*problem.data, autocorrelation, products.columns));
+  const Eigen::MatrixXd own = all.transpose() * products.free_correlated * all;
 
   // Of correlated noise a fit takes up more than its parameters' number.
-  const Eigen::Index law = products.law;
   const double by_law =
       (products.inverse_of_law * products.correlated.topLeftCorner(law, law)).trace();
   const double absorbed = std::min(by_law + own.trace(), samples / 2);
@@ -162,23 +192,25 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
   for (std::size_t d = 0; d < Departures().size(); ++d) {
     std::vector<Eigen::Index> places;
     for (std::size_t c = 0; c < departures.of.size(); ++c) {
-      if (departures.of[c] == d) places.push_back(jacobian.cols() + static_cast<Eigen::Index>(c));
+      if (departures.of[c] == d) places.push_back(static_cast<Eigen::Index>(c));
     }
-    const Eigen::MatrixXd free_of_law = products.FreeOfLaw(places);
-    if (free_of_law.cols() == 0) continue;
-    const auto count = static_cast<double>(free_of_law.cols());
-    DepartureFit fit = products.Step(places, variance);
-    fit.departure = d;
-    const Departure& departure = Departures()[d];
-    fit.unit = departures.timed || departure.unit_by_sample.empty() ? departure.unit
-                                                                    : departure.unit_by_sample;
-    fit.size *= departures.unit_of_size[static_cast<std::size_t>(places[0] - jacobian.cols())];
-    const Eigen::MatrixXd correlated = free_of_law.transpose() * products.correlated * free_of_law;
-    const Eigen::VectorXd in_residual = free_of_law.transpose() * products.residual;
+    const Eigen::MatrixXd basis = products.Orthonormal(places);
+    if (basis.cols() == 0) continue;
+    const auto count = static_cast<double>(basis.cols());
+    DepartureFit fit{.departure = d};
+    const Eigen::MatrixXd correlated = basis.transpose() * products.free_correlated * basis;
+    const Eigen::VectorXd in_residual = basis.transpose() * products.free_residual;
     fit.p_value =
         PValueOf(WaldF(in_residual, correlated, variance), count, test.degrees_of_freedom);
-    const double after = before * (1 - fit.explains);
-    fit.delta_aicc = 2 * count - evidence.LikelihoodRatio(before, after);
+    if (fit.p_value < thresholds.cause) {
+      products.Step(places, variance, fit);
+      const Departure& departure = Departures()[d];
+      fit.unit = departures.timed || departure.unit_by_sample.empty() ? departure.unit
+                                                                      : departure.unit_by_sample;
+      fit.size *= departures.unit_of_size[static_cast<std::size_t>(places[0])];
+      const double after = before * (1 - fit.explains);
+      fit.delta_aicc = 2 * count - evidence.LikelihoodRatio(before, after);
+    }
     test.fits.push_back(std::move(fit));
   }
   return test;

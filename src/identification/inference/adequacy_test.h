@@ -9,7 +9,8 @@
 
 namespace mindahl::identification {
 
-/// What a fit would be with one departure in it, by one linear step.
+/// What a fit would be with one departure in it, by one linear step; of one that noise may well
+/// have made, p-value alone.
 struct DepartureFit {
   std::size_t departure = 0;  // its place in Departures()
   double p_value = 1.0;       // that noise alone makes it
@@ -33,7 +34,8 @@ struct AdequacyTest {
 };
 
 AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
-                          const Estimates& estimates, Response& response);
+                          const Estimates& estimates, const Thresholds& thresholds,
+                          Response& response);
 
 /// By how much a departure moves a parameter, in halves of its 95 % interval; 0 where that is open.
 double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,

@@ -56,15 +56,11 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
                                   const Eigen::MatrixXd& jacobian) {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
-  std::size_t begin = 0;
+  Eigen::Index begin = 0;
   for (const ScaledRecord& record : data.records) {
-    std::vector<std::span<const double>> columns;
-    for (Eigen::Index c = 0; c < jacobian.cols(); ++c) {
-      columns.emplace_back(jacobian.col(c).data() + begin, record.size());
-    }
-    const std::vector<double> part = autocorrelation.Quadratic(columns);
-    product += Eigen::Map<const Eigen::MatrixXd>(part.data(), jacobian.cols(), jacobian.cols());
-    begin += record.size();
+    const auto rows = static_cast<Eigen::Index>(record.size());
+    product += autocorrelation.Quadratic(jacobian.middleRows(begin, rows));
+    begin += rows;
   }
   return product;
 }

@@ -42,12 +42,6 @@ Autocovariances EstimateAutocovariances(std::span<const Series> residuals,
   return covariances;
 }
 
-double Dot(Series a, Series b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 }  // namespace
 
 Autocorrelation EstimateAutocorrelation(std::span<const Series> residuals,
@@ -118,40 +112,35 @@ double Autocorrelation::SquaredCorrelations() const {
   return sum;
 }
 
-std::vector<double> Autocorrelation::Quadratic(std::span<const Series> columns) const {
-  const std::size_t count = columns.size();
-  std::vector<double> result(count * count);
-  if (count == 0) return result;
-  std::vector<std::vector<double>> filtered(order == 0 ? 0 : count);  // backwards in time
-  const std::size_t rows = columns.front().size();
+Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  if (order == 0 || columns.cols() == 0) return columns.transpose() * columns;
+  // A column a sample, so that those of one time lie side by side; the latest first.
+  const Eigen::Index rows = columns.rows();
+  Eigen::MatrixXd filtered(columns.cols(), rows + 64);
+  const auto depth = static_cast<Eigen::Index>(order);
   double largest = 0.0;
-  const auto filter = [&](std::size_t i) {
-    double recent = 0.0;  // the largest of the last outputs
-    for (std::size_t c = 0; c < count; ++c) {
-      std::vector<double>& out = filtered[c];
-      double value = i < rows ? columns[c][rows - 1 - i] : 0.0;
-      for (std::size_t k = 0; k < order && k < i; ++k) value += coefficients[k] * out[i - 1 - k];
-      out.push_back(value);
-      largest = std::max(largest, std::abs(value));
-      for (std::size_t k = 0; k < order && k <= i; ++k) {
-        recent = std::max(recent, std::abs(out[i - k]));
-      }
+  Eigen::Index i = 0;
+  for (; i < rows + static_cast<Eigen::Index>(kLongest); ++i) {
+    if (i == filtered.cols()) filtered.conservativeResize(Eigen::NoChange, 2 * i);
+    auto out = filtered.col(i);
+    if (i < rows) {
+      out = columns.row(rows - 1 - i).transpose();
+    } else {
+      out.setZero();
     }
-    return recent;
-  };
-  if (order > 0) {
-    for (std::size_t i = 0; i < rows + kLongest; ++i) {
-      if (filter(i) < kForgotten * largest && i >= rows) break;
+    for (Eigen::Index k = 0; k < std::min(depth, i); ++k) {
+      out += coefficients[static_cast<std::size_t>(k)] * filtered.col(i - 1 - k);
     }
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      const double sum = filtered.empty() ? Dot(columns[i], columns[j])
-                                          : innovation_share * Dot(filtered[i], filtered[j]);
-      result[i * count + j] = result[j * count + i] = sum;
+    largest = std::max(largest, out.cwiseAbs().maxCoeff());
+    if (i < rows) continue;
+    const Eigen::Index recent = std::min(depth, i + 1);
+    if (filtered.middleCols(i + 1 - recent, recent).cwiseAbs().maxCoeff() < kForgotten * largest) {
+      ++i;
+      break;
     }
   }
-  return result;
+  const auto used = filtered.leftCols(i);
+  return innovation_share * used * used.transpose();
 }
 
 double Noise::effective_samples() const {

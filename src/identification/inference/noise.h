@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -25,10 +26,9 @@ struct Autocorrelation {
 
   /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it: the
   /// columns are filtered backwards by 1/φ, on into the past until they have died away.
-  /// @param columns  of one record, in order of time, all of one size
+  /// @param columns  J of one record, a row a sample in order of time
   /// @returns columns², relative error below 1e-8
-  [[nodiscard]] std::vector<double> Quadratic(
-      std::span<const std::span<const double>> columns) const;
+  [[nodiscard]] Eigen::MatrixXd Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 };
 
 /// @param residuals  one series a record
