@@ -78,7 +78,7 @@ void NoteLoad(ScaledRecord& target, std::span<const double> load) {
 }
 
 /// Samples of a stroke that are kept, at growing shares of its way: (k/n)².
-constexpr std::size_t kKeptOfAStroke = 12;
+constexpr std::size_t kKeptOfAStroke = 8;
 /// Strokes that are thinned so: more are thinned to their ends and one sample in between.
 constexpr std::size_t kDenseStrokes = 16;
 

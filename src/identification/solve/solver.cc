@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/solve/sums.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -14,22 +16,6 @@ const double kLowestLogRate = std::log(1e-4);
 const double kHighestLogRate = std::log(1e9);
 const double kLowestLogTravel = std::log(1e-9);
 const double kHighestLogTravel = std::log(1e3);
-
-/// Eight sums side by side: one would wait for itself.
-double Dot(std::span<const double> a, std::span<const double> b) {
-  constexpr std::size_t kSums = 8;
-  std::array<double, kSums> sum{};
-  const std::size_t whole = a.size() - a.size() % kSums;
-  for (std::size_t i = 0; i < whole; i += kSums) {
-    for (std::size_t k = 0; k < kSums; ++k) sum[k] += a[i + k] * b[i + k];
-  }
-  for (std::size_t i = whole; i < a.size(); ++i) sum[i - whole] += a[i] * b[i];
-  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
-}
-
-void AddMultiple(std::span<double> to, double factor, std::span<const double> of) {
-  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * of[i];
-}
 
 /// Solves A·x = b in place by Cholesky's rule; false where A is not positive definite.
 bool SolveCholesky(std::span<double> a, std::span<double> x) {
@@ -170,9 +156,7 @@ void Solver::OrthogonaliseColumns() {
     const double norm = std::sqrt(Dot(column, column));
     for (int round = 0; round < 2; ++round) {
       for (std::size_t i = 0; i < j; ++i) {
-        const double share = Dot(Basis(i), column);
-        AddMultiple(column, -share, Basis(i));
-        triangle_[i * count + j] += share;
+        triangle_[i * count + j] += TakeOut(column, Basis(i));
       }
     }
     constexpr double kDependent = 1e-12;
@@ -182,8 +166,7 @@ void Solver::OrthogonaliseColumns() {
     if (j > 0 && columns_[j].begin == 0) columns_[j].end = samples_;
   }
   for (std::size_t j = 0; j < count; ++j) {
-    measured_projections_[j] = Dot(Basis(j), measured_);
-    AddMultiple(measured_, -measured_projections_[j], Basis(j));
+    measured_projections_[j] = TakeOut(measured_, Basis(j));
   }
 }
 
@@ -191,9 +174,7 @@ void Solver::ProjectOut(std::span<double> column) const {
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     const std::size_t begin = columns_[j].begin;
     const std::size_t count = columns_[j].end - begin;
-    const std::span<const double> basis = Basis(j).subspan(begin, count);
-    const std::span<double> part = column.subspan(begin, count);
-    AddMultiple(part, -Dot(basis, part), basis);
+    TakeOut(column.subspan(begin, count), Basis(j).subspan(begin, count));
   }
 }
 
@@ -271,14 +252,12 @@ void Solver::StoreLinear(double slip_force, std::span<double> theta) const {
 /// From t, which is there without weights: projections, Tc and the residual.
 /// @returns the sum of squares
 double Solver::Regress(bool free_slip_force, double held_slip_force) {
-  for (std::size_t i = 0; i < samples_; ++i) response_values_[i] *= weight_[i];
+  Weigh(response_values_, 1.0, weight_);
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     const std::size_t begin = columns_[j].begin;
     const std::size_t count = columns_[j].end - begin;
-    const std::span<const double> basis = Basis(j).subspan(begin, count);
-    const std::span<double> part = std::span(response_values_).subspan(begin, count);
-    response_projections_[j] = Dot(basis, part);
-    AddMultiple(part, -response_projections_[j], basis);
+    response_projections_[j] =
+        TakeOut(std::span(response_values_).subspan(begin, count), Basis(j).subspan(begin, count));
   }
   slip_force_ = held_slip_force;
   slip_force_is_free_ = false;
@@ -290,9 +269,7 @@ double Solver::Regress(bool free_slip_force, double held_slip_force) {
     slip_force_is_free_ = slip_force_ == best;
     if (!(best > 0)) slip_force_ = std::exp(parameter.lower);
   }
-  for (std::size_t i = 0; i < samples_; ++i) {
-    residual_[i] = slip_force_ * response_values_[i] - measured_[i];
-  }
+  Subtract(slip_force_, response_values_, measured_, residual_);
   return Dot(residual_, residual_);
 }
 
@@ -378,7 +355,7 @@ void Solver::Linearise(std::span<const double> u) {
   const double square = slip_force_is_free_ ? Dot(response_values_, response_values_) : 0.0;
   for (std::size_t j = 0; j < count; ++j) {
     const std::span<double> column = Derivative(j);
-    for (std::size_t i = 0; i < samples_; ++i) column[i] *= slip_force_ * weight_[i];
+    Weigh(column, slip_force_, weight_);
     ProjectOut(column);
     if (square > 0) {
       AddMultiple(column, -Dot(response_values_, column) / square, response_values_);

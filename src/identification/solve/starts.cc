@@ -25,6 +25,7 @@ constexpr std::array kRows = {
     Row{2.5, 4, {0.7, 3.0, 12., 60.}}};
 /// Where α is held, all of one row.
 constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};
+constexpr double kNear = 4.0;
 constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
 constexpr double kHighestDrawnShape = 3.0;
@@ -194,7 +195,15 @@ void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, d
   }
   for (std::size_t k = 0; k < kRows.size(); ++k) {
     const double alpha = std::clamp(kRows[k].shape, shape.lower, shape.upper);
-    for (std::size_t i = 0; i < kRows[k].count; ++i) look_at(k, kRows[k].reaches[i], alpha);
+    // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
+    // minimum, the others are looked at around it.
+    const double reach = best[0].reach;
+    const auto is_near = [&](double other) {
+      return k == 0 || reach == 0 || (other > reach / kNear && other < reach * kNear);
+    };
+    for (std::size_t i = 0; i < kRows[k].count; ++i) {
+      if (is_near(kRows[k].reaches[i])) look_at(k, kRows[k].reaches[i], alpha);
+    }
     if (best[0].cost > hopeless) return;
   }
 }
@@ -226,7 +235,7 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
 
 // The thinned record's minimum is a start only: no digits are asked of it.
 constexpr SolverOptions kRough{
-    .function_tolerance = 1e-4, .parameter_tolerance = 1e-6, .max_iterations = 30};
+    .function_tolerance = 1e-2, .parameter_tolerance = 1e-6, .max_iterations = 30};
 
 /// Where α is held the likelihood may have kinks (a Jenkins loop just past slip has a false minimum
 /// where none of its samples slips); with α free it is smooth, and its minimum is a start.
@@ -293,12 +302,12 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
         starts.emplace_back(StartingPoint{.theta = {theta.begin(), theta.end(), memory},
                                           .cost = look.cost,
                                           .look = looks.front().cost});
-    if (is_beaten) break;
     if (!options.start.empty()) continue;  // a start that is given is one
     solver.Solve(start.theta, kRough, scratch);
     if (!std::isfinite(scratch.sum_of_squares)) continue;
     start.theta.assign(scratch.theta.begin(), scratch.theta.end());
     start.cost = scratch.sum_of_squares;
+    if (is_beaten) break;
   }
   if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty() && !is_beaten) {
     AddRelaxedStart(thin, solver, response, scratch, memory, starts);
