@@ -12,6 +12,7 @@
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/adequacy_test.h"
+#include "identification/inference/covering.h"
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
@@ -286,53 +287,6 @@ void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));
 }
 
-/// Intervals that cover what the parameters would be with another past of the contact.
-std::optional<Finding> CoverRivalPast(const Problem& problem, const Candidate& rival,
-                                      const Noise& noise, const Thresholds& thresholds,
-                                      double peak_force, Response& response,
-                                      std::vector<ParameterEstimate>& estimates) {
-  const Estimates others(rival.problem, *rival.solution, noise, {}, thresholds, response);
-  Finding finding{.code = "initial_state_undecided"};
-  for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
-    ParameterEstimate& estimate = estimates[p];
-    if (rival.problem.parameters[p].fixed) continue;
-    ParameterEstimate other = estimate;
-    other.value = rival.problem.parameters[p].ToValue(rival.solution->theta[p]);
-    others.Fill(p, other);
-    // What is open either way is said already.
-    const bool is_apart = estimate.lower95 && estimate.upper95 && other.lower95 && other.upper95 &&
-                          (other.value < *estimate.lower95 || other.value > *estimate.upper95);
-    if (is_apart) finding.parameters.push_back(estimate.name);
-    if (other.lower95 && p == kSlipForce) other.lower95 = std::max(*other.lower95, peak_force);
-    const auto cover = [](std::optional<double>& end, const std::optional<double>& by,
-                          auto choose) {
-      if (!by) {
-        end.reset();
-      } else if (end) {
-        end = choose(*end, *by);
-      }
-    };
-    cover(estimate.lower95, other.lower95, [](double a, double b) { return std::min(a, b); });
-    cover(estimate.upper95, other.upper95, [](double a, double b) { return std::max(a, b); });
-  }
-  response.Bind(problem);
-  if (finding.parameters.empty()) return std::nullopt;
-  return finding;
-}
-
-/// Where the shape of a loop is doubtful, the plateau that anyone reads off it is as good a slip
-/// force as the law's.
-void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
-  ParameterEstimate& slip_force = result.parameters[kSlipForce];
-  const RecordFit& widest = result.WidestRecord();
-  const std::optional<double>& half_gap = widest.facts.half_gap;
-  const bool slips =
-      widest.measures.peak_force >= thresholds.mobilised_by_asymptote * slip_force.value;
-  if (!half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
-  slip_force.lower95 = std::min(*slip_force.lower95, *half_gap);
-  slip_force.upper95 = std::max(*slip_force.upper95, *half_gap);
-}
-
 /// Adequacy, and intervals that cover what its causes would change.
 void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
                         const Estimates& estimates, const Thresholds& thresholds,
@@ -344,27 +298,6 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);
   CoverPlateau(result, thresholds);
-}
-
-/// Under a model that does not describe the record nothing of it is to be believed: no limit, no
-/// test, no advice on how to know its parameters better.
-void SayInadequate(FitResult& result) {
-  result.adequacy.verdict = AdequacyVerdict::kInadequate;
-  result.mindlin_test.reset();
-  result.branch_shapes.clear();
-  std::erase_if(result.findings, [](const Finding& finding) {
-    return !finding.parameters.empty() && VerdictOf(finding) != Identifiability::kIdentifiable &&
-           finding.code != "no_model_fits" && finding.code != "energy_contradiction";
-  });
-  Finding finding{.code = "model_inadequate"};
-  for (ParameterEstimate& estimate : result.parameters) {
-    if (estimate.status == ParameterStatus::kFixed) continue;
-    estimate.standard_error.reset();
-    estimate.lower95.reset();
-    estimate.upper95.reset();
-    finding.parameters.push_back(estimate.name);
-  }
-  result.findings.insert(result.findings.begin(), std::move(finding));
 }
 
 /// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
@@ -444,9 +377,10 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     }
   }
   if (rival != nullptr) {
-    Append(result.findings, CoverRivalPast(problem, *rival, noise, options.thresholds,
-                                           result.WidestRecord().measures.peak_force,
-                                           buffers.response, result.parameters));
+    Append(result.findings,
+           FoundUndecidedPast(CoverRivalPast(
+               problem, rival->problem, *rival->solution, noise, options.thresholds,
+               result.WidestRecord().measures.peak_force, buffers.response, result.parameters)));
   }
   ConsiderDepartures(problem, solution, noise, estimates, options.thresholds, buffers.response,
                      result);
@@ -460,7 +394,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
-  if (IsInadequate(result, options.thresholds)) SayInadequate(result);
+  if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result);
   Judge(result.parameters, result.findings);
 }
 

@@ -64,7 +64,7 @@ void ExpectFinite(const FitResult& fit) {
   EXPECT_GE(fit.residuals.degrees_of_freedom, 1.0);
 }
 
-TEST(Noise, NinetyFivePercentIntervalsHoldTheTruthAsOftenAsTheyState) {
+TEST(Noise, NinetyFivePercentIntervalsCoverAsOftenAsTheyState) {
   constexpr int kLoops = 300;
   // Of 300 intervals of 95 %, fewer than 264 cover the truth with a probability of 1e-6 (binomial:
   // the mean is 285, the standard deviation 3.8).

@@ -93,6 +93,11 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceP
 
 Finding FoundOpenStiffness() { return {.code = "sigma_bounded_below", .parameters = {"sigma"}}; }
 
+std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart) {
+  if (apart.empty()) return std::nullopt;
+  return Finding{.code = "initial_state_undecided", .parameters = std::move(apart)};
+}
+
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {
       {{"sigma", "sigma_not_identifiable"},

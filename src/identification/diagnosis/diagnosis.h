@@ -23,6 +23,9 @@ std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceP
 
 Finding FoundOpenStiffness();
 
+/// Parameters that the other past of the contact has elsewhere; nothing without any.
+std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
+
 /// Intervals too wide to call a parameter known, of those that no other finding names.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 

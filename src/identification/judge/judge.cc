@@ -10,35 +10,61 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Identifiability>, 17> kVerdicts = {{
-    {"no_model_fits", Identifiability::kNotIdentifiable},
-    {"energy_contradiction", Identifiability::kNotIdentifiable},
-    {"undetermined_parameter", Identifiability::kNotIdentifiable},
-    {"undetermined_combination", Identifiability::kNotIdentifiable},
-    {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
-    {"alpha_not_identifiable", Identifiability::kNotIdentifiable},
-    {"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
-    {"shape_or_rig", Identifiability::kNotIdentifiable},
-    {"slip_force_bounded_below", Identifiability::kBoundedBelow},
-    {"sigma_bounded_below", Identifiability::kBoundedBelow},
-    {"model_inadequate", Identifiability::kNotIdentifiable},
-    {"slip_force_extrapolated", Identifiability::kExtrapolated},
-    {"unknown_past", Identifiability::kNotIdentifiable},
-    {"few_places", Identifiability::kNotIdentifiable},
-    {"initial_state_undecided", Identifiability::kIdentifiable},
-    {"systematic_residual", Identifiability::kIdentifiable},
-    {"turning_points_between_samples", Identifiability::kIdentifiable},
-}};
+/// What a finding means for the parameters that it names.
+struct Row {
+  std::string_view code;
+  Identifiability verdict;
+  bool holds_without_model = false;  // also where the model is inadequate
+};
 
-}  // namespace
+constexpr std::array kVerdicts = {
+    Row{"no_model_fits", Identifiability::kNotIdentifiable, true},
+    Row{"energy_contradiction", Identifiability::kNotIdentifiable, true},
+    Row{"model_inadequate", Identifiability::kNotIdentifiable, true},
+    Row{"undetermined_parameter", Identifiability::kNotIdentifiable},
+    Row{"undetermined_combination", Identifiability::kNotIdentifiable},
+    Row{"sigma_not_identifiable", Identifiability::kNotIdentifiable},
+    Row{"alpha_not_identifiable", Identifiability::kNotIdentifiable},
+    Row{"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
+    Row{"shape_or_rig", Identifiability::kNotIdentifiable},
+    Row{"unknown_past", Identifiability::kNotIdentifiable},
+    Row{"few_places", Identifiability::kNotIdentifiable},
+    Row{"slip_force_bounded_below", Identifiability::kBoundedBelow},
+    Row{"sigma_bounded_below", Identifiability::kBoundedBelow},
+    Row{"slip_force_extrapolated", Identifiability::kExtrapolated},
+    Row{"initial_state_undecided", Identifiability::kIdentifiable, true},
+    Row{"systematic_residual", Identifiability::kIdentifiable, true},
+    Row{"turning_points_between_samples", Identifiability::kIdentifiable, true},
+};
 
-Identifiability VerdictOf(const Finding& finding) {
-  const auto row = std::ranges::find(kVerdicts, finding.code,
-                                     &std::pair<std::string_view, Identifiability>::first);
+const Row& RowOf(const Finding& finding) {
+  const auto row = std::ranges::find(kVerdicts, finding.code, &Row::code);
   if (row == kVerdicts.end()) {
     throw std::logic_error("the finding has no verdict: " + std::string(finding.code));
   }
-  return row->second;
+  return *row;
+}
+
+}  // namespace
+
+Identifiability VerdictOf(const Finding& finding) { return RowOf(finding).verdict; }
+
+void WithdrawInadequate(FitResult& result) {
+  result.adequacy.verdict = AdequacyVerdict::kInadequate;
+  result.mindlin_test.reset();
+  result.branch_shapes.clear();
+  std::erase_if(result.findings, [](const Finding& finding) {
+    return !finding.parameters.empty() && !RowOf(finding).holds_without_model;
+  });
+  Finding finding{.code = "model_inadequate"};
+  for (ParameterEstimate& estimate : result.parameters) {
+    if (estimate.status == ParameterStatus::kFixed) continue;
+    estimate.standard_error.reset();
+    estimate.lower95.reset();
+    estimate.upper95.reset();
+    finding.parameters.push_back(estimate.name);
+  }
+  result.findings.insert(result.findings.begin(), std::move(finding));
 }
 
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings) {

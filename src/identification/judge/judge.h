@@ -12,13 +12,20 @@ namespace mindahl::identification {
 ///
 /// | precedence | from | verdict |
 /// |---|---|---|
-/// | 1 | an estimate without error or interval, and the findings no_model_fits,
-/// |   | energy_contradiction, undetermined_…, …_not_identifiable, shape_or_rig | not identifiable
-/// | | 2 | slip_force_bounded_below, sigma_bounded_below, or an interval open above | bounded below
-/// | | 3 | nothing of it | identifiable |
+/// | 1 | an estimate without error or interval, and the findings model_inadequate, no_model_fits,
+/// |   | energy_contradiction, undetermined_…, …_not_identifiable, shape_or_rig, unknown_past,
+/// |   | few_places | not identifiable |
+/// | 2 | slip_force_bounded_below, sigma_bounded_below, an interval open above | bounded below |
+/// | 3 | slip_force_extrapolated | extrapolated |
+/// | 4 | nothing of it | identifiable |
 ///
 /// What the user holds fixed is identifiable. A finding that names no parameter changes none.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
+
+/// Under a model that does not describe the record nothing of it is to be believed: takes back
+/// errors, limits, tests, and what the findings would have one do to know its parameters better;
+/// adds the finding model_inadequate. Before Judge().
+void WithdrawInadequate(FitResult& result);
 
 /// The verdict that a finding calls for on the parameters that it names.
 /// @throws std::logic_error for a code that has no row

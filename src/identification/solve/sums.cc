@@ -103,21 +103,20 @@ struct Sums {
   void (*subtract)(double, const double*, const double*, double*, std::size_t);
 };
 
-#define MINDAHL_SUMS(name, lanes, target)                                                        \
-  target double Dot##name(const double* a, const double* b, std::size_t size) {                  \
-    return DotOf<lanes>(a, b, size);                                                             \
-  }                                                                                              \
-  target void AddMultiple##name(double* to, double factor, const double* of, std::size_t size) { \
-    AddMultipleOf<lanes>(to, factor, of, size);                                                  \
-  }                                                                                              \
-  target void Weigh##name(double* column, double factor, const double* weight,                   \
-                          std::size_t size) {                                                    \
-    WeighOf<lanes>(column, factor, weight, size);                                                \
-  }                                                                                              \
-  target void Subtract##name(double factor, const double* a, const double* b, double* residual,  \
-                             std::size_t size) {                                                 \
-    SubtractOf<lanes>(factor, a, b, residual, size);                                             \
-  }                                                                                              \
+#define MINDAHL_SUMS(name, lanes, target)                                                          \
+  target double Dot##name(const double* a, const double* b, std::size_t size) {                    \
+    return DotOf<lanes>(a, b, size);                                                               \
+  }                                                                                                \
+  target void AddMultiple##name(double* to, double factor, const double* of, std::size_t size) {   \
+    AddMultipleOf<lanes>(to, factor, of, size);                                                    \
+  }                                                                                                \
+  target void Weigh##name(double* column, double factor, const double* weight, std::size_t size) { \
+    WeighOf<lanes>(column, factor, weight, size);                                                  \
+  }                                                                                                \
+  target void Subtract##name(double factor, const double* a, const double* b, double* residual,    \
+                             std::size_t size) {                                                   \
+    SubtractOf<lanes>(factor, a, b, residual, size);                                               \
+  }                                                                                                \
   constexpr Sums k##name{Dot##name, AddMultiple##name, Weigh##name, Subtract##name};
 
 MINDAHL_SUMS(Baseline, 2, )
