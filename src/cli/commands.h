@@ -13,5 +13,6 @@ void AddValidateCommand(CLI::App& app, Console& console);
 void AddContactCommand(CLI::App& app, Console& console);
 void AddTradeoffCommand(CLI::App& app, Console& console);
 void AddRecommendCommand(CLI::App& app, Console& console);
+void AddPlanCommand(CLI::App& app, Console& console);
 
 }  // namespace mindahl::cli

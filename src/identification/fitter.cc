@@ -270,19 +270,6 @@ double DescribeStructures(const Problem& problem, std::span<const double> residu
   return widening;
 }
 
-/// What errors of the displacement do to the weighted residuals.
-DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
-                            const Solution& solution, const Noise& noise) {
-  if (!errors.any()) return {};
-  DisplacementEffect effect{errors.ForceErrors(problem, solution.theta),
-                            noise.variance * noise.repeating};
-  Eigen::Index row = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const double weight : record.root_weight) effect.residuals.row(row++) *= weight;
-  }
-  return effect;
-}
-
 void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));
 }

@@ -26,7 +26,7 @@ using testing::RunCommand;
 using testing::SampleRecord;
 using Words = std::vector<std::string>;
 
-const Words kCommands = {"fit", "simulate", "validate", "contact", "tradeoff", "recommend"};
+const Words kCommands = {"fit", "simulate", "validate", "contact", "tradeoff", "recommend", "plan"};
 const char* const kCommonSection = "What is known of the contact";
 const char* const kOption = "(--[a-z][a-z0-9-]*)";
 
@@ -223,7 +223,9 @@ TEST(Contract, DocumentsEveryKeyOfTheOtherCommands) {
        "0.05", "--radius-2", "inf"},
       {"validate", "--cases", "1"},
       {"recommend", "--sigma", "4e7", "--slip-force", "40", "--lambda", "0.5", "--tolerance", "5%"},
-      {"tradeoff", "--excitation", "micro"}};
+      {"tradeoff", "--excitation", "micro"},
+      {"plan", "--sigma", "4e7", "--slip-force", "40", "--force-noise", "0.4", "--want",
+       "alpha=0.01"}};
   const auto sections = ContractSections();
   for (Words words : runs) {
     const std::string command = words.front();

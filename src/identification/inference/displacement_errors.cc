@@ -84,4 +84,16 @@ Eigen::MatrixXd DisplacementErrors::ForceErrors(const Problem& problem,
   return forces.colwise() - force;
 }
 
+DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
+                            const Solution& solution, const Noise& noise) {
+  if (!errors.any()) return {};
+  DisplacementEffect effect{errors.ForceErrors(problem, solution.theta),
+                            noise.variance * noise.repeating};
+  Eigen::Index row = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (const double weight : record.root_weight) effect.residuals.row(row++) *= weight;
+  }
+  return effect;
+}
+
 }  // namespace mindahl::identification

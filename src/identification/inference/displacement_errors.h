@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "identification/inference/local.h"
 #include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
@@ -39,5 +41,9 @@ class DisplacementErrors {
   const ScaledRecords& data_;
   std::vector<std::vector<Drawn>> draws_;  // of all records each
 };
+
+/// What these errors do to the weighted residuals of a solution; nothing where readings are exact.
+DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
+                            const Solution& solution, const Noise& noise);
 
 }  // namespace mindahl::identification

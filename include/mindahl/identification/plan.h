@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
+
+/// What should be measured: the errors that a fit of a loop would have, before there is one.
+namespace mindahl::identification {
+
+/// What the contact and the channels are taken to be.
+struct Expectation {
+  models::BranchLaw law;           ///< of Masing's rules
+  models::SeriesSpring rig;        ///< in series; its stiffness known unless it is fitted
+  double force_noise = 0.0;        ///< standard deviation [N], finite, > 0
+  double displacement_noise = 0.0; ///< standard deviation [m], white, finite, >= 0
+  double autocorrelation = 0.0;    ///< of the force noise from one sample to the next, 0 <= ρ < 1
+};
+
+/// A loop that may be measured: a sine of one amplitude.
+struct Protocol {
+  double amplitude = 0.0;  ///< X [m], finite, > 0
+  double cycles = 3.0;     ///< finite, >= 1
+  std::size_t samples_per_cycle = 200;  ///< >= 4
+  /// Virgin: the record has the first loading of the contact. Steady: it begins later.
+  models::InitialState initial_state = models::InitialState::kVirgin;
+};
+
+/// What a fit of it would say.
+struct ExpectedFit {
+  Protocol protocol;
+  double peak_force = 0.0;  ///< T* [N]
+  /// σ, α, Tc and all else that is fitted or reported: values that are expected, standard errors,
+  /// 95 % intervals; without errors what the loop does not determine. No verdicts.
+  std::vector<ParameterEstimate> parameters;
+  /// 2 ln Λ by which the loop is expected to tell Masing's rules from Dahl's own law; 0 for a
+  /// steady loop, where both are one curve.
+  double law_evidence = 0.0;
+
+  /// nullptr when there is none of that name
+  [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
+};
+
+/// The Cramér–Rao bound of a fit with the options' terms, from the exact derivatives at the values
+/// that are expected: what unbiased estimates cannot better, and what those of the fit attain where
+/// the likelihood is a parabola over their errors. Offsets are unknown, so are all terms asked for.
+/// @param options  of the fit; its model must be one of Masing's rules
+/// @throws InvalidArgument for values out of range, naming them
+/// Accuracy: the standard errors of simulated fits scatter about these by what their number leaves
+/// (tests/identification/plan_test.cc: 300 loops, 12 %), unless an error is of the order of its
+/// parameter.
+ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
+                      const FitOptions& options = {});
+
+/// A standard error that is wanted.
+struct Precision {
+  double value = 0.0;        ///< in the parameter's unit, or as a share of it; > 0
+  bool is_relative = false;
+};
+
+/// By parameter: "sigma", "alpha", "slip_force", or a term that is fitted.
+using WantedPrecision = std::map<std::string, Precision>;
+
+/// As many times as many cycles as the protocol has would reach what is wanted, errors falling with
+/// the root of the number of cycles: <= 1 where it is reached; infinite where the loop does not
+/// determine a parameter.
+/// @throws InvalidArgument for a name that the fit does not have, or a precision that is not > 0
+double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted);
+
+/// The least amplitude that reaches what is wanted with the protocol's cycles, to 1 %; empty where
+/// none between `least` and `most` does. `fewest`, where given, is set to the protocol among those
+/// looked at that needs the fewest cycles, its number of cycles being those.
+std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
+                                          const WantedPrecision& wanted, double least, double most,
+                                          const FitOptions& options = {},
+                                          Protocol* fewest = nullptr);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,250 @@
+#include "mindahl/identification/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "identification/inference/displacement_errors.h"
+#include "identification/inference/estimates.h"
+#include "identification/inference/reweighting.h"
+#include "identification/problem/problem.h"
+#include "identification/problem/scaled_records.h"
+#include "mindahl/core/arena.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/preparation.h"
+#include "mindahl/loop/reversals.h"
+#include "mindahl/models/excitation.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::identification {
+namespace {
+
+using models::InitialState;
+
+void Require(const Expectation& expected, const Protocol& protocol, const FitOptions& options) {
+  models::Validate(expected.law);
+  models::Validate(expected.rig);
+  RequirePositive("force noise [N]", expected.force_noise);
+  RequireNonNegative("displacement noise [m]", expected.displacement_noise);
+  if (!(expected.autocorrelation >= 0 && expected.autocorrelation < 1)) {
+    ThrowInvalid("autocorrelation of the noise [-]", expected.autocorrelation, "must be in [0, 1)");
+  }
+  RequirePositive("amplitude [m]", protocol.amplitude);
+  if (!(protocol.cycles >= 1)) ThrowInvalid("cycles [-]", protocol.cycles, "must be >= 1");
+  if (options.model == nullptr || options.model->memory != models::Memory::kReturnPoint) {
+    throw InvalidArgument("the model of a plan must have Masing's rules: mindlin-dahl, mindlin");
+  }
+}
+
+bool IsRigid(const models::SeriesSpring& rig) { return std::isinf(rig.stiffness); }
+
+/// The loop as it would be measured without noise.
+loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
+  models::Excitation excitation =
+      models::MakeExcitation({.amplitude = protocol.amplitude,
+                              .cycles = protocol.cycles,
+                              .samples_per_cycle = protocol.samples_per_cycle});
+  loop::Record record;
+  record.displacement = std::move(excitation.displacement);
+  record.time = std::move(excitation.time);
+  const std::vector<std::size_t> reversals = loop::FindReversals(record.displacement, 0.0);
+  const models::FrictionModel& masing = *models::FindFrictionModel("mindlin-dahl");
+  const models::LoadingPath path = models::MakeLoadingPath(
+      record.displacement, reversals, masing.memory, {.state = protocol.initial_state});
+  record.force.resize(record.size());
+  models::EvaluateForce(masing, expected.law, path, record.displacement, record.force,
+                        expected.rig);
+  return record;
+}
+
+/// θ of what is expected; terms that are fitted beside the law are expected to be nothing.
+Solution SolutionAt(const Expectation& expected, const Parameters& parameters) {
+  Solution solution;
+  solution.converged = true;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const Parameter& parameter = parameters[p];
+    double theta = parameter.theta;
+    if (p == kStiffness) {
+      theta = parameter.ToTheta(expected.law.tangential_stiffness);
+    } else if (p == kShape) {
+      theta = parameter.ToTheta(expected.law.shape_exponent);
+    } else if (p == kSlipForce) {
+      theta = parameter.ToTheta(expected.law.slip_force);
+    } else if (p == kRig && parameters.has_rig()) {
+      theta = parameter.ToTheta(expected.rig.stiffness);
+    } else if (!parameter.fixed && !parameter.term->positive) {
+      theta = parameter.ToTheta(0.0);
+    }
+    solution.theta.push_back(theta);
+    const bool is_free = !parameter.fixed && !parameter.absent;
+    solution.side.push_back(is_free ? SideOf(parameter, theta) : BoundSide::kInside);
+  }
+  return solution;
+}
+
+Autocorrelation FirstOrder(double correlation) {
+  Autocorrelation result;
+  if (correlation == 0) return result;
+  result.order = 1;
+  result.coefficients[0] = correlation;
+  result.correlations[0] = 1.0;
+  result.correlations[1] = correlation;
+  result.innovation_share = 1 - correlation * correlation;
+  return result;
+}
+
+/// 2 ln Λ of the loop fitted by Dahl's own law: Σ(T_Dahl − T)² over the variance of the noise,
+/// errors of the displacement acting as force noise by the slope of the loop.
+double LawEvidence(const loop::Record& record, const Expectation& expected,
+                   const Protocol& protocol) {
+  if (protocol.initial_state == InitialState::kSteady) return 0.0;
+  FitOptions options;
+  options.model = models::FindFrictionModel("dahl");
+  options.initial_state = protocol.initial_state;
+  if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  const FitResult other = Fit({&record, 1}, options, Depth::kEstimate);
+  double slopes = 0.0;  // Σ(dT/dδ)²
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double step = record.displacement[i] - record.displacement[i - 1];
+    const double rise = record.force[i] - record.force[i - 1];
+    if (step != 0) slopes += (rise / step) * (rise / step);
+  }
+  const auto samples = static_cast<double>(record.size());
+  const double of_force = expected.force_noise * expected.force_noise;
+  const double of_displacement = expected.displacement_noise * expected.displacement_noise;
+  const double variance = of_force + slopes / samples * of_displacement;
+  const double independent = FirstOrder(expected.autocorrelation).SquaredCorrelations();
+  return samples * other.rms * other.rms / (variance * independent);
+}
+
+}  // namespace
+
+const ParameterEstimate* ExpectedFit::Find(std::string_view name) const {
+  const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
+                      const FitOptions& given) {
+  Require(expected, protocol, given);
+  const loop::Record record = LoopOf(expected, protocol);
+  FitOptions options = given;
+  options.initial_state = protocol.initial_state;
+  options.force_noise = expected.force_noise;
+  options.preparation.force_sense = 1;
+  options.preparation.displacement_noise = expected.displacement_noise;
+  const bool fits_rig = std::ranges::find(options.terms, "rig_stiffness") != options.terms.end();
+  if (!IsRigid(expected.rig) && !fits_rig) {
+    options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  }
+  Arena arena;
+  const loop::RecordView view(record);
+  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation, &arena);
+  ScaledRecords data = Scale(prepared, options.follow_load, &arena);
+  const Problem problem{&data, options.model, protocol.initial_state,
+                        Parameters(data, options, protocol.initial_state, &arena)};
+  Solution solution = SolutionAt(expected, problem.parameters);
+  const DisplacementErrors errors(prepared, data);
+  Response response;
+  Noise noise;
+  if (errors.any()) {
+    Solver solver;
+    const SolverOptions stay{.max_iterations = 1};
+    const std::vector<double> theta = solution.theta;
+    FitWithWeights(problem, data, options, errors, solver, response, stay, solution, noise);
+    solution.theta = theta;
+  } else {
+    noise = PlainNoise(data, options, 0.0, problem.parameters.free().size());
+  }
+  noise.autocorrelation = FirstOrder(expected.autocorrelation);
+  const Estimates estimates(problem, solution, noise, EffectOf(errors, problem, solution, noise),
+                            options.thresholds, response);
+  ExpectedFit result;
+  result.protocol = protocol;
+  for (const double force : record.force) {
+    result.peak_force = std::max(result.peak_force, std::abs(force));
+  }
+  for (const std::size_t p : problem.parameters.reported()) {
+    const Parameter& parameter = problem.parameters[p];
+    ParameterEstimate& estimate = result.parameters.emplace_back();
+    estimate.name = problem.parameters.NameOf(p);
+    estimate.unit = parameter.term->unit;
+    estimate.value = parameter.ToValue(solution.theta[p]);
+    estimate.status = StatusOf(parameter, solution.side[p]);
+    estimates.Fill(p, estimate);
+  }
+  result.law_evidence = LawEvidence(record, expected, protocol);
+  return result;
+}
+
+double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted) {
+  double factor = 0.0;
+  for (const auto& [name, precision] : wanted) {
+    RequirePositive(fmt::format("wanted precision of {}", name), precision.value);
+    const ParameterEstimate* estimate = fit.Find(name);
+    if (estimate == nullptr) {
+      std::string names;
+      for (const ParameterEstimate& known : fit.parameters) {
+        names += (names.empty() ? "" : ", ") + known.name;
+      }
+      throw InvalidArgument(
+          fmt::format("parameter '{}' is not fitted: must be one of {}", name, names));
+    }
+    if (estimate->status == ParameterStatus::kFixed) continue;
+    if (!estimate->standard_error) return std::numeric_limits<double>::infinity();
+    const double allowed =
+        precision.is_relative ? precision.value * std::abs(estimate->value) : precision.value;
+    factor = std::max(factor, std::pow(*estimate->standard_error / allowed, 2));
+  }
+  return factor;
+}
+
+std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
+                                          const WantedPrecision& wanted, double least, double most,
+                                          const FitOptions& options, Protocol* fewest) {
+  RequirePositive("least amplitude [m]", least);
+  if (!(most > least)) ThrowInvalid("greatest amplitude [m]", most, "must exceed the least");
+  constexpr int kLooks = 48;  // on a logarithmic scale
+  constexpr double kCloseEnough = 1.01;
+  const auto expect = [&](double amplitude) {
+    Protocol at = protocol;
+    at.amplitude = amplitude;
+    return ExpectFit(expected, at, options);
+  };
+  double best = std::numeric_limits<double>::infinity();
+  double below = 0.0;
+  for (int i = 0; i <= kLooks; ++i) {
+    const double amplitude = least * std::pow(most / least, static_cast<double>(i) / kLooks);
+    ExpectedFit fit = expect(amplitude);
+    const double factor = CyclesFactor(fit, wanted);
+    if (factor < best && fewest != nullptr) {
+      *fewest = fit.protocol;
+      fewest->cycles = std::max(1.0, std::ceil(factor * protocol.cycles));
+    }
+    best = std::min(best, factor);
+    if (factor > 1) {
+      below = amplitude;
+      continue;
+    }
+    // From the last amplitude that does not reach it.
+    double above = amplitude;
+    while (below > 0 && above > kCloseEnough * below) {
+      const double middle = std::sqrt(below * above);
+      ExpectedFit trial = expect(middle);
+      if (CyclesFactor(trial, wanted) <= 1) {
+        above = middle;
+        fit = std::move(trial);
+      } else {
+        below = middle;
+      }
+    }
+    return fit;
+  }
+  return std::nullopt;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,95 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+
+namespace mindahl::cli {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using testing::Outcome;
+using testing::RunCommand;
+using Words = std::vector<std::string>;
+
+Outcome RunPlan(const Words& more) {
+  Words words = {"plan", "--sigma", "4e7", "--slip-force", "40"};
+  words.insert(words.end(), more.begin(), more.end());
+  return RunCommand(words);
+}
+
+TEST(PlanCommand, SaysWhichAmplitudeReachesWhatIsWanted) {
+  const Outcome outcome =
+      RunPlan({"--force-noise", "0.4", "--want", "alpha=0.01,slip_force=1%", "--json", "-"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const json plan = outcome.Json();
+  EXPECT_EQ(plan["schema"], "mindahl.plan/1");
+  constexpr double kSlip = 1.5e-6;
+  for (const json& reached : plan["reached"]) {
+    EXPECT_GT(reached["least_amplitude"], 0.7 * kSlip);
+    EXPECT_LT(reached["least_amplitude"], kSlip);
+  }
+  EXPECT_EQ(plan["loops"].size(), 26u);  // 13 amplitudes, two pasts
+}
+
+TEST(PlanCommand, ExitsWithThreeWhereNoAmplitudeDoes) {
+  const Outcome outcome = RunPlan({"--force-noise", "0.4", "--want", "alpha=1e-6"});
+  EXPECT_EQ(outcome.status, kNotEstablished);
+  EXPECT_THAT(outcome.out, HasSubstr("no amplitude reaches it with 3 cycles"));
+}
+
+TEST(PlanCommand, ARecordThatDoesNotTellAlphaIsPlannedForWithMindlins) {
+  const testing::TemporaryDirectory directory;
+  const std::string file = directory / "far.csv";
+  ASSERT_EQ(RunCommand({"simulate", "--model", "mindlin", "--sigma", "4e7", "--slip-force", "40",
+                        "--lambda", "0.2", "--cycles", "3", "--noise-force", "0.05", "-o", file})
+                .status,
+            kDone);
+  const Outcome outcome =
+      RunCommand({"plan", "--record", file, "--want", "slip_force=5%", "--json", "-"});
+  EXPECT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("alpha is not identified: taken to be 1/3"));
+  const json plan = outcome.Json();
+  // From second order alone, Tc = ασ²/(curvature): the noise leaves some per cent.
+  EXPECT_NEAR(plan["expected"]["slip_force"].get<double>(), 40.0, 0.2 * 40.0);
+  EXPECT_NEAR(plan["expected"]["force_noise"].get<double>(), 0.05, 0.1 * 0.05);
+}
+
+TEST(PlanCommand, DrawsTheErrors) {
+  const testing::TemporaryDirectory directory;
+  const std::string file = directory / "plan.svg";
+  EXPECT_EQ(RunPlan({"--force-noise", "0.4", "--plot", file}).status, kDone);
+  EXPECT_GT(std::filesystem::file_size(file), 1000u);
+}
+
+TEST(PlanCommand, RefusesWhatItDoesNotUnderstandInOneLine) {
+  const std::vector<std::pair<Words, std::string>> cases = {
+      {{}, "--force-noise missing"},
+      {{"--force-noise", "0.4", "--want", "alpha"}, "--want: 'alpha' is no precision"},
+      {{"--force-noise", "0.4", "--want", "alpha=1x"}, "--want: 'alpha=1x' is no precision"},
+      {{"--force-noise", "0.4", "--want", "alpha=0"}, "is no precision"},
+      {{"--force-noise", "0.4", "--want", "beta=1"}, "--want: 'beta' is no parameter"},
+      {{"--force-noise", "0.4", "--want", "alpha=1,alpha=2"}, "alpha is given twice"},
+      {{"--force-noise", "0.4", "--with", "beta"}, "--with: 'beta' is no term"},
+      {{"--force-noise", "0.4", "--with", "rig_stiffness"}, "needs --rig-stiffness"},
+      {{"--force-noise", "-1"}, "force noise"},
+      {{"--force-noise", "0.4", "--autocorrelation", "1"}, "autocorrelation"},
+      {{"--force-noise", "0.4", "--cycles", "0.5"}, "cycles"},
+      {{"--force-noise", "0.4", "--amplitude", "0"}, "amplitude"},
+      {{"--record", "none.csv"}, "--record excludes"},
+  };
+  for (const auto& [words, message] : cases) {
+    const Outcome outcome = RunPlan(words);
+    EXPECT_EQ(outcome.status, kBadInput) << message;
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::cli

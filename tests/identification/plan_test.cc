@@ -1,0 +1,209 @@
+#include "mindahl/identification/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/models/excitation.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::identification {
+namespace {
+
+using loop::Record;
+using models::BranchLaw;
+using models::InitialState;
+
+constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+constexpr double kSlip = 1.5e-6;  // δc = Tc/(σ(1 − α))
+constexpr double kForceNoise = 0.4;
+
+Expectation Quiet() {
+  Expectation expected;
+  expected.law = kLaw;
+  expected.force_noise = kForceNoise;
+  return expected;
+}
+
+Protocol Loop(double lambda, InitialState state = InitialState::kVirgin) {
+  Protocol protocol;
+  protocol.amplitude = lambda * kSlip;
+  protocol.initial_state = state;
+  return protocol;
+}
+
+double ErrorOf(const ExpectedFit& fit, std::string_view name) {
+  const ParameterEstimate* estimate = fit.Find(name);
+  EXPECT_NE(estimate, nullptr) << name;
+  return estimate != nullptr && estimate->standard_error ? *estimate->standard_error : NAN;
+}
+
+/// Standard deviations of σ, α and Tc over fits of simulated loops, by the public interface alone.
+std::array<double, 3> Scatter(const Expectation& expected, const Protocol& protocol, int loops) {
+  const models::Excitation sine =
+      models::MakeExcitation({.amplitude = protocol.amplitude,
+                              .cycles = protocol.cycles,
+                              .samples_per_cycle = protocol.samples_per_cycle});
+  std::vector<std::size_t> reversals;
+  const std::size_t quarter = protocol.samples_per_cycle / 4;
+  for (std::size_t at = quarter; at < sine.displacement.size(); at += 2 * quarter) {
+    reversals.push_back(at);
+  }
+  const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
+  const models::LoadingPath path = models::MakeLoadingPath(
+      sine.displacement, reversals, model.memory, {.state = protocol.initial_state});
+  std::vector<double> force(sine.displacement.size());
+  models::EvaluateForce(model, expected.law, path, sine.displacement, force, expected.rig);
+  FitOptions options;
+  options.initial_state = protocol.initial_state;
+  options.preparation.displacement_noise = expected.displacement_noise;
+  options.force_noise = expected.force_noise;
+  if (std::isfinite(expected.rig.stiffness)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  std::mt19937_64 generator(7);
+  std::normal_distribution<double> normal;
+  std::array<double, 3> sums{};
+  std::array<double, 3> squares{};
+  for (int k = 0; k < loops; ++k) {
+    Record record;
+    record.time = sine.time;
+    double noise = normal(generator);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      record.displacement.push_back(sine.displacement[i] +
+                                    expected.displacement_noise * normal(generator));
+      record.force.push_back(force[i] + expected.force_noise * noise);
+      const double rho = expected.autocorrelation;
+      noise = rho * noise + std::sqrt(1 - rho * rho) * normal(generator);
+    }
+    const FitResult fit = Fit({&record, 1}, options, Depth::kEstimate);
+    const std::array<double, 3> values = {fit.law.tangential_stiffness, fit.law.shape_exponent,
+                                          fit.law.slip_force};
+    for (std::size_t j = 0; j < 3; ++j) {
+      sums[j] += values[j];
+      squares[j] += values[j] * values[j];
+    }
+  }
+  std::array<double, 3> deviations{};
+  for (std::size_t j = 0; j < 3; ++j) {
+    deviations[j] = std::sqrt((squares[j] - sums[j] * sums[j] / loops) / (loops - 1));
+  }
+  return deviations;
+}
+
+TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
+  constexpr int kLoops = 300;
+  // A standard deviation of 300 values has a relative one of 1/√598 = 4.1 %: three of them.
+  constexpr double kTolerance = 0.12;
+  struct Case {
+    double lambda;
+    InitialState state;
+    double displacement_noise;
+    double autocorrelation;
+    double rig_stiffness;
+  };
+  constexpr double kRigid = std::numeric_limits<double>::infinity();
+  for (const Case& c : {Case{0.8, InitialState::kVirgin, 0.0, 0.0, kRigid},
+                        {1.2, InitialState::kSteady, 0.0, 0.0, kRigid},
+                        {1.2, InitialState::kVirgin, 5e-9, 0.0, kRigid},
+                        {3.0, InitialState::kSteady, 0.0, 0.6, kRigid},
+                        {3.0, InitialState::kVirgin, 0.0, 0.0, 8e7}}) {
+    Expectation expected = Quiet();
+    expected.displacement_noise = c.displacement_noise;
+    expected.autocorrelation = c.autocorrelation;
+    expected.rig.stiffness = c.rig_stiffness;
+    const Protocol protocol = Loop(c.lambda, c.state);
+    const ExpectedFit fit = ExpectFit(expected, protocol);
+    const std::array<double, 3> scatter = Scatter(expected, protocol, kLoops);
+    EXPECT_NEAR(ErrorOf(fit, "sigma") / scatter[0], 1.0, kTolerance) << c.lambda;
+    EXPECT_NEAR(ErrorOf(fit, "alpha") / scatter[1], 1.0, kTolerance) << c.lambda;
+    EXPECT_NEAR(ErrorOf(fit, "slip_force") / scatter[2], 1.0, kTolerance) << c.lambda;
+  }
+}
+
+TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
+  constexpr double kRounding = 1e-9;
+  const ExpectedFit once = ExpectFit(Quiet(), Loop(1.2, InitialState::kSteady));
+  Expectation noisy = Quiet();
+  noisy.force_noise *= 3;
+  const ExpectedFit thrice = ExpectFit(noisy, Loop(1.2, InitialState::kSteady));
+  Protocol longer = Loop(1.2, InitialState::kSteady);
+  longer.cycles *= 16;
+  const ExpectedFit sixteen = ExpectFit(Quiet(), longer);
+  // The last sample of the last cycle is one more in 601.
+  constexpr double kOneSampleMore = 2e-3;
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    EXPECT_NEAR(ErrorOf(thrice, name) / ErrorOf(once, name), 3.0, 3 * kRounding) << name;
+    EXPECT_NEAR(ErrorOf(once, name) / ErrorOf(sixteen, name), 4.0, 4 * kOneSampleMore) << name;
+  }
+}
+
+TEST(Plan, ATermThatIsFittedMakesTheOthersLessCertain) {
+  Expectation expected = Quiet();
+  expected.rig.stiffness = 8e7;
+  const Protocol protocol = Loop(5.0);
+  FitOptions with_rig;
+  with_rig.terms = {"rig_stiffness"};
+  const ExpectedFit known = ExpectFit(expected, protocol);
+  const ExpectedFit fitted = ExpectFit(expected, protocol, with_rig);
+  EXPECT_EQ(known.Find("rig_stiffness")->status, ParameterStatus::kFixed);
+  EXPECT_GT(ErrorOf(fitted, "rig_stiffness"), 0);
+  EXPECT_GT(ErrorOf(fitted, "sigma"), 3 * ErrorOf(known, "sigma"));
+  EXPECT_GT(ErrorOf(fitted, "alpha"), ErrorOf(known, "alpha"));
+}
+
+TEST(Plan, OnlyAVirginLoopTellsMasingsRulesFromDahls) {
+  EXPECT_EQ(ExpectFit(Quiet(), Loop(0.8, InitialState::kSteady)).law_evidence, 0.0);
+  const double evidence = ExpectFit(Quiet(), Loop(0.8)).law_evidence;
+  EXPECT_GT(evidence, 100);
+  Expectation noisy = Quiet();
+  noisy.force_noise *= 10;
+  constexpr double kRounding = 1e-6;
+  EXPECT_NEAR(ExpectFit(noisy, Loop(0.8)).law_evidence / evidence, 0.01, 0.01 * kRounding);
+}
+
+TEST(Plan, TheLeastAmplitudeReachesWhatIsWantedAndASmallerOneDoesNot) {
+  const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
+                                  {"slip_force", {.value = 0.01, .is_relative = true}}};
+  const auto reached =
+      LeastAmplitude(Quiet(), Loop(1.0), wanted, 0.1 * kSlip, 10 * kSlip);
+  ASSERT_TRUE(reached);
+  EXPECT_LE(CyclesFactor(*reached, wanted), 1.0);
+  EXPECT_LE(ErrorOf(*reached, "alpha"), 0.01);
+  EXPECT_LE(ErrorOf(*reached, "slip_force"), 0.01 * kLaw.slip_force);
+  Protocol smaller = reached->protocol;
+  smaller.amplitude /= 1.02;  // the amplitude is found to 1 %
+  EXPECT_GT(CyclesFactor(ExpectFit(Quiet(), smaller), wanted), 1.0);
+}
+
+TEST(Plan, WhatNoAmplitudeReachesIsReachedWithTheCyclesThatItNames) {
+  const WantedPrecision wanted = {{"alpha", {.value = 1e-3}}};
+  Protocol fewest;
+  EXPECT_FALSE(LeastAmplitude(Quiet(), Loop(1.0), wanted, 0.1 * kSlip, 10 * kSlip, {}, &fewest));
+  EXPECT_GT(fewest.cycles, Protocol().cycles);
+  // Offsets and the virgin branch are there once, however many cycles: 1 % on the cycles.
+  constexpr double kOnce = 1.01;
+  EXPECT_LE(CyclesFactor(ExpectFit(Quiet(), fewest), wanted), kOnce);
+}
+
+TEST(Plan, RefusesWhatMeansNothing) {
+  Expectation expected = Quiet();
+  expected.autocorrelation = 1.0;
+  EXPECT_THROW(ExpectFit(expected, Loop(1.0)), InvalidArgument);
+  expected = Quiet();
+  expected.force_noise = 0.0;
+  EXPECT_THROW(ExpectFit(expected, Loop(1.0)), InvalidArgument);
+  EXPECT_THROW(ExpectFit(Quiet(), Loop(0.0)), InvalidArgument);
+  FitOptions dahl;
+  dahl.model = models::FindFrictionModel("dahl");
+  EXPECT_THROW(ExpectFit(Quiet(), Loop(1.0), dahl), InvalidArgument);
+  const ExpectedFit fit = ExpectFit(Quiet(), Loop(1.0));
+  EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
+  EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::identification
