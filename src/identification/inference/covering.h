@@ -20,8 +20,7 @@ namespace mindahl::identification {
 std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& rival,
                                         const Solution& rival_solution, const Noise& noise,
                                         const Thresholds& thresholds, double peak_force,
-                                        Response& response,
-                                        std::span<ParameterEstimate> estimates);
+                                        Response& response, std::span<ParameterEstimate> estimates);
 
 /// Where the shape of a loop is doubtful, the plateau that anyone reads off it is as good a slip
 /// force as the law's: Tc covers half of the gap between the branches, where the record slips.
