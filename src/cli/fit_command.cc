@@ -57,7 +57,10 @@ struct FitCommandOptions {
   std::string offsets = "on";
   std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
   bool follow_load = false;
+  std::vector<std::string> covariates;
   std::string load_window;
+  std::string cycles;
+  std::string samples;
   std::size_t skip_cycles = 0;
   std::string loss = "none";
   std::size_t starts = FitOptions{}.starts;
@@ -153,6 +156,58 @@ void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
   }
 }
 
+struct CovariateChoice {
+  std::string column;
+  std::optional<double> value;  // empty: fitted
+};
+
+/// COL, COL=fit or COL=C.
+CovariateChoice ParseCovariate(const std::string& text) {
+  constexpr std::string_view kForm = "COL[=C|fit], e.g. pressure=50";
+  const std::size_t at = text.rfind('=');
+  if (text.empty() || at == 0 || at + 1 == text.size()) {
+    throw InputError(fmt::format("--covariate: '{}' is incomplete: write {}", text, kForm));
+  }
+  CovariateChoice choice{.column = text.substr(0, at), .value = {}};
+  if (at != std::string::npos && text.substr(at + 1) != kFitIt) {
+    choice.value = ParseNumber(std::string_view(text).substr(at + 1), "--covariate", kForm);
+  }
+  return choice;
+}
+
+void ApplyCovariates(const std::vector<std::string>& texts, FitOptions& fit) {
+  for (const std::string& text : texts) {
+    const CovariateChoice choice = ParseCovariate(text);
+    const std::string name = identification::NameOfCovariate(choice.column);
+    const bool is_there = std::ranges::any_of(fit.covariates, [&](const std::string& other) {
+      return identification::NameOfCovariate(other) == name;
+    });
+    if (is_there) ThrowTwice("--covariate", choice.column);
+    fit.covariates.push_back(choice.column);
+    if (!choice.value) continue;
+    if (!fit.fixed.emplace(name, *choice.value).second) {
+      throw InputError(
+          fmt::format("--covariate {} and --fix {} say the same: give one of the two", text, name));
+    }
+  }
+}
+
+loop::CountRange ParseCountRange(std::string_view text, std::string_view option) {
+  constexpr std::string_view kForm = "LO:HI, counted from 1, e.g. 2:5";
+  const auto [first, last] = Split(text, ':', option, kForm);
+  const auto count = [&](std::string_view digits) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (error == std::errc() && end == digits.data() + digits.size() && number >= 1) return number;
+    throw InputError(
+        fmt::format("{}: '{}' is not a whole number from 1 on: write {}", option, digits, kForm));
+  };
+  const loop::CountRange range{.first = count(first), .last = count(last)};
+  if (range.first <= range.last) return range;
+  throw InputError(
+      fmt::format("{}: '{}' is empty: the first number must not be the larger", option, text));
+}
+
 /// A start or a bound of what the fit does not move would be taken without a word.
 void RequireFitted(std::string_view option, const std::string& name, bool is_automatic,
                    const FitOptions& fit) {
@@ -173,6 +228,7 @@ void RequireFitted(std::string_view option, const std::string& name, bool is_aut
     refuse("that of a steady loop is its centre; use --initial-state virgin");
   }
   if (term->option.empty()) return;
+  if (term->of_column) return;  // the fit knows the columns
   const bool is_tried = is_automatic && term->name == "rig_stiffness";
   if (is_tried || std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
   refuse(fmt::format("add {}{}", term->option, term->argument.empty() ? "" : " fit"));
@@ -229,6 +285,9 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
   for (const auto& [name, text] : options.terms) {
     ApplyTerm(*identification::FindTerm(name), text, fit);
   }
+  ApplyCovariates(options.covariates, fit);
+  if (!options.cycles.empty()) preparation.cycles = ParseCountRange(options.cycles, "--cycles");
+  if (!options.samples.empty()) preparation.samples = ParseCountRange(options.samples, "--samples");
   fit.start = ParseAssignments(options.start, "--start");
   fit.bounds = ParseBounds(options.bound);
   const bool is_automatic = options.model == kAutomatic;
@@ -243,7 +302,11 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
 std::vector<RecordFile> ReadInputs(const FitCommandOptions& options, Console& console) {
   std::vector<RecordFile> inputs;
   for (const std::string& file : options.files) {
-    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, options.columns));
+    io::RecordColumns columns = options.columns;
+    for (const std::string& text : options.covariates) {
+      columns.covariates.push_back(ParseCovariate(text).column);
+    }
+    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns));
     if (!options.time_window.empty()) {
       const Interval window =
           ParseInterval(options.time_window, "--time-window", "LO:HI in seconds");
@@ -480,6 +543,18 @@ void AddColumnOptions(CLI::App& command, FitCommandOptions& options) {
       ->type_name("LO:HI")
       ->group(group);
   command
+      .add_option("--cycles", options.cycles,
+                  "fit only samples of the cycles LO to HI, counted from 1;\n"
+                  "the others still make history")
+      ->type_name("LO:HI")
+      ->group(group);
+  command
+      .add_option("--samples", options.samples,
+                  "fit only the samples LO to HI of each record, counted from 1;\n"
+                  "the others still make history")
+      ->type_name("LO:HI")
+      ->group(group);
+  command
       .add_option("--skip-cycles", options.skip_cycles,
                   "leave out so many cycles at the start; they still make history")
       ->capture_default_str()
@@ -492,7 +567,12 @@ void AddTermOptions(CLI::App& command, FitCommandOptions& options, const std::st
     if (term.option.empty()) continue;
     const std::string option(term.option);
     const std::string help(term.help);
-    if (term.argument.empty()) {
+    if (term.of_column) {
+      command.add_option(option, options.covariates, help)
+          ->type_name(std::string(term.argument))
+          ->allow_extra_args(false)
+          ->group(group);
+    } else if (term.argument.empty()) {
       command
           .add_flag_callback(
               option, [&options, &term] { options.terms[term.name] = kFitIt; }, help)
@@ -512,6 +592,7 @@ std::string DescribeParameters() {
   std::string contact;
   std::string record;
   for (const Term& term : identification::Terms()) {
+    if (term.of_column) continue;  // --covariate takes its value
     std::string& list = term.scope == identification::Scope::kContact ? contact : record;
     list += fmt::format("{}{} [{}]", list.empty() ? "" : ", ", term.name, term.unit);
   }

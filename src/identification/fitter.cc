@@ -16,6 +16,7 @@
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/lag_trial.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
@@ -211,11 +212,12 @@ void FillRecords(const Attempt& attempt, Depth depth, FitResult& result) {
 void FillParameters(const Problem& problem, const Solution& solution, FitResult& result) {
   const Parameters& parameters = problem.parameters;
   result.parameters.resize(parameters.reported().size());
+  const bool timed = !problem.data->records.front().velocity.empty();
   for (std::size_t k = 0; k < parameters.reported().size(); ++k) {
     const std::size_t p = parameters.reported()[k];
     ParameterEstimate& estimate = result.parameters[k];
     parameters.NameOf(p, estimate.name);
-    estimate.unit.assign(parameters[p].term->unit);
+    estimate.unit.assign(parameters.UnitOf(p, timed));
     estimate.value = parameters[p].ToValue(solution.theta[p]);
     estimate.status = StatusOf(parameters[p], solution.side[p]);
     estimate.standard_error.reset();
@@ -276,9 +278,14 @@ void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
 
 /// Adequacy, and intervals that cover what its causes would change.
 void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
-                        const Estimates& estimates, const Thresholds& thresholds,
-                        Response& response, FitResult& result) {
-  const AdequacyTest test = TestAdequacy(problem, solution, noise, estimates, thresholds, response);
+                        const Estimates& estimates, const FitOptions& options,
+                        SearchBuffers& buffers, FitResult& result) {
+  const Thresholds& thresholds = options.thresholds;
+  AdequacyTest test =
+      TestAdequacy(problem, solution, noise, estimates, thresholds, buffers.response);
+  if (IsDoubtful(test, thresholds)) {
+    TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
+  }
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
@@ -369,8 +376,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
                problem, rival->problem, *rival->solution, noise, options.thresholds,
                result.WidestRecord().measures.peak_force, buffers.response, result.parameters)));
   }
-  ConsiderDepartures(problem, solution, noise, estimates, options.thresholds, buffers.response,
-                     result);
+  ConsiderDepartures(problem, solution, noise, estimates, options, buffers, result);
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }
@@ -437,8 +443,11 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.adequacy = {};
   descents.clear();
 
-  const loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);
+  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);
+  LeaveOutBeyondLags(options, prepared);
   ScaledRecords data = Scale(prepared, options.follow_load, &arena);
+  AddCovariates(options.covariates, depth != Depth::kEstimate, prepared, options.offsets, data);
+  if (HasLag(options)) SetClocks(data);
   std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
   const ScaledRecords thin = Thin(data, thin_reversals, &arena);
   const Attempt attempt{options, prepared, data, thin, buffers, &arena};
@@ -479,7 +488,9 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
       // nothing of where the motion turned.
       const bool gated = std::ranges::any_of(
           prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
-      if (best->solution->converged && !gated) {
+      // Turning points are not looked for beside a lag, which moves the samples off them.
+      const bool has_lag = best->problem.parameters.has_lag();
+      if (best->solution->converged && !gated && !has_lag) {
         turned =
             FitTurningPointsIfNeeded(best->problem, *best->solution, options, buffers.response);
       }

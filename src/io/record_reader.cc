@@ -85,6 +85,7 @@ constexpr Role kForce{"force", kForceAliases, ForceUnit, ForceUnitSymbols, "N"};
 constexpr Role kAngle{"displacement", kDisplacementAliases, AngleUnit, AngleUnitSymbols, "rad"};
 constexpr Role kTorque{"force", kForceAliases, TorqueUnit, TorqueUnitSymbols, "N m"};
 constexpr Role kTime{"time", kTimeAliases, TimeUnit, TimeUnitSymbols, "s"};
+constexpr Role kCovariate{"covariate", {}, nullptr, nullptr, ""};
 constexpr Role kNormalLoad{"normal load", kNormalLoadAliases, ForceUnit, ForceUnitSymbols, "N"};
 
 std::string LowerCase(std::string_view text) {
@@ -172,16 +173,30 @@ class ColumnFinder {
 
   /// The unit that the header states for a column, "" when it states none.
   std::string HeaderUnit(std::size_t column) const {
-    const std::string of_name = split_.empty() ? "" : split_[column].unit;
-    const std::string of_row =
-        table_.units().empty() ? "" : std::string(WithoutBrackets(table_.units()[column]));
-    if (!of_name.empty() && !of_row.empty() && of_name != of_row) {
+    const std::string of_name = UnitOfName(column);
+    const std::string of_row = UnitOfRow(column);
+    if (!StatesOneUnit(column)) {
       throw InputError(
           fmt::format("{}: {} has the unit '{}' in its name and '{}' below it: "
                       "choose its unit",
                       Header(), Label(column), of_name, of_row));
     }
     return of_name.empty() ? of_row : of_name;
+  }
+
+  /// Does it not state two?
+  [[nodiscard]] bool StatesOneUnit(std::size_t column) const {
+    const std::string of_name = UnitOfName(column);
+    const std::string of_row = UnitOfRow(column);
+    return of_name.empty() || of_row.empty() || of_name == of_row;
+  }
+
+  /// The header's name of a column, without its unit, where no other has the same; else its number.
+  [[nodiscard]] std::string NameOf(std::size_t column) const {
+    const auto same = [&](const ColumnName& other) { return other.name == split_[column].name; };
+    const bool is_named =
+        !split_.empty() && !split_[column].name.empty() && std::ranges::count_if(split_, same) == 1;
+    return is_named ? split_[column].name : std::to_string(column + 1);
   }
 
   [[nodiscard]] bool IsAngle(std::size_t column) const {
@@ -219,6 +234,13 @@ class ColumnFinder {
   std::string Header() const { return fmt::format("{}:{}", table_.file(), table_.header_line()); }
 
  private:
+  [[nodiscard]] std::string UnitOfName(std::size_t column) const {
+    return split_.empty() ? "" : split_[column].unit;
+  }
+  [[nodiscard]] std::string UnitOfRow(std::size_t column) const {
+    return table_.units().empty() ? "" : std::string(WithoutBrackets(table_.units()[column]));
+  }
+
   static std::optional<std::size_t> WholeNumber(std::string_view text) {
     std::size_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -444,6 +466,69 @@ std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const
   return "";
 }
 
+/// Reads the columns that were chosen beside displacement and force, and then some of the others.
+class CovariateReader {
+ public:
+  CovariateReader(const CsvTable& table, const ColumnFinder& finder, const Assignment& assigned,
+                  RecordFile& file)
+      : table_(table), finder_(finder), assigned_(assigned), file_(file) {}
+
+  /// @throws InputError where one is no column, chosen twice, or has a role that forbids it
+  void ReadChosen(std::span<const std::string> choices) {
+    for (const std::string& choice : choices) {
+      const std::size_t column = finder_.Chosen(choice, kCovariate);
+      for (const auto& [role, taken] : {std::pair(&kDisplacement, assigned_.displacement),
+                                        std::pair(&kForce, assigned_.force)}) {
+        if (column != taken) continue;
+        throw InputError(fmt::format("{}: {} is the {} already: choose another column for the {}",
+                                     table_.file(), finder_.Label(column), role->name,
+                                     kCovariate.name));
+      }
+      if (IsRead(column)) {
+        throw InputError(fmt::format("{}: {} is chosen twice as a {}: choose it once",
+                                     table_.file(), finder_.Label(column), kCovariate.name));
+      }
+      Add(column, choice, table_.Numbers(column));
+    }
+  }
+
+  void ReadOthers() {
+    const std::array<std::optional<std::size_t>, 4> roles = {
+        assigned_.displacement, assigned_.force, assigned_.time, assigned_.normal_load};
+    std::size_t left = kMostOtherColumns;
+    for (std::size_t column = 0; column < table_.columns() && left > 0; ++column) {
+      if (IsRead(column) || std::ranges::find(roles, column) != roles.end()) continue;
+      const std::span<const double> numbers = table_.NumbersOrNan(column);
+      const bool all_there =
+          std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
+      const bool is_clear = finder_.StatesOneUnit(column);
+      if (!all_there || !is_clear ||
+          std::ranges::adjacent_find(numbers, std::not_equal_to<>()) == numbers.end())
+        continue;
+      Add(column, finder_.NameOf(column), numbers);
+      --left;
+    }
+  }
+
+ private:
+  [[nodiscard]] bool IsRead(std::size_t column) const {
+    return std::ranges::find(file_.covariates, column + 1, &ChosenColumn::number) !=
+           file_.covariates.end();
+  }
+
+  void Add(std::size_t column, const std::string& name, std::span<const double> numbers) {
+    const std::string unit = finder_.HeaderUnit(column);
+    file_.covariates.push_back({name, column + 1, unit});
+    file_.record.covariates.push_back(
+        {.name = name, .unit = unit, .values = {numbers.begin(), numbers.end()}});
+  }
+
+  const CsvTable& table_;
+  const ColumnFinder& finder_;
+  const Assignment& assigned_;
+  RecordFile& file_;
+};
+
 /// One column of a path: that chosen, or the first; or, where the first is a time, the one that is
 /// recognised. Taking SI for granted is the documented default here.
 std::vector<double> ReadPathColumn(const CsvTable& table, const Role& role,
@@ -506,6 +591,9 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   file.time = read_optional(kTime, assigned.time, columns.time, record.time);
   file.normal_load =
       read_optional(kNormalLoad, assigned.normal_load, columns.normal_load, record.normal_load);
+  CovariateReader covariates(table, finder, assigned, file);
+  covariates.ReadChosen(columns.covariates);
+  covariates.ReadOthers();
   return file;
 }
 

@@ -17,6 +17,9 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
   }
   loop::Record kept;
   std::vector<std::size_t> lines;
+  for (const loop::Covariate& covariate : record.covariates) {
+    kept.covariates.push_back({.name = covariate.name, .unit = covariate.unit, .values = {}});
+  }
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (record.time[i] < first || record.time[i] > last) continue;
     if (!input.lines.empty()) lines.push_back(input.lines[i]);
@@ -24,6 +27,9 @@ void KeepTimeWindow(RecordFile& input, const std::string& file, double first, do
     kept.force.push_back(record.force[i]);
     kept.time.push_back(record.time[i]);
     if (!record.normal_load.empty()) kept.normal_load.push_back(record.normal_load[i]);
+    for (std::size_t c = 0; c < kept.covariates.size(); ++c) {
+      kept.covariates[c].values.push_back(record.covariates[c].values[i]);
+    }
   }
   if (kept.size() == 0) {
     const auto [begin, end] = std::ranges::minmax(record.time);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "loop/mending.h"
@@ -17,6 +18,13 @@ void RequireOptions(std::size_t records, const PreparationOptions& options) {
   if (records == 0) throw InvalidArgument("there is no record: a fit needs at least one");
   if (options.force_sense && *options.force_sense != 1 && *options.force_sense != -1) {
     ThrowInvalid("force sense [-]", *options.force_sense, "must be +1 or -1");
+  }
+  for (const auto& [range, what] :
+       {std::pair(options.cycles, "cycles"), std::pair(options.samples, "samples")}) {
+    if (!range || (range->first >= 1 && range->first <= range->last)) continue;
+    throw InvalidArgument(fmt::format(
+        "{} {}:{} are invalid: they are counted from 1, and the first must not be the larger", what,
+        range->first, range->last));
   }
   if (options.displacement_noise) {
     RequireNonNegative("displacement noise [m]", *options.displacement_noise);
@@ -87,6 +95,42 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
   choice.other_count = choice.count;
 }
 
+/// Leaves out what does not lie in [first, last) of the samples.
+void KeepOnly(std::size_t first, std::size_t last, PreparedRecord& prepared) {
+  for (std::size_t i = 0; i < prepared.size(); ++i) {
+    if (i < first || i >= last) prepared.counts[i] = 0;
+  }
+}
+
+/// First sample of a cycle, counted from 1; the record's size beyond the last.
+std::size_t StartOfCycle(const PreparedRecord& prepared, std::size_t cycle) {
+  // Two reversals a cycle; the first of them ends the way in.
+  if (cycle == 1) return 0;
+  const std::size_t turn = 2 * (cycle - 1) - 1;
+  return turn < prepared.reversals.size() ? prepared.reversals[turn] : prepared.size();
+}
+
+void LeaveOutBeyondRanges(PreparedRecord& prepared, std::size_t number,
+                          const PreparationOptions& options) {
+  const auto require = [&](const CountRange& range, std::string_view what, std::size_t has) {
+    if (range.first <= has) return;
+    throw InvalidArgument(fmt::format("{} {}:{} hold nothing of record {}: it has {} {}", what,
+                                      range.first, range.last, number + 1, has,
+                                      has == 1 ? what.substr(0, what.size() - 1) : what));
+  };
+  if (options.cycles) {
+    require(*options.cycles, "cycles", 1 + prepared.reversals.size() / 2);
+    // One beyond the last is none: no number of cycles is so large.
+    const std::size_t last = std::min(options.cycles->last, prepared.size());
+    KeepOnly(StartOfCycle(prepared, options.cycles->first), StartOfCycle(prepared, last + 1),
+             prepared);
+  }
+  if (options.samples) {
+    require(*options.samples, "samples", prepared.size());
+    KeepOnly(options.samples->first - 1, options.samples->last, prepared);
+  }
+}
+
 void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOptions& options) {
   const RecordView& record = prepared.record;
   if (options.load_window) {
@@ -101,12 +145,10 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
     }
   }
   if (options.skip_cycles > 0) {
-    // Two reversals a cycle; the first of them ends the way in.
-    const std::size_t turns = 2 * options.skip_cycles;
-    const std::size_t first =
-        turns <= prepared.reversals.size() ? prepared.reversals[turns - 1] : record.size();
-    std::fill_n(prepared.counts.begin(), std::min(first, record.size()), 0);
+    const std::size_t skipped = std::min(options.skip_cycles, record.size());
+    KeepOnly(StartOfCycle(prepared, skipped + 1), record.size(), prepared);
   }
+  LeaveOutBeyondRanges(prepared, number, options);
   if (!options.held_out.empty() && !options.held_out[number].empty()) {
     const std::vector<bool>& held_out = options.held_out[number];
     RequireSameSize("held-out mask", held_out.size(), "samples", record.size());
@@ -117,8 +159,8 @@ void LeaveOut(PreparedRecord& prepared, std::size_t number, const PreparationOpt
   prepared.left_out = static_cast<std::size_t>(std::ranges::count(prepared.counts, 0));
   if (prepared.left_out == record.size()) {
     throw InvalidArgument(fmt::format(
-        "nothing is left of record {}: {} samples lie outside the load window, in the cycles "
-        "that are skipped, are glitches, or are held out",
+        "nothing is left of record {}: {} samples lie outside the windows, in the cycles that "
+        "are skipped, are glitches, or are held out",
         number + 1, prepared.left_out));
   }
 }

@@ -47,6 +47,10 @@ void Validate(const RecordView& record) {
   RequireFiniteColumn("force [N]", record.force);
   RequireFiniteColumn("time [s]", record.time);
   RequireFiniteColumn("normal load [N]", record.normal_load);
+  for (const Covariate& covariate : record.covariates) {
+    RequireSameSize("displacement", record.size(), covariate.name, covariate.values.size());
+    RequireFiniteColumn(covariate.name, covariate.values);
+  }
 }
 
 }  // namespace mindahl::loop

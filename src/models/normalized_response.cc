@@ -163,6 +163,7 @@ void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
   sensitivity.slope.assign(count, 0.0);
   sensitivity.gain.assign(count, 0.0);
   sensitivity.per_amplitude.assign(count, 0.0);
+  sensitivity.origin_force.resize(count);
   sensitivity.sample_slope.resize(displacement.size());
   sensitivity.sample_gain.resize(displacement.size());
   const auto differentiate = [&](const auto& shape) {
@@ -179,6 +180,7 @@ void NormalizedResponse::DifferentiateByOrigins(const FrictionModel& model,
     };
     for (std::size_t b = 0; b < count; ++b) {
       const Branch& branch = path.branches[b];
+      sensitivity.origin_force[b] = branches[b].force;
       if (branch.start == BranchStart::kReversal) {
         at(static_cast<std::size_t>(branch.parent), branch.origin, sensitivity.slope[b],
            sensitivity.gain[b]);

@@ -23,7 +23,7 @@ struct CauseRow {
   const char* remedy;    // where no option takes it into account
 };
 
-constexpr std::array<CauseRow, 16> kCauses = {{
+constexpr std::array<CauseRow, 17> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
@@ -62,6 +62,8 @@ constexpr std::array<CauseRow, 16> kCauses = {{
      "--follow-load"},
     {"force_of_position", "a force that depends on the position", nullptr,
      "look for a spring, a cable or a tilt beside the contact, and measure it without it"},
+    {"covariate", "a force in proportion to another column of the file, {}", nullptr,
+     "name the column with --covariate"},
 }};
 
 const CauseRow& RowOf(const Cause& cause) {
@@ -89,11 +91,13 @@ std::string ChanceText(double p_value) {
   return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.2g}", p_value);
 }
 
-/// Units by sample of a record without a time, of a force and of a torque.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kBySample = {{
+/// Units by sample of a record without a time, and over that of a column, of a force and of a
+/// torque.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kOthersOfForce = {{
     {"N/sample", "N m/sample"},
     {"N samples/m", "N m samples/rad"},
     {"N samples²/m", "N m samples²/rad"},
+    {"N/unit", "N m/unit"},
 }};
 
 }  // namespace
@@ -110,7 +114,7 @@ void AdaptCauses(const Units& units, bool has_time, std::vector<Cause>& causes) 
     if (!has_time && cause.code == "viscous_force") cause.option = {};
     cause.unit = UnitIn(units, cause.unit);
     if (units.force == kUnitsOfForce.force) continue;
-    for (const auto& [of_force, of_torque] : kBySample) {
+    for (const auto& [of_force, of_torque] : kOthersOfForce) {
       if (cause.unit == of_force) cause.unit = of_torque;
     }
   }

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <utility>
 
 #include "mindahl/contact/plausibility.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/report/sentences.h"
 #include "report/adequacy.h"
@@ -71,7 +73,10 @@ Report MakeReport(ReportInput input) {
   if (report.is_torsional()) {
     report.units = kUnitsOfTorque;
     for (identification::ParameterEstimate& estimate : report.fit.parameters) {
-      estimate.unit = UnitIn(report.units, estimate.unit);
+      // Newtons over the unit of a column, whatever that is.
+      const bool is_of_column = estimate.name.starts_with(identification::NameOfCovariate(""));
+      estimate.unit = is_of_column ? std::string(report.units.force) + estimate.unit.substr(1)
+                                   : std::string(UnitIn(report.units, estimate.unit));
     }
     report.fit.mindlin_test.reset();
   }

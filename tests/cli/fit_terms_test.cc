@@ -205,6 +205,54 @@ TEST_F(FitTerms, SkippedCyclesDoNotCount) {
   EXPECT_EQ(fit["input"]["left_out"], kSkipped);
 }
 
+TEST_F(FitTerms, SamplesAndCyclesOutsideTheRangeDoNotCount) {
+  std::vector<Sample> loop = Simulate({"--cycles", "3"});
+  // Spoilt before the second cycle, which begins at three quarters, and from sample 500 on.
+  for (std::size_t i = 0; i < 150; ++i) loop[i].force *= 0.8;
+  for (std::size_t i = 499; i < loop.size(); ++i) loop[i].force *= 0.9;
+  const json fit = Fit(loop, {"--cycles", "2:4", "--samples", "1:499"});
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_EQ(fit["input"]["left_out"], 150 + loop.size() - 499);
+}
+
+TEST_F(FitTerms, LateForceIsPutInItsPlace) {
+  // Twice as dense a loop, of which every other sample is read, its force a sample later.
+  const std::vector<Sample> dense = Simulate({"--cycles", "2", "--samples-per-cycle", "400"});
+  std::vector<Sample> late;
+  for (std::size_t i = 0; i < dense.size(); i += 2) {
+    late.push_back(dense[i]);
+    late.back().force = i >= 3 ? dense[i - 3].force : 0.0;
+  }
+  const double lag = 3 * (dense[1].time - dense[0].time);
+  // Chords of the record lie within X(2π/200)²/8 of the sine: some 2e-4 of Tc.
+  constexpr double kOfChords = 5e-3;
+  const json fitted = Fit(late, {"--lag", "fit"});
+  ExpectContact(fitted, kOfChords);
+  EXPECT_NEAR(Value(fitted, "lag") / lag, 1, 10 * kOfChords);
+  EXPECT_EQ(fitted["parameters"]["lag"]["unit"], "s");
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", lag);
+  const json known = Fit(late, {"--lag", text});
+  ExpectContact(known, kOfChords);
+  EXPECT_EQ(known["parameters"]["lag"]["status"], "fixed");
+}
+
+TEST_F(FitTerms, ForceOfAColumnIsFittedOrTakenOff) {
+  constexpr double kPerNewton = 0.3;
+  std::vector<Sample> loop = Simulate({"--cycles", "2"});
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    loop[i].normal_load = 100 + 10 * std::sin(0.021 * static_cast<double>(i));
+    loop[i].force += kPerNewton * loop[i].normal_load;
+  }
+  for (const char* option : {"normal", "4=fit", "normal=0.3"}) {
+    const json fit = Fit(loop, {"--covariate", option});
+    ExpectContact(fit, kNoiseFree);
+    const char* const name = option[0] == '4' ? "covariate_4" : "covariate_normal";
+    EXPECT_NEAR(Value(fit, name), kPerNewton, kNoiseFree * kSlipForce) << option;
+    EXPECT_EQ(fit["parameters"][name]["unit"], "N/N");
+  }
+}
+
 TEST_F(FitTerms, NothingIsLeftOutUnasked) {
   EXPECT_EQ(Fit(Simulate({"--cycles", "2"}))["input"]["left_out"], 0);
 }
@@ -437,6 +485,38 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"MoreCyclesSkippedThanThereAre",
                {"--skip-cycles", "100"},
                "nothing is left of record 1"},
+        Misuse{"LagOfAWord",
+               {"--lag", "some"},
+               "--lag: 'some' is not a number: write a number in s, or fit"},
+        Misuse{"BoundOfALagThatIsNotFitted",
+               {"--bound", "lag=0:1"},
+               "--bound: lag is not fitted, so this has no effect: add --lag fit"},
+        Misuse{"LagBeyondTheRecord", {"--lag", "1e6"}, "nothing is left of record 1"},
+        Misuse{"CovariateWithoutAValue",
+               {"--covariate", "normal="},
+               "--covariate: 'normal=' is incomplete: write COL[=C|fit], e.g. pressure=50"},
+        Misuse{"CovariateOfAWord",
+               {"--covariate", "normal=much"},
+               "--covariate: 'much' is not a number: write COL[=C|fit], e.g. pressure=50"},
+        Misuse{"CovariateTwice",
+               {"--covariate", "normal", "--covariate", "normal=3"},
+               "--covariate: 'normal' is given twice: give it once"},
+        Misuse{"CovariateThatIsNoColumn",
+               {"--covariate", "pressure"},
+               "no column is called 'pressure' (for the covariate): the columns are"},
+        Misuse{"CyclesBeyondTheRecord",
+               {"--cycles", "40:50"},
+               "cycles 40:50 hold nothing of record 1: it has"},
+        Misuse{"CyclesFromNone",
+               {"--cycles", "0:2"},
+               "--cycles: '0' is not a whole number from 1 on: write LO:HI, counted from 1, e.g. "
+               "2:5"},
+        Misuse{"SamplesUpsideDown",
+               {"--samples", "5:4"},
+               "--samples: '5:4' is empty: the first number must not be the larger"},
+        Misuse{"SamplesBeyondTheRecord",
+               {"--samples", "100000:200000"},
+               "samples 100000:200000 hold nothing of record 1: it has"},
         Misuse{"NegativeDisplacementNoise",
                {"--displacement-noise", "-1e-9"},
                "--displacement-noise [m] = -1e-09 is invalid: must be finite and >= 0"},

@@ -30,6 +30,8 @@ WITHOUT_UNIT = re.compile(r"^(|COL|FILE|PATH|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|
 EXEMPT = {
     ("fit", "--start"): "in the unit of the parameter, which --fix lists",
     ("fit", "--bound"): "likewise",
+    ("fit", "--cycles"): "counts",
+    ("fit", "--samples"): "counts",
     ("simulate", "--steps"): "a count",
     ("recommend", "--tolerance"): "relative, and says so",
 }

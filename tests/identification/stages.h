@@ -30,7 +30,7 @@ class Stages {
         options(std::move(fit_options)),
         views(records.begin(), records.end()),
         prepared(loop::Prepare(views, options.preparation, Memory())),
-        data(identification::Scale(prepared, options.follow_load, Memory())),
+        data(ScaledRecordsOf(prepared, options)),
         problem{&data, options.model, state,
                 identification::Parameters(data, options, state, Memory())} {}
   explicit Stages(loop::Record record, identification::FitOptions fit_options = {},
@@ -38,6 +38,18 @@ class Stages {
       : Stages(std::vector<loop::Record>{std::move(record)}, std::move(fit_options), state) {}
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
+
+  /// As a fit makes them.
+  static identification::ScaledRecords ScaledRecordsOf(loop::PreparedRecords& prepared,
+                                                       const identification::FitOptions& options) {
+    identification::LeaveOutBeyondLags(options, prepared);
+    identification::ScaledRecords data =
+        identification::Scale(prepared, options.follow_load, Memory());
+    identification::AddCovariates(options.covariates, /*with_others=*/true, prepared,
+                                  options.offsets, data);
+    if (identification::HasLag(options)) identification::SetClocks(data);
+    return data;
+  }
 
   static std::pmr::memory_resource* Memory() { return std::pmr::get_default_resource(); }
 

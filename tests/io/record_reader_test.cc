@@ -348,6 +348,58 @@ Numbers ReadPath(const std::string& text, const ColumnChoice& choice = {}) {
   return ReadDisplacementPath(directory.Write("path.csv", text), choice);
 }
 
+// --- Columns beside the loop ---------------------------------------------------------------------
+
+TEST(Covariates, ThatAreChosenComeFirstAndAreCalledAsTheyWereChosen) {
+  RecordColumns columns;
+  columns.covariates = {"p", "3"};
+  const RecordFile file = Read("x [m],F [N],q [K],p [bar],s\n0,0,1,5,7\n1,2,3,6,7\n", columns);
+  ASSERT_EQ(file.record.covariates.size(), 2U);
+  EXPECT_EQ(file.record.covariates[0].name, "p");
+  EXPECT_EQ(file.record.covariates[0].unit, "bar");
+  EXPECT_EQ(file.record.covariates[0].values, (Numbers{5, 6}));
+  EXPECT_EQ(file.covariates[0].number, 4U);
+  EXPECT_EQ(file.record.covariates[1].name, "3");
+  EXPECT_EQ(file.record.covariates[1].values, (Numbers{1, 3}));
+}
+
+TEST(Covariates, OfOtherColumnsAreThoseOfNumbersThatChange) {
+  // A constant, a word, a time and a load are none; of two called alike each has its number.
+  const RecordFile file =
+      Read("t [s],x [m],F [N],c,w,N [N],p [bar],a,a\n0,0,0,7,u,5,1,2,3\n1,1,2,7,v,6,2,4,4\n");
+  Strings names;
+  for (const loop::Covariate& covariate : file.record.covariates) names.push_back(covariate.name);
+  EXPECT_EQ(names, (Strings{"p", "8", "9"}));
+  std::string header = "x [m],F [N]";
+  std::string one = "\n0,0";
+  std::string two = "\n1,2";
+  for (int i = 0; i < 20; ++i) {
+    header += ",c" + std::to_string(i);
+    one += ",1";
+    two += ",2";
+  }
+  EXPECT_EQ(Read(header + one + two + "\n").record.covariates.size(), kMostOtherColumns);
+}
+
+TEST(Covariates, ThatCannotBeAreRefusedByName) {
+  const std::string text = "x [m],F [N],p\n0,0,1\n1,2,2\n";
+  const auto refusal = [&](const Strings& choices) {
+    RecordColumns columns;
+    columns.covariates = choices;
+    return Refusal(text, columns);
+  };
+  EXPECT_EQ(refusal({"q"}),
+            "loop.csv: no column is called 'q' (for the covariate): the columns are 'x [m]' (1), "
+            "'F [N]' (2), 'p' (3)");
+  EXPECT_EQ(refusal({"4"}),
+            "loop.csv: there is no column 4 for the covariate: the file has 3 columns");
+  EXPECT_EQ(refusal({"p", "3"}),
+            "loop.csv: 'p' (column 3) is chosen twice as a covariate: choose it once");
+  EXPECT_EQ(refusal({"F"}),
+            "loop.csv: 'F [N]' (column 2) is the force already: choose another column for the "
+            "covariate");
+}
+
 TEST(DisplacementPath, KeepsEveryRowInOrderAndEveryDigit) {
   EXPECT_EQ(ReadPath("displacement\n0.1\n0.1\n-0.30000000000000004\n0\n"),
             (Numbers{0.1, 0.1, -0.30000000000000004, 0}));

@@ -19,6 +19,7 @@ RecordFile TimedFile() {
   file.record.displacement = {10, 11, 12, 13};
   file.record.force = {20, 21, 22, 23};
   file.record.normal_load = {30, 31, 32, 33};
+  file.record.covariates = {{.name = "p", .unit = "bar", .values = {40, 41, 42, 43}}};
   return file;
 }
 
@@ -38,6 +39,9 @@ TEST(TimeWindow, KeepsEveryColumnOfTheSamplesInItEndsIncluded) {
   EXPECT_THAT(file.record.displacement, ElementsAre(11, 12));
   EXPECT_THAT(file.record.force, ElementsAre(21, 22));
   EXPECT_THAT(file.record.normal_load, ElementsAre(31, 32));
+  EXPECT_EQ(file.record.covariates[0].name, "p");
+  EXPECT_EQ(file.record.covariates[0].unit, "bar");
+  EXPECT_THAT(file.record.covariates[0].values, ElementsAre(41, 42));
   EXPECT_THAT(file.notes, ElementsAre("loop.csv: 2 of 4 samples lie in the time window 1:2 s"));
 }
 

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <memory_resource>
+#include <string>
 #include <vector>
 
+#include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 
@@ -57,6 +59,69 @@ TEST(Preparation, OneMaskLeavesOutWhatWindowSkippedCyclesAndMasksDo) {
   EXPECT_EQ(one.left_out, left_out);
   EXPECT_EQ(prepared.samples(), size);
   EXPECT_EQ(prepared.counted(), size - left_out);
+}
+
+/// Places of the samples that count.
+std::vector<std::size_t> Counting(const PreparedRecord& record) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (record.counts[i] != 0) places.push_back(i);
+  }
+  return places;
+}
+
+std::vector<std::size_t> From(std::size_t first, std::size_t last) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = first; i <= last; ++i) places.push_back(i);
+  return places;
+}
+
+TEST(Preparation, CyclesAndSamplesCountFromOneAndTheRestMakesHistory) {
+  const std::vector<Record> records = {Made()};  // reversals at 25, 75, 125 … 275
+  const auto counting = [&](const PreparationOptions& options) {
+    const PreparedRecords prepared = PrepareAll(records, options);
+    EXPECT_EQ(prepared.records[0].reversals.size(), 6U) << "all of them";
+    return Counting(prepared.records[0]);
+  };
+  PreparationOptions options;
+  options.cycles = {1, 1};
+  EXPECT_EQ(counting(options), From(0, 74));
+  options.cycles = {2, 3};
+  EXPECT_EQ(counting(options), From(75, 274));
+  options.cycles = {4, 99};
+  EXPECT_EQ(counting(options), From(275, 300)) << "the last is a part of one";
+  options.cycles.reset();
+  options.samples = {101, 150};
+  EXPECT_EQ(counting(options), From(100, 149));
+  options.cycles = {2, 2};
+  options.samples = {1, 80};
+  EXPECT_EQ(counting(options), From(75, 79)) << "both";
+}
+
+std::string RefusalOf(const PreparationOptions& options) {
+  try {
+    PrepareAll({Made()}, options);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {
+  PreparationOptions cycles;
+  cycles.cycles = {5, 6};
+  EXPECT_EQ(RefusalOf(cycles), "cycles 5:6 hold nothing of record 1: it has 4 cycles");
+  cycles.cycles = {0, 2};
+  EXPECT_EQ(RefusalOf(cycles),
+            "cycles 0:2 are invalid: they are counted from 1, and the first must not be the "
+            "larger");
+  PreparationOptions samples;
+  samples.samples = {302, 400};
+  EXPECT_EQ(RefusalOf(samples), "samples 302:400 hold nothing of record 1: it has 301 samples");
+  samples.samples = {7, 6};
+  EXPECT_EQ(RefusalOf(samples),
+            "samples 7:6 are invalid: they are counted from 1, and the first must not be the "
+            "larger");
 }
 
 TEST(Preparation, SenseIsThatOfTheEnergyUnlessItIsGiven) {

@@ -100,14 +100,15 @@ TEST(CauseSentence, HasSizeUnitShareAndRemedy) {
 }
 
 TEST(AdaptedCauses, AreInTheUnitsOfATorque) {
-  std::vector<Cause> causes = {Viscous(), MadeCause("rig_in_series", 1, "m/N"),
-                               MadeCause("inertia", 1, "kg"),
-                               MadeCause("force_drift", 1, "N/sample")};
+  std::vector<Cause> causes = {
+      Viscous(), MadeCause("rig_in_series", 1, "m/N"), MadeCause("inertia", 1, "kg"),
+      MadeCause("force_drift", 1, "N/sample"), MadeCause("covariate", 1, "N/unit")};
   AdaptCauses(kUnitsOfTorque, /*has_time=*/true, causes);
   EXPECT_EQ(causes[0].unit, "N m s/rad");
   EXPECT_EQ(causes[1].unit, "rad/(N m)");
   EXPECT_EQ(causes[2].unit, "kg m²");
   EXPECT_EQ(causes[3].unit, "N m/sample");
+  EXPECT_EQ(causes[4].unit, "N m/unit");
   EXPECT_EQ(causes[0].option, "--viscous fit");
 }
 

@@ -27,6 +27,8 @@ Report TorqueReport() {
   input.records[0].displacement.unit = "deg";
   input.records[0].force.unit = "N m";
   input.known.normal_load = 100.0;
+  input.fit.parameters.push_back(testing::MadeParameter("covariate_3", "N/m", 2.0, 0.1));
+  input.fit.correlation.assign(16, 0.0);
   loop::LoopFacts& facts = input.fit.records[0].facts;
   facts.closed = true;
   facts.amplitude = 0.5;
@@ -45,6 +47,7 @@ TEST(Torque, HasItsUnitsInTheJson) {
   EXPECT_EQ(json["parameters"]["sigma"]["unit"], "N m/rad");
   EXPECT_EQ(json["parameters"]["slip_force"]["unit"], "N m");
   EXPECT_EQ(json["parameters"]["alpha"]["unit"], "-");
+  EXPECT_EQ(json["parameters"]["covariate_3"]["unit"], "N m/m") << "the column's own metres";
   EXPECT_EQ(json["input"]["units"]["displacement"], "deg");
   EXPECT_EQ(json["input"]["units"]["force"], "N m");
 }

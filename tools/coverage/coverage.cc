@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <span>
 #include <string_view>
+#include <utility>
 
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
@@ -42,9 +44,59 @@ BranchLaw LawOf(const Scenario& scenario) { return {5e7, scenario.shape_exponent
 constexpr double kForceOffset = 3.0;
 constexpr double kDisplacementOffset = 2e-7;
 
+constexpr double kFrequency = 1.0;  // [Hz]
+constexpr double kTwoPi = 6.283185307179586;
+
+std::vector<double> ForceOn(const BranchLaw& law, std::span<const double> displacement) {
+  const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
+  std::vector<double> force(displacement.size());
+  const models::LoadingPath path = models::MakeLoadingPath(
+      displacement, loop::FindReversals(displacement, 0.0), model.memory, {});
+  models::EvaluateForce(model, law, path, displacement, force);
+  return force;
+}
+
+/// The force on the same motion, read 1.5 samples later: midway between two readings. Before the
+/// record the contact was at rest.
+std::vector<double> LateForce(const BranchLaw& law, std::span<const double> displacement) {
+  constexpr std::size_t kHalves = 3;
+  std::vector<double> with_middles;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    if (i > 0) with_middles.push_back((displacement[i - 1] + displacement[i]) / 2);
+    with_middles.push_back(displacement[i]);
+  }
+  const std::vector<double> force = ForceOn(law, with_middles);
+  std::vector<double> late;
+  for (std::size_t i = 0; i < force.size(); i += 2) {
+    late.push_back(i < kHalves ? 0.0 : force[i - kHalves]);
+  }
+  return late;
+}
+
+/// Adds what is beside the contact, and the columns that tell it.
+void AddBeside(const Scenario& scenario, Record& record) {
+  const BranchLaw law = LawOf(scenario);
+  const double step = 1 / (kFrequency * static_cast<double>(scenario.samples_per_cycle));
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(step * static_cast<double>(i));
+  }
+  loop::Covariate column{.name = "pressure", .unit = "bar", .values = {}};
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double phase = kTwoPi * kFrequency * record.time[i];
+    column.values.push_back(2 + std::sin(0.37 * phase) * std::cos(2.3 * phase + 1));
+    if (scenario.beside == Beside::kViscous) {
+      record.force[i] += 0.05 * law.slip_force * std::cos(phase);
+    }
+    if (scenario.beside == Beside::kCovariate) {
+      record.force[i] += 0.2 * law.slip_force * (column.values[i] - 2);
+    }
+  }
+  if (scenario.beside == Beside::kLag) record.force = LateForce(law, record.displacement);
+  if (scenario.beside == Beside::kCovariate) record.covariates.push_back(std::move(column));
+}
+
 Record CleanRecord(const Scenario& scenario) {
   const BranchLaw law = LawOf(scenario);
-  const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
   Record record;
   record.displacement =
       models::MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
@@ -54,10 +106,8 @@ Record CleanRecord(const Scenario& scenario) {
   for (std::size_t i = 0; i < record.displacement.size(); ++i) {
     record.displacement[i] = record.displacement[i - i % scenario.dwell];
   }
-  record.force.resize(record.displacement.size());
-  const models::LoadingPath path = models::MakeLoadingPath(
-      record.displacement, loop::FindReversals(record.displacement, 0.0), model.memory, {});
-  models::EvaluateForce(model, law, path, record.displacement, record.force);
+  record.force = ForceOn(law, record.displacement);
+  if (scenario.beside != Beside::kNothing) AddBeside(scenario, record);
   for (double& force : record.force) force += kForceOffset;
   for (double& displacement : record.displacement) displacement += kDisplacementOffset;
   return record;
@@ -108,6 +158,9 @@ FitOptions OptionsOf(const Scenario& scenario) {
     options.preparation.displacement_noise =
         scenario.displacement_noise * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
   }
+  if (scenario.beside == Beside::kLag) options.terms.emplace_back("lag");
+  if (scenario.beside == Beside::kViscous) options.terms.emplace_back("viscous");
+  if (scenario.beside == Beside::kCovariate) options.covariates.emplace_back("pressure");
   return options;
 }
 
@@ -180,6 +233,18 @@ std::vector<Scenario> Scenarios() {
        .dwell = 3},
       {.name = "near a bound: alpha 0.01", .shape_exponent = 0.01, .lambda = 1.2},
       {.name = "at a bound: alpha 0", .shape_exponent = 0.0, .lambda = 1.2},
+      {.name = "white 1 %, late by 1.5 samples: lag fitted",
+       .beside = Beside::kLag,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
+      {.name = "white 1 %, viscous 5 % of Tc: fitted",
+       .beside = Beside::kViscous,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
+      {.name = "white 1 %, 20 % of Tc by a column: covariate fitted",
+       .beside = Beside::kCovariate,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
   };
 }
 

@@ -19,6 +19,14 @@ enum class Noise {
   kQuantised,       ///< the displacement by an encoder, the force white
 };
 
+/// What the record has beside the contact, and the fit a term for.
+enum class Beside {
+  kNothing,
+  kLag,        ///< the force is read 1.5 samples after the displacement
+  kViscous,    ///< C·dδ/dt, up to 5 % of Tc
+  kCovariate,  ///< C times a column that wanders, up to 20 % of Tc
+};
+
 /// Fits a row: 0.7 % of counting error at 95 %.
 inline constexpr std::size_t kLoops = 1000;
 
@@ -33,8 +41,9 @@ struct Scenario {
   double force_noise = 0.01;        ///< of T*
   double displacement_noise = 0.0;  ///< of the amplitude; the encoder's step where quantised
   bool noise_is_known = true;       ///< is the fit told that of the displacement?
-  std::size_t dwell = 1;            ///< samples at which the drive rests, with one reading
-  double lowest_coverage = 0.90;    ///< what is promised, over kLoops
+  Beside beside = Beside::kNothing;
+  std::size_t dwell = 1;          ///< samples at which the drive rests, with one reading
+  double lowest_coverage = 0.90;  ///< what is promised, over kLoops
   double highest_coverage = 1.0;
 };
 

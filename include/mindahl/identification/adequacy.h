@@ -21,7 +21,7 @@ struct Cause {
   double explains = 0.0;    ///< share of the residuals' variance [–]
   double size = 0.0;        ///< of it, in `unit`; of several numbers the first
   std::string_view unit;    ///< "s", "samples", "N s/m" …
-  std::string_view option;  ///< that takes it into account; empty where there is none yet
+  std::string option;       ///< that takes it into account; empty where there is none yet
   /// By how much it would move σ, α and Tc, in halves of their 95 % intervals: the largest.
   double moves = 0.0;
 };

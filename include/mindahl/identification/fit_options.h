@@ -38,6 +38,11 @@ struct FitOptions {
   /// Fixing one gives it a known value.
   std::vector<std::string> terms;
 
+  /// Columns of the records, by the names of their covariates, in proportion to which a force is
+  /// added, C·(column − the middle of its range in each record; without offsets − 0). Each C is a
+  /// parameter, NameOfCovariate(); fixing it gives it a known value. Every record must have them.
+  std::vector<std::string> covariates;
+
   /// The force follows the measured normal load, T·N/mean N: σ, α and Tc are those at the mean
   /// load. The displacement at which the contact slips is taken not to change: for loads that vary
   /// by some per cent. Needs the load of every record.

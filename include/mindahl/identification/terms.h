@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace mindahl::identification {
@@ -28,6 +29,8 @@ struct TermUnits {
   double force = 1.0;                   ///< [N]
   double length = 1.0;                  ///< [m]
   double half_duration = 1.0;           ///< [s], or samples where the record has no time
+  double cycle = 1.0;                   ///< [s], or samples: of the record's cycles, on average
+  double covariate = 1.0;               ///< half the range of a covariate's column, in its unit
   double force_sense = 1.0;             ///< ±1: the force's sense in the file
   double force_reference = 0.0;         ///< [N], what was taken off the record's force
   double displacement_reference = 0.0;  ///< [m], likewise
@@ -36,8 +39,9 @@ struct TermUnits {
 /// A sample in those units, force in the displacement's sense.
 struct TermSample {
   double displacement = 0.0;
-  double time = 0.0;      ///< −1 … 1 over the record
-  double velocity = 0.0;  ///< of the displacement, in the first record's time; 0 without time
+  double time = 0.0;       ///< −1 … 1 over the record
+  double velocity = 0.0;   ///< of the displacement, in the first record's time; 0 without time
+  double covariate = 0.0;  ///< of the term's own column; 0 where it has none
 };
 
 /// A parameter of a fit: all that layout, solver, command line, help and documents need to know of
@@ -57,8 +61,11 @@ struct Term {
   double (*reference)(const TermUnits&) = nullptr;  ///< none: 0
   double (*column)(const TermSample&) = nullptr;    ///< of a linear one; none: the model's force
   bool needs_time = false;
-  std::string_view option = {};    ///< of the command line that asks for it; empty: none
-  std::string_view argument = {};  ///< its argument; empty: a flag
+  /// One parameter for each column that FitOptions::covariates names, called after it.
+  bool of_column = false;
+  std::string_view unit_by_sample = {};  ///< where records have no time; empty: the same
+  std::string_view option = {};          ///< of the command line that asks for it; empty: none
+  std::string_view argument = {};        ///< its argument; empty: a flag
   std::string_view help = {};
 };
 
@@ -70,5 +77,9 @@ const Term* FindTerm(std::string_view name);
 
 /// The name without a record's number: force_offset for force_offset_2.
 std::string_view TermNameOf(std::string_view parameter);
+
+/// Name of the parameter of a column: covariate_COLUMN, with '_' for what would need quoting in
+/// options and paths (blanks, '=', ':', ',', '.', brackets and quotes).
+std::string NameOfCovariate(std::string_view column);
 
 }  // namespace mindahl::identification

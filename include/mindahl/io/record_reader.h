@@ -21,6 +21,7 @@ struct RecordColumns {
   ColumnChoice force;
   ColumnChoice time;
   ColumnChoice normal_load;
+  std::vector<std::string> covariates = {};  ///< by header name or 1-based number
 };
 
 /// A column as it was read.
@@ -40,8 +41,13 @@ struct RecordFile {
   ChosenColumn force;
   std::optional<ChosenColumn> time;
   std::optional<ChosenColumn> normal_load;
+  /// Of the record's covariates, in their order: first those chosen, called as they were chosen.
+  std::vector<ChosenColumn> covariates;
   std::vector<std::string> notes;  ///< what was assumed, one sentence each
 };
+
+/// Columns that nobody asked for, of which a record keeps so many.
+inline constexpr std::size_t kMostOtherColumns = 8;
 
 /// Reads a hysteresis record [m, N, s, N], or [rad, N m, s, N], from a delimited file (see
 /// csv_table.h).
@@ -64,6 +70,10 @@ struct RecordFile {
 /// *Units.* As chosen; else of the header, in the name (`x [um]`, `F (kN)`, `Position, mm`,
 /// `x / mm`, `disp_mm`) or in the units row; else m, N, s, with a note. An angle and a torque go
 /// together: one of the two has the other's unit, rad or N m, where it names none.
+///
+/// *Covariates.* Those chosen, their numbers as they are. Then up to kMostOtherColumns of the
+/// others in their order, called by their header's name, without its unit, or else by number: of
+/// those that hold a number in every row, and not the same in all.
 ///
 /// A time or normal load that was recognised but not asked for is left out, with a note, when none
 /// of its cells is a number or its unit is not one of core/units.h.

@@ -20,6 +20,12 @@ struct Interval {
   double upper = 0.0;
 };
 
+/// The first to the last of what is counted from 1, both included.
+struct CountRange {
+  std::size_t first = 1;
+  std::size_t last = 1;
+};
+
 /// How records are read before any model is asked.
 struct PreparationOptions {
   /// Excursions up to this [m] are noise and make no reversal. Empty: ChooseReversalGate, and at
@@ -44,6 +50,14 @@ struct PreparationOptions {
 
   /// Cycles at the start of each record that do not count; they still make history.
   std::size_t skip_cycles = 0;
+
+  /// Samples of other cycles do not count; they still make history. The first cycle lasts from the
+  /// record's start to its second reversal, each other one two reversals longer, the last to the
+  /// record's end.
+  std::optional<CountRange> cycles;
+
+  /// Other samples do not count; they still make history.
+  std::optional<CountRange> samples;
 
   /// Samples that do not count, one vector a record, each empty or one entry a sample; they still
   /// make history.
@@ -108,7 +122,7 @@ struct PreparedRecords {
 /// @param records  not empty; their memory must outlive the result
 /// @param memory   of the result and of scratch; must outlive it
 /// @throws InvalidArgument for records or options that break a rule, where a record has no normal
-///   load for a window, or nothing is left of one
+///   load for a window, has no cycle or sample of those asked for, or nothing is left of one
 /// Nothing else is allocated unless a displacement is smoothed.
 PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOptions& options,
                         std::pmr::memory_resource* memory);

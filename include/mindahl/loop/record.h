@@ -2,16 +2,25 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace mindahl::loop {
 
+/// Another quantity that was recorded, in a unit of its own.
+struct Covariate {
+  std::string name;            ///< of its column, or the column's number
+  std::string unit;            ///< as the file has it; empty where it says none
+  std::vector<double> values;  ///< one a sample
+};
+
 /// A measured or simulated hysteresis record in SI units, one entry a sample, in order of time.
 struct Record {
-  std::vector<double> displacement;  ///< tangential displacement δ [m]
-  std::vector<double> force;         ///< tangential force T [N]
-  std::vector<double> time;          ///< [s]; empty when not recorded
-  std::vector<double> normal_load;   ///< N [N]; empty when not recorded
+  std::vector<double> displacement;        ///< tangential displacement δ [m]
+  std::vector<double> force;               ///< tangential force T [N]
+  std::vector<double> time;                ///< [s]; empty when not recorded
+  std::vector<double> normal_load;         ///< N [N]; empty when not recorded
+  std::vector<Covariate> covariates = {};  ///< other columns; may be empty
 
   [[nodiscard]] std::size_t size() const { return displacement.size(); }
 };
@@ -22,6 +31,7 @@ struct RecordView {
   std::span<const double> force;
   std::span<const double> time;
   std::span<const double> normal_load;
+  std::span<const Covariate> covariates;
 
   RecordView() = default;
   /// Of arrays of one size each; empty where not recorded.
@@ -34,7 +44,9 @@ struct RecordView {
         normal_load(normal_load_column) {}
   /// Of a record, which must outlive the view.
   RecordView(const Record& record)  // NOLINT(google-explicit-constructor): every Record is one
-      : RecordView(record.displacement, record.force, record.time, record.normal_load) {}
+      : RecordView(record.displacement, record.force, record.time, record.normal_load) {
+    covariates = record.covariates;
+  }
 
   [[nodiscard]] std::size_t size() const { return displacement.size(); }
 };

@@ -26,6 +26,7 @@ struct NormalizedGradient {
 
 /// How forces over Tc follow the places where branches start, for those who move them.
 struct OriginSensitivity {
+  std::vector<double> origin_force;  ///< t at each branch's origin
   // Of each branch, at its origin and on the branch that it starts from; 0 where there is none:
   std::vector<double> slope;          ///< ∂t/∂δ [1/m]
   std::vector<double> gain;           ///< by t at that branch's own origin

@@ -1,7 +1,11 @@
 #include "identification/diagnosis/adequacy.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
 
 namespace mindahl::identification {
 namespace {
@@ -14,7 +18,20 @@ double ChanceOfNoise(const AdequacyTest& test) {
   return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
 }
 
+/// What to type: a covariate's has its name, quoted where it has blanks.
+std::string OptionOf(const Problem& problem, const DepartureFit& fit) {
+  const Departure& departure = Departures()[fit.departure];
+  if (!fit.covariate) return std::string(departure.option);
+  const std::string_view name = problem.data->covariates[*fit.covariate].name;
+  const char* const quote = name.find(' ') == std::string_view::npos ? "" : "'";
+  return fmt::format("--covariate {}{}{}", quote, name, quote);
+}
+
 }  // namespace
+
+bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds) {
+  return ChanceOfNoise(test) < thresholds.doubt;
+}
 
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
   std::vector<DepartureFit> causes;
@@ -45,14 +62,14 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
                                                       .explains = fit.explains,
                                                       .size = fit.size,
                                                       .unit = fit.unit,
-                                                      .option = departure.option});
+                                                      .option = OptionOf(problem, fit)});
     for (std::size_t k = 0; k < reported.size(); ++k) {
       if (reported[k] > kSlipForce) continue;
       cause.moves =
           std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
     }
   }
-  if (adequacy.p_value < thresholds.doubt) adequacy.verdict = AdequacyVerdict::kDoubtful;
+  if (IsDoubtful(test, thresholds)) adequacy.verdict = AdequacyVerdict::kDoubtful;
   return adequacy;
 }
 

@@ -10,6 +10,9 @@
 
 namespace mindahl::identification {
 
+/// Does noise hardly look like what all departures, or the best of them, explain?
+bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);
+
 /// The departures that noise alone does not make, the best first, without those that another beats
 /// clearly.
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mindahl/identification/terms.h"
 #include "mindahl/identification/trend.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -96,8 +97,13 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   const std::optional<double> measured = EnergyThatCounts(record);
   // What a robust loss weighs down is in the measured energy all the same.
   if (!measured || !ClaimsAnAnswer(result) || result.outliers > 0) return std::nullopt;
-  const ParameterEstimate* viscous = result.Find("viscous");
-  if (viscous != nullptr && viscous->value != 0) return std::nullopt;
+  // These lose, or shift, energy that is not the contact's.
+  const bool has_other = std::ranges::any_of(result.parameters, [](const ParameterEstimate& other) {
+    const bool is_other = other.name == "viscous" || other.name == "lag" ||
+                          other.name.starts_with(NameOfCovariate(""));
+    return is_other && other.value != 0;
+  });
+  if (has_other) return std::nullopt;
   const double amplitude = record.facts.amplitude;
   const double model = models::SteadyLoopEnergy(
       *result.model, result.law,

@@ -189,25 +189,29 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
 
   const Evidence evidence(problem.data->counted, effective);
   const double before = residual.squaredNorm();
-  for (std::size_t d = 0; d < Departures().size(); ++d) {
+  test.effective_samples = effective;
+  for (std::size_t group = 0; group < departures.groups; ++group) {
     std::vector<Eigen::Index> places;
-    for (std::size_t c = 0; c < departures.of.size(); ++c) {
-      if (departures.of[c] == d) places.push_back(static_cast<Eigen::Index>(c));
+    for (std::size_t c = 0; c < departures.group.size(); ++c) {
+      if (departures.group[c] == group) places.push_back(static_cast<Eigen::Index>(c));
     }
     const Eigen::MatrixXd basis = products.Orthonormal(places);
     if (basis.cols() == 0) continue;
     const auto count = static_cast<double>(basis.cols());
-    DepartureFit fit{.departure = d};
+    const auto first = static_cast<std::size_t>(places[0]);
+    DepartureFit fit{.departure = departures.of[first]};
+    const std::size_t plain = departures.of.size() - departures.covariates.size();
+    if (first >= plain) fit.covariate = departures.covariates[first - plain];
     const Eigen::MatrixXd correlated = basis.transpose() * products.free_correlated * basis;
     const Eigen::VectorXd in_residual = basis.transpose() * products.free_residual;
     fit.p_value =
         PValueOf(WaldF(in_residual, correlated, variance), count, test.degrees_of_freedom);
     if (fit.p_value < thresholds.cause) {
       products.Step(places, variance, fit);
-      const Departure& departure = Departures()[d];
+      const Departure& departure = Departures()[fit.departure];
       fit.unit = departures.timed || departure.unit_by_sample.empty() ? departure.unit
                                                                       : departure.unit_by_sample;
-      fit.size *= departures.unit_of_size[static_cast<std::size_t>(places[0])];
+      fit.size *= departures.unit_of_size[first];
       const double after = before * (1 - fit.explains);
       fit.delta_aicc = 2 * count - evidence.LikelihoodRatio(before, after);
     }

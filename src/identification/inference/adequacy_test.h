@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,14 +13,15 @@ namespace mindahl::identification {
 /// What a fit would be with one departure in it, by one linear step; of one that noise may well
 /// have made, p-value alone.
 struct DepartureFit {
-  std::size_t departure = 0;  // its place in Departures()
-  double p_value = 1.0;       // that noise alone makes it
-  double delta_aicc = 0.0;    // against the fit without
-  double explains = 0.0;      // share of the sum of squares
-  double size = 0.0;          // of its first column, in its unit
-  std::string_view unit;
-  std::vector<double> step;   // of θ, one a free parameter
-  std::vector<double> error;  // standard error of θ with it, likewise
+  std::size_t departure = 0;                  // its place in Departures()
+  std::optional<std::size_t> covariate = {};  // which, among those of ScaledRecords
+  double p_value = 1.0;                       // that noise alone makes it
+  double delta_aicc = 0.0;                    // against the fit without
+  double explains = 0.0;                      // share of the sum of squares
+  double size = 0.0;                          // of its first column, in its unit
+  std::string_view unit = {};
+  std::vector<double> step = {};   // of θ, one a free parameter
+  std::vector<double> error = {};  // standard error of θ with it, likewise
 };
 
 /// Residuals against noise: as noise counts what no departure explains, with the autocorrelation
@@ -30,6 +32,7 @@ struct AdequacyTest {
   double p_value = 1.0;
   double noise = 0.0;               // standard deviation of a weighted residual
   double degrees_of_freedom = 1.0;  // of the noise
+  double effective_samples = 1.0;   // that tell of it
   std::vector<DepartureFit> fits;   // of the departures that the record can tell
 };
 

@@ -63,14 +63,16 @@ enum Row : std::size_t {
   kSaturation,
   kLoad,
   kPosition,
+  kCovariate,
 };
 
 // Sizes are of the first column; where there are several, the meaning says what the others are.
-constexpr std::array<Departure, 16> kDepartures = {{
+constexpr std::array<Departure, 17> kDepartures = {{
     {.code = "channel_lag",
      .meaning = "by which the force's channel is late",
      .unit = "s",
-     .option = "",
+     .option = "--lag fit",
+     .term = "lag",
      .unit_by_sample = "samples"},
     {.code = "viscous_force",
      .meaning = "C of a force C·dδ/dt; it dissipates where positive",
@@ -137,6 +139,10 @@ constexpr std::array<Departure, 16> kDepartures = {{
      .unit = "-",
      .option = ""},
     {.code = "force_of_position", .meaning = "size·Tc·(x/L)²; and x³", .unit = "", .option = ""},
+    {.code = "covariate",
+     .meaning = "C of a force C·column; each of up to 8 columns that nobody asked for",
+     .unit = "N/unit",
+     .option = "--covariate COL"},
 }};
 
 /// How far the branch has come, of the way to slip.
@@ -332,25 +338,16 @@ void PutOn(const models::Branch& branch, double response, const models::Friction
 }
 
 /// Gives each sample its branch, and returns the place of each branch's origin on its parent.
-/// @param peak  of a steady loop, over the slip force
-std::vector<Place> FollowBranches(const ScaledRecord& record, const models::FrictionModel& model,
+std::vector<Place> FollowBranches(const models::FrictionModel& model,
                                   const models::LoadingPath& path,
-                                  const models::OriginSensitivity& sensitivity, double peak,
+                                  const models::OriginSensitivity& sensitivity,
                                   std::vector<Place>& places) {
   const std::size_t count = path.branches.size();
   std::vector<Place> origins(count);
-  const bool virgin = path.branches.front().start == models::BranchStart::kUnloaded;
-  // Branches beyond those that are open at the start follow the reversals.
-  const std::size_t initial = count - std::min(count, record.reversals.size());
   for (std::size_t b = 0; b < count; ++b) {
     const models::Branch& branch = path.branches[b];
     Place& origin = origins[b];
-    if (b >= initial) {
-      origin.response = places[record.reversals[b - initial]].response;
-    } else if (!models::IsVirgin(branch.start)) {
-      // A virgin contact turned at the first sample, a steady one at the record's extremes.
-      origin.response = virgin ? places.front().response : -branch.direction * peak;
-    }
+    if (!models::IsVirgin(branch.start)) origin.response = sensitivity.origin_force[b];
     origin.displacement = branch.origin;
     origin.slope = sensitivity.slope[b];
     origin.gain = sensitivity.gain[b];
@@ -465,6 +462,39 @@ double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock
   }
 }
 
+std::size_t FittedCovariates(const Problem& problem) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      problem.parameters, [](const Parameter& parameter) { return parameter.term->of_column; }));
+}
+
+/// Is a column, but for a twentieth of its deviation, a linear function of time, displacement,
+/// force and load? Such a one says nothing new, or is the force itself in another unit.
+bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
+  constexpr double kOwnPart = 0.05;
+  for (const ScaledRecord& record : data.records) {
+    const auto rows = static_cast<Eigen::Index>(record.size());
+    Eigen::MatrixXd others = Eigen::MatrixXd::Zero(rows, 5);
+    Eigen::VectorXd own = Eigen::VectorXd::Zero(rows);
+    double deviation = 0.0;
+    double mean = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (record.counts[i] == 0) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      const double load = record.load_change.empty() ? 0.0 : record.load_change[i];
+      others.row(row) << 1.0, record.time[i], record.displacement[i], record.force[i], load;
+      own[row] = record.covariates[covariate][i];
+      ++count;
+      const double off = own[row] - mean;
+      mean += off / count;
+      deviation += off * (own[row] - mean);
+    }
+    const Eigen::VectorXd left = own - others * others.colPivHouseholderQr().solve(own);
+    if (left.squaredNorm() > kOwnPart * kOwnPart * deviation) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::span<const Departure> Departures() { return kDepartures; }
@@ -491,11 +521,23 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     const auto is_of = [&](const Column& column) { return column.departure == d; };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(kColumns, is_of));
     if (wanted.size() + count > most) break;
+    if (count > 0) ++result.groups;
     for (const Column& column : kColumns | std::views::filter(is_of)) {
       wanted.push_back(&column);
       result.of.push_back(d);
+      result.group.push_back(result.groups - 1);
       result.unit_of_size.push_back(UnitOfSize(d, *problem.data, clock.unit, slip_force));
     }
+  }
+  for (std::size_t c = FittedCovariates(problem);
+       c < problem.data->covariates.size() && wanted.size() + result.covariates.size() < most;
+       ++c) {
+    if (RepeatsTheOthers(*problem.data, c)) continue;
+    result.covariates.push_back(c);
+    result.of.push_back(kCovariate);
+    result.group.push_back(result.groups++);
+    result.unit_of_size.push_back(problem.data->sense * problem.data->force /
+                                  problem.data->covariates[c].scale);
   }
   const LawPoint point = PointAt(problem, theta);
   std::vector<double> force(problem.size());
@@ -506,7 +548,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   double peak = 0.0;
   for (const double value : force) peak = std::max(peak, std::abs(value));
   result.columns.resize(static_cast<Eigen::Index>(problem.size()),
-                        static_cast<Eigen::Index>(wanted.size()));
+                        static_cast<Eigen::Index>(result.of.size()));
   std::size_t begin = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const ScaledRecord& record = records[r];
@@ -519,14 +561,21 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     const Place extreme = problem.state == models::InitialState::kSteady
                               ? SteadyExtreme(problem, point, record.displacement)
                               : Place{};
-    const std::vector<Place> origins = FollowBranches(record, *problem.model, path, sensitivity,
-                                                      std::abs(extreme.response), places);
+    const std::vector<Place> origins = FollowBranches(*problem.model, path, sensitivity, places);
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       const std::span<double> values(
           result.columns.col(static_cast<Eigen::Index>(c)).data() + begin, record.size());
       const double first = FirstStart(*wanted[c], path, extreme, origins);
       FillColumn(*wanted[c], path, first, places, origins, record.load_ratio, values);
       for (std::size_t i = 0; i < record.size(); ++i) values[i] *= record.root_weight[i];
+    }
+    for (std::size_t c = 0; c < result.covariates.size(); ++c) {
+      const std::pmr::vector<double>& column = record.covariates[result.covariates[c]];
+      double* const values =
+          result.columns.col(static_cast<Eigen::Index>(wanted.size() + c)).data() + begin;
+      for (std::size_t i = 0; i < record.size(); ++i) {
+        values[i] = record.root_weight[i] * column[i];
+      }
     }
     begin += record.size();
   }

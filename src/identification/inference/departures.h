@@ -23,10 +23,13 @@ struct Departure {
 
 /// Columns of all departures at a solution.
 struct DepartureColumns {
-  Eigen::MatrixXd columns;           // weighted, rows as the Jacobian's
-  std::vector<std::size_t> of;       // of each column: its place in Departures()
-  std::vector<double> unit_of_size;  // of each: what a factor of one is, in the departure's unit
-  bool timed = true;                 // else sizes are by sample
+  Eigen::MatrixXd columns;         // weighted, rows as the Jacobian's
+  std::vector<std::size_t> of;     // of each column: its place in Departures()
+  std::vector<std::size_t> group;  // of each: those of one departure, or one covariate, are one
+  std::size_t groups = 0;
+  std::vector<std::size_t> covariates;  // of the last columns: their place in ScaledRecords
+  std::vector<double> unit_of_size;     // of each: what a factor of one is, in the departure's unit
+  bool timed = true;                    // else sizes are by sample
 };
 
 /// In the order in which they are given up where a record has few samples.

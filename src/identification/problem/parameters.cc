@@ -57,6 +57,20 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   return parameter;
 }
 
+/// @param column  among those of the data
+Parameter MakeParameterOfColumn(const Term& term, std::size_t column, const ScaledRecords& data) {
+  const CovariateColumn& covariate = data.covariates[column];
+  TermUnits units = data.records.front().units;
+  units.covariate = covariate.scale;
+  return {.term = &term,
+          .column = column,
+          .column_name = covariate.name,
+          .column_unit = covariate.unit,
+          .scale = term.scale(units),
+          .lower = term.lowest,
+          .upper = term.highest};
+}
+
 }  // namespace
 
 double Parameter::ToValue(double at_theta) const {
@@ -82,9 +96,15 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
       reported_(memory),
       records_(data.records.size()),
       state_(state) {
-  parameters_.reserve(Terms().size() * records_);
+  parameters_.reserve(Terms().size() * records_ + options.covariates.size());
   for (const Term& term : Terms()) {
     if (term.scope != Scope::kContact) continue;
+    if (term.of_column) {
+      for (std::size_t c = 0; c < options.covariates.size(); ++c) {
+        parameters_.push_back(MakeParameterOfColumn(term, c, data));
+      }
+      continue;
+    }
     parameters_.push_back(MakeParameter(term, 0, data.records.front(), options));
   }
   if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
@@ -140,6 +160,10 @@ std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) co
 
 void Parameters::NameOf(std::size_t i, std::string& name) const {
   const Parameter& parameter = parameters_[i];
+  if (parameter.term->of_column) {
+    name = NameOfCovariate(parameter.column_name);
+    return;
+  }
   name.assign(parameter.term->name);
   if (parameter.term->scope == Scope::kRecord && records_ > 1) {
     fmt::format_to(std::back_inserter(name), "_{}", parameter.record + 1);
@@ -150,6 +174,14 @@ std::string Parameters::NameOf(std::size_t i) const {
   std::string name;
   NameOf(i, name);
   return name;
+}
+
+std::string Parameters::UnitOf(std::size_t i, bool timed) const {
+  const Term& term = *parameters_[i].term;
+  if (term.of_column && !parameters_[i].column_unit.empty()) {
+    return fmt::format("N/{}", parameters_[i].column_unit);
+  }
+  return std::string(timed || term.unit_by_sample.empty() ? term.unit : term.unit_by_sample);
 }
 
 bool Parameters::IsCalled(std::size_t i, std::string_view name) const {
@@ -171,7 +203,8 @@ void Parameters::ApplyOptions(const FitOptions& options) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name);
     if (term == nullptr ||
-        (term->presence != Presence::kOnDemand && term->presence != Presence::kReported)) {
+        (term->presence != Presence::kOnDemand && term->presence != Presence::kReported) ||
+        term->of_column) {
       throw InvalidArgument(fmt::format("'{}' is no term that can be asked for", name));
     }
   }
@@ -240,6 +273,7 @@ void Parameters::Fix(std::size_t i, double theta) {
 
 void Parameters::Release(std::size_t i) {
   parameters_[i].fixed = false;
+  parameters_[i].absent = false;
   Sort();
 }
 

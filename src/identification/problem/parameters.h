@@ -20,6 +20,9 @@ namespace mindahl::identification {
 struct Parameter {
   const Term* term = nullptr;
   std::size_t record = 0;
+  std::size_t column = 0;             // of a covariate, among those of ScaledRecords
+  std::string_view column_name = {};  // its name and unit
+  std::string_view column_unit = {};
   double reference = 0.0;
   double scale = 1.0;
   double theta = 0.0;  // where it is fixed
@@ -70,15 +73,19 @@ class Parameters {
   /// Of a record's term; size() where there is no such term.
   [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
+  [[nodiscard]] bool has_lag() const { return !parameters_[PositionOf("lag", 0)].absent; }
 
   /// The name in options and results, numbered where there are several records.
   [[nodiscard]] std::string NameOf(std::size_t i) const;
   void NameOf(std::size_t i, std::string& name) const;
 
+  /// The unit of its value: by sample where `timed` is false, and a column's own.
+  [[nodiscard]] std::string UnitOf(std::size_t i, bool timed) const;
+
   /// Holds one more parameter at θ.
   void Fix(std::size_t i, double theta);
 
-  /// Lets one more parameter go.
+  /// Lets one more parameter go, though it was not asked for.
   void Release(std::size_t i);
 
   /// Writes θ where the options have a starting value.

@@ -1,6 +1,7 @@
 #include "identification/problem/problem.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace mindahl::identification {
@@ -21,18 +22,48 @@ void Response::Bind(const Problem& problem) {
   for (std::size_t r = 0; r < records; ++r) {
     unloaded_[r] = problem.parameters.PositionOf("displacement_offset", r);
   }
+  lag_ = problem.parameters.PositionOf("lag", 0);
+  has_lag_ = problem.parameters.has_lag();
+  if (!has_lag_) return;
+  if (motions_.size() < records) motions_.resize(records);
+  for (LaggedMotion& motion : motions_) motion.Forget();
+}
+
+models::InitialContact Response::InitialOf(std::size_t r, std::span<const double> theta) const {
+  const bool virgin = problem_->state == models::InitialState::kVirgin;
+  return {.state = problem_->state, .unloaded_displacement = virgin ? theta[unloaded_[r]] : 0.0};
+}
+
+double Response::LagOf(std::size_t r, std::span<const double> theta) const {
+  return problem_->parameters[lag_].ToValue(theta[lag_]) /
+         problem_->data->records[r].units.half_duration;
+}
+
+const LaggedMotion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
+  LaggedMotion& motion = motions_[r];
+  const models::InitialContact initial = InitialOf(r, theta);
+  const double lag = LagOf(r, theta);
+  if (!motion.IsAt(lag, initial.unloaded_displacement)) {
+    motion.MoveTo(problem_->data->records[r], lag, problem_->model->memory, initial);
+    paths_[r].valid = false;
+  }
+  return motion;
 }
 
 const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const double> theta) {
   CachedPath& cached = paths_[r];
-  const bool virgin = problem_->state == models::InitialState::kVirgin;
-  const double unloaded = virgin ? theta[unloaded_[r]] : 0.0;
-  if (!cached.valid || unloaded != cached.unloaded) {
+  if (has_lag_) {
+    const LaggedMotion& motion = MotionOf(r, theta);
+    if (!cached.valid) motion.CopyPathOfSamples(cached.path);
+    cached.valid = true;
+    return cached.path;
+  }
+  const models::InitialContact initial = InitialOf(r, theta);
+  if (!cached.valid || initial.unloaded_displacement != cached.unloaded) {
     const ScaledRecord& record = problem_->data->records[r];
-    models::MakeLoadingPath(record.displacement, record.reversals, problem_->model->memory,
-                            {.state = problem_->state, .unloaded_displacement = unloaded},
+    models::MakeLoadingPath(record.displacement, record.reversals, problem_->model->memory, initial,
                             cached.path);
-    cached.unloaded = unloaded;
+    cached.unloaded = initial.unloaded_displacement;
     cached.valid = true;
   }
   return cached.path;
@@ -48,8 +79,62 @@ models::NormalizedLaw Response::LawAt(const LawPoint& at) const {
 
 void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
                                       models::OriginSensitivity& sensitivity) {
+  if (has_lag_) {
+    const LaggedMotion& motion = MotionOf(r, at.theta);
+    response_.DifferentiateByOrigins(*problem_->model, LawAt(at), motion.path(),
+                                     motion.displacement(), sensitivity);
+    for (auto* column : {&sensitivity.sample_slope, &sensitivity.sample_gain}) {
+      for (std::size_t i = 0; i < motion.places().size(); ++i) {
+        (*column)[i] = (*column)[motion.places()[i]];  // which is not before i
+      }
+      column->resize(motion.places().size());
+    }
+    return;
+  }
   response_.DifferentiateByOrigins(*problem_->model, LawAt(at), PathOf(r, at.theta),
                                    problem_->data->records[r].displacement, sensitivity);
+}
+
+void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<double> t,
+                                   const ResponseColumns& columns) {
+  const models::NormalizedLaw law = LawAt(at);
+  const LaggedMotion& motion = MotionOf(r, at.theta);
+  const std::size_t size = motion.displacement().size();
+  const std::array wanted = {columns.log_rate, columns.shape_exponent,
+                             columns.unloaded_displacement, columns.log_spring_travel};
+  moved_.resize((1 + wanted.size()) * size);
+  const auto moved = [&](std::size_t column) {
+    return std::span(moved_).subspan(column * size, size);
+  };
+  const auto moved_if_wanted = [&](std::size_t column) {
+    return wanted[column].empty() ? std::span<double>() : moved(1 + column);
+  };
+  const bool wants_any =
+      std::ranges::any_of(wanted, [](std::span<double> column) { return !column.empty(); });
+  if (wants_any) {
+    response_.Differentiate(*problem_->model, law, motion.path(), motion.displacement(), moved(0),
+                            {.log_rate = moved_if_wanted(0),
+                             .shape_exponent = moved_if_wanted(1),
+                             .unloaded_displacement = moved_if_wanted(2),
+                             .log_spring_travel = moved_if_wanted(3)});
+  } else {
+    response_.Evaluate(*problem_->model, law, motion.path(), motion.displacement(), moved(0));
+  }
+  const std::span<const std::size_t> places = motion.places();
+  for (std::size_t i = 0; i < t.size(); ++i) t[i] = moved(0)[places[i]];
+  for (std::size_t column = 0; column < wanted.size(); ++column) {
+    for (std::size_t i = 0; i < wanted[column].size(); ++i) {
+      wanted[column][i] = moved(1 + column)[places[i]];
+    }
+  }
+  if (columns.lag.empty()) return;
+  response_.DifferentiateByOrigins(*problem_->model, law, motion.path(), motion.displacement(),
+                                   sensitivity_);
+  const double per_theta =
+      problem_->parameters[lag_].scale / problem_->data->records[r].units.half_duration;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    columns.lag[i] = sensitivity_.sample_slope[places[i]] * motion.rates()[i] * per_theta;
+  }
 }
 
 void Response::Differentiate(const LawPoint& at, std::span<double> t,
@@ -65,20 +150,27 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
     const ResponseColumns parts{.log_rate = part(columns.log_rate),
                                 .shape_exponent = part(columns.shape_exponent),
                                 .unloaded_displacement = part(columns.unloaded_displacement),
-                                .log_spring_travel = part(columns.log_spring_travel)};
+                                .log_spring_travel = part(columns.log_spring_travel),
+                                .lag = part(columns.lag)};
     const std::span<double> values = t.subspan(begin, count);
     const bool wants_any = !parts.log_rate.empty() || !parts.shape_exponent.empty() ||
                            !parts.unloaded_displacement.empty() || !parts.log_spring_travel.empty();
-    if (wants_any) {
+    if (has_lag_) {
+      DifferentiateLagged(at, r, values, parts);
+    } else if (wants_any) {
       response_.Differentiate(*problem_->model, law, PathOf(r, at.theta), record.displacement,
-                              values, parts);
+                              values,
+                              {.log_rate = parts.log_rate,
+                               .shape_exponent = parts.shape_exponent,
+                               .unloaded_displacement = parts.unloaded_displacement,
+                               .log_spring_travel = parts.log_spring_travel});
     } else {
       response_.Evaluate(*problem_->model, law, PathOf(r, at.theta), record.displacement, values);
     }
     if (!record.load_ratio.empty()) {
       for (const std::span<double> column :
            {values, parts.log_rate, parts.shape_exponent, parts.unloaded_displacement,
-            parts.log_spring_travel}) {
+            parts.log_spring_travel, parts.lag}) {
         for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.load_ratio[i];
       }
     }
@@ -89,7 +181,11 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
 double ColumnAt(const Problem& problem, std::size_t parameter, std::size_t r, std::size_t sample) {
   const Parameter& linear = problem.parameters[parameter];
   if (linear.term->scope == Scope::kRecord && linear.record != r) return 0.0;
-  return linear.term->column(problem.data->records[r].SampleAt(sample));
+  TermSample at = problem.data->records[r].SampleAt(sample);
+  if (linear.term->of_column) {
+    at.covariate = problem.data->records[r].covariates[linear.column][sample];
+  }
+  return linear.term->column(at);
 }
 
 namespace {
@@ -143,20 +239,23 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
                    std::span<const std::size_t> columns, std::span<double> residual,
                    std::span<double> jacobian) {
   const std::size_t samples = problem.size();
-  std::vector<double> derivatives(samples * 4);
+  const bool has_lag = problem.parameters.has_lag();
+  std::vector<double> derivatives(samples * (has_lag ? 5 : 4));
   const auto part = [&](std::size_t k) {
     return std::span(derivatives).subspan(k * samples, samples);
   };
   const ResponseColumns gradient{.log_rate = part(0),
                                  .shape_exponent = part(1),
                                  .unloaded_displacement = part(2),
-                                 .log_spring_travel = part(3)};
+                                 .log_spring_travel = part(3),
+                                 .lag = has_lag ? part(4) : std::span<double>()};
   response.Differentiate(PointAt(problem, theta), residual, gradient);
   const double slip_force = std::exp(theta[kSlipForce]);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::size_t p = columns[c];
     const Parameter& parameter = problem.parameters[p];
     const bool is_unloaded = parameter.term->name == "displacement_offset";
+    const bool is_lag = parameter.term->name == "lag";
     std::size_t k = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const ScaledRecord& record = problem.data->records[r];
@@ -176,6 +275,8 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
           value = -slip_force * gradient.log_spring_travel[k];
         } else if (is_unloaded) {
           value = slip_force * gradient.unloaded_displacement[k];
+        } else if (is_lag && has_lag) {
+          value = slip_force * gradient.lag[k];
         }
         jacobian[c * samples + k] = record.root_weight[i] * value;
       }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/problem/lagged_motion.h"
 #include "identification/problem/parameters.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
@@ -31,20 +32,28 @@ struct Problem {
 
 /// What the normalized response t depends on, in units of the data.
 struct LawPoint {
-  double log_rate = 0.0;          // ln(σ/Tc)
-  double shape = 0.0;             // α
-  double log_travel = 0.0;        // ln(Tc/k) of the rig; ignored without one
-  std::span<const double> theta;  // of all parameters, for where each record is unloaded
+  double log_rate = 0.0;    // ln(σ/Tc)
+  double shape = 0.0;       // α
+  double log_travel = 0.0;  // ln(Tc/k) of the rig; ignored without one
+  // Of all parameters, for where each record is unloaded and the lag.
+  std::span<const double> theta;
 };
 
 /// The point of the law at θ.
 LawPoint PointAt(const Problem& problem, std::span<const double> theta);
 
 /// Derivatives of t, a column each of all samples; an empty one is not wanted.
-using ResponseColumns = models::NormalizedGradient;
+struct ResponseColumns {
+  std::span<double> log_rate;
+  std::span<double> shape_exponent;
+  std::span<double> unloaded_displacement;
+  std::span<double> log_spring_travel;
+  std::span<double> lag;  // by θ of the lag; where the problem has one
+};
 
 /// t = T/Tc of all samples, one record after the other, load ratios included. Keeps the loading
-/// paths, which depend on the point only where a contact is unloaded, and its buffers.
+/// paths, which depend on the point only where a contact is unloaded and by its lag, and its
+/// buffers.
 class Response {
  public:
   void Bind(const Problem& problem);
@@ -53,11 +62,18 @@ class Response {
   /// Of one record, for those who move its turning points.
   void DifferentiateByOrigins(const LawPoint& at, std::size_t record,
                               models::OriginSensitivity& sensitivity);
-  /// The loading path of a record of the problem that is bound.
+  /// The loading path of a record of the problem that is bound, of its samples.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
 
  private:
   [[nodiscard]] models::NormalizedLaw LawAt(const LawPoint& at) const;
+  [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
+                                                 std::span<const double> theta) const;
+  /// In the scaled time of a record.
+  [[nodiscard]] double LagOf(std::size_t record, std::span<const double> theta) const;
+  const LaggedMotion& MotionOf(std::size_t record, std::span<const double> theta);
+  void DifferentiateLagged(const LawPoint& at, std::size_t record, std::span<double> t,
+                           const ResponseColumns& columns);
 
   struct CachedPath {
     models::LoadingPath path;
@@ -69,6 +85,12 @@ class Response {
   std::vector<CachedPath> paths_;
   std::vector<std::size_t> unloaded_;  // position of each record's displacement_offset
   models::NormalizedResponse response_;
+  // Of a problem with a lag:
+  std::size_t lag_ = 0;  // its position
+  bool has_lag_ = false;
+  std::vector<LaggedMotion> motions_;  // of each record
+  std::vector<double> moved_;          // columns of all that a motion has
+  models::OriginSensitivity sensitivity_;
 };
 
 /// The forces of the whole model at θ, of every sample [units of the data]; no weight.

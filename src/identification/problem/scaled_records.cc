@@ -1,5 +1,7 @@
 #include "identification/problem/scaled_records.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -20,11 +22,12 @@ Range RangeOf(std::span<const double> values) {
   return {lowest + half, half};
 }
 
+constexpr double kSmallestScale = 1e-100;
+constexpr double kLargestScale = 1e100;
+
 /// Squares, products and ratios of displacements and forces must neither overflow nor vanish.
 void RequireScale(std::string_view quantity, double half_range) {
-  constexpr double kSmallest = 1e-100;
-  constexpr double kLargest = 1e100;
-  if (half_range < kSmallest || half_range > kLargest) {
+  if (half_range < kSmallestScale || half_range > kLargestScale) {
     ThrowInvalid(quantity, half_range, "must lie between 1e-100 and 1e100: choose other units");
   }
 }
@@ -77,6 +80,25 @@ void NoteLoad(ScaledRecord& target, std::span<const double> load) {
   for (const double value : load) target.load_change.push_back(value / mean - 1);
 }
 
+/// nullptr where the record has none of that name.
+const loop::Covariate* FindCovariate(const loop::RecordView& record, std::string_view name) {
+  const auto found = std::ranges::find(record.covariates, name, &loop::Covariate::name);
+  return found == record.covariates.end() ? nullptr : &*found;
+}
+
+/// Half the largest range that a column has in a record.
+double ScaleOf(std::string_view name, const loop::PreparedRecords& records) {
+  double scale = 0.0;
+  for (std::size_t r = 0; r < records.records.size(); ++r) {
+    const loop::Covariate* covariate = FindCovariate(records.records[r].record, name);
+    if (covariate == nullptr) {
+      throw InvalidArgument(fmt::format("record {} has no covariate '{}'", r + 1, name));
+    }
+    scale = std::max(scale, RangeOf(covariate->values).half);
+  }
+  return scale;
+}
+
 /// Samples of a stroke that are kept, at growing shares of its way: (k/n)².
 constexpr std::size_t kKeptOfAStroke = 8;
 /// Strokes that are thinned so: more are thinned to their ends and one sample in between.
@@ -88,6 +110,11 @@ std::size_t ScaledRecords::samples() const {
   std::size_t count = 0;
   for (const ScaledRecord& record : records) count += record.size();
   return count;
+}
+
+double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
+  const double whole = time.empty() ? static_cast<double>(samples) - 1 : time.back() - time.front();
+  return whole > 0 ? 2 * whole / static_cast<double>(reversals + 1) : 1.0;
 }
 
 ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
@@ -123,6 +150,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
     target.units = {.force = scaled.force,
                     .length = scaled.length,
                     .half_duration = last > first ? (last - first) / 2 : 1.0,
+                    .cycle = MeanCycleDuration(time, size, prepared.reversals.size()),
                     .force_sense = sense,
                     .force_reference = sense * RangeOf(force).middle,
                     .displacement_reference = RangeOf(displacement).middle};
@@ -146,6 +174,37 @@ ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
   return scaled;
 }
 
+void AddCovariates(std::span<const std::string> fitted, bool with_others,
+                   const loop::PreparedRecords& records, bool offsets, ScaledRecords& data) {
+  const loop::RecordView& first = records.records.front().record;
+  const auto add = [&](std::string_view name, double scale) {
+    data.covariates.push_back(
+        {.name = name, .unit = FindCovariate(first, name)->unit, .scale = scale});
+    for (std::size_t r = 0; r < data.records.size(); ++r) {
+      const std::vector<double>& values = FindCovariate(records.records[r].record, name)->values;
+      const double reference = offsets ? RangeOf(values).middle : 0.0;
+      auto& column = data.records[r].covariates.emplace_back();
+      column.reserve(values.size());
+      for (const double value : values) column.push_back((value - reference) / scale);
+    }
+  };
+  for (const std::string& name : fitted) {
+    const double scale = ScaleOf(name, records);
+    RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
+    add(name, scale);
+  }
+  if (!with_others) return;
+  for (const loop::Covariate& covariate : first.covariates) {
+    if (std::ranges::find(fitted, covariate.name) != fitted.end()) continue;
+    const bool all_have_it = std::ranges::all_of(records.records, [&](const auto& record) {
+      return FindCovariate(record.record, covariate.name) != nullptr;
+    });
+    if (!all_have_it) continue;
+    const double scale = ScaleOf(covariate.name, records);
+    if (scale >= kSmallestScale && scale <= kLargestScale) add(covariate.name, scale);
+  }
+}
+
 ScaledRecords Thin(const ScaledRecords& data,
                    std::pmr::vector<std::pmr::vector<std::size_t>>& reversals,
                    std::pmr::memory_resource* memory) {
@@ -153,6 +212,7 @@ ScaledRecords Thin(const ScaledRecords& data,
   thin.length = data.length;
   thin.force = data.force;
   thin.sense = data.sense;
+  thin.covariates.assign(data.covariates.begin(), data.covariates.end());
   thin.records.reserve(data.records.size());
   reversals.clear();
   reversals.reserve(data.records.size());
@@ -161,6 +221,7 @@ ScaledRecords Thin(const ScaledRecords& data,
     std::pmr::vector<std::size_t>& turns = reversals.emplace_back();
     turns.reserve(record.reversals.size());
     target.units = record.units;
+    if (!record.clock.empty()) target.whole = &record;
     const std::size_t strokes = record.reversals.size() + 1;
     const std::size_t kept = strokes <= kDenseStrokes ? kKeptOfAStroke : 2;
     const std::size_t most = std::min(record.size(), strokes * (kept + 1) + 1);
@@ -170,6 +231,9 @@ ScaledRecords Thin(const ScaledRecords& data,
     target.counts.reserve(most);
     if (!record.velocity.empty()) target.velocity.reserve(most);
     if (!record.load_ratio.empty()) target.load_ratio.reserve(most);
+    if (!record.clock.empty()) target.clock.reserve(most);
+    target.covariates.resize(record.covariates.size());
+    for (auto& covariate : target.covariates) covariate.reserve(most);
     const auto keep = [&](std::size_t i) {
       target.displacement.push_back(record.displacement[i]);
       target.force.push_back(record.force[i]);
@@ -177,6 +241,10 @@ ScaledRecords Thin(const ScaledRecords& data,
       target.root_weight.push_back(record.root_weight[i]);
       if (!record.velocity.empty()) target.velocity.push_back(record.velocity[i]);
       if (!record.load_ratio.empty()) target.load_ratio.push_back(record.load_ratio[i]);
+      if (!record.clock.empty()) target.clock.push_back(record.clock[i]);
+      for (std::size_t c = 0; c < target.covariates.size(); ++c) {
+        target.covariates[c].push_back(record.covariates[c][i]);
+      }
       target.counts.push_back(record.counts[i]);
       thin.counted += record.counts[i];
     };

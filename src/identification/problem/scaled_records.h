@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <memory_resource>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/identification/terms.h"
@@ -21,7 +23,9 @@ struct ScaledRecord {
         load_change(memory),
         root_weight(memory),
         counts(memory),
-        inserted(memory) {}
+        inserted(memory),
+        clock(memory),
+        covariates(memory) {}
 
   std::pmr::vector<double> displacement;  // (δ − displacement_reference)/length
   std::pmr::vector<double> force;         // (sense·T − force_reference)/force unit
@@ -34,7 +38,13 @@ struct ScaledRecord {
   /// 1 for a turning point between the samples, which counts for nothing but makes history; empty
   /// where there are none (turning_points.h).
   std::pmr::vector<unsigned char> inserted;
+  /// Time that always goes on, in which a lag is counted; empty where no lag is asked for.
+  std::pmr::vector<double> clock;
+  /// Those of ScaledRecords::covariates, over half their range; empty where there are none.
+  std::pmr::vector<std::pmr::vector<double>> covariates;
   std::span<const std::size_t> reversals;  // samples
+  /// The record that this one has some samples of, where a lag needs its motion; else null.
+  const ScaledRecord* whole = nullptr;
   TermUnits units;
 
   [[nodiscard]] std::size_t size() const { return force.size(); }
@@ -47,13 +57,24 @@ struct ScaledRecord {
 /// differences between fits mean nothing.
 inline constexpr double kRoundingRms = 1e-13;
 
+/// Mean duration of a record's cycles [s], or samples where there is no time: of two strokes.
+double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals);
+
+/// A column beside displacement and force that all records have.
+struct CovariateColumn {
+  std::string_view name = {};  // in the records' memory
+  std::string_view unit = {};
+  double scale = 1.0;  // half its largest range in a record, in its unit
+};
+
 /// All records in common units: what makes a fit independent of the units of its files.
 struct ScaledRecords {
-  explicit ScaledRecords(std::pmr::memory_resource* memory) : records(memory) {}
+  explicit ScaledRecords(std::pmr::memory_resource* memory) : records(memory), covariates(memory) {}
 
   std::pmr::vector<ScaledRecord> records;
-  double length = 1.0;  // [m]: largest half range of displacement
-  double force = 1.0;   // [N]: largest half range of force
+  std::pmr::vector<CovariateColumn> covariates;  // first those that are fitted
+  double length = 1.0;                           // [m]: largest half range of displacement
+  double force = 1.0;                            // [N]: largest half range of force
   int sense = 1;
   std::size_t counted = 0;  // samples that count
 
@@ -66,6 +87,14 @@ struct ScaledRecords {
 ///   more than 1e100, and where a load that is to be followed is missing
 ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
                     std::pmr::memory_resource* memory);
+
+/// Adds columns beside displacement and force, each less the middle of its range in the record, so
+/// that the offset of the force keeps its meaning; literally where there are no offsets.
+/// @param fitted       names of those that a term is fitted to; they come first
+/// @param with_others  also those that change and that all records have
+/// @throws InvalidArgument where a record has no column that is fitted, or it never changes
+void AddCovariates(std::span<const std::string> fitted, bool with_others,
+                   const loop::PreparedRecords& records, bool offsets, ScaledRecords& data);
 
 /// The records by fewer samples: all reversals, and of each stroke some, densest at its start: the
 /// same history for a law that knows no rate, at a fraction of the cost.

@@ -15,6 +15,9 @@ constexpr double kLowestSlipForce = 1e-3;
 constexpr double kHighestSlipForce = 1e4;
 constexpr double kHighestShapeExponent = 20.0;
 constexpr double kWidest = 10.0;
+// Of a cycle: a channel that is later has a filter or a clock of its own. Samples that near to the
+// ends of a record do not count under a lag that is fitted.
+constexpr double kLongestLag = 0.05;
 
 double One(const TermUnits& /*units*/) { return 1.0; }
 double Force(const TermUnits& units) { return units.force; }
@@ -84,6 +87,38 @@ constexpr std::array kTerms = {
         .option = "--viscous",
         .argument = "C|fit",
         .help = "viscous force C·dδ/dt, C [N s/m], or fit; needs a time column"},
+    Term{.name = "lag",
+         .unit = "s",
+         .meaning = "by which the contact's force is read after the displacement; in samples where "
+                    "the record has no time",
+         .presence = Presence::kOnDemand,
+         .lowest = -kLongestLag,
+         .highest = kLongestLag,
+         .scale = [](const TermUnits& units) { return units.cycle; },
+         .unit_by_sample = "samples",
+         .option = "--lag",
+         .argument = "S|fit",
+         .help = "the force is read S [s] after the displacement (samples where there is no\n"
+                 "time), before it where negative; or fit"},
+    Term{.name = "covariate",
+         .unit = "N/unit",
+         .meaning =
+             "C of a force C·column beside the contact's, one for each column that is named: "
+             "`covariate_COLUMN`",
+         .entry = Entry::kLinear,
+         .presence = Presence::kOnDemand,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale =
+             [](const TermUnits& units) {
+               return units.force_sense * units.force / units.covariate;
+             },
+         .column = [](const TermSample& sample) { return sample.covariate; },
+         .of_column = true,
+         .option = "--covariate",
+         .argument = "COL[=C|fit]",
+         .help = "a force C·column beside the contact's, C [N/unit] of the column; default fit;\n"
+                 "columns by header name or 1-based number; repeatable"},
     Term{.name = "force_offset",
          .unit = "N",
          .meaning = "added to the model's force; with a drift, at the record's middle",
@@ -134,6 +169,18 @@ std::string_view TermNameOf(std::string_view parameter) {
   const bool numbered =
       digits != std::string_view::npos && digits + 1 < parameter.size() && parameter[digits] == '_';
   return numbered ? parameter.substr(0, digits) : parameter;
+}
+
+std::string NameOfCovariate(std::string_view column) {
+  std::string name = "covariate_";
+  name += column;
+  std::ranges::replace_if(
+      name,
+      [](char letter) {
+        return std::string_view(" \t=:;,.[](){}'\"").find(letter) != std::string_view::npos;
+      },
+      '_');
+  return name;
 }
 
 }  // namespace mindahl::identification

@@ -1,5 +1,6 @@
 #include "identification/solve/search.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -16,7 +17,12 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOp
   // Where a window or a fold leaves little of the thinned record, all of it is looked at.
   constexpr std::size_t kEnough = 4;  // samples a parameter
   const bool is_enough = thin.counted >= kEnough * candidate.problem.parameters.free().size();
-  const ScaledRecords& looked_at = is_enough ? thin : *candidate.problem.data;
+  // A thinned record has the history of the whole, and so tells a law; a column that wanders as it
+  // likes explains a few samples a stroke whatever the law is.
+  const bool has_covariate = std::ranges::any_of(
+      candidate.problem.parameters.free(),
+      [&](std::size_t p) { return candidate.problem.parameters[p].term->of_column; });
+  const ScaledRecords& looked_at = is_enough && !has_covariate ? thin : *candidate.problem.data;
   const Problem problem{&looked_at, candidate.problem.model, candidate.problem.state,
                         Parameters(candidate.problem.parameters, memory)};
   candidate.starts = FindStarts(problem, options, rival, buffers.solver, buffers.response,

@@ -100,7 +100,8 @@ void Solver::ChooseSearched() {
     if (p == kShape) {
       searched_.push_back({Role::kShapeExponent, p, parameter.lower, parameter.upper});
     } else if (parameter.term->entry == Entry::kLaw && p > kRig) {
-      searched_.push_back({Role::kUnloaded, p, parameter.lower, parameter.upper});
+      const Role role = parameter.term->name == "lag" ? Role::kLag : Role::kUnloaded;
+      searched_.push_back({role, p, parameter.lower, parameter.upper});
     }
   }
 }
@@ -197,6 +198,7 @@ LawPoint Solver::PointOf(std::span<const double> u) const {
         point.shape = u[j];
         break;
       case Role::kUnloaded:
+      case Role::kLag:
         break;  // in held_theta_
       case Role::kLogStiffness:
         log_stiffness = u[j];
@@ -292,7 +294,7 @@ std::pair<std::size_t, std::size_t> Solver::RowsOf(std::size_t record) const {
 
 double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
   for (std::size_t j = 0; j < u.size(); ++j) {
-    if (searched_[j].role == Role::kUnloaded) held_theta_[searched_[j].parameter] = u[j];
+    if (IsOfThePath(searched_[j].role)) held_theta_[searched_[j].parameter] = u[j];
   }
   const LawPoint point = PointOf(u);
   const bool has_rig = problem_->parameters.has_rig();
@@ -334,6 +336,7 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
       columns.unloaded_displacement = Derivative(j);
     }
   }
+  columns.lag = wants(Role::kLag);
   response_->Differentiate(point, response_values_, columns);
   if (tied) {
     const std::span<double> column = wants(Role::kLogSlipForce);
@@ -412,6 +415,8 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
   constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
   constexpr int kSlowSteps = 20;          // ... in as many steps
   const auto longest = [](Role role) {
+    constexpr double kLongestStepOfLag = 0.02;  // cycles
+    if (role == Role::kLag) return kLongestStepOfLag;
     return role == Role::kUnloaded ? 0.5 : role == Role::kShapeExponent ? 1.0 : 1.5;
   };
   const double floor = static_cast<double>(problem_->data->counted) * kRoundingRms * kRoundingRms;

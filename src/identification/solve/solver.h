@@ -58,6 +58,7 @@ class Solver {
     kLogTravel,
     kShapeExponent,
     kUnloaded,
+    kLag,
     kLogStiffness,
     kLogSlipForce,
     kLogRig
@@ -78,6 +79,10 @@ class Solver {
   void ChooseSearched();
   void OrthogonaliseColumns();
   [[nodiscard]] bool Searches(Role role) const;
+  /// Does the response read it from θ, not from the point of the law?
+  [[nodiscard]] static bool IsOfThePath(Role role) {
+    return role == Role::kUnloaded || role == Role::kLag;
+  }
   [[nodiscard]] LawPoint PointOf(std::span<const double> u) const;
   void Load(std::span<const double> theta, std::span<double> u);
   void Store(std::span<const double> u, std::span<double> theta) const;

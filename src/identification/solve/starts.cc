@@ -38,6 +38,7 @@ struct Look {
   double shape = 0.0;
   double rig_ratio = 1.0;
   std::size_t guess = 0;  // of where the contact was unloaded
+  double lag = 0.0;       // θ; ignored where none is fitted
 };
 
 class Plane {
@@ -48,9 +49,12 @@ class Plane {
     const Parameters& parameters = problem.parameters;
     theta_.resize(parameters.size());
     for (std::size_t p = 0; p < parameters.size(); ++p) theta_[p] = parameters[p].theta;
+    lag_ = parameters.PositionOf("lag", 0);
     FindGuesses(memory);
   }
 
+  [[nodiscard]] bool lag_is_open() const { return !problem_.parameters[lag_].fixed; }
+  [[nodiscard]] const Parameter& lag() const { return problem_.parameters[lag_]; }
   [[nodiscard]] std::size_t guesses() const { return guesses_.size(); }
 
   /// Writes the look's cost, and what it found into theta().
@@ -62,6 +66,9 @@ class Plane {
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       if (parameters[p].term->name != "displacement_offset") continue;
       theta_[p] = guesses_[look.guess][record++];
+    }
+    if (lag_is_open()) {
+      theta_[lag_] = std::clamp(look.lag, parameters[lag_].lower, parameters[lag_].upper);
     }
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
@@ -140,6 +147,7 @@ class Plane {
   Solver& solver_;
   std::pmr::vector<double> theta_;
   std::pmr::vector<Guess> guesses_;
+  std::size_t lag_ = 0;  // position of the parameter
 };
 
 void KeepBetter(Look& best, Plane& plane, Look look) {
@@ -164,6 +172,20 @@ void Refine(Look& best, Plane& plane) {
       KeepBetter(best, plane, look);
     }
     step /= kSubdivisions;
+  }
+}
+
+/// A loop that is late looks like one of another shape, so that each shape is tried with its own
+/// lag: over all that are allowed, closest about none.
+void LookForLag(Look& best, Plane& plane) {
+  constexpr std::array kShares = {0.06, 0.15, 0.3, 0.6, 1.0};  // of the longest
+  const Look none = best;
+  for (const double end : {plane.lag().lower, plane.lag().upper}) {
+    for (const double share : kShares) {
+      Look look = none;
+      look.lag = share * end;
+      KeepBetter(best, plane, look);
+    }
   }
 }
 
@@ -228,6 +250,9 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
     for (Look& look : best) {
       if (std::isfinite(look.cost)) Refine(look, plane);
     }
+  }
+  for (Look& look : best) {
+    if (plane.lag_is_open() && std::isfinite(look.cost)) LookForLag(look, plane);
   }
   std::ranges::sort(best, {}, &Look::cost);
   return best;

@@ -128,6 +128,7 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
   turned->data.force = data.force;
   turned->data.sense = data.sense;
   turned->data.counted = data.counted;
+  turned->data.covariates = data.covariates;
   turned->data.records.reserve(data.records.size());
   turned->reversals.resize(data.records.size());
   std::size_t next_overshoot = 0;
@@ -135,6 +136,7 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
     const ScaledRecord& record = data.records[r];
     ScaledRecord& target = turned->data.records.emplace_back(memory);
     target.units = record.units;
+    target.covariates.resize(record.covariates.size());
     const std::span<const double> x = record.displacement;
     const auto copy = [&](std::size_t i) {
       target.displacement.push_back(x[i]);
@@ -146,6 +148,9 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
       if (!record.velocity.empty()) target.velocity.push_back(record.velocity[i]);
       if (!record.load_ratio.empty()) target.load_ratio.push_back(record.load_ratio[i]);
       if (!record.load_change.empty()) target.load_change.push_back(record.load_change[i]);
+      for (std::size_t c = 0; c < record.covariates.size(); ++c) {
+        target.covariates[c].push_back(record.covariates[c][i]);
+      }
     };
     const auto put_in = [&](std::size_t i, double sense) {
       turned->reversals[r].push_back(target.size());

@@ -1,0 +1,101 @@
+#include "identification/inference/lag_trial.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory_resource>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "identification/inference/evidence.h"
+#include "identification/problem/lagged_motion.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// Samples so near to an end that a lag may reach beyond it do not count.
+/// @param longest  lag, in units of the first record's time
+void LeaveOutEnds(ScaledRecords& data, double longest) {
+  data.counted = 0;
+  for (ScaledRecord& record : data.records) {
+    const double within = longest / record.units.half_duration;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      const double to_end =
+          std::min(record.clock[i] - record.clock.front(), record.clock.back() - record.clock[i]);
+      if (to_end < within) record.counts[i] = 0;
+      if (record.counts[i] == 0) record.root_weight[i] = 0.0;
+      data.counted += record.counts[i];
+    }
+  }
+}
+
+/// θ with the lag of least cost, everything that is not linear as it was.
+std::vector<double> BestLook(std::span<const double> theta, std::size_t lag,
+                             const Parameter& parameter, Solver& solver) {
+  constexpr std::array kShares = {0.06, 0.15, 0.3, 0.6, 1.0};  // of the longest
+  std::vector<double> best(theta.begin(), theta.end());
+  std::vector<double> look = best;
+  double least = solver.CostAt(best);
+  for (const double end : {parameter.lower, parameter.upper}) {
+    for (const double share : kShares) {
+      std::ranges::copy(theta, look.begin());
+      look[lag] = share * end;
+      const double cost = solver.CostAt(look);
+      if (!(cost < least)) continue;
+      least = cost;
+      best = look;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void TryLag(const Problem& problem, const Solution& solution, const SolverOptions& options,
+            SearchBuffers& buffers, AdequacyTest& test) {
+  const auto fit = std::ranges::find_if(test.fits, [](const DepartureFit& tried) {
+    return Departures()[tried.departure].term == "lag";
+  });
+  if (fit == test.fits.end() || problem.parameters.has_lag()) return;
+  ScaledRecords data(*problem.data);
+  if (!MayHaveClocks(data)) return;
+  SetClocks(data);
+  Problem without = problem;
+  without.data = &data;
+  Problem with = without;
+  const std::size_t lag = problem.parameters.PositionOf("lag", 0);
+  with.parameters.Release(lag);
+  const Parameter& parameter = with.parameters[lag];
+  LeaveOutEnds(data, parameter.scale * std::max(-parameter.lower, parameter.upper));
+  if (data.counted <= 2 * with.parameters.free().size()) return;
+
+  Solution before;
+  buffers.solver.Bind(without, buffers.response);
+  buffers.solver.Solve(solution.theta, options, before);
+  Solution after;
+  buffers.solver.Bind(with, buffers.response);
+  buffers.solver.Solve(BestLook(before.theta, lag, parameter, buffers.solver), options, after);
+  buffers.response.Bind(problem);
+  if (!before.converged || !after.converged || !(before.sum_of_squares > 0)) return;
+  const double explains = 1 - after.sum_of_squares / before.sum_of_squares;
+  if (!(explains > fit->explains)) return;
+
+  const Evidence evidence(data.counted, test.effective_samples);
+  fit->explains = explains;
+  fit->delta_aicc = 2 - evidence.LikelihoodRatio(before.sum_of_squares, after.sum_of_squares);
+  fit->p_value = PValueOfF(
+      evidence.FStatistic(before.sum_of_squares, after.sum_of_squares, test.noise * test.noise),
+      test.degrees_of_freedom);
+  fit->size = parameter.ToValue(after.theta[lag]);
+  const bool timed = !data.records.front().velocity.empty();
+  fit->unit = timed ? parameter.term->unit : parameter.term->unit_by_sample;
+  const auto& free = problem.parameters.free();
+  fit->step.resize(free.size(), 0.0);
+  fit->error.resize(free.size(), 0.0);  // first order told nothing of it
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    fit->step[j] = after.theta[free[j]] - solution.theta[free[j]];
+  }
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,171 @@
+#include "identification/problem/lagged_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mindahl/core/error.h"
+#include "mindahl/identification/terms.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// Times of samples that were measured, made to go on.
+/// @param samples  places of the measured among all
+void SpreadEvenly(std::span<const std::size_t> samples, std::span<double> clock) {
+  std::size_t begin = 0;
+  const auto spread = [&](std::size_t end, double step) {
+    for (std::size_t k = begin + 1; k < end; ++k) {
+      clock[samples[k]] = clock[samples[begin]] + step * static_cast<double>(k - begin);
+    }
+  };
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    const double way = clock[samples[k]] - clock[samples[begin]];
+    if (!(way > 0)) continue;
+    spread(k, way / static_cast<double>(k - begin));
+    begin = k;
+  }
+  spread(samples.size(), clock[samples[begin]] - clock[samples[begin - 1]]);
+}
+
+bool GoesOn(std::span<const double> time) {
+  return std::ranges::any_of(time, [&](double at) { return at > time.front(); });
+}
+
+struct Lags {
+  double least = 0.0;  // [s], or samples
+  double most = 0.0;
+};
+
+/// Those that the options allow.
+/// @param cycle  mean duration of a cycle of the first record
+Lags LagsOf(const FitOptions& options, double cycle) {
+  const auto fixed = options.fixed.find("lag");
+  if (fixed != options.fixed.end()) return {fixed->second, fixed->second};
+  const auto bound = options.bounds.find("lag");
+  if (bound != options.bounds.end()) return {bound->second.lower, bound->second.upper};
+  const Term& term = *FindTerm("lag");
+  return {term.lowest * cycle, term.highest * cycle};
+}
+
+}  // namespace
+
+bool HasLag(const FitOptions& options) {
+  return options.fixed.contains("lag") ||
+         std::ranges::find(options.terms, "lag") != options.terms.end();
+}
+
+bool MayHaveClocks(const ScaledRecords& data) {
+  const bool timed = !data.records.front().velocity.empty();
+  return std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
+    return record.velocity.empty() != timed && GoesOn(record.time);
+  });
+}
+
+void SetClocks(ScaledRecords& data) {
+  std::vector<std::size_t> samples;
+  for (ScaledRecord& record : data.records) {
+    const auto is_inserted = [&](std::size_t i) {
+      return !record.inserted.empty() && record.inserted[i] != 0;
+    };
+    record.clock.assign(record.time.begin(), record.time.end());
+    samples.clear();
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (!is_inserted(i)) samples.push_back(i);
+    }
+    SpreadEvenly(samples, record.clock);
+    // A turning point between two samples, which has a neighbour on either side.
+    for (std::size_t i = 1; i + 1 < record.size(); ++i) {
+      if (is_inserted(i)) record.clock[i] = (record.clock[i - 1] + record.clock[i + 1]) / 2;
+    }
+  }
+}
+
+void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records) {
+  if (!HasLag(options)) return;
+  const loop::PreparedRecord& first = records.records.front();
+  for (const loop::PreparedRecord& record : records.records) {
+    const std::span<const double> time = record.record.time;
+    if (time.empty() == first.record.time.empty() && (time.empty() || GoesOn(time))) continue;
+    throw InvalidArgument("lag needs a time that goes on in every record, or in none a time");
+  }
+  const Lags lags =
+      LagsOf(options, MeanCycleDuration(first.record.time, first.size(), first.reversals.size()));
+  for (std::size_t r = 0; r < records.records.size(); ++r) {
+    loop::PreparedRecord& record = records.records[r];
+    const auto time = [&](std::size_t i) {
+      return record.record.time.empty() ? static_cast<double>(i) : record.record.time[i];
+    };
+    const double begin = time(0);
+    const double end = time(record.size() - 1);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (time(i) - lags.most < begin || time(i) - lags.least > end) record.counts[i] = 0;
+    }
+    record.left_out = static_cast<std::size_t>(std::ranges::count(record.counts, 0));
+    if (record.left_out < record.size()) continue;
+    throw InvalidArgument(
+        fmt::format("nothing is left of record {}: under lags of {:.6g} to {:.6g} every sample "
+                    "that counts lies "
+                    "beyond one of its ends: give smaller ones, --bound lag=LO:HI",
+                    r + 1, lags.least, lags.most));
+  }
+}
+
+void LaggedMotion::MoveTo(const ScaledRecord& record, double lag, models::Memory memory,
+                          const models::InitialContact& initial) {
+  const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
+  const std::span<const double> x = motion.displacement;
+  const std::span<const double> clock = motion.clock;
+  const std::size_t last = motion.size() - 1;
+  displacement_.clear();
+  displacement_.reserve(record.size() + motion.reversals.size() + 2);
+  reversals_.clear();
+  reversals_.reserve(motion.reversals.size());
+  places_.resize(record.size());
+  rates_.resize(record.size());
+  displacement_.push_back(x.front());
+  std::size_t segment = 0;  // from this sample to the next, its end included
+  std::size_t turn = 0;
+  const auto turn_before = [&](std::size_t end) {
+    for (; turn < motion.reversals.size() && motion.reversals[turn] < end; ++turn) {
+      reversals_.push_back(displacement_.size());
+      displacement_.push_back(x[motion.reversals[turn]]);
+    }
+  };
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double wanted = record.clock[i] - lag;
+    const double time = std::clamp(wanted, clock.front(), clock.back());
+    while (segment + 1 < last && clock[segment + 1] < time) ++segment;
+    turn_before(segment + 1);
+    const double duration = clock[segment + 1] - clock[segment];
+    const double way = x[segment + 1] - x[segment];
+    places_[i] = displacement_.size();
+    // So close that they are one: the later.
+    const double share = duration > 0 ? (time - clock[segment]) / duration : 1.0;
+    rates_[i] = time == wanted && duration > 0 ? -way / duration : 0.0;
+    displacement_.push_back(std::lerp(x[segment], x[segment + 1], share));
+  }
+  turn_before(motion.size());
+  displacement_.push_back(x.back());
+  models::MakeLoadingPath(displacement_, reversals_, memory, initial, path_);
+  lag_ = lag;
+  unloaded_ = initial.unloaded_displacement;
+  valid_ = true;
+}
+
+void LaggedMotion::CopyPathOfSamples(models::LoadingPath& path) const {
+  path.branches = path_.branches;
+  path.open = path_.open;
+  path.runs.clear();
+  std::size_t next = 0;
+  for (const models::BranchRun& run : path_.runs) {
+    const std::size_t begin = next;
+    while (next < places_.size() && places_[next] < run.end) ++next;
+    if (next == begin) continue;
+    path.runs.push_back(
+        {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(next), run.branch});
+  }
+}
+
+}  // namespace mindahl::identification

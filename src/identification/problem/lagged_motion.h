@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "identification/problem/scaled_records.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/loop/preparation.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+
+/// Forces that are read some time after the displacement: T_file(t) = T(δ(t − lag)).
+namespace mindahl::identification {
+
+/// Is the lag fitted or given?
+bool HasLag(const FitOptions& options);
+
+/// Have all records a time that goes on, or none a time?
+bool MayHaveClocks(const ScaledRecords& data);
+
+/// Gives every record a clock: its time, and where that stands still or steps back the time evenly
+/// between the last reading that went on and the next that does.
+/// @param data  MayHaveClocks()
+void SetClocks(ScaledRecords& data);
+
+/// Samples whose displacement lies beyond the record's ends under any lag that the options allow do
+/// not count; they still make history.
+/// @throws InvalidArgument where nothing is left of a record, where some records have a time and
+///   others not, or one never goes on
+void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
+
+/// Where the contact was when each force of a record acted, and on which branch. The motion runs
+/// straight from sample to sample of the displacement and turns at its reversals, whatever the lag:
+/// these are put in between the moved samples, and so are both ends of the record, where what lies
+/// beyond is held.
+class LaggedMotion {
+ public:
+  /// @param record  with a clock; must not have moved since the last call that bound it
+  /// @param lag     by which the force is late, in the record's scaled time
+  void MoveTo(const ScaledRecord& record, double lag, models::Memory memory,
+              const models::InitialContact& initial);
+  void Forget() { valid_ = false; }
+  /// Is it at this lag, and was the contact unloaded there?
+  [[nodiscard]] bool IsAt(double lag, double unloaded) const {
+    return valid_ && lag == lag_ && unloaded == unloaded_;
+  }
+
+  /// Of moved samples, reversals and ends, in order of time.
+  [[nodiscard]] std::span<const double> displacement() const { return displacement_; }
+  [[nodiscard]] const models::LoadingPath& path() const { return path_; }
+  /// Of each sample among them.
+  [[nodiscard]] std::span<const std::size_t> places() const { return places_; }
+  /// ∂δ/∂lag of each sample, 0 beyond the ends.
+  [[nodiscard]] std::span<const double> rates() const { return rates_; }
+
+  /// The path with runs of samples only.
+  void CopyPathOfSamples(models::LoadingPath& path) const;
+
+ private:
+  bool valid_ = false;
+  double lag_ = 0.0;
+  double unloaded_ = 0.0;
+  std::vector<double> displacement_;
+  std::vector<std::size_t> reversals_;
+  std::vector<std::size_t> places_;
+  std::vector<double> rates_;
+  models::LoadingPath path_;
+};
+
+}  // namespace mindahl::identification

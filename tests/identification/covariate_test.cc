@@ -1,0 +1,186 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "identification/sample_loop.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/terms.h"
+
+// Forces in proportion to other columns of a record: as terms, and as what a fit finds unasked.
+namespace mindahl::identification {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::FitOne;
+using testing::Generator;
+using ::testing::HasSubstr;
+using testing::kLaw;
+using testing::kNoiseFree;
+using testing::Loop;
+using testing::Recovers;
+using testing::WithForceNoise;
+
+/// Wanders by ±1 in no step with the motion.
+std::vector<double> Wandering(std::size_t samples, double middle, double pace) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double at = pace * static_cast<double>(i);
+    values.push_back(middle + std::sin(0.031 * at) * std::cos(0.012 * at + 1));
+  }
+  return values;
+}
+
+constexpr double kPerBar = 6.0;      // [N/bar], a tenth of Tc over the column's range
+constexpr double kPerKelvin = -4.0;  // [N/K]
+
+/// A loop beside two other forces, which two columns tell.
+Record LoopBesideTwo() {
+  Record record = Loop();
+  record.covariates = {
+      {.name = "p", .unit = "bar", .values = Wandering(record.size(), 40.0, 1.0)},
+      {.name = "oil temperature", .unit = "", .values = Wandering(record.size(), 300.0, 2.9)}};
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] +=
+        kPerBar * record.covariates[0].values[i] + kPerKelvin * record.covariates[1].values[i];
+  }
+  return record;
+}
+
+TEST(Covariate, OfTwoColumnsIsRecovered) {
+  FitOptions options;
+  options.covariates = {"p", "oil temperature"};
+  const FitResult fit = FitOne(LoopBesideTwo(), options);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  const ParameterEstimate* pressure = fit.Find("covariate_p");
+  const ParameterEstimate* temperature = fit.Find("covariate_oil_temperature");
+  ASSERT_NE(pressure, nullptr);
+  ASSERT_NE(temperature, nullptr);
+  EXPECT_NEAR(pressure->value, kPerBar, kNoiseFree * kLaw.slip_force);
+  EXPECT_NEAR(temperature->value, kPerKelvin, kNoiseFree * kLaw.slip_force);
+  EXPECT_EQ(pressure->unit, "N/bar");
+  EXPECT_EQ(temperature->unit, "N/unit");
+  EXPECT_EQ(pressure->status, ParameterStatus::kFree);
+}
+
+TEST(Covariate, KeepsItsSignWhereTheFileTurnsTheForceRound) {
+  Record record = LoopBesideTwo();
+  for (double& force : record.force) force = -force;
+  FitOptions options;
+  options.covariates = {"oil temperature", "p"};
+  const FitResult fit = FitOne(record, options);
+  EXPECT_EQ(fit.force_sense, -1);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  EXPECT_NEAR(fit.Find("covariate_p")->value, -kPerBar, kNoiseFree * kLaw.slip_force);
+}
+
+TEST(Covariate, ThatIsKnownIsTakenOff) {
+  FitOptions options;
+  options.covariates = {"p", "oil temperature"};
+  options.fixed["covariate_p"] = kPerBar;
+  const FitResult fit = FitOne(LoopBesideTwo(), options);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  EXPECT_EQ(fit.Find("covariate_p")->status, ParameterStatus::kFixed);
+  EXPECT_NEAR(fit.Find("covariate_oil_temperature")->value, kPerKelvin,
+              kNoiseFree * kLaw.slip_force);
+}
+
+TEST(Covariate, LeavesTheOffsetAsItIsInTheMiddleOfTheColumnsRange) {
+  const Record record = LoopBesideTwo();
+  FitOptions options;
+  options.covariates = {"p", "oil temperature"};
+  const auto middle = [&](std::size_t column) {
+    const auto [least, greatest] = std::ranges::minmax(record.covariates[column].values);
+    return (least + greatest) / 2;
+  };
+  const double offset = kPerBar * middle(0) + kPerKelvin * middle(1);
+  EXPECT_NEAR(FitOne(record, options).Find("force_offset")->value, offset,
+              kNoiseFree * std::abs(offset));
+  // Without offsets the force is C times the column as it is.
+  options.offsets = false;
+  const FitResult literal = FitOne(record, options);
+  EXPECT_TRUE(Recovers(literal, kLaw, kNoiseFree));
+  EXPECT_NEAR(literal.Find("covariate_p")->value, kPerBar, kNoiseFree * kLaw.slip_force);
+}
+
+TEST(Covariate, OfAJointFitIsOneOfAllRecords) {
+  const Record first = LoopBesideTwo();
+  Record second = first;
+  for (double& force : second.force) force += 3.0;
+  FitOptions options;
+  options.covariates = {"p", "oil temperature"};
+  const std::vector<Record> records = {first, second};
+  const FitResult fit = Fit(records, options);
+  EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+  EXPECT_NEAR(fit.Find("covariate_p")->value, kPerBar, kNoiseFree * kLaw.slip_force);
+}
+
+std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
+  try {
+    Fit(records, options);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Covariate, IsRefusedWhereARecordHasNoSuchColumnOrItNeverChanges) {
+  FitOptions options;
+  options.covariates = {"p"};
+  EXPECT_THAT(RefusalOf({LoopBesideTwo(), Loop()}, options),
+              HasSubstr("record 2 has no covariate 'p'"));
+  Record constant = LoopBesideTwo();
+  constant.covariates[0].values.assign(constant.size(), 40.0);
+  EXPECT_THAT(RefusalOf({constant}, options), HasSubstr("half range of the covariate 'p'"));
+  Record shorter = LoopBesideTwo();
+  shorter.covariates[0].values.pop_back();
+  EXPECT_THAT(RefusalOf({shorter}, options), HasSubstr("p"));
+}
+
+/// The first cause that a fit without terms finds.
+const Cause& FirstCause(const FitResult& fit) {
+  static const Cause none{.code = "none", .unit = {}, .option = {}};
+  return fit.adequacy.causes.empty() ? none : fit.adequacy.causes.front();
+}
+
+TEST(Covariate, ThatNobodyAskedForIsNamedAsACauseAndNotApplied) {
+  Generator generator(11);
+  Record record = WithForceNoise(LoopBesideTwo(), 0.01 * kLaw.slip_force, generator);
+  // The force itself, in another unit, and a column that says nothing.
+  record.covariates.push_back({.name = "volts", .unit = "V", .values = record.force});
+  for (double& value : record.covariates.back().values) value = 0.02 * value + 1;
+  record.covariates.push_back(
+      {.name = "noise", .unit = "", .values = Wandering(record.size(), 0.0, 7.7)});
+  FitOptions options;
+  options.covariates = {"p"};
+  const FitResult fit = FitOne(record, options);
+  EXPECT_EQ(fit.Find("covariate_oil_temperature"), nullptr);
+  EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kDoubtful);
+  const Cause& cause = FirstCause(fit);
+  EXPECT_EQ(cause.code, "covariate");
+  EXPECT_EQ(cause.option, "--covariate 'oil temperature'");
+  EXPECT_EQ(cause.unit, "N/unit");
+  // To first order in the residuals, which the law has bent to: a tenth.
+  EXPECT_NEAR(cause.size, kPerKelvin, 0.1 * std::abs(kPerKelvin));
+  for (const Cause& other : fit.adequacy.causes) {
+    EXPECT_THAT(other.option, ::testing::Not(HasSubstr("volts")));
+    EXPECT_THAT(other.option, ::testing::Not(HasSubstr("--covariate p")));
+  }
+  options.covariates = {"p", "oil temperature"};
+  EXPECT_EQ(FitOne(record, options).adequacy.verdict, AdequacyVerdict::kAdequate);
+}
+
+TEST(Covariate, HasANameThatNeedsNoQuoting) {
+  EXPECT_EQ(NameOfCovariate("6"), "covariate_6");
+  EXPECT_EQ(NameOfCovariate("p"), "covariate_p");
+  EXPECT_EQ(NameOfCovariate("oil temp. [K]=x:y"), "covariate_oil_temp___K__x_y");
+}
+
+}  // namespace
+}  // namespace mindahl::identification
