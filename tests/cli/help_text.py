@@ -32,6 +32,8 @@ EXEMPT = {
     ("fit", "--bound"): "likewise",
     ("simulate", "--steps"): "a count",
     ("recommend", "--tolerance"): "relative, and says so",
+    ("convert", "--tolerance"): "relative, and says so",
+    ("convert", "--beta"): "a share, and says so",
 }
 
 # Options of other programs in the documentation.
