@@ -150,6 +150,7 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   AddSimulateCommand(app, console);
   AddValidateCommand(app, console);
   AddContactCommand(app, console);
+  AddConvertCommand(app, console);
   AddTradeoffCommand(app, console);
   AddRecommendCommand(app, console);
   AddPlanCommand(app, console);

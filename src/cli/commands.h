@@ -11,6 +11,7 @@ void AddFitCommand(CLI::App& app, Console& console);
 void AddSimulateCommand(CLI::App& app, Console& console);
 void AddValidateCommand(CLI::App& app, Console& console);
 void AddContactCommand(CLI::App& app, Console& console);
+void AddConvertCommand(CLI::App& app, Console& console);
 void AddTradeoffCommand(CLI::App& app, Console& console);
 void AddRecommendCommand(CLI::App& app, Console& console);
 void AddPlanCommand(CLI::App& app, Console& console);

@@ -71,10 +71,9 @@ constexpr double kMost = 10.0;
 /// is only approached.
 double SlipReach(const Expectation& expected) {
   const double slip = models::GrossSlipDisplacement(expected.law, expected.rig);
-  return std::isfinite(slip)
-             ? slip
-             : 3 * expected.law.slip_force / expected.law.tangential_stiffness +
-                   expected.law.slip_force / expected.rig.stiffness;
+  return std::isfinite(slip) ? slip
+                             : 3 * expected.law.slip_force / expected.law.tangential_stiffness +
+                                   expected.law.slip_force / expected.rig.stiffness;
 }
 
 Precision ParsePrecision(const std::string& text, const std::string& whole) {
@@ -241,9 +240,8 @@ void PrintPlan(const PlanOptions& options, const Expectation& expected, double s
       "expected: sigma = {:.6g} N/m, alpha = {:.6g}, Tc = {:.6g} N{}; noise {:.4g} N and {:.4g} m "
       "a\nsample{}; a sine of {:g} cycles, {} samples each\n\n",
       expected.law.tangential_stiffness, expected.law.shape_exponent, expected.law.slip_force,
-      std::isinf(expected.rig.stiffness)
-          ? ""
-          : fmt::format(", rig {:.6g} N/m", expected.rig.stiffness),
+      std::isinf(expected.rig.stiffness) ? ""
+                                         : fmt::format(", rig {:.6g} N/m", expected.rig.stiffness),
       expected.force_noise, expected.displacement_noise,
       expected.autocorrelation > 0
           ? fmt::format(", autocorrelated by {:g} from one to the next", expected.autocorrelation)
@@ -301,8 +299,7 @@ nlohmann::ordered_json ToJson(const PlanOptions& options, const Expectation& exp
                       {"displacement_noise", expected.displacement_noise},
                       {"autocorrelation", expected.autocorrelation},
                       {"gross_slip_displacement", slip}};
-  json["protocol"] = {{"cycles", options.cycles},
-                      {"samples_per_cycle", options.samples_per_cycle}};
+  json["protocol"] = {{"cycles", options.cycles}, {"samples_per_cycle", options.samples_per_cycle}};
   json["loops"] = nlohmann::ordered_json::array();
   for (const Column& column : columns) {
     for (const ExpectedFit& fit : column.loops) {
@@ -360,13 +357,13 @@ io::Plot ErrorPlot(const Expectation& expected, const PlanOptions& options, doub
     io::PlotSeries slip_force{.label = "Tc, relative", .x = {}, .y = {}};
     for (int i = 0; i <= kPoints; ++i) {
       const double share = kLeast * std::pow(kMost / kLeast, static_cast<double>(i) / kPoints);
-      const ExpectedFit fit = identification::ExpectFit(expected,
-                                                        {.amplitude = share * slip,
-                                                         .cycles = options.cycles,
-                                                         .samples_per_cycle =
-                                                             options.samples_per_cycle,
-                                                         .initial_state = state},
-                                                        fit_options);
+      const ExpectedFit fit =
+          identification::ExpectFit(expected,
+                                    {.amplitude = share * slip,
+                                     .cycles = options.cycles,
+                                     .samples_per_cycle = options.samples_per_cycle,
+                                     .initial_state = state},
+                                    fit_options);
       const auto add = [&](io::PlotSeries& series, std::string_view parameter) {
         const std::optional<double> error = RelativeError(*fit.Find(parameter));
         if (!error || *error <= 0) return;
@@ -396,9 +393,10 @@ void RunPlan(const PlanOptions& options, Console& console) {
   const WantedPrecision wanted = ParseWanted(options.want);
   for (const auto& [name, precision] : wanted) {
     if (identification::FindTerm(name) == nullptr) {
-      throw InputError(fmt::format("--want: '{}' is no parameter: must be sigma, alpha, slip_force "
-                                   "or a term that --with names",
-                                   name));
+      throw InputError(
+          fmt::format("--want: '{}' is no parameter: must be sigma, alpha, slip_force "
+                      "or a term that --with names",
+                      name));
     }
   }
   const Expectation expected = ExpectationOf(options, console);
@@ -406,8 +404,8 @@ void RunPlan(const PlanOptions& options, Console& console) {
   const FitOptions fit_options = FitOptionsOf(options);
   const double slip = SlipReach(expected);
   std::vector<Column> columns;
-  for (const auto& [state, name] :
-       {std::pair(InitialState::kVirgin, std::string_view("virgin")), {InitialState::kSteady, "steady"}}) {
+  for (const auto& [state, name] : {std::pair(InitialState::kVirgin, std::string_view("virgin")),
+                                    {InitialState::kSteady, "steady"}}) {
     if (options.initial_state != "both" && options.initial_state != name) continue;
     Column& column = columns.emplace_back();
     column.state = state;
@@ -420,16 +418,16 @@ void RunPlan(const PlanOptions& options, Console& console) {
       column.loops.push_back(identification::ExpectFit(expected, protocol, fit_options));
     }
     if (wanted.empty()) continue;
-    column.reached = identification::LeastAmplitude(
-        expected, protocol, wanted, kLeast * slip, kMost * slip, fit_options, &column.fewest);
+    column.reached = identification::LeastAmplitude(expected, protocol, wanted, kLeast * slip,
+                                                    kMost * slip, fit_options, &column.fewest);
   }
   if (!options.plot.empty()) io::WritePlot(ErrorPlot(expected, options, slip), options.plot);
   if (options.json != "-") PrintPlan(options, expected, slip, columns, wanted, console.out);
   if (!options.json.empty()) {
     WriteJson(ToJson(options, expected, slip, columns, wanted), options.json, console);
   }
-  const bool reached = std::ranges::any_of(
-      columns, [](const Column& column) { return column.reached.has_value(); });
+  const bool reached =
+      std::ranges::any_of(columns, [](const Column& column) { return column.reached.has_value(); });
   if (!wanted.empty() && !reached) console.exit_status = kNotEstablished;
 }
 
@@ -440,14 +438,16 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   CLI::App* command = app.add_subcommand(
       "plan",
       "What should be measured: the standard errors of sigma, alpha and Tc that a loop of each\n"
-      "amplitude would give (Cramer-Rao), and the least amplitude that reaches a wanted precision.\n"
+      "amplitude would give (Cramer-Rao), and the least amplitude that reaches a wanted "
+      "precision.\n"
       "Exit status 3 when none does.");
   AddLawOptions(*command, options->law);
   const std::string expected = "What is expected";
   command
-      ->add_option("--record", options->record,
-                   "a record whose fit gives contact and noise, in the place of parameters; --alpha "
-                   "is what is assumed where it does not tell")
+      ->add_option(
+          "--record", options->record,
+          "a record whose fit gives contact and noise, in the place of parameters; --alpha "
+          "is what is assumed where it does not tell")
       ->type_name("FILE")
       ->group(expected);
   AddOptional(*command, "--rig-stiffness", options->rig_stiffness,

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,6 +15,7 @@
 #include "cli/law_options.h"
 #include "cli/output_path.h"
 #include "cli/precision_table.h"
+#include "cli/tolerance.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
@@ -59,19 +59,6 @@ std::string_view InWords(Criterion criterion) {
       break;
   }
   return "error of the dissipated energy";
-}
-
-/// "1%" or "0.01".
-double ParseTolerance(const std::string& text) {
-  const bool percent = text.ends_with('%');
-  const char* end = text.data() + text.size() - (percent ? 1 : 0);
-  double number = 0.0;
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || rest != end || !(number > 0) || !std::isfinite(number)) {
-    throw InputError(
-        fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));
-  }
-  return percent ? number / 100 : number;
 }
 
 /// The command that computes the same.

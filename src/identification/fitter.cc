@@ -10,6 +10,7 @@
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/law_findings.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/adequacy_test.h"
 #include "identification/inference/covering.h"
@@ -17,6 +18,7 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
 #include "identification/inference/lag_trial.h"
+#include "identification/inference/law_choice.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
@@ -388,6 +390,9 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindMisfit(result, options.thresholds));
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
   if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result);
+  if (result.depth == Depth::kFull) {
+    SayLaw(ChooseLaw(problem, solution, result, options, buffers), result);
+  }
   Judge(result.parameters, result.findings);
 }
 
@@ -436,6 +441,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.rms = 0.0;
   result.mindlin_test.reset();
   result.branch_shapes.clear();
+  result.law_choice.reset();
   result.correlation.clear();
   result.residuals = {};
   result.starts.clear();

@@ -13,6 +13,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/branch_law.h"
+#include "mindahl/models/equivalent_law.h"
 #include "mindahl/models/excitation.h"
 
 namespace mindahl::identification {
@@ -100,14 +101,65 @@ struct Errors {
   std::size_t covering = 0;
 };
 
-Errors Compare(const FitResult& fit, const models::BranchLaw& truth) {
+/// What was fitted to a loop, and what it should have given.
+struct Trial {
+  const Record& record;
+  FitOptions options;
+  models::BranchLaw contact;  // by Masing's law
+  models::BranchLaw truth;    // of the law that is fitted
+  double amplitude;           // [m]
+
+  [[nodiscard]] bool IsDahl() const { return options.model->memory == models::Memory::kNone; }
+};
+
+/// The whole loop by Masing's law.
+Trial ByMasing(const Record& record, const Case& drawn) {
+  const models::BranchLaw law = contact::MapMindlinToDahl(drawn.contact);
+  return {record, {}, law, law, drawn.excitation.amplitude};
+}
+
+/// Its steady part by Dahl's own law.
+Trial ByDahl(const Record& steady, const Case& drawn) {
+  FitOptions options;
+  options.model = models::FindFrictionModel("dahl");
+  options.initial_state = models::InitialState::kSteady;
+  const double amplitude = drawn.excitation.amplitude;
+  const models::BranchLaw law = contact::MapMindlinToDahl(drawn.contact);
+  return {steady, options, law, models::DahlEquivalent(law, amplitude), amplitude};
+}
+
+/// From the first extreme on.
+Record SteadyPart(const Record& record, const Case& drawn) {
+  const auto first = static_cast<std::ptrdiff_t>(drawn.excitation.samples_per_cycle / 4);
+  Record steady;
+  const auto rest = [first](const std::vector<double>& column) {
+    return std::vector<double>(column.begin() + first, column.end());
+  };
+  steady.time = rest(record.time);
+  steady.displacement = rest(record.displacement);
+  steady.force = rest(record.force);
+  return steady;
+}
+
+/// Errors of σ, α and Tc of the contact: by Dahl's law those of the Masing law of the same loop.
+void CompareContact(const Trial& trial, const models::BranchLaw& fitted, Errors& errors) {
+  const models::BranchLaw found =
+      trial.IsDahl() ? models::MasingEquivalent(fitted, trial.amplitude) : fitted;
+  const models::BranchLaw& truth = trial.contact;
+  errors.sigma = std::abs(found.tangential_stiffness / truth.tangential_stiffness - 1);
+  errors.alpha = std::abs(found.shape_exponent - truth.shape_exponent);
+  errors.slip_force = std::abs(found.slip_force / truth.slip_force - 1);
+}
+
+Errors Compare(const Trial& trial, const FitResult& fit) {
   Errors errors;
+  const models::BranchLaw& truth = trial.truth;
   errors.converged = fit.converged;
   errors.termination = fit.termination;
   if (fit.parameters.empty()) return errors;
-  const auto judge = [&](const char* name, double value, double& error, double unit) {
+  CompareContact(trial, fit.law, errors);
+  const auto judge = [&](const char* name, double value) {
     const ParameterEstimate& estimate = *fit.Find(name);
-    error = std::abs(estimate.value - value) / unit;
     if (estimate.identifiability != Identifiability::kIdentifiable) {
       errors.undetermined = true;
       return;
@@ -115,9 +167,9 @@ Errors Compare(const FitResult& fit, const models::BranchLaw& truth) {
     ++errors.intervals;
     if (estimate.lower95 <= value && value <= estimate.upper95) ++errors.covering;
   };
-  judge("sigma", truth.tangential_stiffness, errors.sigma, truth.tangential_stiffness);
-  judge("alpha", truth.shape_exponent, errors.alpha, 1.0);
-  judge("slip_force", truth.slip_force, errors.slip_force, truth.slip_force);
+  judge("sigma", truth.tangential_stiffness);
+  judge("alpha", truth.shape_exponent);
+  judge("slip_force", truth.slip_force);
   return errors;
 }
 
@@ -131,14 +183,13 @@ double Largest(const std::vector<double>& values) {
 
 /// Distance of the truth from the fit in standard errors, from the likelihood ratio of the two:
 /// unlike an error over a standard error it also holds where the likelihood is not a parabola.
-double StandardizedDistance(const FitResult& fit, const models::BranchLaw& truth,
-                            const Record& record) {
-  FitOptions options;
+double StandardizedDistance(const Trial& trial, const FitResult& fit) {
+  FitOptions options = trial.options;
   options.initial_state = fit.initial_state;
-  options.fixed = {{"sigma", truth.tangential_stiffness},
-                   {"alpha", truth.shape_exponent},
-                   {"slip_force", truth.slip_force}};
-  const FitResult at_truth = Fit({&record, 1}, options, Depth::kEstimate);
+  options.fixed = {{"sigma", trial.truth.tangential_stiffness},
+                   {"alpha", trial.truth.shape_exponent},
+                   {"slip_force", trial.truth.slip_force}};
+  const FitResult at_truth = Fit({&trial.record, 1}, options, Depth::kEstimate);
   const double ratio = at_truth.rms / fit.rms;
   return std::sqrt(std::max(ratio * ratio - 1, 0.0) * fit.residuals.degrees_of_freedom);
 }
@@ -192,12 +243,15 @@ void Require(const ValidationOptions& options) {
   for (const double noise : options.noise_levels) RequireNonNegative("noise level [-]", noise);
 }
 
-std::string Describe(const Case& drawn, std::size_t index, double noise, const Errors& errors) {
+std::string Describe(const Case& drawn, std::size_t index, double noise, const Trial& trial,
+                     const Errors& errors) {
   return fmt::format(
-      "case {}: lambda {}, noise {}, N {:.6g} N, a {:.6g} m, G* {:.6g} 1/Pa, mu {:.4g}, {} cycles: "
+      "case {}{}: lambda {}, noise {}, N {:.6g} N, a {:.6g} m, G* {:.6g} 1/Pa, mu {:.4g}, {} "
+      "cycles: "
       "{}errors sigma {:.2e}, alpha {:.2e}, slip_force {:.2e}; {:.1f} standard errors",
-      index, drawn.lambda, noise, drawn.normal_load, drawn.contact.contact_radius,
-      drawn.contact.tangential_compliance, drawn.friction_coefficient, drawn.excitation.cycles,
+      index, trial.IsDahl() ? " by Dahl's own law" : "", drawn.lambda, noise, drawn.normal_load,
+      drawn.contact.contact_radius, drawn.contact.tangential_compliance, drawn.friction_coefficient,
+      drawn.excitation.cycles,
       errors.converged ? "" : fmt::format("not converged ({}), ", errors.termination), errors.sigma,
       errors.alpha, errors.slip_force, errors.standardized);
 }
@@ -214,19 +268,20 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
                                  const std::function<void(std::size_t)>& progress) {
   Require(options);
   std::vector<RowBuilder> rows;
+  std::vector<RowBuilder> dahl_rows;
   for (const double noise : options.noise_levels) {
     for (const double lambda : options.lambdas) {
       RowBuilder& builder = rows.emplace_back();
       builder.row.noise = noise;
       builder.row.lambda = lambda;
       builder.row.tolerance = noise == 0 ? NoiseFreeTolerance(lambda) : kStandardErrorsTolerated;
+      dahl_rows.push_back(builder);
     }
   }
   ValidationReport report;
   CaseGenerator generator(options);
   for (std::size_t index = 0; index < options.cases; ++index) {
     const Case drawn = generator.Next(index);
-    const models::BranchLaw truth = contact::MapMindlinToDahl(drawn.contact);
     const Record clean = MindlinRecord(drawn);
     const double peak =
         *std::ranges::max_element(clean.force, {}, [](double force) { return std::abs(force); });
@@ -234,21 +289,23 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
       Record noisy = clean;
       const double noise = options.noise_levels[level];
       for (double& force : noisy.force) force += noise * std::abs(peak) * generator.Normal();
-      const FitResult fit = Fit({&noisy, 1}, {});
-      Errors errors = Compare(fit, truth);
-      if (noise > 0 && errors.converged) {
-        errors.standardized = StandardizedDistance(fit, truth, noisy);
-      }
-      ++report.fits;
-      RowBuilder& row = rows[level * options.lambdas.size() + index % options.lambdas.size()];
-      if (!row.Add(errors)) {
-        ++report.failures;
-        report.failed_cases.push_back(Describe(drawn, index, noise, errors));
+      const Record steady = SteadyPart(noisy, drawn);
+      const std::size_t place = level * options.lambdas.size() + index % options.lambdas.size();
+      for (const Trial& trial : {ByMasing(noisy, drawn), ByDahl(steady, drawn)}) {
+        const FitResult fit = Fit({&trial.record, 1}, trial.options);
+        Errors errors = Compare(trial, fit);
+        if (noise > 0 && errors.converged) errors.standardized = StandardizedDistance(trial, fit);
+        ++report.fits;
+        if (!(trial.IsDahl() ? dahl_rows : rows)[place].Add(errors)) {
+          ++report.failures;
+          report.failed_cases.push_back(Describe(drawn, index, noise, trial, errors));
+        }
       }
     }
     if (progress) progress(index + 1);
   }
   for (RowBuilder& row : rows) report.rows.push_back(row.Finish());
+  for (RowBuilder& row : dahl_rows) report.dahl_rows.push_back(row.Finish());
   return report;
 }
 

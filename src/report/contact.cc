@@ -55,6 +55,17 @@ contact::IdentifiedContact IdentifyFittedContact(const FitResult& fit,
   return contact;
 }
 
+contact::IdentifiedContact IdentifyContactOf(const FitResult& fit, const models::BranchLaw& law,
+                                             const contact::KnownContact& known) {
+  const auto moved = [&](std::string_view name, double value) {
+    const contact::UncertainValue fitted = Uncertain(*fit.Find(name));
+    return contact::UncertainValue{value, fitted.standard_error * (value / fitted.value)};
+  };
+  return contact::IdentifyContact(moved("sigma", law.tangential_stiffness),
+                                  moved("slip_force", law.slip_force), known,
+                                  Correlation(fit, "sigma", "slip_force"));
+}
+
 std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
                                      const std::optional<identification::Interval>& window) {
   double sum = 0.0;

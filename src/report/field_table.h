@@ -33,6 +33,7 @@ void AddParameterFields(FieldTable& table);
 void AddResidualFields(FieldTable& table);
 void AddSelectionFields(FieldTable& table);
 void AddSolverFields(FieldTable& table);
+void AddLawFields(FieldTable& table);
 void AddLoopFields(FieldTable& table);
 void AddContactFields(FieldTable& table);
 void AddMappingFields(FieldTable& table);

@@ -110,6 +110,7 @@ FieldTable MakeTable() {
   AddAdequacyFields(table);
   AddMeasuredFields(table);
   AddParameterFields(table);
+  AddLawFields(table);
   AddResidualFields(table);
   AddSelectionFields(table);
   AddSolverFields(table);

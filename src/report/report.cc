@@ -88,6 +88,10 @@ Report MakeReport(ReportInput input) {
   if (report.is_torsional()) return report;
   report.alpha = TestAlpha(report.fit);
   report.contact = IdentifyFittedContact(report.fit, report.known);
+  if (report.fit.law_choice) {
+    report.contact_by_other_law =
+        IdentifyContactOf(report.fit, report.fit.law_choice->law, report.known);
+  }
   report.stiffness = TestStiffness(report.fit, report.contact);
   report.contact_warnings = ContactWarnings(report);
   return report;

@@ -186,6 +186,30 @@ std::string InitialStateUndecided(const Finding& finding, const FitResult& fit, 
       fmt::join(finding.parameters, ", "), virgin ? "an unloaded contact" : "a steady loop");
 }
 
+std::string NameOfLaw(std::string_view model) {
+  return model == "dahl" ? "Dahl's own law" : "Masing's law";
+}
+
+std::string LawUndecided(const Finding& finding, const FitResult& fit, const Units& units) {
+  const std::optional<double> delta_aicc = finding.Number("delta_aicc");
+  return fmt::format(
+      "sigma, slip_force: by {} sigma = {:.6g} {} and slip_force = {:.6g} {}, and the record does "
+      "not tell it from {} ({}); start from an unloaded contact, or record a second amplitude",
+      NameOfLaw(finding.kind), Needed(finding, "sigma"), units.stiffness,
+      Needed(finding, "slip_force"), units.force, NameOfLaw(fit.model->name),
+      delta_aicc ? fmt::format("ΔAICc = {:.3g}", *delta_aicc)
+                 : std::string("on a steady loop of one amplitude they are one curve"));
+}
+
+std::string OtherLawFitsBetter(const Finding& finding, const FitResult& fit, const Units& units) {
+  return fmt::format(
+      "sigma, slip_force: {} fits this record better than {} (ΔAICc = {:.3g}), with sigma = {:.6g} "
+      "{}, alpha = {:.4g} and slip_force = {:.6g} {}; try --model {}",
+      NameOfLaw(finding.kind), NameOfLaw(fit.model->name), Needed(finding, "delta_aicc"),
+      Needed(finding, "sigma"), units.stiffness, Needed(finding, "alpha"),
+      Needed(finding, "slip_force"), units.force, finding.kind);
+}
+
 // --- what the model misses
 
 struct MisfitKind {
@@ -258,7 +282,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 23> kSentences = {{
+constexpr std::array<Row, 25> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -278,6 +302,8 @@ constexpr std::array<Row, 23> kSentences = {{
     {"few_places", FewPlaces},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},
+    {"law_undecided", LawUndecided},
+    {"other_law_fits_better", OtherLawFitsBetter},
     {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
     {"weights_not_settled", WeightsNotSettled},

@@ -295,6 +295,35 @@ std::string AdequacyText(const Report& report) {
   return text;
 }
 
+/// Which of the two laws σ and Tc are of, and what the other would make of the contact.
+std::string LawText(const Report& report) {
+  if (!report.fit.law_choice) return "";
+  const identification::LawChoice& choice = *report.fit.law_choice;
+  const auto name = [](const models::FrictionModel& model) {
+    return model.memory == models::Memory::kReturnPoint ? "Masing's law" : "Dahl's own law";
+  };
+  if (choice.preferred == report.fit.model) {
+    return choice.delta_aicc
+               ? fmt::format("law:  {}, not {} (ΔAICc = {:.3g})\n", name(*report.fit.model),
+                             name(*choice.alternative), *choice.delta_aicc)
+               : fmt::format("law:  {}\n", name(*report.fit.model));
+  }
+  const Units& units = report.units;
+  std::string text = fmt::format(
+      "law:  sigma and slip_force are of {}; by {}, which {}, they are {:.6g} {} and {:.6g} {}",
+      name(*report.fit.model), name(*choice.alternative),
+      choice.decided ? fmt::format("fits better (ΔAICc = {:.3g}, --model {})",
+                                   choice.delta_aicc.value_or(0.0), choice.alternative->name)
+                     : std::string("the record does not tell from it"),
+      choice.law.tangential_stiffness, units.stiffness, choice.law.slip_force, units.force);
+  const auto add = [&](const char* what, const std::optional<PropagatedValue>& quantity) {
+    if (quantity) text += fmt::format(", {} {:.6g} m", what, quantity->value);
+  };
+  add("contact radius", report.contact_by_other_law.contact_radius);
+  add("equivalent radius", report.contact_by_other_law.equivalent_radius);
+  return Wrapped(text, 6);
+}
+
 std::string NotesText(const Report& report) {
   std::string text;
   for (const Warning& note : report.notes) text += Wrapped("note: " + note.message, 6);
@@ -362,6 +391,7 @@ std::string ToText(const Report& report) {
               ? fmt::format(", gross slip from an energy ratio of {:.4g}\n",
                             models::GrossSlipEnergyRatio(fit.law.shape_exponent))
               : "\n";
+  text += LawText(report);
   if (report.is_torsional()) {
     return text + "\n" + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) +
            NotesText(report);

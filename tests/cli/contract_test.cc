@@ -26,7 +26,8 @@ using testing::RunCommand;
 using testing::SampleRecord;
 using Words = std::vector<std::string>;
 
-const Words kCommands = {"fit", "simulate", "validate", "contact", "tradeoff", "recommend", "plan"};
+const Words kCommands = {"fit",     "simulate", "validate",  "contact",
+                         "convert", "tradeoff", "recommend", "plan"};
 const char* const kCommonSection = "What is known of the contact";
 const char* const kOption = "(--[a-z][a-z0-9-]*)";
 
@@ -222,6 +223,7 @@ TEST(Contract, DocumentsEveryKeyOfTheOtherCommands) {
        "--youngs-modulus-2", "210e9", "--poisson-1", "0.3", "--poisson-2", "0.3", "--radius-1",
        "0.05", "--radius-2", "inf"},
       {"validate", "--cases", "1"},
+      {"convert", "--sigma", "4e7", "--slip-force", "40", "--amplitude", "1e-6", "--to", "iwan"},
       {"recommend", "--sigma", "4e7", "--slip-force", "40", "--lambda", "0.5", "--tolerance", "5%"},
       {"tradeoff", "--excitation", "micro"},
       {"plan", "--sigma", "4e7", "--slip-force", "40", "--force-noise", "0.4", "--want",

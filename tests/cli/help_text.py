@@ -34,6 +34,8 @@ EXEMPT = {
     ("fit", "--samples"): "counts",
     ("simulate", "--steps"): "a count",
     ("recommend", "--tolerance"): "relative, and says so",
+    ("convert", "--tolerance"): "relative, and says so",
+    ("convert", "--beta"): "a share, and says so",
 }
 
 # Options of other programs in the documentation.

@@ -271,16 +271,19 @@ TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
   EXPECT_EQ(report["passed"], true);
   EXPECT_EQ(report["failures"], 0);
   EXPECT_EQ(report["cases"], 14);
-  EXPECT_EQ(report["fits"], 14 * 4) << "four noise levels";
-  int fits = 0;
-  for (const json& row : report["rows"]) fits += row["cases"].get<int>();
-  EXPECT_EQ(fits, 14 * 4);
+  EXPECT_EQ(report["fits"], 2 * 14 * 4) << "two laws, four noise levels";
+  for (const char* rows : {"rows", "dahl_rows"}) {
+    int fits = 0;
+    for (const json& row : report[rows]) fits += row["cases"].get<int>();
+    EXPECT_EQ(fits, 14 * 4) << rows;
+  }
 }
 
 TEST(Validate, PrintsATableAndTheVerdict) {
   const Outcome outcome = RunCommand({"validate", "--cases", "1", "--seed", "9"});
   EXPECT_EQ(outcome.status, cli::kDone);
   EXPECT_THAT(outcome.out, HasSubstr("seed 9"));
+  EXPECT_THAT(outcome.out, HasSubstr("by Dahl's own law, and translated"));
   EXPECT_THAT(outcome.out, HasSubstr("passed: every case within its tolerance"));
   EXPECT_THAT(outcome.err, HasSubstr("1 of 1 contacts"));
 }

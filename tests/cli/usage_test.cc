@@ -23,7 +23,7 @@ using ::testing::StartsWith;
 using Words = std::vector<std::string>;
 
 TEST(Help, OfEveryCommandExitsWithZeroAndGoesToStdout) {
-  for (const char* command : {"fit", "simulate", "validate", "contact"}) {
+  for (const char* command : {"fit", "simulate", "validate", "contact", "convert"}) {
     SCOPED_TRACE(command);
     const Outcome outcome = RunCommand({command, "--help"});
     EXPECT_EQ(outcome.status, cli::kDone);
@@ -41,6 +41,7 @@ TEST(Help, OfCommandsWithPhysicalOptionsStatesTheirUnits) {
   expect_all("fit", {"[N/m]", "[N]", "[m]", "[Pa]", "[1/Pa]", "compliance", "um, nm, in"});
   expect_all("simulate", {"[N/m]", "[N]", "[m]", "[Hz]", "[1/Pa]"});
   expect_all("contact", {"[N]", "[m]", "[Pa]", "[1/Pa]"});
+  expect_all("convert", {"[N/m]", "[N]", "[m]", "Examples:"});
   expect_all("validate", {"--cases", "--seed", "--json"});
 }
 
@@ -221,6 +222,33 @@ const std::vector<BadUsage> kBadUsage = {
     {"ValidateInNoDirectory",
      {"validate", "--cases", "1", "--json", "/no/such/v.json"},
      "there is no directory"},
+    {"ConvertWithoutALaw", {"convert", "--amplitude", "1e-6", "--to", "dahl"}, "--sigma"},
+    {"ConvertToNoLaw",
+     {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "maxwell"},
+     "--to"},
+    {"ConvertNegativeAmplitude",
+     {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "-1", "--to", "dahl"},
+     "amplitude [m] = -1"},
+    {"ConvertOutsideItsRange",
+     {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "lugre",
+      "--least-amplitude", "2", "--largest-amplitude", "3"},
+     "must lie in the range"},
+    {"ConvertToLammpsWithoutALoad",
+     {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "lammps",
+      "--input-lines", "-"},
+     "--normal-load"},
+    {"ConvertWithALoadForNothing",
+     {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "dahl",
+      "--normal-load", "3"},
+     "--to lammps alone"},
+    {"ConvertTwiceToStandardOutput",
+     {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "dahl", "--json",
+      "-", "--input-lines", "-"},
+     "give a file"},
+    {"ConvertToleranceInWords",
+     {"convert", "--sigma", "1", "--slip-force", "1", "--amplitude", "1", "--to", "dahl",
+      "--tolerance", "little"},
+     "--tolerance 'little' is invalid"},
     {"ContactIncomplete", {"contact", "--friction", "0.3", "--json", "#"}, "--normal-load"},
     {"ContactDescribedTwice",
      {"contact", "--friction", "0.3", "--normal-load", "1", "--contact-radius", "1", "--compliance",

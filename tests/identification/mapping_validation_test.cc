@@ -20,7 +20,7 @@ TEST(MappingValidation, NoiseFreeLoopsReturnTheContactAtEveryAmplitude) {
   const ValidationReport report =
       ValidateMapping(options, [&](std::size_t done) { EXPECT_EQ(done, ++last); });
   EXPECT_EQ(last, options.cases);
-  EXPECT_EQ(report.fits, options.cases);
+  EXPECT_EQ(report.fits, 2 * options.cases) << "by either law";
   EXPECT_EQ(report.failures, 0u) << ::testing::PrintToString(report.failed_cases);
   ASSERT_EQ(report.rows.size(), options.lambdas.size());
   std::size_t cases = 0;
@@ -33,6 +33,32 @@ TEST(MappingValidation, NoiseFreeLoopsReturnTheContactAtEveryAmplitude) {
     cases += row.cases;
   }
   EXPECT_EQ(cases, options.cases);
+}
+
+TEST(MappingValidation, DahlsOwnLawReturnsTheContactToo) {
+  // On the steady part, through its own mapping: σ = 8a/G*, α = 1/3 and Tc = μN once more, while
+  // its own σ is up to 2^{1/3} smaller.
+  ValidationOptions options;
+  options.cases = 14;
+  options.seed = 5;
+  options.noise_levels = {0.0, 0.01};
+  const ValidationReport report = ValidateMapping(options);
+  EXPECT_EQ(report.failures, 0u) << ::testing::PrintToString(report.failed_cases);
+  ASSERT_EQ(report.dahl_rows.size(), report.rows.size());
+  for (std::size_t i = 0; i < report.rows.size(); ++i) {
+    const ValidationRow& row = report.dahl_rows[i];
+    EXPECT_EQ(row.lambda, report.rows[i].lambda);
+    EXPECT_EQ(row.noise, report.rows[i].noise);
+    EXPECT_EQ(row.cases, report.rows[i].cases);
+    if (row.noise > 0) {
+      EXPECT_GT(row.worst_standardized, 0.0);
+      continue;
+    }
+    EXPECT_LE(row.worst_sigma_error, NoiseFreeTolerance(row.lambda));
+    EXPECT_LE(row.worst_alpha_error, NoiseFreeTolerance(row.lambda));
+    EXPECT_LE(row.worst_slip_force_error, NoiseFreeTolerance(row.lambda));
+    EXPECT_EQ(row.undetermined, 0u);
+  }
 }
 
 TEST(MappingValidation, SameSeedGivesTheSameReportAndAnotherSeedAnother) {

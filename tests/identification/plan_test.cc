@@ -63,7 +63,8 @@ std::array<double, 3> Scatter(const Expectation& expected, const Protocol& proto
   options.initial_state = protocol.initial_state;
   options.preparation.displacement_noise = expected.displacement_noise;
   options.force_noise = expected.force_noise;
-  if (std::isfinite(expected.rig.stiffness)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
+  if (std::isfinite(expected.rig.stiffness))
+    options.fixed["rig_stiffness"] = expected.rig.stiffness;
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
   std::array<double, 3> sums{};
@@ -168,8 +169,7 @@ TEST(Plan, OnlyAVirginLoopTellsMasingsRulesFromDahls) {
 TEST(Plan, TheLeastAmplitudeReachesWhatIsWantedAndASmallerOneDoesNot) {
   const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
                                   {"slip_force", {.value = 0.01, .is_relative = true}}};
-  const auto reached =
-      LeastAmplitude(Quiet(), Loop(1.0), wanted, 0.1 * kSlip, 10 * kSlip);
+  const auto reached = LeastAmplitude(Quiet(), Loop(1.0), wanted, 0.1 * kSlip, 10 * kSlip);
   ASSERT_TRUE(reached);
   EXPECT_LE(CyclesFactor(*reached, wanted), 1.0);
   EXPECT_LE(ErrorOf(*reached, "alpha"), 0.01);

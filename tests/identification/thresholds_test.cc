@@ -17,6 +17,7 @@
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/estimates.h"
+#include "identification/inference/law_choice.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/shape_tests.h"
 #include "identification/inference/turning_point_test.h"
@@ -521,6 +522,14 @@ std::size_t CausesAmong(const Thresholds& thresholds, std::vector<DepartureFit> 
   return CausesOf(TestWith(std::move(fits)), thresholds).size();
 }
 
+/// Swings of which the second is wider by such a share.
+bool IsOfOneAmplitude(const Thresholds& thresholds, double share) {
+  History displacement = {0.9, 1.0, 0.5, 0.0, -0.5, -1.0, -0.5, 0.0, 0.5, 1.0 + 2 * share, 0.9};
+  for (double& x : displacement) x *= 1e-6;
+  const Stages stages(LoopOf(kMindlin, displacement), With(thresholds), InitialState::kSteady);
+  return HasOneAmplitude(stages.problem, thresholds);
+}
+
 /// Whether everything is as the stated value of the threshold makes it.
 using Case = std::function<bool(const Thresholds&)>;
 
@@ -697,6 +706,14 @@ const std::map<std::string_view, Case>& Cases() {
        }},
       {"mobilised_by_asymptote",
        [](const Thresholds& t) { return IsExtrapolated(t, 0.7) && !IsExtrapolated(t, 0.95); }},
+      {"one_amplitude",
+       [](const Thresholds& t) {
+         return IsOfOneAmplitude(t, kBelow * 0.01) && !IsOfOneAmplitude(t, kAbove * 0.01);
+       }},
+      {"rival_law",
+       [](const Thresholds& t) {
+         return LawIsUndecided(-kBelow * 10, t) && !LawIsUndecided(kAbove * 10, t);
+       }},
   };
   return cases;
 }

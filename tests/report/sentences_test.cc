@@ -61,6 +61,9 @@ Finding Complete(std::string_view code, std::string_view kind = "") {
                      {"samples", 144},
                      {"row", 17},
                      {"row", 240},
+                     {"sigma", 3.25e7},
+                     {"slip_force", 43.5},
+                     {"delta_aicc", -31.5},
                      {"measured", 0.015},
                      {"model", 0.0325}};
   return finding;
@@ -104,6 +107,13 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"few_places", "", {"sigma, alpha: ", "144 samples", "9 places"}},
       {"unknown_past", "", {"alpha, slip_force: ", "--initial-state virgin"}},
       {"initial_state_undecided", "", {"alpha, force_offset: ", "--initial-state"}},
+      {"law_undecided",
+       "dahl",
+       {"sigma, slip_force: by Dahl's own law", "3.25e+07 N/m", "43.5 N", "ΔAICc = -31.5"}},
+      {"other_law_fits_better",
+       "dahl",
+       {"sigma, slip_force: Dahl's own law", "Masing's law", "ΔAICc = -31.5", "3.25e+07 N/m",
+        "43.5 N", "--model dahl"}},
       {"weights_not_settled", "", {"weights"}},
       {"fit_failed", "", {"no start led anywhere"}},
   };

@@ -8,6 +8,7 @@
 
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
+#include "mindahl/identification/law_choice.h"
 #include "mindahl/identification/residual_statistics.h"
 #include "mindahl/identification/residual_structure.h"
 #include "mindahl/loop/cycles.h"
@@ -26,7 +27,8 @@ enum class Depth {
   kEstimate,   ///< values, rms, convergence: for work that is done again and again
   kIntervals,  ///< and noise, standard errors, intervals, correlations, residuals and verdicts from
                ///< the parabola of the likelihood
-  kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α
+  kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α and
+               ///< of the law
 };
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
@@ -114,6 +116,9 @@ struct FitResult {
   std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
   std::vector<BranchShape> branch_shapes;  ///< α of each branch on its own; empty where it is held
+  /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
+  /// that is inadequate unless the other law is the better one.
+  std::optional<LawChoice> law_choice;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

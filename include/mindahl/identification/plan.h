@@ -18,17 +18,17 @@ namespace mindahl::identification {
 
 /// What the contact and the channels are taken to be.
 struct Expectation {
-  models::BranchLaw law;           ///< of Masing's rules
-  models::SeriesSpring rig;        ///< in series; its stiffness known unless it is fitted
-  double force_noise = 0.0;        ///< standard deviation [N], finite, > 0
-  double displacement_noise = 0.0; ///< standard deviation [m], white, finite, >= 0
-  double autocorrelation = 0.0;    ///< of the force noise from one sample to the next, 0 <= ρ < 1
+  models::BranchLaw law;            ///< of Masing's rules
+  models::SeriesSpring rig;         ///< in series; its stiffness known unless it is fitted
+  double force_noise = 0.0;         ///< standard deviation [N], finite, > 0
+  double displacement_noise = 0.0;  ///< standard deviation [m], white, finite, >= 0
+  double autocorrelation = 0.0;     ///< of the force noise from one sample to the next, 0 <= ρ < 1
 };
 
 /// A loop that may be measured: a sine of one amplitude.
 struct Protocol {
-  double amplitude = 0.0;  ///< X [m], finite, > 0
-  double cycles = 3.0;     ///< finite, >= 1
+  double amplitude = 0.0;               ///< X [m], finite, > 0
+  double cycles = 3.0;                  ///< finite, >= 1
   std::size_t samples_per_cycle = 200;  ///< >= 4
   /// Virgin: the record has the first loading of the contact. Steady: it begins later.
   models::InitialState initial_state = models::InitialState::kVirgin;
@@ -62,7 +62,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
 
 /// A standard error that is wanted.
 struct Precision {
-  double value = 0.0;        ///< in the parameter's unit, or as a share of it; > 0
+  double value = 0.0;  ///< in the parameter's unit, or as a share of it; > 0
   bool is_relative = false;
 };
 

@@ -46,6 +46,8 @@ struct Thresholds {
   double fewest_places = 16.0;
   double starts_unloaded = 0.02;
   double mobilised_by_asymptote = 0.9;
+  double one_amplitude = 0.01;
+  double rival_law = 10.0;
 };
 
 struct ThresholdRow {

@@ -7,6 +7,7 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/record.h"
+#include "mindahl/models/branch_law.h"
 
 namespace mindahl::report {
 
@@ -18,6 +19,12 @@ namespace mindahl::report {
 /// @throws InvalidArgument as IdentifyContact()
 contact::IdentifiedContact IdentifyFittedContact(const identification::FitResult& fit,
                                                  const contact::KnownContact& known);
+
+/// The contact by another law than the fitted one, whose σ and Tc are as uncertain, relatively.
+/// @throws InvalidArgument as IdentifyContact()
+contact::IdentifiedContact IdentifyContactOf(const identification::FitResult& fit,
+                                             const models::BranchLaw& law,
+                                             const contact::KnownContact& known);
 
 /// Why μ is withheld though the normal load is known: the slip force is not identifiable. Empty
 /// where it is not withheld.

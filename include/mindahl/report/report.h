@@ -31,6 +31,9 @@ struct ReportInput {
 struct Report : ReportInput {
   std::optional<LoopDescription> loop;  ///< empty where the fit failed
   contact::IdentifiedContact contact;   ///< empty where the fit failed
+  /// By Masing's law where Dahl's own was fitted, and the other way round; empty where the two are
+  /// not compared.
+  contact::IdentifiedContact contact_by_other_law;
   AlphaTest alpha;
   std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit
   std::vector<Warning> fit_warnings;      ///< what the fit found, and a person should act on

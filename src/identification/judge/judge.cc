@@ -35,6 +35,9 @@ constexpr std::array kVerdicts = {
     Row{"initial_state_undecided", Identifiability::kIdentifiable, true},
     Row{"systematic_residual", Identifiability::kIdentifiable, true},
     Row{"turning_points_between_samples", Identifiability::kIdentifiable, true},
+    // Of its own law a parameter is as well known as before.
+    Row{"law_undecided", Identifiability::kIdentifiable},
+    Row{"other_law_fits_better", Identifiability::kIdentifiable, true},
 };
 
 const Row& RowOf(const Finding& finding) {

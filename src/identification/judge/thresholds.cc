@@ -133,6 +133,14 @@ constexpr std::array kTable = {
                  "a loop of α >= 1 that reaches less has its slip force from the law alone",
                  "the last tenth of the way is the longest: for α = 1 as long as all before it "
                  "once more"},
+    ThresholdRow{"one_amplitude", &Thresholds::one_amplitude, "of the narrowest",
+                 "swings that are wider by less are of one amplitude",
+                 "Masing's loops of two amplitudes and Dahl's with one σ and Tc then part by less "
+                 "than 0.3 % of Tc"},
+    ThresholdRow{"rival_law", &Thresholds::rival_law, "ΔAICc",
+                 "Masing's law and Dahl's own are not told apart by less",
+                 "an evidence of e⁵ = 150 to 1, as of the two pasts: what either misses of a real "
+                 "loop can be worth less"},
 };
 
 }  // namespace

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "mindahl/convert/steady_law.h"
+#include "mindahl/models/branch_law.h"
+
+namespace mindahl::convert {
+
+/// What a contact is to be written as.
+enum class Target {
+  kMasing,  ///< σ, α, Tc of Masing's law (Mindlin's, Full-Dahl)
+  kDahl,    ///< σ, α, Tc of Dahl's own law
+  kLuGre,   ///< σ₀ and g = Tc of LuGre's law without σ₁, σ₂ and Stribeck: Dahl's of α = 1
+  kBoucWen,  ///< k, n, Tc of Bouc's and Wen's law at a given β
+  kIwan,     ///< n Jenkins elements in parallel
+  kLammps,   ///< a tangential spring with Coulomb's limit, as discrete-element codes have it
+};
+
+struct TargetRow {
+  Target target;
+  std::string_view name;  ///< on the command line
+  std::string_view title;
+};
+
+/// All targets, in the order of the documentation.
+std::span<const TargetRow> Targets();
+
+/// Amplitudes [m].
+struct AmplitudeRange {
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+struct ConversionOptions {
+  double amplitude = 0.0;  ///< X [m] of the steady loop that is to be reproduced, > 0
+  /// Amplitudes over which what cannot be exact is fitted; empty: X alone.
+  std::optional<AmplitudeRange> range = std::nullopt;
+  double tolerance = 0.01;   ///< of force and energy, in (0, 1)
+  std::size_t elements = 8;  ///< of Iwan's model, >= 1
+  double beta = 0.5;         ///< of Bouc's and Wen's law, in (0, 1]
+};
+
+struct Conversion {
+  SteadyLaw law;
+  LoopError at_amplitude;  ///< at X
+  LoopError largest;       ///< over the range, each of the two by itself; energy in magnitude
+  /// Amplitudes around X at which force and energy are within the tolerance, looked for from 1e-4·X
+  /// to 1e4·X; empty where X itself is not.
+  std::optional<AmplitudeRange> within = std::nullopt;
+};
+
+/// Parameters with which another law reproduces the steady loop of a contact.
+///
+/// Masing's law and Dahl's own are one curve at X, in closed form (models/equivalent_law.h). LuGre,
+/// Bouc–Wen and the spring with Coulomb's limit are fitted: the mean square difference of force
+/// over the loop, each amplitude over its own T*, is least over all their parameters. Jenkins
+/// elements are the tangents of the virgin curve (MakeIwanElements), of Masing's law at X where the
+/// contact is Dahl's.
+/// @param contact  Masing's law (mindlin-dahl) or dahl
+/// @throws InvalidArgument for an invalid law or option: a range that does not hold X, a tolerance
+///   outside (0, 1)
+/// Cost: below 1 ms, of Bouc's and Wen's law some 0.1 s.
+Conversion Convert(const ModelLaw& contact, Target target, const ConversionOptions& options);
+
+}  // namespace mindahl::convert

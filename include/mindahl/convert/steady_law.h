@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <variant>
+
+#include "mindahl/methods/iwan.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
+
+/// Laws of friction of other programs, as they run on a steady loop between ±X.
+namespace mindahl::convert {
+
+/// One of the models here: Masing's law, Dahl's own, LuGre without rate (Dahl's with α = 1), a
+/// spring with Coulomb's limit (α = 0).
+struct ModelLaw {
+  const models::FrictionModel* model = nullptr;  ///< Masing's (mindlin-dahl) or dahl
+  models::BranchLaw law;
+};
+
+/// Bouc's and Wen's law, written by its stiffness and its limit:
+///   dT/dx = k·[1 − |T/Tc|ⁿ·(γ + β·sgn(T·ẋ))],   β + γ = 1
+/// Bouc (1967), Wen (1976). β = 1 with n = 1 is Dahl's law of α = 1; at β = 1/2 it unloads along a
+/// straight line.
+struct BoucWenLaw {
+  double stiffness = 0.0;   ///< k [N/m], > 0
+  double slip_force = 0.0;  ///< Tc [N], > 0
+  double exponent = 1.0;    ///< n [-], in 1 … 20
+  double beta = 0.5;        ///< β [-], in (0, 1]: what β + γ = 1 leaves is γ
+};
+
+using SteadyLaw = std::variant<ModelLaw, BoucWenLaw, methods::IwanElements>;
+
+/// Force [N] on the rising branch of the steady loop between ±amplitude, at distances from its
+/// start at −amplitude. The falling branch is its image through the centre.
+/// @param amplitude  X [m], finite, > 0
+/// @param distance   [m], in 0 … 2X
+/// @param force      written; same size
+/// @throws InvalidArgument for an invalid law or amplitude, and sizes that differ
+/// Error below 1e-13 of the slip force, of Bouc's and Wen's below 1e-8.
+void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<const double> distance,
+                          std::span<double> force);
+
+/// W [J] lost per cycle of the steady loop between ±amplitude.
+/// Relative error as of SteadyLoopEnergy, of Bouc's and Wen's below 1e-6.
+double LoopEnergy(const SteadyLaw& law, double amplitude);
+
+/// How far one law's steady loop is from another's.
+struct LoopError {
+  double force = 0.0;   ///< largest difference over T* of the reference [-]
+  double energy = 0.0;  ///< W over that of the reference, less 1 [-]; infinite where that is 0
+};
+
+/// At 129 places of the branch, densest after the reversal.
+LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude);
+
+}  // namespace mindahl::convert

@@ -1,0 +1,190 @@
+#include "identification/inference/law_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory_resource>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "identification/inference/evidence.h"
+#include "identification/inference/local.h"
+#include "mindahl/models/equivalent_law.h"
+#include "mindahl/models/steady_loop.h"
+
+namespace mindahl::identification {
+
+using models::FrictionModel;
+using models::InitialState;
+using models::Memory;
+
+namespace {
+
+/// The law of the other kind; α stays as it is held.
+const FrictionModel& OtherModel(const FrictionModel& model) {
+  return *models::FindFrictionModel(model.memory == Memory::kReturnPoint ? "dahl" : "mindlin-dahl");
+}
+
+/// Have the two laws a σ and a Tc of their own? Not before the motion turns, and not for α = 0; σ
+/// and Tc that the user holds are of one law only.
+bool AreTwoLaws(const Problem& problem, const FitResult& result, const Thresholds& thresholds) {
+  if (std::ranges::all_of(problem.data->records,
+                          [](const ScaledRecord& record) { return record.reversals.empty(); })) {
+    return false;
+  }
+  for (const std::size_t p : {kStiffness, kSlipForce}) {
+    if (problem.parameters[p].fixed || problem.parameters[p].bounded_by_user) return false;
+  }
+  return result.law.shape_exponent > thresholds.jenkins_shape;
+}
+
+/// The law whose steady loop at the record's amplitude is the fitted one.
+models::BranchLaw EquivalentOf(const FitResult& result) {
+  const double amplitude = models::ContactAmplitude(*result.model, result.law, result.rig,
+                                                    result.WidestRecord().measures.amplitude);
+  return result.model->memory == Memory::kReturnPoint
+             ? models::DahlEquivalent(result.law, amplitude)
+             : models::MasingEquivalent(result.law, amplitude);
+}
+
+/// A fit of the other law.
+struct OtherFit {
+  Problem problem;
+  Solution solution;
+};
+
+/// From the law that runs through the same steady loop, and from that of the fit itself.
+OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult& result,
+                  const models::BranchLaw& equivalent, InitialState state,
+                  const FitOptions& options, SearchBuffers& buffers) {
+  FitOptions others = options;
+  others.model = &OtherModel(*problem.model);
+  others.initial_state = state;
+  others.start.clear();
+  if (problem.parameters[kShape].fixed) others.fixed["alpha"] = result.law.shape_exponent;
+  OtherFit other{
+      Problem{problem.data, others.model, state,
+              Parameters(*problem.data, others, state, std::pmr::get_default_resource())},
+      {}};
+  const Parameters& parameters = other.problem.parameters;
+  other.solution.sum_of_squares = std::numeric_limits<double>::infinity();
+  buffers.solver.Bind(other.problem, buffers.response);
+  for (const models::BranchLaw& law : {equivalent, result.law}) {
+    std::vector<double> theta;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      // The same terms, but for the origins of a virgin contact.
+      theta.push_back(state == problem.state ? best.theta[p] : parameters[p].theta);
+    }
+    theta[kStiffness] = parameters[kStiffness].ToTheta(law.tangential_stiffness);
+    theta[kShape] = parameters[kShape].ToTheta(law.shape_exponent);
+    theta[kSlipForce] = parameters[kSlipForce].ToTheta(law.slip_force);
+    theta[kRig] = best.theta[kRig];
+    buffers.solver.Solve(theta, SolverOptionsOf(options), buffers.scratch);
+    if (buffers.scratch.sum_of_squares < other.solution.sum_of_squares) {
+      std::swap(other.solution, buffers.scratch);
+    }
+  }
+  return other;
+}
+
+/// As many independent residuals as say the same of a variance.
+double EffectiveSamples(const Problem& problem, const Solution& solution, Response& response) {
+  std::vector<double> residual(problem.size());
+  EvaluateResidual(problem, solution.theta, response, residual);
+  return static_cast<double>(problem.data->counted) /
+         AutocorrelationOf(*problem.data, residual).SquaredCorrelations();
+}
+
+double CriterionOf(const Evidence& evidence, const Problem& problem, const Solution& solution) {
+  return evidence.Aicc(solution.sum_of_squares, problem.parameters.free().size());
+}
+
+/// Does a record start within the way of its strokes? Then it may be virgin.
+bool StartsInside(const ScaledRecord& record) {
+  const auto [low, high] = std::ranges::minmax(record.displacement);
+  const double start = record.displacement.front();
+  constexpr double kInside = 0.1;  // of the range: what is nearer has turned there
+  return std::min(start - low, high - start) > kInside * (high - low);
+}
+
+}  // namespace
+
+bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds) {
+  double widest = 0.0;
+  double narrowest = std::numeric_limits<double>::infinity();
+  double longest_end = 0.0;
+  for (const ScaledRecord& record : problem.data->records) {
+    const auto at = [&](std::size_t reversal) {
+      return record.displacement[record.reversals[reversal]];
+    };
+    if (record.reversals.empty()) return false;
+    for (std::size_t j = 1; j < record.reversals.size(); ++j) {
+      const double swing = std::abs(at(j) - at(j - 1));
+      widest = std::max(widest, swing);
+      narrowest = std::min(narrowest, swing);
+    }
+    longest_end =
+        std::max({longest_end, std::abs(at(0) - record.displacement.front()),
+                  std::abs(record.displacement.back() - at(record.reversals.size() - 1))});
+  }
+  const double wider = (1 + thresholds.one_amplitude) * narrowest;
+  return widest <= wider && longest_end <= wider;
+}
+
+bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds) {
+  return std::abs(delta_aicc) < thresholds.rival_law;
+}
+
+std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
+                                   const FitResult& result, const FitOptions& options,
+                                   SearchBuffers& buffers) {
+  if (!AreTwoLaws(problem, result, options.thresholds)) return std::nullopt;
+  const FrictionModel& alternative = OtherModel(*problem.model);
+  const models::BranchLaw equivalent = EquivalentOf(result);
+  LawChoice choice;
+  choice.alternative = &alternative;
+  choice.law = equivalent;
+  // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
+  const bool same_curve =
+      problem.state == InitialState::kSteady && HasOneAmplitude(problem, options.thresholds);
+  const bool maybe_virgin = problem.state == InitialState::kSteady && !options.initial_state &&
+                            std::ranges::any_of(problem.data->records, StartsInside);
+  std::vector<InitialState> states;
+  if (!same_curve) states.push_back(problem.state);
+  if (maybe_virgin) states.push_back(InitialState::kVirgin);
+  for (const InitialState state : states) {
+    const OtherFit other = FitOther(problem, best, result, equivalent, state, options, buffers);
+    if (!other.solution.converged) continue;
+    const bool is_better = other.solution.sum_of_squares < best.sum_of_squares;
+    const Evidence evidence(problem.data->counted,
+                            is_better
+                                ? EffectiveSamples(other.problem, other.solution, buffers.response)
+                                : EffectiveSamples(problem, best, buffers.response));
+    const double delta =
+        CriterionOf(evidence, other.problem, other.solution) - CriterionOf(evidence, problem, best);
+    // Where the laws are one curve, a virgin past says something only if it is the better one.
+    if (state != problem.state && same_curve &&
+        (delta > 0 || LawIsUndecided(delta, options.thresholds))) {
+      continue;
+    }
+    if (choice.delta_aicc && delta >= *choice.delta_aicc) continue;
+    choice.delta_aicc = delta;
+    choice.likelihood_ratio =
+        evidence.LikelihoodRatio(other.solution.sum_of_squares, best.sum_of_squares);
+    choice.law = other.problem.parameters.LawAt(other.solution.theta);
+  }
+  buffers.response.Bind(problem);
+  if (!choice.delta_aicc) {
+    // Either one curve, or the other law has no fit at all.
+    choice.decided = !same_curve;
+    if (choice.decided) choice.preferred = problem.model;
+    return choice;
+  }
+  choice.decided = !LawIsUndecided(*choice.delta_aicc, options.thresholds);
+  if (choice.decided) choice.preferred = *choice.delta_aicc > 0 ? problem.model : &alternative;
+  return choice;
+}
+
+}  // namespace mindahl::identification

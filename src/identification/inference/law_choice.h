@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "identification/problem/problem.h"
+#include "identification/solve/search.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
+
+namespace mindahl::identification {
+
+/// Are all swings of the records as wide as the widest, those to their ends no wider? Then a steady
+/// contact of Masing's law and one of Dahl's own run along one curve, each with a σ and a Tc of its
+/// own (models/equivalent_law.h).
+bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds);
+
+/// Does the record hardly tell Masing's law from Dahl's own?
+/// @param delta_aicc  of the two
+bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds);
+
+/// Masing's law against Dahl's own, whichever of them was fitted. The other is fitted too where the
+/// record may tell them apart, from where its loop at the widest amplitude would be the same; of
+/// one amplitude it follows in closed form.
+/// @returns empty where the laws are one (α = 0), or the options hold or bound σ or Tc, which are
+///   those of one law only
+std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
+                                   const FitResult& result, const FitOptions& options,
+                                   SearchBuffers& buffers);
+
+}  // namespace mindahl::identification

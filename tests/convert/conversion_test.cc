@@ -1,0 +1,198 @@
+#include "mindahl/convert/conversion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <variant>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/models/steady_loop.h"
+#include "support/histories.h"
+
+namespace mindahl::convert {
+namespace {
+
+using models::BranchLaw;
+using testing::Model;
+
+const ModelLaw kMindlin{&Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0}};
+constexpr double kGrossSlip = 1.5e-6;  // 3Tc/(2σ) [m]
+constexpr double kAmplitude = 0.8 * kGrossSlip;
+/// A minimum's place is found to the root of a double's rounding, in three nested searches.
+constexpr double kRefitted = 1e-5;
+
+Conversion To(Target target, const ModelLaw& contact, ConversionOptions options = {}) {
+  if (options.amplitude == 0) options.amplitude = kAmplitude;
+  return Convert(contact, target, options);
+}
+
+/// Root mean square of the difference of force over the loop, over T*.
+double RmsError(const SteadyLaw& law, double amplitude) {
+  constexpr std::size_t kPlaces = 257;
+  std::vector<double> distance(kPlaces);
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    distance[i] = 2 * amplitude * (static_cast<double>(i) / (kPlaces - 1));
+  }
+  std::vector<double> force(kPlaces);
+  std::vector<double> expected(kPlaces);
+  EvaluateRisingBranch(law, amplitude, distance, force);
+  EvaluateRisingBranch(kMindlin, amplitude, distance, expected);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    squares += (force[i] - expected[i]) * (force[i] - expected[i]);
+  }
+  return std::sqrt(squares / kPlaces) / expected.back();
+}
+
+TEST(Conversion, BetweenMasingAndDahlIsExactAtTheAmplitude) {
+  // Both sides' roundings, of some 16 ε each, over a T* near Tc and an energy of a fifth of 4XT*.
+  constexpr double kRounding = 512 * std::numeric_limits<double>::epsilon();
+  const Conversion dahl = To(Target::kDahl, kMindlin);
+  EXPECT_LT(dahl.at_amplitude.force, kRounding);
+  EXPECT_LT(std::abs(dahl.at_amplitude.energy), kRounding);
+  const Conversion back = To(Target::kMasing, std::get<ModelLaw>(dahl.law));
+  EXPECT_LT(back.at_amplitude.force, kRounding);
+  const BranchLaw law = std::get<ModelLaw>(back.law).law;
+  EXPECT_NEAR(law.tangential_stiffness / 4e7, 1.0, kRounding);
+  EXPECT_NEAR(law.slip_force / 40.0, 1.0, kRounding);
+  // Elsewhere it is not, and the range that is stated ends on either side.
+  ASSERT_TRUE(dahl.within);
+  EXPECT_GT(dahl.within->lower, 0.5 * kAmplitude);
+  EXPECT_LT(dahl.within->lower, kAmplitude);
+  EXPECT_GT(dahl.within->upper, kAmplitude);
+}
+
+TEST(Conversion, OfALawToItselfIsTheLaw) {
+  const Conversion same = To(Target::kMasing, kMindlin);
+  EXPECT_EQ(std::get<ModelLaw>(same.law).law.tangential_stiffness, 4e7);
+  EXPECT_EQ(same.at_amplitude.force, 0.0);
+  ASSERT_TRUE(same.within);
+  EXPECT_NEAR(same.within->upper / kAmplitude, 1e4, 1.0);  // as far as is looked
+}
+
+TEST(Conversion, ToLuGreFindsDahlsExponentialWhereItIsOne) {
+  const ModelLaw exponential{&Model("dahl"), {4e7, 1.0, 40.0}};
+  const BranchLaw law = std::get<ModelLaw>(To(Target::kLuGre, exponential).law).law;
+  EXPECT_NEAR(law.tangential_stiffness / 4e7, 1.0, kRefitted);
+  EXPECT_NEAR(law.slip_force / 40.0, 1.0, kRefitted);
+  EXPECT_EQ(law.shape_exponent, 1.0);
+}
+
+TEST(Conversion, ToBoucAndWenFindsDahlsExponentialAtABetaOfOne) {
+  const ModelLaw exponential{&Model("dahl"), {4e7, 1.0, 40.0}};
+  const auto law = std::get<BoucWenLaw>(To(Target::kBoucWen, exponential, {.beta = 1.0}).law);
+  // n ends at its bound of 1, where the search for a minimum stops short of the end by 1e-8.
+  EXPECT_NEAR(law.exponent, 1.0, 1e-4);
+  EXPECT_NEAR(law.stiffness / 4e7, 1.0, 1e-4);
+  EXPECT_NEAR(law.slip_force / 40.0, 1.0, 1e-4);
+}
+
+TEST(Conversion, ToASpringWithCoulombsLimitFindsItWhereItIsOne) {
+  const ModelLaw jenkins{&Model("mindlin-dahl"), {4e7, 0.0, 40.0}};
+  const Conversion lammps = To(Target::kLammps, jenkins, {.amplitude = 3e-6});
+  EXPECT_NEAR(std::get<ModelLaw>(lammps.law).law.tangential_stiffness / 4e7, 1.0, kRefitted);
+  EXPECT_NEAR(std::get<ModelLaw>(lammps.law).law.slip_force / 40.0, 1.0, kRefitted);
+  const Conversion iwan = To(Target::kIwan, jenkins, {.amplitude = 3e-6});
+  EXPECT_EQ(std::get<methods::IwanElements>(iwan.law).size(), 1U);
+  EXPECT_LT(iwan.at_amplitude.force, 1e-14);
+}
+
+TEST(Conversion, IsRefittedToTheLeastMeanSquareError) {
+  // No parameter can be moved to a smaller error, and 3 % make it larger.
+  constexpr double kMove = 1.03;
+  for (const Target target : {Target::kLuGre, Target::kLammps}) {
+    const SteadyLaw best = To(target, kMindlin).law;
+    const double least = RmsError(best, kAmplitude);
+    for (const double factor : {kMove, 1 / kMove}) {
+      ModelLaw stiffer = std::get<ModelLaw>(best);
+      stiffer.law.tangential_stiffness *= factor;
+      ModelLaw stronger = std::get<ModelLaw>(best);
+      stronger.law.slip_force *= factor;
+      EXPECT_GT(RmsError(stiffer, kAmplitude), least);
+      EXPECT_GT(RmsError(stronger, kAmplitude), least);
+    }
+  }
+  const auto best = std::get<BoucWenLaw>(To(Target::kBoucWen, kMindlin).law);
+  const double least = RmsError(best, kAmplitude);
+  for (const double factor : {kMove, 1 / kMove}) {
+    BoucWenLaw other = best;
+    other.stiffness *= factor;
+    EXPECT_GT(RmsError(other, kAmplitude), least);
+    other = best;
+    other.slip_force *= factor;
+    EXPECT_GT(RmsError(other, kAmplitude), least);
+    other = best;
+    other.exponent = std::max(other.exponent * factor, 1.0);
+    EXPECT_GE(RmsError(other, kAmplitude), least);
+  }
+}
+
+TEST(Conversion, OverARangeIsAsGoodAsMayBeOnTheWholeOfIt) {
+  const AmplitudeRange range{0.3 * kGrossSlip, 3 * kGrossSlip};
+  for (const Target target : {Target::kLuGre, Target::kBoucWen, Target::kLammps}) {
+    const Conversion at_one = To(target, kMindlin);
+    const Conversion over_all = To(target, kMindlin, {.range = range});
+    double at_ends = 0.0;
+    double over_ends = 0.0;
+    for (const double amplitude : {range.lower, range.upper}) {
+      at_ends += RmsError(at_one.law, amplitude);
+      over_ends += RmsError(over_all.law, amplitude);
+    }
+    EXPECT_LT(over_ends, at_ends);
+    EXPECT_GE(over_all.largest.force, over_all.at_amplitude.force);
+    EXPECT_GT(RmsError(over_all.law, kAmplitude), RmsError(at_one.law, kAmplitude));
+  }
+}
+
+TEST(Conversion, SaysWhereForceAndEnergyAreWithinTheTolerance) {
+  constexpr double kTolerance = 0.05;
+  const Conversion iwan = To(Target::kIwan, kMindlin, {.tolerance = kTolerance, .elements = 12});
+  ASSERT_TRUE(iwan.within);
+  for (const double end : {iwan.within->lower, iwan.within->upper}) {
+    const LoopError inside = CompareLoops(iwan.law, kMindlin, end);
+    EXPECT_LE(std::max(inside.force, std::abs(inside.energy)), kTolerance);
+  }
+  // Next to the lower end either is not; elements of gross slip are as good at any amplitude.
+  const LoopError outside = CompareLoops(iwan.law, kMindlin, 0.999 * iwan.within->lower);
+  EXPECT_GT(std::max(outside.force, std::abs(outside.energy)), kTolerance);
+  EXPECT_NEAR(iwan.within->upper / kAmplitude, 1e4, 1.0);
+  // One element is not within 1 % of Mindlin's loop.
+  EXPECT_FALSE(To(Target::kIwan, kMindlin, {.tolerance = 0.01, .elements = 1}).within);
+}
+
+TEST(Conversion, ToMoreElementsIsBetter) {
+  double last = 1.0;
+  for (const std::size_t elements : {1, 2, 4, 8, 16}) {
+    const Conversion iwan = To(Target::kIwan, kMindlin, {.elements = elements});
+    EXPECT_LT(iwan.at_amplitude.force, last);
+    last = iwan.at_amplitude.force;
+    const auto& made = std::get<methods::IwanElements>(iwan.law);
+    EXPECT_NEAR(std::accumulate(made.slip_force.begin(), made.slip_force.end(), 0.0), 40.0, 1e-12);
+  }
+}
+
+TEST(Conversion, RefusesOptionsThatBreakARule) {
+  EXPECT_THROW(Convert({nullptr, kMindlin.law}, Target::kDahl, {.amplitude = 1.0}),
+               InvalidArgument);
+  EXPECT_THROW(
+      Convert({&Model("simplified-dahl"), kMindlin.law}, Target::kDahl, {.amplitude = 1.0}),
+      InvalidArgument);
+  EXPECT_THROW(Convert(kMindlin, Target::kDahl, {.amplitude = 0.0}), InvalidArgument);
+  EXPECT_THROW(Convert(kMindlin, Target::kDahl, {.amplitude = 1e-6, .tolerance = 1.0}),
+               InvalidArgument);
+  EXPECT_THROW(Convert(kMindlin, Target::kIwan, {.amplitude = 1e-6, .elements = 0}),
+               InvalidArgument);
+  EXPECT_THROW(Convert(kMindlin, Target::kBoucWen, {.amplitude = 1e-6, .beta = 1.5}),
+               InvalidArgument);
+  EXPECT_THROW(
+      Convert(kMindlin, Target::kLuGre, {.amplitude = 1e-6, .range = AmplitudeRange{2e-6, 3e-6}}),
+      InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::convert

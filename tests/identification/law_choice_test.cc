@@ -1,0 +1,229 @@
+#include "mindahl/identification/law_choice.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "identification/inference/law_choice.h"
+#include "identification/stages.h"
+#include "mindahl/models/equivalent_law.h"
+#include "mindahl/models/steady_loop.h"
+
+// Which of the two laws a record is of.
+namespace mindahl::identification {
+namespace {
+
+using namespace models;
+
+using loop::Record;
+using testing::Cycling;
+using testing::FitOne;
+using testing::From;
+using testing::Generator;
+using testing::History;
+using testing::kNoiseFree;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Wave;
+using testing::WithForceNoise;
+
+constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
+constexpr double kGrossSlip = 1.5e-6;  // [m]
+constexpr int kPerCycle = 200;
+constexpr double kNoise = 0.2;  // [N], 0.5 % of Tc
+
+FitOptions By(const char* model) {
+  FitOptions options;
+  options.model = &Model(model);
+  return options;
+}
+
+/// A virgin contact of a law, cycled.
+Record Virgin(const char* model, double amplitude = 0.8 * kGrossSlip, double cycles = 2.5) {
+  const History displacement = Cycling(Wave::kSine, amplitude, cycles, kPerCycle);
+  return MakeRecord(displacement, Respond(Model(model), kMindlin, displacement));
+}
+
+/// From the first extreme on: a steady loop of Masing's law.
+Record Steady(double amplitude = 0.8 * kGrossSlip) {
+  return From(Virgin("mindlin-dahl", amplitude), kPerCycle / 4);
+}
+
+/// Two amplitudes, one after the other, from the first extreme on.
+Record TwoAmplitudes(const char* model, double first, double second) {
+  History displacement = Cycling(Wave::kSine, first, 2.25, kPerCycle);
+  for (const double x : Cycling(Wave::kSine, second, 2.25, kPerCycle)) {
+    displacement.push_back(x);
+  }
+  Record record = MakeRecord(displacement, Respond(Model(model), kMindlin, displacement));
+  return From(record, kPerCycle / 4);
+}
+
+Record Noisy(const Record& record, std::uint64_t seed = 7) {
+  Generator generator(seed);
+  return WithForceNoise(record, kNoise, generator);
+}
+
+void ExpectLaw(const BranchLaw& law, const BranchLaw& truth, double tolerance) {
+  EXPECT_NEAR(law.tangential_stiffness / truth.tangential_stiffness, 1.0, tolerance);
+  EXPECT_NEAR(law.shape_exponent, truth.shape_exponent, tolerance);
+  EXPECT_NEAR(law.slip_force / truth.slip_force, 1.0, tolerance);
+}
+
+TEST(LawChoice, OfASteadyLoopOfOneAmplitudeIsUndecidedWithBothSetsOfNumbers) {
+  for (const double amplitude : {0.8 * kGrossSlip, 2 * kGrossSlip}) {
+    const FitResult fit = FitOne(Noisy(Steady(amplitude)));
+    ASSERT_TRUE(fit.law_choice);
+    EXPECT_FALSE(fit.law_choice->decided);
+    EXPECT_EQ(fit.law_choice->preferred, nullptr);
+    EXPECT_FALSE(fit.law_choice->delta_aicc) << "there is nothing to compare";
+    EXPECT_EQ(fit.law_choice->alternative->name, "dahl");
+    ExpectLaw(fit.law_choice->law, DahlEquivalent(fit.law, amplitude), 1e-4);
+    const Finding* finding = fit.FindFinding("law_undecided");
+    ASSERT_NE(finding, nullptr);
+    EXPECT_EQ(finding->severity, Severity::kNote);
+    EXPECT_EQ(finding->Number("sigma"), fit.law_choice->law.tangential_stiffness);
+    // By its own law each parameter is as well known as before.
+    EXPECT_EQ(fit.Find("sigma")->identifiability, Identifiability::kIdentifiable);
+  }
+}
+
+TEST(LawChoice, OfASteadyLoopFittedByDahlsLawGivesTheContactByMasings) {
+  const FitResult fit = FitOne(Steady(), By("dahl"));
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_FALSE(fit.law_choice->decided);
+  EXPECT_EQ(fit.law_choice->alternative->name, "mindlin-dahl");
+  ExpectLaw(fit.law, DahlEquivalent(kMindlin, 0.8 * kGrossSlip), kNoiseFree);
+  ExpectLaw(fit.law_choice->law, kMindlin, kNoiseFree);
+}
+
+TEST(LawChoice, IsMadeByAVirginBranch) {
+  const FitResult fit = FitOne(Noisy(Virgin("mindlin-dahl")));
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_TRUE(fit.law_choice->decided);
+  EXPECT_EQ(fit.law_choice->preferred->name, "mindlin-dahl");
+  EXPECT_GT(*fit.law_choice->delta_aicc, 100.0);
+  EXPECT_GT(*fit.law_choice->likelihood_ratio, 100.0);
+  EXPECT_EQ(fit.FindFinding("law_undecided"), nullptr);
+  EXPECT_EQ(fit.FindFinding("other_law_fits_better"), nullptr);
+}
+
+TEST(LawChoice, ByAVirginBranchOfDahlsLawSpeaksAgainstMasings) {
+  const Record record = Noisy(Virgin("dahl"));
+  const FitResult masing = FitOne(record);
+  ASSERT_TRUE(masing.law_choice);
+  EXPECT_TRUE(masing.law_choice->decided);
+  EXPECT_EQ(masing.law_choice->preferred, masing.law_choice->alternative);
+  EXPECT_LT(*masing.law_choice->delta_aicc, -100.0);
+  const Finding* finding = masing.FindFinding("other_law_fits_better");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->severity, Severity::kWarning);
+  EXPECT_EQ(finding->kind, "dahl");
+  // A good ten standard errors of such a loop.
+  ExpectLaw(masing.law_choice->law, kMindlin, 0.05);
+
+  const FitResult dahl = FitOne(record, By("dahl"));
+  ASSERT_TRUE(dahl.law_choice);
+  EXPECT_EQ(dahl.law_choice->preferred->name, "dahl");
+  EXPECT_EQ(dahl.FindFinding("other_law_fits_better"), nullptr);
+}
+
+TEST(LawChoice, IsMadeByASecondAmplitude) {
+  for (const char* model : {"mindlin-dahl", "dahl"}) {
+    const Record record = Noisy(TwoAmplitudes(model, 1.2 * kGrossSlip, 0.5 * kGrossSlip));
+    for (const char* fitted : {"mindlin-dahl", "dahl"}) {
+      const FitResult fit = FitOne(record, By(fitted));
+      ASSERT_TRUE(fit.law_choice) << model << ' ' << fitted;
+      EXPECT_TRUE(fit.law_choice->decided) << model << ' ' << fitted;
+      EXPECT_EQ(fit.law_choice->preferred->name, model) << fitted;
+    }
+  }
+}
+
+TEST(LawChoice, IsNotMadeByASecondAmplitudeOfGrossSlip) {
+  // Slipping branches all start from Tc: the laws are one curve again.
+  FitOptions options;
+  options.initial_state = InitialState::kSteady;
+  const FitResult fit =
+      FitOne(Noisy(TwoAmplitudes("mindlin-dahl", 3 * kGrossSlip, 2 * kGrossSlip)), options);
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_FALSE(fit.law_choice->decided);
+  ASSERT_TRUE(fit.law_choice->delta_aicc);
+  EXPECT_LT(std::abs(*fit.law_choice->delta_aicc), 1.0);
+  EXPECT_NE(fit.FindFinding("law_undecided"), nullptr);
+  // 2^{−1/3} of the stiffness.
+  EXPECT_NEAR(fit.law_choice->law.tangential_stiffness / fit.law.tangential_stiffness,
+              std::cbrt(0.5), 0.02);
+}
+
+TEST(LawChoice, IsNotMadeWhereNoiseHidesTheDifference) {
+  Generator generator(11);
+  const FitResult fit = FitOne(WithForceNoise(Virgin("mindlin-dahl"), 200 * kNoise, generator));
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_FALSE(fit.law_choice->decided);
+}
+
+TEST(LawChoice, TakesTheRigOutOfTheAmplitude) {
+  const double stiffness = 8e7;
+  const double amplitude = 1.2 * kGrossSlip;
+  const History displacement = Cycling(Wave::kSine, amplitude, 2.5, kPerCycle);
+  std::vector<double> force(displacement.size());
+  EvaluateForce(Model("mindlin-dahl"), kMindlin,
+                testing::PathOf(Model("mindlin-dahl"), displacement), displacement, force,
+                {stiffness});
+  FitOptions options;
+  options.fixed = {{"rig_stiffness", stiffness}};
+  const FitResult fit = FitOne(From(MakeRecord(displacement, force), kPerCycle / 4), options);
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_FALSE(fit.law_choice->decided);
+  const double contact = ContactAmplitude(Model("mindlin-dahl"), kMindlin, {stiffness}, amplitude);
+  ASSERT_LT(contact, 0.8 * amplitude) << "the case needs it";
+  ExpectLaw(fit.law_choice->law, DahlEquivalent(kMindlin, contact), 1e-6);
+}
+
+TEST(LawChoice, KeepsAlphaWhereItIsHeld) {
+  const FitResult fit = FitOne(Noisy(Virgin("mindlin-dahl")), By("mindlin"));
+  ASSERT_TRUE(fit.law_choice);
+  EXPECT_EQ(fit.law_choice->law.shape_exponent, kMindlin.shape_exponent);
+  EXPECT_EQ(fit.law_choice->preferred->name, "mindlin");
+}
+
+TEST(LawChoice, IsNoneWhereTheLawsAreOneOrAParameterIsHeld) {
+  EXPECT_FALSE(FitOne(Noisy(Steady(2 * kGrossSlip)), By("jenkins")).law_choice);
+  // Before the motion turns.
+  Record rising = Virgin("mindlin-dahl");
+  rising.displacement.resize(kPerCycle / 4);
+  rising.force.resize(kPerCycle / 4);
+  EXPECT_FALSE(FitOne(Noisy(rising)).law_choice);
+  FitOptions held;
+  held.fixed = {{"sigma", kMindlin.tangential_stiffness}};
+  EXPECT_FALSE(FitOne(Noisy(Steady()), held).law_choice);
+  const Record record = Noisy(Steady());
+  EXPECT_FALSE(Fit({&record, 1}, {}, Depth::kIntervals).law_choice) << "not asked for";
+}
+
+TEST(LawChoice, IsAmongLoopsOfOneAmplitudeWhereNoSwingIsShorter) {
+  const auto has_one = [](const Record& record) {
+    const testing::Stages stages(record, {}, InitialState::kSteady);
+    return HasOneAmplitude(stages.problem, {});
+  };
+  EXPECT_TRUE(has_one(Steady()));
+  EXPECT_TRUE(has_one(Virgin("mindlin-dahl"))) << "its ends are parts of the same loop";
+  EXPECT_FALSE(has_one(TwoAmplitudes("mindlin-dahl", 1.2 * kGrossSlip, 1e-6)));
+  Record inner = Steady();
+  History displacement = inner.displacement;
+  for (const double share : {0.3, 0.1, -0.1, 0.1, 0.5, 0.9, 1.0, 0.5}) {
+    displacement.push_back(share * 0.8 * kGrossSlip);
+  }
+  EXPECT_FALSE(
+      has_one(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kMindlin, displacement,
+                                               {.state = InitialState::kSteady}))));
+}
+
+}  // namespace
+}  // namespace mindahl::identification
