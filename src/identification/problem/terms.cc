@@ -98,8 +98,8 @@ constexpr std::array kTerms = {
          .unit_by_sample = "samples",
          .option = "--lag",
          .argument = "S|fit",
-         .help = "the force is read S [s] after the displacement (samples where there is no\n"
-                 "time), before it where negative; or fit"},
+         .help = "the force is read S [s] after the displacement, before it where\n"
+                 "negative, or fit; samples where there is no time"},
     Term{.name = "covariate",
          .unit = "N/unit",
          .meaning =
@@ -117,8 +117,8 @@ constexpr std::array kTerms = {
          .of_column = true,
          .option = "--covariate",
          .argument = "COL[=C|fit]",
-         .help = "a force C·column beside the contact's, C [N/unit] of the column; default fit;\n"
-                 "columns by header name or 1-based number; repeatable"},
+         .help = "a force C·column beside the contact's, C [N/unit] of the column;\n"
+                 "default fit; columns by header name or 1-based number; repeatable"},
     Term{.name = "force_offset",
          .unit = "N",
          .meaning = "added to the model's force; with a drift, at the record's middle",
