@@ -154,6 +154,10 @@ std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
   std::vector<InitialState> states;
   if (!same_curve) states.push_back(problem.state);
   if (maybe_virgin) states.push_back(InitialState::kVirgin);
+  // A record that starts at an extreme passes for virgin as well, without a virgin branch.
+  if (problem.state == InitialState::kVirgin && !options.initial_state) {
+    states.push_back(InitialState::kSteady);
+  }
   for (const InitialState state : states) {
     const OtherFit other = FitOther(problem, best, result, equivalent, state, options, buffers);
     if (!other.solution.converged) continue;
