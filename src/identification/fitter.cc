@@ -17,6 +17,7 @@
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/irregularities.h"
 #include "identification/inference/lag_trial.h"
 #include "identification/inference/law_choice.h"
 #include "identification/inference/noise.h"
@@ -290,6 +291,11 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   }
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
+  const Eigen::VectorXd& residual = estimates.residual();
+  AddIrregularities(problem,
+                    FindIrregularities(problem, solution.theta, {residual.data(), problem.size()},
+                                       noise, options.loss != Loss::kNone, buffers.response),
+                    thresholds, result.adequacy);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);

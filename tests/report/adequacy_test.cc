@@ -60,11 +60,14 @@ Report ReportWith(AdequacyVerdict verdict, std::vector<Cause> causes) {
   return MakeReport(InputWith(verdict, std::move(causes)));
 }
 
-/// Codes, units and options in the table of the departures.
+/// Codes in the tables of departures and irregularities.
 std::set<std::string> TriedCodes() {
-  std::ifstream in(std::filesystem::path(MINDAHL_SOURCE_DIR) /
-                   "src/identification/inference/departures.cc");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text;
+  for (const char* file : {"departures.cc", "irregularities.cc"}) {
+    std::ifstream in(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src/identification/inference" /
+                     file);
+    text.append(std::istreambuf_iterator<char>(in), {});
+  }
   return testing::Matches(text, "\\.code = \"([a-z_]+)\"");
 }
 

@@ -206,8 +206,11 @@ std::set<std::string> EmittedCodes() {
   const std::filesystem::path sources =
       std::filesystem::path(MINDAHL_SOURCE_DIR) / "src" / "identification";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(sources)) {
-    // Departures have codes of their own, which are those of causes.
-    if (entry.path().extension() != ".cc" || entry.path().stem() == "departures") continue;
+    // Departures and irregularities have codes of their own, which are those of causes.
+    const std::string stem = entry.path().stem().string();
+    if (entry.path().extension() != ".cc" || stem == "departures" || stem == "irregularities") {
+      continue;
+    }
     const std::string text = Content(entry.path());
     for (const std::string& value : Matches(text, member)) codes.merge(Matches(value, quoted));
     codes.merge(Matches(text, wide));

@@ -114,7 +114,7 @@ constexpr std::array kTable = {
                  "one adequate loop in two hundred is doubted"},
     ThresholdRow{"cause", &Thresholds::cause, "p",
                  "a departure that noise alone makes less often is a cause",
-                 "of the 15 that are tried, one loop in seventy then has one by chance"},
+                 "of the 16 that are tried, one loop in sixty then has one by chance"},
     ThresholdRow{"rival_cause", &Thresholds::rival_cause, "of what the best explains",
                  "a cause that explains so much is one that intervals cover",
                  "departures are taken to first order: of two imperfect accounts the better need "
