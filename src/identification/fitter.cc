@@ -385,6 +385,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
                result.WidestRecord().measures.peak_force, buffers.response, result.parameters)));
   }
   ConsiderDepartures(problem, solution, noise, estimates, options, buffers, result);
+  Append(result.findings, FindUnseenLoop(result, options.thresholds));
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }

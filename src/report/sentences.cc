@@ -157,6 +157,18 @@ std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
       Needed(finding, "samples"), Needed(finding, "places"));
 }
 
+std::string LoopNotSeen(const Finding& finding, const FitResult&, const Units&) {
+  const double r_squared = Needed(finding, "r_squared");
+  const std::string share = r_squared > 0
+                                ? fmt::format("{:.2g} % of the force's variance", 100 * r_squared)
+                                : std::string("nothing of the force");
+  return fmt::format(
+      "sigma, alpha, slip_force: the loop explains {}; the record shows something else. Look at "
+      "the "
+      "plot: other columns, a shorter part of the record, or less noise are needed",
+      share);
+}
+
 std::string ModelInadequate(const Finding&, const FitResult& fit, const Units&) {
   return fmt::format(
       "{} does not describe this record: its parameters are not to be used; what was measured "
@@ -282,7 +294,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 25> kSentences = {{
+constexpr std::array<Row, 26> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -300,6 +312,7 @@ constexpr std::array<Row, 25> kSentences = {{
     {"model_inadequate", ModelInadequate},
     {"slip_force_extrapolated", SlipForceExtrapolated},
     {"few_places", FewPlaces},
+    {"loop_not_seen", LoopNotSeen},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},
     {"law_undecided", LawUndecided},

@@ -224,6 +224,15 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
                              {"samples", static_cast<double>(samples)}}};
 }
 
+std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds) {
+  const double r_squared = result.residuals.r_squared;
+  // Where a robust loss has weighed readings down, the variance is mostly theirs.
+  if (result.outliers > 0 || r_squared >= thresholds.seen_loop) return std::nullopt;
+  return Finding{.code = "loop_not_seen",
+                 .parameters = {"sigma", "alpha", "slip_force"},
+                 .numbers = {{"r_squared", r_squared}}};
+}
+
 Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
                             const Thresholds& thresholds) {
   Finding finding{.code = "shape_or_rig",

@@ -29,6 +29,7 @@ constexpr std::array kVerdicts = {
     Row{"shape_or_rig", Identifiability::kNotIdentifiable},
     Row{"unknown_past", Identifiability::kNotIdentifiable},
     Row{"few_places", Identifiability::kNotIdentifiable},
+    Row{"loop_not_seen", Identifiability::kNotIdentifiable},
     Row{"slip_force_bounded_below", Identifiability::kBoundedBelow},
     Row{"sigma_bounded_below", Identifiability::kBoundedBelow},
     Row{"slip_force_extrapolated", Identifiability::kExtrapolated},

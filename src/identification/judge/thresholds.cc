@@ -141,6 +141,11 @@ constexpr std::array kTable = {
                  "Masing's law and Dahl's own are not told apart by less",
                  "an evidence of e⁵ = 150 to 1, as of the two pasts: what either misses of a real "
                  "loop can be worth less"},
+    ThresholdRow{
+        "seen_loop", &Thresholds::seen_loop, "R²",
+        "a loop that explains less of the force is not seen, and none of it believed",
+        "the rest of the force is three times the loop: a tenth of it that is regular is a "
+        "third of the loop"},
 };
 
 }  // namespace
