@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "mindahl/identification/trend.h"
-#include "mindahl/models/steady_loop.h"
 #include "report/adequacy.h"
 #include "report/field_table.h"
 #include "report/fields.h"
@@ -387,9 +386,9 @@ std::string ToText(const Report& report) {
   }
   text += fmt::format("\nloop: {}\n      energy per cycle {:.5g} J of the model",
                       SlipText(loop, units), loop.model_energy);
-  text += loop.gross_slip_displacement
+  text += loop.gross_slip_energy_ratio
               ? fmt::format(", gross slip from an energy ratio of {:.4g}\n",
-                            models::GrossSlipEnergyRatio(fit.law.shape_exponent))
+                            *loop.gross_slip_energy_ratio)
               : "\n";
   text += LawText(report);
   if (report.is_torsional()) {
