@@ -183,7 +183,14 @@ std::string SlipForceExtrapolated(const Finding& finding, const FitResult&, cons
       Needed(finding, "alpha"), 100 * Needed(finding, "share"));
 }
 
-std::string UnknownPast(const Finding&, const FitResult&, const Units&) {
+std::string UnknownPast(const Finding& finding, const FitResult&, const Units&) {
+  if (finding.kind == "one_stroke") {
+    return "sigma, alpha, slip_force: the record is one stroke, and one stroke fits as well "
+           "wherever "
+           "the contact was unloaded: the curve is drawn as if at its first sample. Give "
+           "--initial-state virgin if it was at rest there, or record a whole cycle";
+  }
+  if (finding.kind != "cut") ThrowKind(finding);
   return "alpha, slip_force: the record closes no cycle and does not start where the contact is "
          "unloaded: how far it had been pushed before is not known; record a whole cycle, or give "
          "--initial-state virgin if it was at rest";
