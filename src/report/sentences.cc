@@ -262,10 +262,9 @@ std::string WhereItRepeats(const Finding& finding, const Units& units) {
 }
 
 std::string NoModelFits(const Finding& finding, const FitResult& fit, const Units& units) {
-  return fmt::format(
-      "no parameters of {} follow this record (rms {:.3g} % of the force): {}. Tc and the energy "
-      "may still be of use, sigma and alpha not",
-      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding, units));
+  return fmt::format("no parameters of {} follow this record (rms {:.3g} % of the force): {}",
+                     fit.model->name, 100 * Needed(finding, "misfit"),
+                     WhereItRepeats(finding, units));
 }
 
 std::string SystematicResidual(const Finding& finding, const FitResult& fit, const Units& units) {

@@ -123,6 +123,27 @@ TEST(AdaptedCauses, OfferNoOptionThatNeedsATimeWhereThereIsNone) {
   EXPECT_EQ(causes[1].option, "--drift");
 }
 
+TEST(AdequacyText, OfAnInadequateModelHasNothingOfItsCurve) {
+  const std::string text = ToText(ReportWith(AdequacyVerdict::kInadequate, {}));
+  for (const char* of_the_curve : {"J of the model", "energy ratio of", "σ = 8a/G*", "Mindlin's"}) {
+    EXPECT_THAT(text, Not(HasSubstr(of_the_curve)));
+  }
+  EXPECT_THAT(text, HasSubstr("no loop of the model, and no contact"));
+  EXPECT_THAT(ToText(ReportWith(AdequacyVerdict::kDoubtful, {})), HasSubstr("energy ratio of"));
+}
+
+TEST(AdequacyText, SharesOfTcAreThoseOfATcThatIsKnown) {
+  ReportInput input = InputWith(AdequacyVerdict::kAdequate, {});
+  for (ParameterEstimate& estimate : input.fit.parameters) {
+    estimate.identifiability = Identifiability::kIdentifiable;
+  }
+  EXPECT_THAT(ToText(MakeReport(input)), HasSubstr("% of Tc"));
+  for (ParameterEstimate& estimate : input.fit.parameters) {
+    estimate.identifiability = Identifiability::kNotIdentifiable;
+  }
+  EXPECT_THAT(ToText(MakeReport(std::move(input))), Not(HasSubstr("% of Tc")));
+}
+
 TEST(AdequacyText, IsTheFirstLineOfTheReport) {
   EXPECT_THAT(ToText(ReportWith(AdequacyVerdict::kAdequate, {})),
               StartsWith("adequate: what the model misses is 1.8 times the noise (p = 1e-09)"));
