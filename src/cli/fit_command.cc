@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -17,12 +18,14 @@
 #include "cli/contact_options.h"
 #include "cli/established.h"
 #include "cli/output_path.h"
+#include "cli/progress.h"
 #include "cli/text_output.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/terms.h"
+#include "mindahl/identification/too_few_samples.h"
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
@@ -471,6 +474,24 @@ void Write(const FitCommandOptions& options, const report::Report& report, Conso
   if (options.json_path != "-") console.out << report::ToText(report);
 }
 
+/// The fit that the options ask for, of the model that they name or choose.
+/// @param selection  written where the model is chosen
+identification::FitResult FitRecords(const FitCommandOptions& options,
+                                     const FitOptions& fit_options, std::span<const Record> records,
+                                     const Console& console,
+                                     std::optional<identification::ModelSelection>& selection) {
+  std::size_t samples = 0;
+  for (const Record& record : records) samples += record.size();
+  const Progress progress(console.err, fmt::format("fitting {} samples", samples));
+  try {
+    if (options.model != kAutomatic) return identification::Fit(records, fit_options);
+    selection = identification::SelectModel(records, fit_options);
+    return selection->fit;
+  } catch (const identification::TooFewSamples& error) {
+    throw InputError(fmt::format("{}: {}", fmt::join(options.files, ", "), error.what()));
+  }
+}
+
 void RunFit(FitCommandOptions options, Console& console) {
   Validate(options.contact);
   RequireDistinctFiles(options.files);
@@ -495,13 +516,7 @@ void RunFit(FitCommandOptions options, Console& console) {
   UseMeasuredNormalLoad(options.contact, records, fit_options.preparation.load_window, console);
 
   std::optional<identification::ModelSelection> selection;
-  identification::FitResult fit;
-  if (options.model == kAutomatic) {
-    selection = identification::SelectModel(records, fit_options);
-    fit = selection->fit;
-  } else {
-    fit = identification::Fit(records, fit_options);
-  }
+  identification::FitResult fit = FitRecords(options, fit_options, records, console, selection);
   console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
   const report::Report report =
       report::MakeReport({.files = options.files,

@@ -17,6 +17,7 @@
 #include "cli/law_options.h"
 #include "cli/output_path.h"
 #include "cli/precision_table.h"
+#include "cli/progress.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/atomic_file.h"
@@ -330,10 +331,15 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
   RequireOutputs(options, console.inputs);
   const BranchLaw law = IsAnythingGiven(options.law) ? ResolveLaw(options.law) : PaperContact();
   WarnOfDoubts(options.law.contact, "tradeoff", console);
-  const std::vector<MeasuredScene> scenes = MeasureScenes(options, law);
   const ModelRegionOptions studied;
+  std::vector<MeasuredScene> scenes;
   std::vector<ModelRegion> regions;
-  if (law.shape_exponent < 1) regions = tradeoff::FindModelRegions(law, studied);
+  {
+    Progress progress(console.err, "timing every method");
+    scenes = MeasureScenes(options, law);
+    progress.Say("looking where each model serves");
+    if (law.shape_exponent < 1) regions = tradeoff::FindModelRegions(law, studied);
+  }
 
   // The plot first: it alone may still fail.
   if (!options.plot.empty()) io::WritePlot(WorkPrecisionPlot(scenes), options.plot);

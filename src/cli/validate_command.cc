@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/json_output.h"
 #include "cli/output_path.h"
+#include "cli/progress.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/version.h"
 #include "mindahl/identification/mapping_validation.h"
@@ -86,16 +87,17 @@ std::string Table(const std::vector<identification::ValidationRow>& rows) {
   return text;
 }
 
+ValidationReport ValidateContacts(const identification::ValidationOptions& options,
+                                  Console& console) {
+  Progress progress(console.err, fmt::format("fitting the first of {} contacts", options.cases));
+  return identification::ValidateMapping(options, [&](std::size_t done) {
+    progress.Say(fmt::format("{} of {} contacts", done, options.cases));
+  });
+}
+
 void RunValidate(const ValidateOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
-  const std::size_t step = std::max<std::size_t>(options.validation.cases / 10, 1);
-  const ValidationReport report =
-      identification::ValidateMapping(options.validation, [&](std::size_t done) {
-        if (done % step == 0) {
-          console.err << fmt::format("{} of {} contacts\n", done, options.validation.cases)
-                      << std::flush;
-        }
-      });
+  const ValidationReport report = ValidateContacts(options.validation, console);
   if (!options.json_path.empty()) {
     WriteJson(ToJson(report, options.validation), options.json_path, console);
   }

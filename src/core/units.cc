@@ -96,6 +96,11 @@ std::optional<Unit> TorqueUnit(std::string_view symbol) {
   return Find(kTorques, WithBlank(symbol));
 }
 std::optional<Unit> ForceUnit(std::string_view symbol) { return Find(kForces, symbol); }
+bool IsPressureUnit(std::string_view symbol) {
+  constexpr std::array<std::string_view, 10> kPressures = {
+      "Pa", "hPa", "kPa", "MPa", "GPa", "mbar", "bar", "psi", "kgf/cm2", "kgf/cm²"};
+  return std::ranges::find(kPressures, symbol) != kPressures.end();
+}
 std::optional<Unit> TimeUnit(std::string_view symbol) { return Find(kTimes, symbol); }
 
 std::string LengthUnitSymbols() { return Symbols(kLengths); }

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/irregularities.h"
 #include "identification/inference/lag_trial.h"
 #include "identification/inference/law_choice.h"
 #include "identification/inference/noise.h"
@@ -32,6 +35,7 @@
 #include "mindahl/core/arena.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/too_few_samples.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
@@ -60,11 +64,33 @@ void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
       fmt::format("must be below 1e100 times half the range of the force, {:.4g} N", data.force));
 }
 
-void RequireEnoughSamples(const Problem& problem) {
+/// How many samples are left out for what: "; of 12 that were read 8 are left out: 2 glitches, …".
+std::string WhatIsLeftOut(const loop::PreparedRecords& prepared,
+                          const loop::PreparationOptions& options) {
+  const std::size_t left_out = prepared.samples() - prepared.counted();
+  if (left_out == 0) return "";
+  std::size_t glitches = 0;
+  for (const loop::PreparedRecord& record : prepared.records) glitches += record.glitches.total();
+  std::vector<std::string> reasons;
+  if (glitches > 0) reasons.push_back(fmt::format("{} glitches", glitches));
+  std::vector<std::string> masks;
+  if (options.load_window) masks.emplace_back("outside the load window");
+  if (options.skip_cycles > 0) masks.emplace_back("in the cycles that are skipped");
+  if (!options.held_out.empty()) masks.emplace_back("held out");
+  if (!masks.empty() && left_out > glitches) {
+    reasons.push_back(fmt::format("{} {}", left_out - glitches, fmt::join(masks, " or ")));
+  }
+  return fmt::format("; of {} that were read {} are left out: {}", prepared.samples(), left_out,
+                     fmt::join(reasons, ", "));
+}
+
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared,
+                          const FitOptions& options) {
   const std::size_t free = problem.parameters.free().size();
   if (problem.data->counted >= free) return;
-  throw InvalidArgument(std::to_string(problem.data->counted) + " samples are too few for " +
-                        std::to_string(free) + " free parameters: record more or fix some");
+  throw TooFewSamples(
+      fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
+                  problem.data->counted, free, WhatIsLeftOut(prepared, options.preparation)));
 }
 
 /// What is known of a fit while it is made.
@@ -107,7 +133,7 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   const auto make = [&](InitialState state, Solution& solution) {
     Candidate candidate(attempt.data, options, state, attempt.memory);
     candidate.solution = &solution;
-    RequireEnoughSamples(candidate.problem);
+    RequireEnoughSamples(candidate.problem, attempt.prepared, options);
     return candidate;
   };
   const auto find_starts = [&](Candidate& candidate,
@@ -290,6 +316,11 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   }
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
   result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
+  const Eigen::VectorXd& residual = estimates.residual();
+  AddIrregularities(problem,
+                    FindIrregularities(problem, solution.theta, {residual.data(), problem.size()},
+                                       noise, options.loss != Loss::kNone, buffers.response),
+                    thresholds, result.adequacy);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);
@@ -379,6 +410,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
                result.WidestRecord().measures.peak_force, buffers.response, result.parameters)));
   }
   ConsiderDepartures(problem, solution, noise, estimates, options, buffers, result);
+  Append(result.findings, FindUnseenLoop(result, options.thresholds));
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }

@@ -9,12 +9,14 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "io/csv_layout.h"
 #include "io/csv_tokenizer.h"
 #include "io/message_text.h"
 #include "io/number_cell.h"
+#include "io/thousands.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::io {
@@ -135,7 +137,30 @@ std::span<const double> CsvTable::Numbers(std::size_t column) const {
   if (fault != values.end()) {
     ThrowNotANumber(static_cast<std::size_t>(fault - values.begin()), column);
   }
+  if (MayHaveThousands(values)) RequireNoThousands(column);
   return values;
+}
+
+void CsvTable::RequireNoThousands(std::size_t column) const {
+  CsvTokenizer tokenizer(text_, static_cast<Delimiter>(delimiter_), offsets_.front(),
+                         lines_.front());
+  std::vector<std::string> texts;
+  texts.reserve(rows());
+  for (CsvRow row; texts.size() < rows() && tokenizer.Next(row);) {
+    texts.emplace_back(Trimmed(row[column]));
+  }
+  const std::vector<std::string_view> cells(texts.begin(), texts.end());
+  const std::optional<std::size_t> found = FindThousands(cells);
+  if (!found) return;
+  std::string without = texts[*found];
+  const std::size_t mark = without.find_first_of(".,");
+  const char separator = without[mark];
+  without.erase(mark, 1);
+  throw InputError(
+      fmt::format("{}:{}:{}: '{}' has a '{}' that separates thousands, since numbers without one "
+                  "in this column "
+                  "are whole and it would jump back to 1 where it passes 999: write {}",
+                  file_, lines_[*found], column + 1, texts[*found], separator, without));
 }
 
 bool CsvTable::HasNumbers(std::size_t column) const {

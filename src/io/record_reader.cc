@@ -261,6 +261,15 @@ class ColumnFinder {
   std::vector<ColumnName> split_;
 };
 
+/// That a column in a unit of pressure cannot have a role.
+std::string PressureText(std::string_view column, std::string_view unit, const Role& role) {
+  return fmt::format(
+      "{} is a pressure, in {}, and no {}: choose another column; a pressure times the area that "
+      "it "
+      "acts on is a force beside the contact's, which --covariate takes",
+      column, unit, role.name);
+}
+
 /// Reads columns of one table in SI units.
 class ColumnReader {
  public:
@@ -271,6 +280,10 @@ class ColumnReader {
   Unit FindUnit(const Role& role, std::size_t column, const std::string& chosen) {
     if (!chosen.empty()) {
       if (const auto unit = role.find_unit(chosen)) return *unit;
+      if (IsPressureUnit(chosen)) {
+        throw InputError(PressureText(fmt::format("{}: {}", table_.file(), finder_.Label(column)),
+                                      chosen, role));
+      }
       throw InputError(fmt::format("{}: the {} unit '{}' is not known: must be one of {}",
                                    table_.file(), role.name, chosen, role.unit_symbols()));
     }
@@ -281,6 +294,11 @@ class ColumnReader {
       return {.symbol = std::string(role.si_unit)};
     }
     if (const auto unit = role.find_unit(stated)) return *unit;
+    if (IsPressureUnit(stated)) {
+      throw InputError(PressureText(
+          fmt::format("{}:{}: {}", finder_.Header(), column + 1, finder_.Label(column)), stated,
+          role));
+    }
     throw InputError(
         fmt::format("{}:{}: the unit '{}' of {} is not known for the {}: must be one "
                     "of {}, or choose the unit",
@@ -460,6 +478,7 @@ std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const
                         std::size_t column, const ColumnChoice& choice) {
   if (!table.HasNumbers(column)) return "holds no numbers";
   const std::string stated = choice.unit.empty() ? finder.HeaderUnit(column) : "";
+  if (IsPressureUnit(stated)) return fmt::format("is a pressure, in {}", stated);
   if (!stated.empty() && !role.find_unit(stated)) {
     return fmt::format("has the unit '{}', not one of {}", stated, role.unit_symbols());
   }

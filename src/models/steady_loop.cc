@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone_integrals.h"
@@ -63,6 +64,23 @@ double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const 
     (whole < amplitude ? low : high) = middle;
   }
   return low + (high - low) / 2;
+}
+
+double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law) {
+  Validate(law);
+  if (law.shape_exponent >= 1) return std::numeric_limits<double>::infinity();
+  // A branch from −Tc reaches Tc where its own y, k·2X, is 1/(1 − α).
+  const BranchScale scale = model.scale(-1.0, 1.0, /*virgin=*/false);
+  const double masing = 2 / scale.span * std::pow(scale.remaining, law.shape_exponent - 1);
+  return GrossSlipDisplacement(law) / masing;
+}
+
+double GrossSlipEnergyRatio(const FrictionModel& model, const BranchLaw& law,
+                            const SeriesSpring& rig) {
+  const double amplitude = SteadyGrossSlipAmplitude(model, law);
+  if (std::isinf(amplitude)) return 1.0;
+  const double travel = std::isinf(rig.stiffness) ? 0.0 : law.slip_force / rig.stiffness;
+  return GrossSlipEnergyRatio(law.shape_exponent) * (amplitude / (amplitude + travel));
 }
 
 double GrossSlipEnergyRatio(double shape_exponent) {

@@ -23,7 +23,7 @@ struct CauseRow {
   const char* remedy;    // where no option takes it into account
 };
 
-constexpr std::array<CauseRow, 17> kCauses = {{
+constexpr std::array<CauseRow, 22> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
@@ -64,6 +64,20 @@ constexpr std::array<CauseRow, 17> kCauses = {{
      "look for a spring, a cable or a tilt beside the contact, and measure it without it"},
     {"covariate", "a force in proportion to another column of the file, {}", nullptr,
      "name the column with --covariate"},
+    {"smoothing", "a force that is averaged over a window in time with a standard deviation of {}",
+     "a displacement that is averaged over a window in time with a standard deviation of {}",
+     "compare the filters of the two channels"},
+    {"held_displacement",
+     "a displacement that repeats itself while the contact moves on, so that {} of the way between "
+     "two readings is missing",
+     nullptr, "record the displacement as often as the force, or leave the repeats out"},
+    {"amplitude_dependence", "a friction that grows by {} from the narrowest stroke to the widest",
+     "a friction that falls by {} from the narrowest stroke to the widest",
+     "fit each amplitude alone"},
+    {"heavy_tails", "readings of the force, {} of all, that are far off their neighbours", nullptr,
+     "look for disturbances of the force's channel"},
+    {"stick_slip", "stick-slip, drops of {} that recur while the contact slides", nullptr,
+     "stiffen the rig or change the speed; slip_force is that of the mean between the drops"},
 }};
 
 const CauseRow& RowOf(const Cause& cause) {

@@ -27,8 +27,11 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
   if (measured.amplitude > 0 && measured.peak_force > 0) {
     loop.energy_ratio = energy / (4 * measured.amplitude * measured.peak_force);
   }
-  const double gross_slip = GrossSlipDisplacement(law);
-  if (std::isfinite(gross_slip)) loop.gross_slip_displacement = gross_slip;
+  const double gross_slip = models::SteadyGrossSlipAmplitude(*fit.model, law);
+  if (std::isfinite(gross_slip)) {
+    loop.gross_slip_displacement = gross_slip;
+    loop.gross_slip_energy_ratio = models::GrossSlipEnergyRatio(*fit.model, law, fit.rig);
+  }
   const double peak = models::SteadyPeakForce(*fit.model, law, loop.contact_amplitude);
   loop.slip_force_share = peak / law.slip_force;
   const bool slips = std::isfinite(gross_slip) ? loop.contact_amplitude >= gross_slip

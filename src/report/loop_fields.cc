@@ -11,6 +11,8 @@ std::function<Value(const Report&)> Measured(double MeasuredLoop::*member) {
   };
 }
 
+constexpr const char* kWhyNoSlip = "with alpha >= 1 the force only approaches slip_force";
+
 /// Of the loop's description, where there is one.
 template <typename Get>
 std::function<Value(const Report&)> OfLoop(Get get) {
@@ -40,11 +42,14 @@ void AddLoopFields(FieldTable& table) {
        }},
       {"loop.slip_regime", "", "partial or gross slip",
        OfLoop([](const LoopDescription& loop) { return Text(Name(loop.regime)); })},
-      {"loop.gross_slip_displacement", "m", "δc of the fitted law",
+      {"loop.gross_slip_displacement", "m",
+       "amplitude of the contact from which it slips: δc of the fitted law, 2^−α·δc of Dahl's own",
        OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_displacement); }),
-       [](const Report&) {
-         return std::string("with alpha >= 1 the force only approaches slip_force");
-       }},
+       [](const Report&) { return std::string(kWhyNoSlip); }},
+      {"loop.gross_slip_energy_ratio", "-",
+       "W/(4XT*) of the fitted law where it begins to slip, the rig's travel in X",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_energy_ratio); }),
+       [](const Report&) { return std::string(kWhyNoSlip); }},
       {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
        [](const Report& report) {
          return report.loop && !report.is_torsional() ? Number(report.loop->stick_radius_ratio)

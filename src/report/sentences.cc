@@ -157,6 +157,18 @@ std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
       Needed(finding, "samples"), Needed(finding, "places"));
 }
 
+std::string LoopNotSeen(const Finding& finding, const FitResult&, const Units&) {
+  const double r_squared = Needed(finding, "r_squared");
+  const std::string share = r_squared > 0
+                                ? fmt::format("{:.2g} % of the force's variance", 100 * r_squared)
+                                : std::string("nothing of the force");
+  return fmt::format(
+      "sigma, alpha, slip_force: the loop explains {}; the record shows something else. Look at "
+      "the "
+      "plot: other columns, a shorter part of the record, or less noise are needed",
+      share);
+}
+
 std::string ModelInadequate(const Finding&, const FitResult& fit, const Units&) {
   return fmt::format(
       "{} does not describe this record: its parameters are not to be used; what was measured "
@@ -171,7 +183,14 @@ std::string SlipForceExtrapolated(const Finding& finding, const FitResult&, cons
       Needed(finding, "alpha"), 100 * Needed(finding, "share"));
 }
 
-std::string UnknownPast(const Finding&, const FitResult&, const Units&) {
+std::string UnknownPast(const Finding& finding, const FitResult&, const Units&) {
+  if (finding.kind == "one_stroke") {
+    return "sigma, alpha, slip_force: the record is one stroke, and one stroke fits as well "
+           "wherever "
+           "the contact was unloaded: the curve is drawn as if at its first sample. Give "
+           "--initial-state virgin if it was at rest there, or record a whole cycle";
+  }
+  if (finding.kind != "cut") ThrowKind(finding);
   return "alpha, slip_force: the record closes no cycle and does not start where the contact is "
          "unloaded: how far it had been pushed before is not known; record a whole cycle, or give "
          "--initial-state virgin if it was at rest";
@@ -243,10 +262,9 @@ std::string WhereItRepeats(const Finding& finding, const Units& units) {
 }
 
 std::string NoModelFits(const Finding& finding, const FitResult& fit, const Units& units) {
-  return fmt::format(
-      "no parameters of {} follow this record (rms {:.3g} % of the force): {}. Tc and the energy "
-      "may still be of use, sigma and alpha not",
-      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding, units));
+  return fmt::format("no parameters of {} follow this record (rms {:.3g} % of the force): {}",
+                     fit.model->name, 100 * Needed(finding, "misfit"),
+                     WhereItRepeats(finding, units));
 }
 
 std::string SystematicResidual(const Finding& finding, const FitResult& fit, const Units& units) {
@@ -282,7 +300,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 25> kSentences = {{
+constexpr std::array<Row, 26> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -300,6 +318,7 @@ constexpr std::array<Row, 25> kSentences = {{
     {"model_inadequate", ModelInadequate},
     {"slip_force_extrapolated", SlipForceExtrapolated},
     {"few_places", FewPlaces},
+    {"loop_not_seen", LoopNotSeen},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},
     {"law_undecided", LawUndecided},

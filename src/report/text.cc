@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "mindahl/identification/trend.h"
-#include "mindahl/models/steady_loop.h"
 #include "report/adequacy.h"
 #include "report/field_table.h"
 #include "report/fields.h"
@@ -363,12 +362,18 @@ std::string ToText(const Report& report) {
     if (warning.code == "no_model_fits") text += "\n" + Wrapped(warning.message, 2);
   }
   const identification::ResidualStatistics& residuals = fit.residuals;
+  // A share of what is not known would say it all the same.
+  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
+  const bool is_known =
+      slip_force != nullptr &&
+      slip_force->identifiability != identification::Identifiability::kNotIdentifiable;
+  const std::string share =
+      is_known ? fmt::format(" ({:.3g} % of Tc)", 100 * residuals.normalized_rms) : "";
   text += fmt::format(
-      "\nresiduals: rms {:.4g} {} ({:.3g} % of Tc), largest {:.4g} {}, R² {:.6f}, Durbin-Watson "
-      "{:.2f},\n           {:.0f} effective samples of {}\n",
-      residuals.rms, units.force, 100 * residuals.normalized_rms, residuals.max_abs, units.force,
-      residuals.r_squared, residuals.durbin_watson, residuals.effective_samples,
-      samples - left_out);
+      "\nresiduals: rms {:.4g} {}{}, largest {:.4g} {}, R² {:.6f}, Durbin-Watson {:.2f},\n"
+      "           {:.0f} effective samples of {}\n",
+      residuals.rms, units.force, share, residuals.max_abs, units.force, residuals.r_squared,
+      residuals.durbin_watson, residuals.effective_samples, samples - left_out);
   double repeatable = 0.0;
   for (const RecordFit& record : fit.records) {
     repeatable = std::max(repeatable, record.structure.repeatable_share);
@@ -385,11 +390,17 @@ std::string ToText(const Report& report) {
   if (fit.outliers > 0) {
     text += fmt::format("           {} outliers count less than half\n", fit.outliers);
   }
+  if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
+    return text + "\n" +
+           Wrapped("no loop of the model, and no contact: the model does not describe this record",
+                   2) +
+           NotesText(report);
+  }
   text += fmt::format("\nloop: {}\n      energy per cycle {:.5g} J of the model",
                       SlipText(loop, units), loop.model_energy);
-  text += loop.gross_slip_displacement
+  text += loop.gross_slip_energy_ratio
               ? fmt::format(", gross slip from an energy ratio of {:.4g}\n",
-                            models::GrossSlipEnergyRatio(fit.law.shape_exponent))
+                            *loop.gross_slip_energy_ratio)
               : "\n";
   text += LawText(report);
   if (report.is_torsional()) {

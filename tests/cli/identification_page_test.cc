@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identification/inference/departures.h"
+#include "identification/inference/irregularities.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
 #include "support/contract.h"
@@ -78,6 +79,16 @@ TEST(IdentificationPage, HasARowForEveryDepartureAndNoOther) {
                                    by_sample, departure.meaning, option));
   }
   EXPECT_EQ(RowsOf("Departures"), expected);
+}
+
+TEST(IdentificationPage, HasARowForEveryIrregularityAndNoOther) {
+  Rows expected;
+  for (const Irregularity& row : Irregularities()) {
+    const std::string option = row.option.empty() ? "" : fmt::format("`{}`", row.option);
+    expected.push_back(
+        fmt::format("| `{}` | {} | {} | {} |", row.code, row.unit, row.meaning, option));
+  }
+  EXPECT_EQ(RowsOf("Irregularities"), expected);
 }
 
 }  // namespace

@@ -57,6 +57,15 @@ TEST(Units, AnglesAndTorquesAreTold) {
   EXPECT_FALSE(TorqueUnit("m"));
 }
 
+TEST(Units, PressuresAreKnownForWhatTheyAreNot) {
+  for (const char* symbol : {"bar", "mbar", "Pa", "hPa", "kPa", "MPa", "GPa", "psi"}) {
+    EXPECT_TRUE(IsPressureUnit(symbol)) << symbol;
+    EXPECT_FALSE(ForceUnit(symbol)) << symbol;
+  }
+  EXPECT_FALSE(IsPressureUnit("N"));
+  EXPECT_FALSE(IsPressureUnit("mpa"));
+}
+
 TEST(Units, AKipIsAThousandPounds) {
   EXPECT_DOUBLE_EQ(ForceUnit("kip")->ToSi(1.0), 1000 * ForceUnit("lbf")->ToSi(1.0));
 }

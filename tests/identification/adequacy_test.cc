@@ -234,6 +234,77 @@ TEST(Adequacy, LagOfTwoSamplesIsTheFirstOfTheCauses) {
   }
 }
 
+TEST(Adequacy, WherePartsOfARecordDisagreeIntervalsCoverThem) {
+  // The contact's force grows by a tenth in the course of the record, or from the narrow strokes to
+  // the wide ones: Tc and σ of the parts are 5 % to either side of the mean.
+  constexpr double kGrowth = 0.1;
+  constexpr double kKnown = 0.9;  // first order leaves a tenth of a tenth
+  const auto varied = [](bool by_amplitude) {
+    Record record;
+    for (int i = 0; i <= 6 * kCycle; ++i) {
+      const double share = by_amplitude ? (i / kCycle) % 2 : i / (6.0 * kCycle);
+      const double narrower = by_amplitude && share == 0 ? 0.6 : 1.0;
+      record.displacement.push_back(narrower * kReach * std::sin(kOmega * kStep * i));
+      record.force.push_back(1 + kGrowth * (share - 0.5));
+    }
+    const std::vector<double> force = Respond(Model("mindlin-dahl"), kLaw, record.displacement);
+    Generator generator(5);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.force[i] = record.force[i] * force[i] + kNoise * Normal(generator);
+    }
+    return record;
+  };
+  for (const bool by_amplitude : {false, true}) {
+    const char* code = by_amplitude ? "amplitude_dependence" : "running_in";
+    SCOPED_TRACE(code);
+    const FitResult fit = Fitted(varied(by_amplitude));
+    const Cause* cause = Find(fit, code);
+    ASSERT_NE(cause, nullptr);
+    EXPECT_NEAR(cause->size, kGrowth, (1 - kKnown) * kGrowth);
+    for (const auto& [name, mean] : {std::pair{"sigma", kLaw.tangential_stiffness},
+                                     std::pair{"slip_force", kLaw.slip_force}}) {
+      const ParameterEstimate& estimate = *fit.Find(name);
+      ASSERT_TRUE(estimate.lower95 && estimate.upper95) << name;
+      EXPECT_LE(*estimate.lower95, mean * (1 - kKnown * kGrowth / 2)) << name;
+      EXPECT_GE(*estimate.upper95, mean * (1 + kKnown * kGrowth / 2)) << name;
+    }
+  }
+}
+
+TEST(Adequacy, OfAForceThatIsAveragedIsASmoothing) {
+  // Over five readings: the variance of the window is 2 samples².
+  const Record sharp = Alone();
+  Record record = sharp;
+  for (std::size_t i = 2; i + 2 < record.size(); ++i) {
+    record.force[i] = (sharp.force[i - 2] + sharp.force[i - 1] + sharp.force[i] +
+                       sharp.force[i + 1] + sharp.force[i + 2]) /
+                      5;
+  }
+  Generator generator(7);
+  for (double& force : record.force) force += 0.2 * kNoise * Normal(generator);
+  const FitResult fit = Fitted(record);
+  const Cause* cause = Find(fit, "smoothing");
+  ASSERT_NE(cause, nullptr);
+  EXPECT_EQ(cause->unit, "s");
+  // The fourth derivative, which first order leaves, is large after a reversal.
+  EXPECT_NEAR(cause->size / (std::sqrt(2.0) * kStep), 1.0, 0.2);
+}
+
+TEST(Adequacy, OfADisplacementThatIsReadLessOftenNamesIt) {
+  constexpr std::size_t kEvery = 4;
+  Record record = Alone();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.displacement[i] = record.displacement[i - i % kEvery];
+  }
+  Generator generator(7);
+  for (double& force : record.force) force += 0.2 * kNoise * Normal(generator);
+  const FitResult fit = Fitted(record);
+  const Cause* cause = Find(fit, "held_displacement");
+  ASSERT_NE(cause, nullptr);
+  EXPECT_EQ(cause->unit, "-");
+  EXPECT_NEAR(cause->size, 1.0, 0.3) << "all of the way, and the turns, which no reading shows";
+}
+
 TEST(Adequacy, OfARecordTooShortForAnyCauseIsNotDoubted) {
   const History displacement = Cycling(Wave::kSine, kReach, 1.0, 12);
   Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));

@@ -92,9 +92,11 @@ struct Contact {
 struct Departed {
   const Contact& contact;
   const Motion& motion;
-  double middle;  // [m] of the motion
-  double whole;   // [s], of the first record
-  double peak;    // [N], the largest force of all records
+  double middle;     // [m] of the motion
+  double whole;      // [s], of the first record
+  double peak;       // [N], the largest force of all records
+  double narrowest;  // [m] of the strokes of all records, half their way
+  double widest;     // [m]
 
   [[nodiscard]] std::size_t size() const { return motion.displacement.size(); }
 
@@ -117,6 +119,25 @@ struct Departed {
     return contact.Force(displacement, function(contact.unloaded));
   }
 };
+
+/// Half the way [m] of the stroke of each sample, from one turn to the next; cut ones, at the ends,
+/// count as their neighbours.
+std::vector<double> HalfWays(const History& displacement) {
+  std::vector<std::size_t> turns;
+  for (std::size_t i = 1; i + 1 < displacement.size(); ++i) {
+    const double before = displacement[i] - displacement[i - 1];
+    const double after = displacement[i + 1] - displacement[i];
+    if (before * after < 0) turns.push_back(i);
+  }
+  std::vector<double> ways;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    const auto passed = static_cast<std::size_t>(
+        std::ranges::count_if(turns, [i](std::size_t turn) { return turn < i; }));
+    const std::size_t stroke = std::clamp<std::size_t>(passed, 1, turns.size() - 1);
+    ways.push_back(std::abs(displacement[turns[stroke]] - displacement[turns[stroke - 1]]) / 2);
+  }
+  return ways;
+}
 
 using Simulate = std::function<std::vector<double>(const Departed&, double size)>;
 
@@ -232,6 +253,14 @@ std::vector<double> Late(const Departed& departed, double lag) {
   return late;
 }
 
+/// Read as often before its time as after it: a window with the variance of the size.
+std::vector<double> Averaged(const Departed& departed, double variance) {
+  std::vector<double> mean = Late(departed, std::sqrt(variance));
+  const std::vector<double> early = Late(departed, -std::sqrt(variance));
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = (mean[i] + early[i]) / 2;
+  return mean;
+}
+
 double Differentiated(double time, double duration, int order) {
   const double step = 1e-4 * duration;
   const auto at = [&](int k) { return MotionAt(time + k * step, duration); };
@@ -284,6 +313,10 @@ struct Case {
 /// Differences of the motion err by the square of a step of 0.035 of its third harmonic, where
 /// steps are uneven by their difference: a fifth of that.
 constexpr double kDifferences = 0.02;
+
+/// A second difference over two steps to either side errs by the square of 0.07 of the motion's
+/// third harmonic, and the force after a reversal has three times as high ones in it.
+constexpr double kSecondDifferences = 0.05;
 
 std::vector<Case> Cases() {
   const auto made = [](auto function) -> Simulate {
@@ -366,6 +399,17 @@ std::vector<Case> Cases() {
       {"force_of_position", 1, 1, made([](auto&, double size, double force, double x, double) {
          return force + size * kSlipForce * x * x * x;
        })},
+      {"smoothing", 0, kDuration * kDuration, Averaged, kSecondDifferences},
+      {"amplitude_dependence", 0, 1,
+       [](const Departed& departed, double size) {
+         std::vector<double> force = departed.contact.Force(departed.motion.displacement);
+         const std::vector<double> ways = HalfWays(departed.motion.displacement);
+         const double range = departed.widest - departed.narrowest;
+         for (std::size_t i = 0; i < force.size(); ++i) {
+           force[i] *= 1 + size * ((ways[i] - departed.narrowest) / range - 0.5);
+         }
+         return force;
+       }},
   };
 }
 
@@ -428,10 +472,18 @@ TEST_P(DepartureColumn, IsTheChangeOfTheForceByItsSize) {
       peak = std::max(peak, std::abs(force));
     }
   }
+  double narrowest = kLength;
+  double widest = 0.0;
+  for (const Motion& motion : motions) {
+    const std::vector<double> ways = HalfWays(motion.displacement);
+    narrowest = std::min(narrowest, std::ranges::min(ways));
+    widest = std::max(widest, std::ranges::max(ways));
+  }
   std::vector<Departed> departed;
   std::vector<Record> records;
   for (const Motion& motion : motions) {
-    departed.push_back({contact, motion, Middle(motion), motions.front().time.back(), peak});
+    departed.push_back(
+        {contact, motion, Middle(motion), motions.front().time.back(), peak, narrowest, widest});
     Record& record = records.emplace_back();
     record.displacement = motion.displacement;
     record.time = motion.time;
@@ -614,6 +666,56 @@ TEST(Departures, OfAForceThatFollowsTheLoadFollowItToo) {
       EXPECT_NEAR(loaded.columns(row, d), ratio[i] * plain.columns(row, c), kRounding) << code;
     }
   }
+}
+
+TEST(Departures, OfADisplacementThatIsHeldAreTheWayThatItMisses) {
+  // Read anew with every fourth sample, while the contact follows a straight line to the next.
+  constexpr std::size_t kEvery = 4;
+  constexpr double kShare = 1e-6;  // of that way: second order is as much less than the first
+  for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
+    SCOPED_TRACE(state == InitialState::kVirgin ? "virgin" : "steady");
+    Record record;
+    // The turns are readings: what the first of the repeats is.
+    const History readings = testing::Cycling(testing::Wave::kSine, kLength, 2.25, 40);
+    History missed;
+    for (std::size_t i = 0; i + 1 < readings.size(); ++i) {
+      for (std::size_t k = 0; k < kEvery; ++k) {
+        record.displacement.push_back(readings[i]);
+        missed.push_back((readings[i + 1] - readings[i]) * static_cast<double>(k) / kEvery);
+      }
+    }
+    record.displacement.push_back(readings.back());
+    missed.push_back(0.0);
+    const Contact contact{&Model("mindlin-dahl"), kSticking, state, 0.0};
+    record.force = contact.Force(record.displacement);
+    Stages stages(record, {}, state);
+    const DepartureColumns columns = ColumnsOfDepartures(stages.problem, TrueTheta(stages, contact),
+                                                         stages.buffers.response, 99);
+    const std::size_t c = PlaceOf(columns, "held_displacement");
+    ASSERT_LT(c, columns.of.size());
+    History seen = record.displacement;
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] += kShare * missed[i];
+    const std::vector<double> force = contact.Force(seen);
+    double worst = 0.0;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const double expected = (force[i] - record.force[i]) / kShare;
+      const double found =
+          columns.columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) /
+          columns.unit_of_size[c] * stages.data.force;
+      largest = std::max(largest, std::abs(expected));
+      worst = std::max(worst, std::abs(found - expected));
+    }
+    EXPECT_GT(largest, 0.01 * kSlipForce);
+    EXPECT_LT(worst / largest, 1e-3);
+  }
+}
+
+TEST(Departures, OfTheDisplacementsRepeatsAndOfTheAmplitudeNeedThem) {
+  Stages stages(Complete());
+  const DepartureColumns columns = ColumnsOf(stages);
+  EXPECT_EQ(PlaceOf(columns, "held_displacement"), columns.of.size()) << "nothing is repeated";
+  EXPECT_EQ(PlaceOf(columns, "amplitude_dependence"), columns.of.size()) << "all strokes are alike";
 }
 
 TEST(Departures, AreNotLookedForWhereTheyAreFitted) {

@@ -120,6 +120,11 @@ TEST(FitOptions, EachRecordThatCannotBeFittedIsRefusedWithTheReason) {
             "2 samples are too few for 3 free parameters: record more or fix some");
   EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0}, {0, 1, -1})}, {}),
             "3 samples are too few for 5 free parameters: record more or fix some");
+  FitOptions skipping;
+  skipping.preparation.skip_cycles = 2;
+  EXPECT_EQ(RefusalOf({MakeRecord({0, 1, 0, 1, 0, 0.5}, {0, 1, -1, 1, -1, 0})}, skipping),
+            "2 samples are too few for 5 free parameters; of 6 that were read 4 are left out: 4 in "
+            "the cycles that are skipped: record more or fix some");
   EXPECT_THAT(RefusalOf({MakeRecord({0, 1, 0}, {0, 1})}, {}), HasSubstr("force"));
   Record broken = Loop();
   broken.force[17] = std::numeric_limits<double>::quiet_NaN();

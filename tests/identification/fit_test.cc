@@ -103,6 +103,36 @@ TEST(Fit, MonotoneLoadingFromTheOriginIsEnough) {
   }
 }
 
+TEST(Fit, OneStrokeFromRestIsDrawnFromItsFirstSampleWhereverTheFileHasItsZeros) {
+  // As long as the first slip is away from zero in both channels, and with an offset alone.
+  History displacement;
+  for (int i = 0; i <= 80; ++i) displacement.push_back(kReach * i / 80);
+  const Record at_zero =
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  for (const auto& [x, force] : {std::pair{5 * kReach, -3 * kLaw.slip_force},
+                                 std::pair{-0.2 * kReach, 0.0}, std::pair{0.0, kLaw.slip_force}}) {
+    SCOPED_TRACE(x);
+    const Record record = testing::Shifted(at_zero, x, force);
+    const FitResult fit = FitOne(record);
+    EXPECT_TRUE(Recovers(fit, kLaw, kNoiseFree));
+    EXPECT_NEAR(fit.Find("force_offset")->value, force, kNoiseFree * kLaw.slip_force);
+    EXPECT_EQ(fit.Find("displacement_offset")->status, ParameterStatus::kFixed);
+    EXPECT_NEAR(fit.Find("displacement_offset")->value, x, kNoiseFree * kReach);
+    // Nothing in the record says that it was at rest there.
+    const Finding* finding = fit.FindFinding("unknown_past");
+    ASSERT_NE(finding, nullptr);
+    EXPECT_EQ(finding->kind, "one_stroke");
+    for (const char* name : {"sigma", "alpha", "slip_force"}) {
+      EXPECT_EQ(fit.Find(name)->identifiability, Identifiability::kNotIdentifiable) << name;
+    }
+    FitOptions at_rest;
+    at_rest.initial_state = InitialState::kVirgin;
+    const FitResult known = FitOne(record, at_rest);
+    EXPECT_EQ(known.FindFinding("unknown_past"), nullptr);
+    EXPECT_EQ(known.Find("slip_force")->identifiability, Identifiability::kIdentifiable);
+  }
+}
+
 TEST(Fit, DriftOverTimeOrSamplesIsRecovered) {
   constexpr double kDriftPerSecond = -3.0;
   Record record = Loop();

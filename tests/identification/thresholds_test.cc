@@ -110,6 +110,12 @@ bool IsWide(const Thresholds& thresholds, std::size_t parameter, double lower, d
   return !FindWideIntervals(result, thresholds).empty();
 }
 
+bool LoopIsSeen(const Thresholds& thresholds, double r_squared) {
+  FitResult result = Made();
+  result.residuals.r_squared = r_squared;
+  return !FindUnseenLoop(result, thresholds);
+}
+
 bool WayIsTooLong(const Thresholds& thresholds, double excess) {
   FitResult result = Made();
   result.records[0].facts.closed = true;
@@ -713,6 +719,10 @@ const std::map<std::string_view, Case>& Cases() {
       {"rival_law",
        [](const Thresholds& t) {
          return LawIsUndecided(-kBelow * 10, t) && !LawIsUndecided(kAbove * 10, t);
+       }},
+      {"seen_loop",
+       [](const Thresholds& t) {
+         return !LoopIsSeen(t, kBelow * 0.1) && LoopIsSeen(t, kAbove * 0.1);
        }},
   };
   return cases;

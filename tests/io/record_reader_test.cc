@@ -252,6 +252,14 @@ INSTANTIATE_TEST_SUITE_P(
             "UnknownUnitInHeader", "\nt,x [m],F [V]\n1,2,3\n", Choose({}),
             "loop.csv:2:3: the unit 'V' of 'F [V]' (column 3) is not known for the force: must be "
             "one of N, mN, uN, kN, MN, lbf, kgf, kip, or choose the unit"},
+        Fault{"PressureInHeader", "x [m],p [bar]\n1,2\n", Choose({}, {"p", ""}),
+              "loop.csv:1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force: choose "
+              "another column; a pressure times the area that it acts on is a force beside the "
+              "contact's, which --covariate takes"},
+        Fault{"PressureAsAChosenUnit", "x [m],F\n1,2\n", Choose({}, {"", "MPa"}),
+              "loop.csv: 'F' (column 2) is a pressure, in MPa, and no force: choose another "
+              "column; a pressure times the area that it acts on is a force beside the contact's, "
+              "which --covariate takes"},
         Fault{"TorqueAgainstALength", "\nt,x [m],Torque [Nm]\n1,2,3\n", Choose({}),
               "loop.csv: 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in Nm do not go "
               "together: a torque goes with an angle, a force with a length; choose other columns, "

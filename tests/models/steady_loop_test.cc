@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -207,6 +208,65 @@ TEST(SteadyLoop, GrossSlipStartsAtTheFrettingCommunitysRatio) {
     EXPECT_NEAR(SteadyLoopEnergy(model, law, amplitude) /
                     (4 * amplitude * SteadyPeakForce(model, law, amplitude)),
                 GrossSlipEnergyRatio(alpha), kRounding);
+  }
+}
+
+TEST(SteadyLoop, SlipsGrosslyFromTheAmplitudeThatItsBranchesReachSlipAt) {
+  constexpr double kRounding = 1e-14;
+  for (const double alpha : {0.0, 0.1, 1.0 / 3.0, 0.5, 0.9}) {
+    const BranchLaw law{4e7, alpha, 40.0};
+    const double limit = GrossSlipDisplacement(law);
+    EXPECT_NEAR(SteadyGrossSlipAmplitude(Model("mindlin-dahl"), law) / limit, 1, kRounding);
+    EXPECT_NEAR(SteadyGrossSlipAmplitude(Model("dahl"), law) / limit, std::exp2(-alpha), kRounding);
+    if (alpha == 0.0) continue;  // a corner: just below it the force is as much less
+    // By the loops themselves: below it they stay below Tc, from it on they do not.
+    for (const char* name : {"mindlin-dahl", "dahl"}) {
+      const double amplitude = SteadyGrossSlipAmplitude(Model(name), law);
+      EXPECT_LT(SteadyPeakForce(Model(name), law, 0.9 * amplitude), law.slip_force) << name;
+      EXPECT_EQ(SteadyPeakForce(Model(name), law, 1.001 * amplitude), law.slip_force) << name;
+    }
+  }
+  EXPECT_TRUE(std::isinf(SteadyGrossSlipAmplitude(Model("dahl"), {4e7, 1.0, 40.0})));
+}
+
+TEST(SteadyLoop, EnergyRatioAtTheOnsetHasTheRigInIt) {
+  constexpr double kRounding = 1e-13;
+  const BranchLaw law{4e7, 1.0 / 3, 40.0};
+  const auto& model = Model("mindlin-dahl");
+  EXPECT_NEAR(GrossSlipEnergyRatio(model, law, {}), 0.2, kRounding);
+  constexpr double kRig = 2e7;  // [N/m]
+  const double limit = GrossSlipDisplacement(law);
+  const double travel = law.slip_force / kRig;
+  EXPECT_NEAR(GrossSlipEnergyRatio(model, law, {kRig}), 0.2 * limit / (limit + travel), kRounding);
+  EXPECT_EQ(GrossSlipEnergyRatio(model, {4e7, 1.0, 40.0}, {}), 1.0);
+}
+
+TEST(SteadyLoop, EnergyRatioAtTheOnsetIsThatOfASimulatedLoop) {
+  // ∮ T dδ by trapezia over a cycle of 4000 steps errs by some 1e-6 of it.
+  constexpr double kTrapezia = 1e-4;
+  constexpr int kSteps = 4000;
+  constexpr double kTwoPi = 6.283185307179586;
+  const BranchLaw law{4e7, 1.0 / 3, 40.0};
+  for (const char* name : {"mindlin-dahl", "dahl"}) {
+    for (const double rig : {std::numeric_limits<double>::infinity(), 2e7}) {
+      const double contact = SteadyGrossSlipAmplitude(Model(name), law);
+      std::vector<double> displacement;
+      for (int i = 0; i <= 6 * kSteps; ++i) {  // five cycles to be steady, and one
+        displacement.push_back(contact * std::sin(kTwoPi * (i % kSteps) / kSteps));
+      }
+      const std::vector<double> force = testing::Respond(Model(name), law, displacement);
+      double energy = 0.0;
+      double peak = 0.0;
+      for (std::size_t i = 5 * kSteps + 1; i < force.size(); ++i) {
+        energy += (force[i] + force[i - 1]) / 2 * (displacement[i] - displacement[i - 1]);
+        peak = std::max(peak, std::abs(force[i]));
+      }
+      // A spring keeps no energy: with it X alone is larger.
+      const double whole = contact + peak / rig;
+      EXPECT_NEAR(GrossSlipEnergyRatio(Model(name), law, {rig}) / (energy / (4 * whole * peak)), 1,
+                  kTrapezia)
+          << name << " behind " << rig << " N/m";
+    }
   }
 }
 

@@ -60,11 +60,14 @@ Report ReportWith(AdequacyVerdict verdict, std::vector<Cause> causes) {
   return MakeReport(InputWith(verdict, std::move(causes)));
 }
 
-/// Codes, units and options in the table of the departures.
+/// Codes in the tables of departures and irregularities.
 std::set<std::string> TriedCodes() {
-  std::ifstream in(std::filesystem::path(MINDAHL_SOURCE_DIR) /
-                   "src/identification/inference/departures.cc");
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  std::string text;
+  for (const char* file : {"departures.cc", "irregularities.cc"}) {
+    std::ifstream in(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src/identification/inference" /
+                     file);
+    text.append(std::istreambuf_iterator<char>(in), {});
+  }
   return testing::Matches(text, "\\.code = \"([a-z_]+)\"");
 }
 
@@ -118,6 +121,27 @@ TEST(AdaptedCauses, OfferNoOptionThatNeedsATimeWhereThereIsNone) {
   EXPECT_EQ(causes[0].option, "");
   EXPECT_EQ(WhyNoOption(causes[0]), "needs a column of the time");
   EXPECT_EQ(causes[1].option, "--drift");
+}
+
+TEST(AdequacyText, OfAnInadequateModelHasNothingOfItsCurve) {
+  const std::string text = ToText(ReportWith(AdequacyVerdict::kInadequate, {}));
+  for (const char* of_the_curve : {"J of the model", "energy ratio of", "σ = 8a/G*", "Mindlin's"}) {
+    EXPECT_THAT(text, Not(HasSubstr(of_the_curve)));
+  }
+  EXPECT_THAT(text, HasSubstr("no loop of the model, and no contact"));
+  EXPECT_THAT(ToText(ReportWith(AdequacyVerdict::kDoubtful, {})), HasSubstr("energy ratio of"));
+}
+
+TEST(AdequacyText, SharesOfTcAreThoseOfATcThatIsKnown) {
+  ReportInput input = InputWith(AdequacyVerdict::kAdequate, {});
+  for (ParameterEstimate& estimate : input.fit.parameters) {
+    estimate.identifiability = Identifiability::kIdentifiable;
+  }
+  EXPECT_THAT(ToText(MakeReport(input)), HasSubstr("% of Tc"));
+  for (ParameterEstimate& estimate : input.fit.parameters) {
+    estimate.identifiability = Identifiability::kNotIdentifiable;
+  }
+  EXPECT_THAT(ToText(MakeReport(std::move(input))), Not(HasSubstr("% of Tc")));
 }
 
 TEST(AdequacyText, IsTheFirstLineOfTheReport) {

@@ -61,6 +61,26 @@ TEST(LoopDescription, JudgesTheSlipByTheContactsOwnAmplitude) {
   EXPECT_EQ(Describe(kMindlin, 2.9e-6, 3e7).regime, SlipRegime::kGross);
 }
 
+TEST(LoopDescription, LimitsOfDahlsOwnLawAreItsOwn) {
+  // Its steady loop slips from 2^−α·δc on, 1.19 µm.
+  const auto regime = [](double amplitude) {
+    FitResult fit = MadeFit({MadeRecord(amplitude)}, amplitude, kMindlin);
+    fit.model = FindFrictionModel("dahl");
+    return DescribeLoop(fit);
+  };
+  EXPECT_EQ(regime(1.17e-6).regime, SlipRegime::kPartial);
+  EXPECT_EQ(regime(1.21e-6).regime, SlipRegime::kGross);
+  EXPECT_NEAR(*regime(1.21e-6).gross_slip_displacement / 1.5e-6, std::exp2(-1.0 / 3), kBisection);
+}
+
+TEST(LoopDescription, EnergyRatioOfSlipHasTheTravelOfTheRigInIt) {
+  constexpr double kRounding = 1e-13;
+  EXPECT_NEAR(*Describe(kMindlin, 1.6e-6).gross_slip_energy_ratio, 0.2, kRounding);
+  // 40 N on 3e7 N/m beside δc = 1.5 µm.
+  EXPECT_NEAR(*Describe(kMindlin, 1.6e-6, 3e7).gross_slip_energy_ratio,
+              0.2 * 1.5e-6 / (1.5e-6 + 40 / 3e7), kRounding);
+}
+
 TEST(LoopDescription, RigidRigTakesNothing) {
   EXPECT_EQ(Describe(kMindlin, 1.1e-6).contact_amplitude, 1.1e-6);
 }

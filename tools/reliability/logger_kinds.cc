@@ -90,6 +90,14 @@ Loop HeldForce(const Truth& truth, std::size_t level, Draws& draws) {
   return {record, AllOf(truth.law)};
 }
 
+/// A slow converter: the displacement is read anew with every few readings of the force.
+Loop SampledAndHeld(const Truth& truth, std::size_t level, Draws& draws) {
+  Record record = Measured(truth, draws);
+  const auto every = static_cast<std::size_t>(At(level, {2, 4, 8}));
+  for (std::size_t i = 0; i < record.size(); i += every) Hold(record.displacement, i, every);
+  return {record, AllOf(truth.law)};
+}
+
 Loop SwappedRows(const Truth& truth, std::size_t level, Draws& draws) {
   Record record = Measured(truth, draws);
   const std::size_t swaps = CountOf(record, At(level, {0.005, 0.02, 0.05}));
@@ -155,6 +163,8 @@ std::vector<Kind> LoggerKinds() {
        "50 cycles of 200 samples; 0.2, 1, 5 % read 0, 0", false},
       {"10,000 rows of noisy displacement", Half::kHeldOut, LongWithNoise,
        "50 cycles of 200 samples; 0.3, 1, 3 % of X, white", false},
+      {"displacement sampled and held", Half::kDevelopment, SampledAndHeld,
+       "read anew with every 2nd, 4th, 8th reading of the force"},
   };
 }
 

@@ -28,6 +28,9 @@ std::optional<Unit> ForceUnit(std::string_view symbol);
 /// N m, mN m, uN m/µN m, kN m, N mm, lbf in, lbf ft; "Nm", "N·m" and "N*m" are N m.
 std::optional<Unit> TorqueUnit(std::string_view symbol);
 
+/// Pa, hPa, kPa, MPa, GPa, mbar, bar, psi, kgf/cm2: of a pressure, which no quantity of mindahl is.
+bool IsPressureUnit(std::string_view symbol);
+
 /// s, ms, us/µs, min.
 std::optional<Unit> TimeUnit(std::string_view symbol);
 

@@ -30,7 +30,10 @@ class CsvTable {
 
   /// The numbers of a column, one a row, valid as long as the table.
   /// @param column  from 0, < columns()
-  /// @throws InputError at the first cell that is missing or is not a number
+  /// @throws InputError at the first cell that is missing or is not a number, and at the first
+  /// whose
+  ///   decimal mark separates thousands beyond doubt: all others of the column are whole, below
+  ///   1000, and the column is smooth without the mark only
   [[nodiscard]] std::span<const double> Numbers(std::size_t column) const;
 
   /// Likewise, with NaN where a cell is missing or is not a number.
@@ -44,6 +47,7 @@ class CsvTable {
  private:
   friend CsvTable ParseCsvTable(std::string text, std::string file);
   [[noreturn]] void ThrowNotANumber(std::size_t row, std::size_t column) const;
+  void RequireNoThousands(std::size_t column) const;
 
   std::string file_;
   std::string text_;

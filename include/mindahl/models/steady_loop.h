@@ -30,6 +30,22 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
 double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
                         double amplitude);
 
+/// Least amplitude [m] of the contact whose steady loop slips grossly: δc = Tc/(σ(1−α)) of a Masing
+/// law, 2^−α·δc of Dahl's own, whose branches set out steeper after a reversal. Infinite for α
+/// >= 1.
+/// @throws InvalidArgument for an invalid law
+/// Relative error 4 ε.
+double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law);
+
+/// Energy ratio A = W/(4·X·T*) at the onset of gross slip, X that of contact and rig together:
+///   α/(2−α)·X_s/(X_s + Tc/k_r),  X_s = SteadyGrossSlipAmplitude
+/// of either kind of law, since a steady loop of one amplitude is the same curve for both
+/// (docs/theory.md §6); 1 for α >= 1, where slip is only approached.
+/// @throws InvalidArgument for an invalid law
+/// Relative error 8 ε.
+double GrossSlipEnergyRatio(const FrictionModel& model, const BranchLaw& law,
+                            const SeriesSpring& rig);
+
 /// Energy ratio A = W/(4·X·T*) at the onset of gross slip of a Masing law: α/(2−α), 0.2 for
 /// Mindlin, the fretting community's limit between partial and gross slip (Fouvry). NaN-free: 1 for
 /// α >= 1, where slip is only approached. Relative error below 1 ε.

@@ -23,8 +23,11 @@ struct LoopDescription {
   /// A = W/(4XT*) [-] with the measured X and T* and the measured W, or the model's where the
   /// record closes no cycle; empty where X or T* is 0.
   std::optional<double> energy_ratio;
-  /// δc [m] of the fitted law; empty for α >= 1, which only approaches the slip force.
+  /// Amplitude [m] of the contact from which the fitted law's steady loop slips grossly: δc,
+  /// 2^−α·δc of Dahl's own law; empty for α >= 1, which only approaches the slip force.
   std::optional<double> gross_slip_displacement;
+  /// Energy ratio [-] at that amplitude, the rig's travel in X; likewise.
+  std::optional<double> gross_slip_energy_ratio;
   double slip_force_share = 0.0;    ///< T*/Tc [-] of the law
   double stick_radius_ratio = 0.0;  ///< c/a [-] of a Mindlin contact under T*; 0 in gross slip
   SlipRegime regime = SlipRegime::kPartial;

@@ -27,6 +27,11 @@ std::string OptionOf(const Problem& problem, const DepartureFit& fit) {
   return fmt::format("--covariate {}{}{}", quote, name, quote);
 }
 
+double SizeOf(const DepartureFit& fit) {
+  if (!Departures()[fit.departure].is_square) return fit.size;
+  return std::copysign(std::sqrt(std::abs(fit.size)), fit.size);
+}
+
 }  // namespace
 
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds) {
@@ -60,7 +65,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
     Cause& cause = adequacy.causes.emplace_back(Cause{.code = departure.code,
                                                       .delta_aicc = fit.delta_aicc,
                                                       .explains = fit.explains,
-                                                      .size = fit.size,
+                                                      .size = SizeOf(fit),
                                                       .unit = fit.unit,
                                                       .option = OptionOf(problem, fit)});
     for (std::size_t k = 0; k < reported.size(); ++k) {
@@ -71,6 +76,28 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
   }
   if (IsDoubtful(test, thresholds)) adequacy.verdict = AdequacyVerdict::kDoubtful;
   return adequacy;
+}
+
+void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
+                       const Thresholds& thresholds, Adequacy& adequacy) {
+  for (const IrregularityFit& fit : found) {
+    if (fit.p_value >= thresholds.cause || fit.delta_aicc >= 0) continue;
+    const auto tried = static_cast<double>(Irregularities().size());
+    adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tried * fit.p_value));
+    const Irregularity& irregularity = Irregularities()[fit.irregularity];
+    adequacy.causes.push_back(
+        {.code = irregularity.code,
+         .delta_aicc = fit.delta_aicc,
+         .explains = fit.explains,
+         .size = irregularity.unit == "N" ? fit.size * problem.data->force : fit.size,
+         .unit = irregularity.unit,
+         .option = std::string(irregularity.option)});
+    adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
+  std::ranges::stable_sort(adequacy.causes, {}, &Cause::delta_aicc);
+  const double best = adequacy.causes.empty() ? 0.0 : adequacy.causes.front().explains;
+  std::erase_if(adequacy.causes,
+                [&](const Cause& cause) { return cause.explains < thresholds.rival_cause * best; });
 }
 
 bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {

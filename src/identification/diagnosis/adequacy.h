@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "identification/inference/adequacy_test.h"
+#include "identification/inference/irregularities.h"
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
@@ -21,6 +22,11 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
                        std::span<const DepartureFit> causes, const Thresholds& thresholds,
                        std::span<const ParameterEstimate> estimates);
+
+/// Adds the irregularities that noise alone does not make to the causes, the best first, without
+/// those that another beats clearly, and doubts the record where one is there.
+void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
+                       const Thresholds& thresholds, Adequacy& adequacy);
 
 /// Does the record hardly tell whether the contact was virgin or in a steady loop?
 /// @param delta_aicc  of the two

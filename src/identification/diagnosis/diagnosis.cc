@@ -172,17 +172,27 @@ std::optional<Finding> FindExtrapolated(const FitResult& result, const Threshold
 
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds) {
+  bool is_assumed = false;
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     if (record.reversals.size() >= 2) return std::nullopt;
-    const double unloaded = solution.theta[problem.parameters.PositionOf("displacement_offset", r)];
+    const std::size_t offset = problem.parameters.PositionOf("displacement_offset", r);
+    is_assumed = is_assumed || problem.parameters[offset].assumed;
+    if (problem.parameters[offset].assumed) continue;
+    const double unloaded = solution.theta[offset];
     const auto [lowest, highest] = std::ranges::minmax(record.displacement);
     const double away = std::abs(record.displacement.front() - unloaded);
     const bool starts_unloaded = problem.state == models::InitialState::kVirgin &&
                                  away <= thresholds.starts_unloaded * (highest - lowest) / 2;
     if (starts_unloaded) return std::nullopt;
   }
-  return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}};
+  // A stroke that was cut has the slope of where it was, not of the contact at rest.
+  if (is_assumed) {
+    return Finding{.code = "unknown_past",
+                   .parameters = {"sigma", "alpha", "slip_force"},
+                   .kind = "one_stroke"};
+  }
+  return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
 }
 
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
@@ -222,6 +232,15 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
                  .parameters = {"sigma", "alpha"},
                  .numbers = {{"places", static_cast<double>(places)},
                              {"samples", static_cast<double>(samples)}}};
+}
+
+std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds) {
+  const double r_squared = result.residuals.r_squared;
+  // Where a robust loss has weighed readings down, the variance is mostly theirs.
+  if (result.outliers > 0 || r_squared >= thresholds.seen_loop) return std::nullopt;
+  return Finding{.code = "loop_not_seen",
+                 .parameters = {"sigma", "alpha", "slip_force"},
+                 .numbers = {{"r_squared", r_squared}}};
 }
 
 Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,

@@ -45,6 +45,10 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
 /// what lies between them, the turning points too, no cycle shows.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
 
+/// A loop of which so little shows beside what else is in the force that its shape and height are
+/// those of the rest.
+std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds);
+
 /// Another shape, or a rig in series.
 Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alternative,
                             const Thresholds& thresholds);

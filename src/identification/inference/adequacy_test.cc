@@ -255,8 +255,12 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
       // by the like of its square.
       constexpr double kFarthest = 3.0;
       const double step = std::clamp(fit.step[place], -kFarthest, kFarthest);
-      const double half =
-          quantile * std::min(fit.error[place], kFarthest) + std::min(step * step, kFarthest);
+      // σ and Tc are in proportion to the force; parts of the record may have their own.
+      const bool is_of_force = p == kStiffness || p == kSlipForce;
+      const double apart = Departures()[fit.departure].apart * std::abs(fit.size);
+      const double half = quantile * std::min(fit.error[place], kFarthest) +
+                          std::min(step * step, kFarthest) +
+                          (is_of_force ? std::min(apart, kFarthest) : 0.0);
       const double one = parameter.ToValue(solution.theta[p] + step - half);
       const double other = parameter.ToValue(solution.theta[p] + step + half);
       if (estimate.lower95) estimate.lower95 = std::min({*estimate.lower95, one, other});

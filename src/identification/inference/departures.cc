@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <ranges>
 
@@ -24,6 +25,9 @@ struct Place {
   double response = 0.0;     // the contact's force over the slip force
   double slope = 0.0;        // its derivative by displacement
   double load_change = 0.0;  // of the measured load, over its mean
+  double curvature = 0.0;    // of the whole force, its second derivative by time
+  double missed = 0.0;       // way since the displacement was last read anew, where it is repeated
+  double amplitude = 0.0;    // of the stroke, −½ of the narrowest to ½ of the widest
   double gain = 1.0;         // and by that at the origin of the branch
   // The branch:
   bool sets_out = false;  // on the virgin curve, the way that it was first run
@@ -64,10 +68,13 @@ enum Row : std::size_t {
   kLoad,
   kPosition,
   kCovariate,
+  kSmoothing,
+  kHeld,
+  kAmplitude,
 };
 
 // Sizes are of the first column; where there are several, the meaning says what the others are.
-constexpr std::array<Departure, 17> kDepartures = {{
+constexpr std::array<Departure, 20> kDepartures = {{
     {.code = "channel_lag",
      .meaning = "by which the force's channel is late",
      .unit = "s",
@@ -124,11 +131,13 @@ constexpr std::array<Departure, 17> kDepartures = {{
     {.code = "unequal_directions",
      .meaning = "(1 ± size)·T, + where it is in the sense of a positive displacement",
      .unit = "-",
-     .option = ""},
+     .option = "",
+     .apart = 1.0},
     {.code = "running_in",
      .meaning = "growth of the contact's force from the first record's beginning to its end",
      .unit = "-",
-     .option = ""},
+     .option = "",
+     .apart = 0.5},
     {.code = "force_saturates",
      .meaning = "lost of what is beyond nine tenths of the largest force; and T³",
      .unit = "-",
@@ -143,6 +152,21 @@ constexpr std::array<Departure, 17> kDepartures = {{
      .meaning = "C of a force C·column; each of up to 8 columns that nobody asked for",
      .unit = "N/unit",
      .option = "--covariate COL"},
+    {.code = "smoothing",
+     .meaning = "standard deviation of a window in time that the force is averaged over",
+     .unit = "s",
+     .option = "",
+     .unit_by_sample = "samples",
+     .is_square = true},
+    {.code = "held_displacement",
+     .meaning = "share of the motion between two readings of the displacement that is not read",
+     .unit = "-",
+     .option = ""},
+    {.code = "amplitude_dependence",
+     .meaning = "growth of the contact's force from the narrowest stroke to the widest",
+     .unit = "-",
+     .option = "",
+     .apart = 0.5},
 }};
 
 /// How far the branch has come, of the way to slip.
@@ -156,7 +180,7 @@ double Bulge(const Place& at) {
   return at.direction * at.reach * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
 }
 
-constexpr std::array<Column, 23> kColumns = {{
+constexpr std::array<Column, 26> kColumns = {{
     {kLag, Along::kForce, [](const Place& at) { return -at.force_rate; }},
     {kViscous, Along::kForce, [](const Place& at) { return at.velocity; }},
     {kPlateauSlope, Along::kForce, [](const Place& at) { return at.displacement; }},
@@ -193,6 +217,10 @@ constexpr std::array<Column, 23> kColumns = {{
     {kLoad, Along::kForce, [](const Place& at) { return std::abs(at.force) * at.displacement; }},
     {kPosition, Along::kForce, [](const Place& at) { return at.displacement * at.displacement; }},
     {kPosition, Along::kForce, [](const Place& at) { return std::pow(at.displacement, 3); }},
+    {kSmoothing, Along::kForce, [](const Place& at) { return at.curvature / 2; }},
+    // A turn is the first of its repeats, where nothing is missed.
+    {kHeld, Along::kBranch, [](const Place& at) { return at.slope * at.missed; }},
+    {kAmplitude, Along::kForce, [](const Place& at) { return at.force * at.amplitude; }},
 }};
 
 /// Samples that a derivative at one of them may look at: turning points that were put in between
@@ -291,6 +319,80 @@ void DeriveTwice(std::span<const double> values, std::span<const double> time,
   }
 }
 
+/// How far the motion has gone since the displacement was last read anew: what is repeated was
+/// read at the first of the repeats, and went straight on to the next reading.
+std::vector<double> MissedWay(const ScaledRecord& record, std::span<const double> time,
+                              std::span<const std::size_t> samples) {
+  std::vector<double> missed(record.size());
+  for (std::size_t k = 0; k < samples.size();) {
+    const double reading = record.displacement[samples[k]];
+    std::size_t next = k + 1;
+    while (next < samples.size() && record.displacement[samples[next]] == reading) ++next;
+    if (next == samples.size()) break;
+    const double step = record.displacement[samples[next]] - reading;
+    const double duration = time[samples[next]] - time[samples[k]];
+    for (std::size_t j = k + 1; j < next; ++j) {
+      missed[samples[j]] = step * (time[samples[j]] - time[samples[k]]) / duration;
+    }
+    k = next;
+  }
+  return missed;
+}
+
+/// Are readings of the displacement repeated often enough that it may be read less often than the
+/// force?
+bool IsDisplacementRepeated(const ScaledRecords& data, std::span<const Neighbours> neighbours) {
+  constexpr double kOften = 0.2;  // of the samples: every fifth would be one
+  std::size_t repeated = 0;
+  std::size_t all = 0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const auto& samples = neighbours[r].samples;
+    for (std::size_t k = 1; k < samples.size(); ++k, ++all) {
+      const auto& displacement = data.records[r].displacement;
+      if (displacement[samples[k]] == displacement[samples[k - 1]]) ++repeated;
+    }
+  }
+  return static_cast<double>(repeated) > kOften * static_cast<double>(all);
+}
+
+/// Half the way [units of the data] of each sample's stroke; those that the record begins and ends
+/// on count as wide as their neighbours, since they may be cut.
+std::vector<double> StrokeAmplitudes(const ScaledRecord& record) {
+  const auto& reversals = record.reversals;
+  const auto [lowest, highest] = std::ranges::minmax(record.displacement);
+  std::vector<double> amplitudes(record.size(), (highest - lowest) / 2);
+  if (reversals.size() < 2) return amplitudes;
+  for (std::size_t k = 0; k + 1 < reversals.size(); ++k) {
+    const double way =
+        std::abs(record.displacement[reversals[k + 1]] - record.displacement[reversals[k]]);
+    const std::size_t begin = k == 0 ? 0 : reversals[k] + 1;
+    const std::size_t end = k + 2 < reversals.size() ? reversals[k + 1] + 1 : record.size();
+    std::fill(amplitudes.begin() + static_cast<std::ptrdiff_t>(begin),
+              amplitudes.begin() + static_cast<std::ptrdiff_t>(end), way / 2);
+  }
+  return amplitudes;
+}
+
+/// Of all samples, on a scale from −½, the narrowest stroke, to ½, the widest; empty where strokes
+/// are as good as equal.
+std::vector<std::vector<double>> AmplitudeScale(const ScaledRecords& data) {
+  constexpr double kEqual = 0.95;  // of the widest: the same as of steady cycles
+  std::vector<std::vector<double>> scale;
+  double narrowest = std::numeric_limits<double>::infinity();
+  double widest = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    const std::vector<double>& amplitudes = scale.emplace_back(StrokeAmplitudes(record));
+    const auto [least, most] = std::ranges::minmax(amplitudes);
+    narrowest = std::min(narrowest, least);
+    widest = std::max(widest, most);
+  }
+  if (narrowest >= kEqual * widest) return {};
+  for (std::vector<double>& amplitudes : scale) {
+    for (double& a : amplitudes) a = (a - narrowest) / (widest - narrowest) - 0.5;
+  }
+  return scale;
+}
+
 /// Places of a record's samples, branches yet unknown.
 /// @param force     of the contact, over the slip force and at its load
 /// @param complete  that of the whole model
@@ -302,9 +404,11 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
   std::vector<double> velocity(count);
   std::vector<double> acceleration(count);
   std::vector<double> rate(count);
+  std::vector<double> curvature(count);
   Derive(record.displacement, time, neighbours, false, velocity);
   DeriveTwice(record.displacement, time, neighbours.samples, acceleration);
   Derive(complete, time, neighbours, true, rate);
+  DeriveTwice(complete, time, neighbours.samples, curvature);
   std::vector<Place> places(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double load = record.load_ratio.empty() ? 1.0 : record.load_ratio[i];
@@ -318,23 +422,23 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
                  .response = load != 0 ? force[i] / load : 0.0,
                  .slope = sensitivity.sample_slope[i],
                  .load_change = record.load_change.empty() ? 0.0 : record.load_change[i],
+                 .curvature = curvature[i],
                  .gain = sensitivity.sample_gain[i]};
   }
   return places;
 }
 
-/// Sets what a place has of a branch.
-/// @param response  at the branch's origin
-void PutOn(const models::Branch& branch, double response, const models::FrictionModel& model,
+/// Sets what a place has of a branch that starts at `origin`.
+void PutOn(const models::Branch& branch, const Place& origin, const models::FrictionModel& model,
            Place& at) {
   const bool virgin = models::IsVirgin(branch.start);
   at.direction = virgin ? std::copysign(1.0, at.displacement - branch.origin)
                         : static_cast<double>(branch.direction);
   at.sets_out = virgin && at.direction * branch.direction > 0;
-  const models::BranchScale scale = model.scale(at.direction * response, 0.0, virgin);
+  const models::BranchScale scale = model.scale(at.direction * origin.response, 0.0, virgin);
   at.reach = scale.span * scale.remaining;
   at.origin = branch.origin;
-  at.origin_response = response;
+  at.origin_response = origin.response;
 }
 
 /// Gives each sample its branch, and returns the place of each branch's origin on its parent.
@@ -353,12 +457,12 @@ std::vector<Place> FollowBranches(const models::FrictionModel& model,
     origin.gain = sensitivity.gain[b];
     if (branch.parent < 0) continue;
     const auto parent = static_cast<std::size_t>(branch.parent);
-    PutOn(path.branches[parent], origins[parent].response, model, origin);
+    PutOn(path.branches[parent], origins[parent], model, origin);
   }
   for (const models::BranchRun& run : path.runs) {
     const auto b = static_cast<std::size_t>(run.branch);
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      PutOn(path.branches[b], origins[b].response, model, places[i]);
+      PutOn(path.branches[b], origins[b], model, places[i]);
     }
   }
   return origins;
@@ -396,7 +500,8 @@ Place SteadyExtreme(const Problem& problem, const LawPoint& point,
            .response = t[1],
            .slope = sensitivity.sample_slope[1],
            .gain = sensitivity.sample_gain[1]};
-  PutOn(path.branches[static_cast<std::size_t>(path.runs.back().branch)], t[0], *problem.model, at);
+  PutOn(path.branches[static_cast<std::size_t>(path.runs.back().branch)], {.response = t[0]},
+        *problem.model, at);
   return at;
 }
 
@@ -441,6 +546,8 @@ double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock
   switch (departure) {
     case kLag:
       return clock;
+    case kSmoothing:
+      return clock * clock;
     case kViscous:
       return newton / data.length * clock;
     case kPlateauSlope:
@@ -506,6 +613,8 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   std::vector<Neighbours> neighbours;
   for (const ScaledRecord& record : records) neighbours.push_back(NeighboursOf(record));
   const Clock clock = ClockOf(*problem.data, neighbours);
+  const bool is_repeated = IsDisplacementRepeated(*problem.data, neighbours);
+  const std::vector<std::vector<double>> amplitudes = AmplitudeScale(*problem.data);
   DepartureColumns result;
   result.timed = clock.timed;
   std::vector<const Column*> wanted;
@@ -517,7 +626,8 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
         d == kMeasuredLoad && std::ranges::all_of(records, [](const ScaledRecord& record) {
           return record.load_change.empty();
         });
-    if (is_fitted || is_unknown) continue;
+    const bool is_nothing = (d == kHeld && !is_repeated) || (d == kAmplitude && amplitudes.empty());
+    if (is_fitted || is_unknown || is_nothing) continue;
     const auto is_of = [&](const Column& column) { return column.departure == d; };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(kColumns, is_of));
     if (wanted.size() + count > most) break;
@@ -557,6 +667,13 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     std::vector<Place> places = PlacesOf(
         record, clock.time[r], neighbours[r], std::span(force).subspan(begin, record.size()),
         std::span(complete).subspan(begin, record.size()), sensitivity, peak);
+    if (is_repeated) {
+      const std::vector<double> missed = MissedWay(record, clock.time[r], neighbours[r].samples);
+      for (std::size_t i = 0; i < record.size(); ++i) places[i].missed = missed[i];
+    }
+    if (!amplitudes.empty()) {
+      for (std::size_t i = 0; i < record.size(); ++i) places[i].amplitude = amplitudes[r][i];
+    }
     const models::LoadingPath& path = response.PathOf(r, theta);
     const Place extreme = problem.state == models::InitialState::kSteady
                               ? SteadyExtreme(problem, point, record.displacement)

@@ -19,6 +19,11 @@ struct Departure {
   /// Names the term of a fit that is the same; it is not looked for where that is fitted.
   std::string_view term = {};
   std::string_view unit_by_sample = {};  // where records have no time; empty where it is the same
+  /// The column is in proportion to the square of the size.
+  bool is_square = false;
+  /// Where parts of a record have a contact of their own: by how much its force differs from the
+  /// mean in them, over the size.
+  double apart = 0.0;
 };
 
 /// Columns of all departures at a solution.

@@ -29,6 +29,7 @@ constexpr std::array kVerdicts = {
     Row{"shape_or_rig", Identifiability::kNotIdentifiable},
     Row{"unknown_past", Identifiability::kNotIdentifiable},
     Row{"few_places", Identifiability::kNotIdentifiable},
+    Row{"loop_not_seen", Identifiability::kNotIdentifiable},
     Row{"slip_force_bounded_below", Identifiability::kBoundedBelow},
     Row{"sigma_bounded_below", Identifiability::kBoundedBelow},
     Row{"slip_force_extrapolated", Identifiability::kExtrapolated},
@@ -57,7 +58,9 @@ void WithdrawInadequate(FitResult& result) {
   result.mindlin_test.reset();
   result.branch_shapes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {
-    return !finding.parameters.empty() && !RowOf(finding).holds_without_model;
+    // Another account of a curve that is not there: also where it is but a note.
+    const bool is_of_the_curve = finding.code == "shape_or_rig";
+    return is_of_the_curve || (!finding.parameters.empty() && !RowOf(finding).holds_without_model);
   });
   Finding finding{.code = "model_inadequate"};
   for (ParameterEstimate& estimate : result.parameters) {

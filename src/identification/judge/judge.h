@@ -14,7 +14,7 @@ namespace mindahl::identification {
 /// |---|---|---|
 /// | 1 | an estimate without error or interval, and the findings model_inadequate, no_model_fits,
 /// |   | energy_contradiction, undetermined_…, …_not_identifiable, shape_or_rig, unknown_past,
-/// |   | few_places | not identifiable |
+/// |   | few_places, loop_not_seen | not identifiable |
 /// | 2 | slip_force_bounded_below, sigma_bounded_below, an interval open above | bounded below |
 /// | 3 | slip_force_extrapolated | extrapolated |
 /// | 4 | nothing of it | identifiable |

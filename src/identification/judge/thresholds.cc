@@ -114,7 +114,7 @@ constexpr std::array kTable = {
                  "one adequate loop in two hundred is doubted"},
     ThresholdRow{"cause", &Thresholds::cause, "p",
                  "a departure that noise alone makes less often is a cause",
-                 "of the 15 that are tried, one loop in seventy then has one by chance"},
+                 "of the 16 that are tried, one loop in sixty then has one by chance"},
     ThresholdRow{"rival_cause", &Thresholds::rival_cause, "of what the best explains",
                  "a cause that explains so much is one that intervals cover",
                  "departures are taken to first order: of two imperfect accounts the better need "
@@ -141,6 +141,11 @@ constexpr std::array kTable = {
                  "Masing's law and Dahl's own are not told apart by less",
                  "an evidence of e⁵ = 150 to 1, as of the two pasts: what either misses of a real "
                  "loop can be worth less"},
+    ThresholdRow{
+        "seen_loop", &Thresholds::seen_loop, "R²",
+        "a loop that explains less of the force is not seen, and none of it believed",
+        "the rest of the force is three times the loop: a tenth of it that is regular is a "
+        "third of the loop"},
 };
 
 }  // namespace

@@ -33,6 +33,28 @@ void Hold(Parameter& parameter, double value) {
   parameter.fixed = true;
 }
 
+/// Does a record begin where its file has both zeros?
+bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
+  constexpr double kOfForce = 0.1;  // of its half range: noise of the first reading is less
+  const double displacement =
+      data.displacement.front() * data.units.length + data.units.displacement_reference;
+  const double force = data.force.front() * data.units.force + data.units.force_reference;
+  return std::abs(displacement) <= options.thresholds.starts_unloaded * data.units.length &&
+         std::abs(force) <= kOfForce * data.units.force;
+}
+
+/// A single loading curve looks the same wherever its origin is put: where the contact is unloaded
+/// must be said. It is the file's zero where the record begins there; else the first sample, where
+/// the force is then the offset's.
+void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
+  if (BeginsAtZero(data, options)) {
+    Hold(parameter, 0.0);
+  } else if (parameter.term->entry != Entry::kLinear) {
+    parameter.theta = data.displacement.front();
+    parameter.fixed = parameter.assumed = true;
+  }
+}
+
 Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord& data,
                         const FitOptions& options) {
   Parameter parameter{.term = &term, .record = record};
@@ -44,8 +66,11 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
     case Presence::kAlways:
       break;
     case Presence::kOffsets:
-      // A single loading curve looks the same wherever its origin is put: no offset can be told.
-      if (!options.offsets || data.reversals.empty()) Hold(parameter, 0.0);
+      if (!options.offsets) {
+        Hold(parameter, 0.0);
+      } else if (data.reversals.empty()) {
+        HoldOrigin(data, options, parameter);
+      }
       break;
     case Presence::kReported:
       if (!IsAskedFor(options, term)) Hold(parameter, 0.0);

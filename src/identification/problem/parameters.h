@@ -30,7 +30,8 @@ struct Parameter {
   double upper = 0.0;
   bool fixed = false;
   bool bounded_by_user = false;
-  bool absent = false;  // a term that was not asked for: not reported
+  bool absent = false;   // a term that was not asked for: not reported
+  bool assumed = false;  // held, not where the file has its zero, but where the record begins
 
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;

@@ -1,0 +1,120 @@
+#include "identification/inference/heavy_tails.h"
+
+#include <algorithm>
+#include <boost/math/distributions/poisson.hpp>
+#include <boost/math/statistics/univariate_statistics.hpp>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace mindahl::identification {
+namespace {
+
+constexpr double kNormalMedian = 0.6744897501960817;  // of |z|
+constexpr std::size_t kAlike = 60;                    // samples that one width is taken from
+constexpr double kFar = 6.0;                          // of their widths
+/// That a reading is so far off by chance: 2e-9 of a normal law whose width is known, and of one
+/// that 60 samples know to 15 % (1.17/√60) below this.
+constexpr double kChance = 1e-5;
+constexpr std::size_t kNearATurn = 3;  // samples, on which a law's own misfit is as narrow
+
+struct Difference {
+  std::size_t sample = 0;
+  double value = 0.0;  // u
+  double steepness = 0.0;
+  double width = 0.0;
+};
+
+std::vector<Difference> DifferencesOf(std::span<const FittedSample> samples) {
+  std::vector<std::size_t> to_turn(samples.size(), samples.size());
+  for (std::size_t i = 0, since = samples.size(); i < samples.size(); ++i) {
+    const bool begins = i == 0 || samples[i].record != samples[i - 1].record;
+    since = samples[i].turns || begins ? 0 : std::min(since + 1, samples.size());
+    to_turn[i] = since;
+  }
+  for (std::size_t k = samples.size(), since = samples.size(); k-- > 0;) {
+    const bool ends = k + 1 == samples.size() || samples[k].record != samples[k + 1].record;
+    since = samples[k].turns || ends ? 0 : std::min(since + 1, samples.size());
+    to_turn[k] = std::min(to_turn[k], since);
+  }
+  std::vector<Difference> differences;
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+    const FittedSample& before = samples[i - 1];
+    const FittedSample& after = samples[i + 1];
+    if (to_turn[i] < kNearATurn || !before.counts || !samples[i].counts || !after.counts) continue;
+    differences.push_back({i, samples[i].residual - (before.residual + after.residual) / 2,
+                           std::abs(after.response - before.response)});
+  }
+  return differences;
+}
+
+/// Each the width of those on which the force is as steep: noise of the displacement is larger on
+/// the steep ones.
+void FindWidths(std::vector<Difference>& differences) {
+  std::vector<std::size_t> order(differences.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return differences[i].steepness; });
+  const std::size_t blocks = std::max<std::size_t>(differences.size() / kAlike, 1);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t begin = b * kAlike;
+    const std::size_t end = b + 1 < blocks ? begin + kAlike : order.size();
+    std::vector<double> sizes;
+    for (std::size_t k = begin; k < end; ++k) {
+      sizes.push_back(std::abs(differences[order[k]].value));
+    }
+    const double width =
+        boost::math::statistics::median(sizes.begin(), sizes.end()) / kNormalMedian;
+    for (std::size_t k = begin; k < end; ++k) differences[order[k]].width = width;
+  }
+}
+
+}  // namespace
+
+std::optional<IrregularityFit> FindHeavyTails(std::span<const FittedSample> samples,
+                                              const Evidence& evidence) {
+  std::vector<Difference> differences = DifferencesOf(samples);
+  if (differences.size() < kAlike) return std::nullopt;
+  FindWidths(differences);
+  std::size_t count = 0;
+  double of_the_off = 0.0;
+  for (std::size_t k = 1; k + 1 < differences.size(); ++k) {
+    const Difference& here = differences[k];
+    const Difference& before = differences[k - 1];
+    const Difference& after = differences[k + 1];
+    const bool adjoin = before.sample + 1 == here.sample && here.sample + 1 == after.sample;
+    // A reading alone makes −½ of its own difference in both neighbours'.
+    const auto is_its_shadow = [&](const Difference& other) {
+      return other.value * here.value < -here.value * here.value / 4 &&
+             std::abs(other.value) < std::abs(here.value);
+    };
+    const bool is_off = here.width > 0 && std::abs(here.value) > kFar * here.width;
+    if (!is_off || !adjoin || !is_its_shadow(before) || !is_its_shadow(after)) continue;
+    ++count;
+    of_the_off += samples[here.sample].residual * samples[here.sample].residual;
+  }
+  if (count == 0) return std::nullopt;
+  double all = 0.0;
+  double counted = 0.0;
+  for (const FittedSample& sample : samples) {
+    if (!sample.counts) continue;
+    all += sample.residual * sample.residual;
+    ++counted;
+  }
+  const boost::math::poisson by_chance(kChance * static_cast<double>(differences.size()));
+  IrregularityFit fit;
+  const auto off = static_cast<double>(count);
+  fit.p_value = boost::math::cdf(boost::math::complement(by_chance, off - 1));
+  fit.size = off / counted;
+  fit.explains = all > 0 ? std::min(of_the_off / all, 1.0) : 0.0;
+  // Two widths for one: n ln(SS/n) against that of either share, and who belongs to which.
+  const double share = off / counted;
+  const double rest = std::max(1 - fit.explains, 1e-300);
+  const double mixing = -2 * (share * std::log(share) + (1 - share) * std::log1p(-share));
+  const double widths = share * std::log(std::max(fit.explains, 1e-300) / share) +
+                        (1 - share) * std::log(rest / (1 - share));
+  constexpr double kParameters = 2.0;  // the other width, and the share
+  fit.delta_aicc = 2 * kParameters - evidence.LikelihoodRatio(1.0, std::exp(mixing + widths));
+  return fit;
+}
+
+}  // namespace mindahl::identification
