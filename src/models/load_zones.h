@@ -80,8 +80,7 @@ Real TakeLoadStep(const LoadStep<Real>& step, const Share& share, Zones& zones) 
   } else if (widening < std::abs(travel)) {
     force = SlipLoadZones(step, travel, share, zones);
   } else if (widening > 0) {
-    const Real slope =
-        Real(travel) / (step.to.slip_displacement - step.from.slip_displacement);
+    const Real slope = Real(travel) / (step.to.slip_displacement - step.from.slip_displacement);
     force = WidenLoadZones(step, slope, zones);
   }
   return Within(force, step.to.slip_force);

@@ -67,7 +67,8 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "plateau_slope, viscous, lag, force_offset, displacement_offset, force_drift"},
       {[](FitOptions& o) { o.start["force_offset_2"] = 1; },
        "parameter 'force_offset_2' is unknown: must be one of sigma, alpha, slip_force, "
-       "rig_stiffness, plateau_slope, viscous, lag, force_offset, displacement_offset, "
+       "rig_stiffness, load_exponent, plateau_slope, viscous, lag, force_offset, "
+       "displacement_offset, "
        "force_drift"},
       {[](FitOptions& o) { o.fixed["sigma"] = 0; },
        "sigma [N/m] = 0 is invalid: must be finite and > 0"},

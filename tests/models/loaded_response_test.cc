@@ -136,7 +136,8 @@ TEST(NormalizedLoadedResponse, HasTheDerivativesOfItsDifferences) {
                                                  unloaded, t,
                                                  {.log_rate = columns[0],
                                                   .shape_exponent = columns[1],
-                                                  .unloaded_displacement = columns[2], .log_spring_travel = {}});
+                                                  .unloaded_displacement = columns[2],
+                                                  .log_spring_travel = {}});
         EXPECT_EQ(t.size(), samples);
         const std::array<History, 3> expected = {
             Differences([&](double h) { return at(h, 0, 0); }, kStep),
@@ -171,16 +172,20 @@ TEST(NormalizedLoadedResponse, HasTheGradientOfTheBranchLawWhereTheLoadIsConstan
       const double unloaded = 0.01;  // not where the record starts: a point is no step
       std::array<History, 8> columns;
       for (History& column : columns) column.resize(samples);
-      NormalizedLoadedResponse().Differentiate(
-          law, HistoryOf(path, state), unloaded, columns[0],
-          {.log_rate = columns[1], .shape_exponent = columns[2],
-           .unloaded_displacement = columns[3], .log_spring_travel = {}});
+      NormalizedLoadedResponse().Differentiate(law, HistoryOf(path, state), unloaded, columns[0],
+                                               {.log_rate = columns[1],
+                                                .shape_exponent = columns[2],
+                                                .unloaded_displacement = columns[3],
+                                                .log_spring_travel = {}});
       NormalizedResponse().Differentiate(
-          model, law, testing::PathOf(model, path.displacement,
+          model, law,
+          testing::PathOf(model, path.displacement,
                           {.state = state, .unloaded_displacement = unloaded}),
           path.displacement, columns[4],
-          {.log_rate = columns[5], .shape_exponent = columns[6],
-           .unloaded_displacement = columns[7], .log_spring_travel = {}});
+          {.log_rate = columns[5],
+           .shape_exponent = columns[6],
+           .unloaded_displacement = columns[7],
+           .log_spring_travel = {}});
       for (std::size_t c = 0; c < 4; ++c) {
         for (std::size_t k = 0; k < samples; ++k) {
           ASSERT_NEAR(columns[c][k], columns[c + 4][k], kRounding)
@@ -199,10 +204,8 @@ TEST(LoadedHistory, OfASteadyContactIsThatOfOneThatHasCycledForLong) {
     for (const double swing : {0.05, 0.3}) {
       for (const double cut : {0.1, 0.4, 0.9}) {  // where in a cycle the record starts
         constexpr int kCycle = 96;
-        const Path whole = PathOf({.lambda = lambda,
-                                   .swing = swing,
-                                   .cycles = 8.0,
-                                   .samples_per_cycle = kCycle});
+        const Path whole =
+            PathOf({.lambda = lambda, .swing = swing, .cycles = 8.0, .samples_per_cycle = kCycle});
         const History expected = Evaluate({.rate = kRate}, HistoryOf(whole));
         const auto begin = static_cast<std::ptrdiff_t>((4 + cut) * kCycle);
         const Path seen{{whole.displacement.begin() + begin, whole.displacement.end()},
@@ -243,9 +246,8 @@ TEST(NormalizedLoadedResponse, RefusesWhatTheLawHasNoAccountOf) {
   t.pop_back();
   EXPECT_NE(message({.rate = 1.0}).find("response"), std::string::npos);
   LoadedHistory other;
-  EXPECT_THROW(
-      MakeLoadedHistory(History{0, 1}, History{1, -1}, {}, InitialState::kVirgin, other),
-      InvalidArgument);
+  EXPECT_THROW(MakeLoadedHistory(History{0, 1}, History{1, -1}, {}, InitialState::kVirgin, other),
+               InvalidArgument);
 }
 
 }  // namespace

@@ -48,6 +48,8 @@ struct Thresholds {
   double mobilised_by_asymptote = 0.9;
   double one_amplitude = 0.01;
   double rival_law = 10.0;
+  double load_difference = 0.01;
+  double load_variation = 0.01;
 };
 
 struct ThresholdRow {

@@ -53,8 +53,8 @@ class NormalizedLoadedResponse {
   void Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
                 std::span<double> t);
 
-  /// The same with derivatives: exact, where t has them. They are taken along with the recursion, at
-  /// two to three times its cost.
+  /// The same with derivatives: exact, where t has them. They are taken along with the recursion,
+  /// at two to three times its cost.
   /// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0
   void Differentiate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
                      std::span<double> t, const NormalizedGradient& gradient);

@@ -141,6 +141,14 @@ constexpr std::array kTable = {
                  "Masing's law and Dahl's own are not told apart by less",
                  "an evidence of e⁵ = 150 to 1, as of the two pasts: what either misses of a real "
                  "loop can be worth less"},
+    ThresholdRow{"load_difference", &Thresholds::load_difference, "of the smaller",
+                 "mean loads of records further apart are a load series",
+                 "Tc then differs by as much, which a fit of one Tc sees; σ by a third of it"},
+    ThresholdRow{"load_variation", &Thresholds::load_variation, "of the mean",
+                 "amplitude of a sine of the load's standard deviation, from which on the law "
+                 "follows the load",
+                 "the force differs by as much where the contact slips; the readings' own noise is "
+                 "commonly less"},
 };
 
 }  // namespace
