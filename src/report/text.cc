@@ -275,12 +275,15 @@ std::string LoadSeriesText(const LoadSeries& series, const FitResult& fit) {
     if (has_hertz) text += fmt::format(" {:>14}", Significant(*contact.hertz_radius));
     text += "\n";
   }
+  constexpr double kLeastChance = 1e-12;
   for (const LoadHypothesis& hypothesis : series.hypotheses) {
     if (!hypothesis.p_value) continue;
-    text += fmt::format(
-        "  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, p-value {:.3g}{}\n",
-        Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
-        *hypothesis.p_value, *hypothesis.p_value < kSignificance ? ": rejected" : "");
+    const double p_value = *hypothesis.p_value;
+    text +=
+        fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, p-value {}{}\n",
+                    Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
+                    p_value < kLeastChance ? "< 1e-12" : fmt::format("{:.3g}", p_value),
+                    p_value < kSignificance ? ": rejected" : "");
   }
   return text;
 }
