@@ -153,6 +153,16 @@ TEST(VaryingLoad, BelowAHundredthIsConstant) {
   EXPECT_FALSE(fit.records.front().load_varies);
 }
 
+TEST(VaryingLoad, IsNoneOfNoisyReadings) {
+  // 5 % of white noise about a constant load.
+  Generator generator(11);
+  Record record = RecordOf({.swing = 0.0});
+  for (double& load : record.normal_load) load *= 1 + 0.05 * testing::Normal(generator);
+  const FitResult fit = testing::FitOne(record);
+  EXPECT_FALSE(fit.records.front().load_varies);
+  EXPECT_TRUE(testing::Recovers(fit, LawOf({}), testing::kNoiseFree));
+}
+
 TEST(VaryingLoad, IsSaidWhereTheLawHasNoAccountOfIt) {
   const Record record = RecordOf({.swing = 0.2});
   FitOptions options;

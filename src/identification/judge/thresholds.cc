@@ -145,10 +145,9 @@ constexpr std::array kTable = {
                  "mean loads of records further apart are a load series",
                  "Tc then differs by as much, which a fit of one Tc sees; σ by a third of it"},
     ThresholdRow{"load_variation", &Thresholds::load_variation, "of the mean",
-                 "amplitude of a sine of the load's standard deviation, from which on the law "
-                 "follows the load",
-                 "the force differs by as much where the contact slips; the readings' own noise is "
-                 "commonly less"},
+                 "amplitude of a sine of the load's standard deviation, white noise of its "
+                 "readings taken off, from which on the law follows the load",
+                 "the force differs by as much where the contact slips"},
 };
 
 }  // namespace

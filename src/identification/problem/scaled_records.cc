@@ -63,7 +63,7 @@ bool TellsLoad(const loop::PreparedRecord& record, const loop::PreparationOption
 
 struct MeasuredLoad {
   double mean = 0.0;       // [N]
-  double amplitude = 0.0;  // [N] of a sine of the same standard deviation
+  double amplitude = 0.0;  // [N] of a sine of the same standard deviation, but for white noise
 };
 
 MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
@@ -79,10 +79,19 @@ MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
   if (count == 0) return {};
   const double mean = sum / count;
   double squares = 0.0;
+  double steps = 0.0;  // squared, from one sample to the next
+  double step_count = 0.0;
   for (std::size_t i = 0; i < load.size(); ++i) {
-    if (TellsLoad(record, options, r, i)) squares += (load[i] - mean) * (load[i] - mean);
+    if (!TellsLoad(record, options, r, i)) continue;
+    squares += (load[i] - mean) * (load[i] - mean);
+    if (i == 0 || !TellsLoad(record, options, r, i - 1)) continue;
+    steps += (load[i] - load[i - 1]) * (load[i] - load[i - 1]);
+    ++step_count;
   }
-  return {mean, std::sqrt(2 * squares / count)};
+  // White noise of the readings has half the mean squared step for its variance; what varies
+  // smoothly hardly steps.
+  const double noise = step_count > 0 ? steps / (2 * step_count) : 0.0;
+  return {mean, std::sqrt(2 * std::max(squares / count - noise, 0.0))};
 }
 
 /// Has the law an account of a load that varies? It is of Masing's kind, its displacement that of
