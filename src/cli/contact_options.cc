@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -55,6 +56,25 @@ void AddKnown(CLI::App& command, const std::string& name, std::optional<Uncertai
           description)
       ->type_name(unit + "[+-U]")
       ->group(kGroup);
+}
+
+/// "25,50±1%,100": their mean is what is known of the contact, their uncertainties independent.
+void ReadNormalLoads(const std::string& text, ContactOptions& options) {
+  options.normal_loads.clear();
+  double sum = 0.0;
+  double variance = 0.0;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const UncertainValue load =
+        ParseUncertainValue(text.substr(begin, end - begin), "--normal-load");
+    RequirePositive("--normal-load [N]", load.value);
+    options.normal_loads.push_back(load);
+    sum += load.value;
+    variance += load.standard_error * load.standard_error;
+    begin = end + 1;
+  }
+  const auto count = static_cast<double>(options.normal_loads.size());
+  options.known.normal_load = UncertainValue{sum / count, std::sqrt(variance) / count};
 }
 
 void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
@@ -124,11 +144,22 @@ CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::option
   return command.add_option(name, target, description)->type_name(unit);
 }
 
-void AddContactOptions(CLI::App& command, ContactOptions& options) {
-  AddKnown(command, "--normal-load", options.known.normal_load,
-           "normal load N [N]; as all below exact, or with one standard uncertainty: 50±0.5, "
-           "50+-0.5, 50+/-0.5, 50±1%",
-           "N");
+void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads loads) {
+  if (loads == NormalLoads::kOneAFile) {
+    command
+        .add_option_function<std::string>(
+            "--normal-load",
+            [&options](const std::string& text) { ReadNormalLoads(text, options); },
+            "normal load N [N], one for all files or one a file: 25,50,100; as all below exact, "
+            "or with one standard uncertainty: 50±0.5, 50+-0.5, 50+/-0.5, 50±1%")
+        ->type_name("N[+-U],...")
+        ->group(kGroup);
+  } else {
+    AddKnown(command, "--normal-load", options.known.normal_load,
+             "normal load N [N]; as all below exact, or with one standard uncertainty: 50±0.5, "
+             "50+-0.5, 50+/-0.5, 50±1%",
+             "N");
+  }
   AddBodyOptions(command, options.known.body_1, 1);
   AddBodyOptions(command, options.known.body_2, 2);
   AddKnown(command, "--contact-radius", options.known.contact_radius, "contact radius a [m]", "M");

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cli/app.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
@@ -17,6 +18,8 @@ inline constexpr const char* kComplianceUnit = "1/Pa";
 /// What the user knows of the contact: the same options in every command.
 struct ContactOptions {
   contact::KnownContact known;
+  /// As given, one or one a file; known.normal_load is their mean.
+  std::vector<contact::UncertainValue> normal_loads;
   std::optional<contact::UncertainValue> friction_coefficient;
 };
 
@@ -26,10 +29,14 @@ struct ContactOptions {
 /// @throws InputError naming the option, the text, the rule and the remedy
 contact::UncertainValue ParseUncertainValue(std::string_view text, std::string_view option);
 
+/// How many normal loads an option may give.
+enum class NormalLoads { kOne, kOneAFile };
+
 /// Adds --normal-load, --youngs-modulus-1 … --radius-2, --contact-radius and --compliance.
 /// Each takes a standard uncertainty.
 /// @param options  must outlive the application
-void AddContactOptions(CLI::App& command, ContactOptions& options);
+void AddContactOptions(CLI::App& command, ContactOptions& options,
+                       NormalLoads loads = NormalLoads::kOne);
 
 /// Adds --friction. As above it takes a standard uncertainty.
 void AddFrictionOption(CLI::App& command, ContactOptions& options);

@@ -59,7 +59,6 @@ struct FitCommandOptions {
   std::string force_sign = "auto";
   std::string offsets = "on";
   std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
-  bool follow_load = false;
   std::vector<std::string> covariates;
   std::string load_window;
   std::string cycles;
@@ -267,7 +266,9 @@ FitOptions MakeFitOptions(const FitCommandOptions& options) {
   if (options.force_sign == "same") preparation.force_sense = 1;
   if (options.force_sign == "opposite") preparation.force_sense = -1;
   fit.offsets = options.offsets == "on";
-  fit.follow_load = options.follow_load;
+  for (const contact::UncertainValue& load : options.contact.normal_loads) {
+    fit.normal_loads.push_back(load.value);
+  }
   if (!options.load_window.empty()) {
     preparation.load_window =
         ParseInterval(options.load_window, "--load-window", "LO:HI in newtons");
@@ -413,19 +414,19 @@ void RequireColumns(const FitCommandOptions& options, const std::vector<RecordFi
 /// own words.
 void RequireLoads(const FitCommandOptions& options, const std::optional<Interval>& window,
                   const std::vector<RecordFile>& inputs) {
-  if (!window && !options.follow_load) return;
+  if (!window) return;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
     const std::vector<double>& load = inputs[r].record.normal_load;
     if (load.empty()) {
       throw InputError(
-          fmt::format("{}: {} needs a normal load: name its column with "
+          fmt::format("{}: --load-window needs a normal load: name its column with "
                       "--normal-load-column",
-                      options.files[r], window ? "--load-window" : "--follow-load"));
+                      options.files[r]));
     }
     const auto lies_outside = [&](double value) {
       return value < window->lower || value > window->upper;
     };
-    if (!window || !std::ranges::all_of(load, lies_outside)) continue;
+    if (!std::ranges::all_of(load, lies_outside)) continue;
     const auto [least, greatest] = std::ranges::minmax(load);
     throw InputError(
         fmt::format("{}: --load-window {}:{} holds no sample: the normal load runs from {:.6g} to "
@@ -434,21 +435,35 @@ void RequireLoads(const FitCommandOptions& options, const std::optional<Interval
   }
 }
 
-/// The measured normal load where it was not given: its mean, which a steady test keeps to.
-void UseMeasuredNormalLoad(ContactOptions& contact, std::span<const Record> records,
+/// One normal load for all files, or one a file.
+void RequireLoadsOfFiles(const FitCommandOptions& options) {
+  const std::size_t loads = options.contact.normal_loads.size();
+  if (loads <= 1 || loads == options.files.size()) return;
+  throw InputError(
+      fmt::format("--normal-load: {} loads for {} file{}: give one for all or one a "
+                  "file",
+                  loads, options.files.size(), options.files.size() > 1 ? "s" : ""));
+}
+
+/// The measured normal load where it was not given: its mean.
+void UseMeasuredNormalLoad(ContactOptions& contact, const identification::FitResult& fit,
+                           std::span<const RecordFile> inputs,
                            const std::optional<Interval>& window, Console& console) {
   if (contact.known.normal_load) return;
-  const std::optional<double> mean = report::MeanNormalLoad(records, window);
-  if (!mean) return;
-  if (!(*mean > 0)) {
-    console.err << fmt::format(
-        "mindahl fit: note: the mean normal load is {:.4g} N, not positive: it is not used\n",
-        *mean);
+  if (fit.normal_load) {
+    contact.known.normal_load = *fit.normal_load;
+    console.err << fmt::format("mindahl fit: note: normal load: the mean of its column, {:.6g} N\n",
+                               *fit.normal_load);
     return;
   }
-  contact.known.normal_load = *mean;
-  console.err << fmt::format("mindahl fit: note: normal load: the mean of its column, {:.6g} N\n",
-                             *mean);
+  std::vector<Record> records;
+  for (const RecordFile& input : inputs) records.push_back(input.record);
+  const std::optional<double> mean = report::MeanNormalLoad(records, window);
+  if (!mean) return;
+  console.err << fmt::format(
+      "mindahl fit: note: the mean normal load is {:.4g} N, not positive in every file: it is not "
+      "used\n",
+      *mean);
 }
 
 void Write(const FitCommandOptions& options, const report::Report& report, Console& console) {
@@ -495,6 +510,7 @@ identification::FitResult FitRecords(const FitCommandOptions& options,
 void RunFit(FitCommandOptions options, Console& console) {
   Validate(options.contact);
   RequireDistinctFiles(options.files);
+  RequireLoadsOfFiles(options);
   std::vector<std::string> read = console.inputs;
   read.insert(read.end(), options.files.begin(), options.files.end());
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
@@ -513,10 +529,10 @@ void RunFit(FitCommandOptions options, Console& console) {
   RequireLoads(options, fit_options.preparation.load_window, inputs);
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
-  UseMeasuredNormalLoad(options.contact, records, fit_options.preparation.load_window, console);
 
   std::optional<identification::ModelSelection> selection;
   identification::FitResult fit = FitRecords(options, fit_options, records, console, selection);
+  UseMeasuredNormalLoad(options.contact, fit, inputs, fit_options.preparation.load_window, console);
   console.exit_status = Established(fit, options.strict) ? kDone : kNotEstablished;
   const report::Report report =
       report::MakeReport({.files = options.files,
@@ -652,10 +668,15 @@ void AddModelOptions(CLI::App& command, FitCommandOptions& options) {
       ->group(group);
   AddTermOptions(command, options, group);
   command
-      .add_flag("--follow-load", options.follow_load,
-                "the force follows the measured normal load, T N/mean N: a load that varies by "
-                "some per cent")
-      ->group(group);
+      .add_flag_callback(
+          "--follow-load",
+          [] {
+            throw InputError(
+                "--follow-load is no longer needed: a load column that varies by more than 1 % is "
+                "followed by itself; leave the option out");
+          },
+          "no longer needed: a load that varies is followed by itself")
+      ->group("");  // not shown
   command.add_option("--fix", options.fix, DescribeParameters())
       ->type_name("NAME=VALUE")
       ->group(group);
@@ -711,7 +732,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->required();
   AddColumnOptions(*command, *options);
   AddModelOptions(*command, *options);
-  AddContactOptions(*command, options->contact);
+  AddContactOptions(*command, options->contact, NormalLoads::kOneAFile);
   const std::string group = "Results";
   command->add_option("--json", options->json_path, "result as JSON; - for standard output alone")
       ->type_name("PATH")

@@ -231,6 +231,12 @@ void FillRecords(const Attempt& attempt, Depth depth, FitResult& result) {
     fit.displacement_noise = prepared.displacement_noise;
     fit.counts.assign(prepared.counts.begin(), prepared.counts.end());
     fit.left_out = prepared.left_out;
+    const ScaledRecords& data = attempt.data;
+    fit.normal_load.reset();
+    if (!data.mean_load.empty()) fit.normal_load = data.mean_load[r];
+    fit.load_ratio = data.records[r].load;
+    fit.load_varies = !data.records[r].load_ratio.empty();
+    fit.alone.reset();
     fit.structure = {};
     fit.fitted_force.clear();
     fit.residual.clear();
@@ -255,6 +261,7 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
   }
   result.law = parameters.LawAt(solution.theta);
   result.rig = parameters.RigAt(solution.theta);
+  result.load_exponent = parameters.LoadExponentAt(solution.theta);
 }
 
 /// Statistics of the residuals that count, as the files have them.
@@ -311,7 +318,8 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   const Thresholds& thresholds = options.thresholds;
   AdequacyTest test =
       TestAdequacy(problem, solution, noise, estimates, thresholds, buffers.response);
-  if (IsDoubtful(test, thresholds)) {
+  // A load that varies would have to be read as late.
+  if (IsDoubtful(test, thresholds) && !problem.data->load_varies) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
   }
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
@@ -376,7 +384,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindUndetermined(problem, estimates.local()));
   if (result.depth == Depth::kFull) {
     result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
-    const double peak_force = result.WidestRecord().measures.peak_force;
+    const double peak_force = result.PeakForce();
     if (NeedsSlipForceProfile(problem, solution, noise, estimates,
                               peak_force / result.law.slip_force, options, buffers)) {
       const SlipForceProfile profile =
@@ -401,13 +409,19 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
         result.mindlin_test->rig_stiffness = rig->rig_stiffness;
         result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
       }
+      if (problem.data->load_varies &&
+          WantsRig(problem, solution, *result.mindlin_test, options.thresholds)) {
+        result.findings.push_back({.code = "rig_not_tried",
+                                   .parameters = {"sigma", "alpha"},
+                                   .numbers = {{"alpha", result.law.shape_exponent}}});
+      }
     }
   }
   if (rival != nullptr) {
     Append(result.findings,
-           FoundUndecidedPast(CoverRivalPast(
-               problem, rival->problem, *rival->solution, noise, options.thresholds,
-               result.WidestRecord().measures.peak_force, buffers.response, result.parameters)));
+           FoundUndecidedPast(CoverRivalPast(problem, rival->problem, *rival->solution, noise,
+                                             options.thresholds, result.PeakForce(),
+                                             buffers.response, result.parameters)));
   }
   ConsiderDepartures(problem, solution, noise, estimates, options, buffers, result);
   Append(result.findings, FindUnseenLoop(result, options.thresholds));
@@ -418,6 +432,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     Append(result.findings, FindUnknownPast(problem, solution, options.thresholds));
   }
   Append(result.findings, FindFewPlaces(problem, options.thresholds));
+  Append(result.findings, FindShapeLimitedByLoad(problem, solution));
   Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
@@ -440,6 +455,57 @@ void ReportStarts(const Problem& problem, const std::vector<Descent>& descents, 
                              .reached = problem.parameters.LawAt(descent.solution.theta),
                              .final_rms = rms(descent.solution.sum_of_squares),
                              .converged = descent.solution.converged});
+  }
+}
+
+/// Of one record of a load series: what all share is held where the series has it.
+FitOptions OptionsAlone(const FitOptions& options, const FitResult& series, std::size_t r) {
+  FitOptions alone = options;
+  alone.normal_loads = {*series.records[r].normal_load};
+  alone.initial_state = series.initial_state;
+  alone.preparation.force_sense = series.force_sense;
+  alone.preparation.held_out.clear();
+  if (r < options.preparation.held_out.size()) {
+    alone.preparation.held_out = {options.preparation.held_out[r]};
+  }
+  alone.start.clear();
+  std::erase_if(alone.terms,
+                [](const std::string& name) { return FindTerm(name)->scope == Scope::kContact; });
+  // A record's own lose their number, those of the others go.
+  const auto translate = [&](auto& values) {
+    std::remove_reference_t<decltype(values)> own;
+    for (const auto& [name, value] : values) {
+      const std::string term(TermNameOf(name));
+      if (FindTerm(term)->scope == Scope::kRecord && name == fmt::format("{}_{}", term, r + 1)) {
+        own.emplace(term, value);
+      }
+    }
+    values = std::move(own);
+  };
+  translate(alone.fixed);
+  translate(alone.bounds);
+  for (const ParameterEstimate& estimate : series.parameters) {
+    const Term* term = FindTerm(estimate.name);
+    const bool is_shared = term != nullptr && term->scope == Scope::kContact;
+    const bool is_own = estimate.name == "sigma" || estimate.name == "slip_force" ||
+                        estimate.name == "load_exponent";
+    if (is_shared && !is_own) alone.fixed[estimate.name] = estimate.value;
+  }
+  return alone;
+}
+
+/// What each record of a load series says by itself.
+void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& options,
+                     FitResult& series) {
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    try {
+      Fitter fitter(OptionsAlone(options, series, r));
+      const FitResult& fit = fitter.Fit(records[r], Depth::kIntervals);
+      if (!fit.converged) continue;
+      series.records[r].alone = {*fit.Find("sigma"), *fit.Find("slip_force")};
+    } catch (const InvalidArgument&) {
+      // Few samples, a loop stiffer than the rig: the record by itself is no fit, as documented.
+    }
   }
 }
 
@@ -468,6 +534,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.model = options.model;
   result.law = {};
   result.rig = {};
+  result.normal_load.reset();
+  result.load_exponent = 1.0;
   result.force_noise = 0.0;
   result.outliers = 0;
   result.rms = 0.0;
@@ -483,7 +551,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
 
   loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);
   LeaveOutBeyondLags(options, prepared);
-  ScaledRecords data = Scale(prepared, options.follow_load, &arena);
+  ScaledRecords data = Scale(prepared, options, &arena);
   AddCovariates(options.covariates, depth != Depth::kEstimate, prepared, options.offsets, data);
   if (HasLag(options)) SetClocks(data);
   std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
@@ -493,9 +561,13 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   RequireNoise(options, data);
   result.force_sense = prepared.force_sense;
   FillRecords(attempt, depth, result);
+  if (!data.mean_load.empty()) result.normal_load = data.reference_load;
 
   const bool full = depth != Depth::kEstimate;
-  if (full) result.findings = FindInRecords(result.records, options.thresholds);
+  if (full) {
+    result.findings = FindInRecords(result.records, options.thresholds);
+    for (Finding& finding : FindVaryingLoads(data)) result.findings.push_back(std::move(finding));
+  }
   std::vector<Descent>* const recorded = full ? &descents : nullptr;
   std::optional<Candidate> rival;
   std::optional<Candidate> best(FitBestState(attempt, first, second, recorded, rival));
@@ -528,7 +600,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
           prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
       // Turning points are not looked for beside a lag, which moves the samples off them.
       const bool has_lag = best->problem.parameters.has_lag();
-      if (best->solution->converged && !gated && !has_lag) {
+      // Nor under a load that varies: the way between the samples is not the displacement's alone.
+      if (best->solution->converged && !gated && !has_lag && !data.load_varies) {
         turned =
             FitTurningPointsIfNeeded(best->problem, *best->solution, options, buffers.response);
       }
@@ -578,6 +651,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
     Infer(attempt, best->problem, solution, noise, displacement_errors,
           rival && !turned ? &*rival : nullptr, result);
   }
+  if (depth == Depth::kFull && data.is_load_series) FitRecordsAlone(records, options, result);
 }
 
 Fitter::Fitter(FitOptions options) : state_(std::make_unique<State>(std::move(options))) {}
@@ -609,8 +683,21 @@ const Finding* FitResult::FindFinding(std::string_view code) const {
 }
 
 const RecordFit& FitResult::WidestRecord() const {
-  return *std::ranges::max_element(records, {},
-                                   [](const RecordFit& fit) { return fit.measures.amplitude; });
+  return *std::ranges::max_element(records, {}, [this](const RecordFit& fit) {
+    return fit.measures.amplitude * std::pow(fit.load_ratio, load_exponent - 1);
+  });
+}
+
+models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
+  return {
+      .tangential_stiffness = law.tangential_stiffness * std::pow(record.load_ratio, load_exponent),
+      .shape_exponent = law.shape_exponent,
+      .slip_force = law.slip_force * record.load_ratio};
+}
+
+double FitResult::PeakForce() const {
+  const RecordFit& widest = WidestRecord();
+  return widest.measures.peak_force / widest.load_ratio;
 }
 
 }  // namespace mindahl::identification

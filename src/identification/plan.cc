@@ -144,7 +144,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   Arena arena;
   const loop::RecordView view(record);
   const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation, &arena);
-  ScaledRecords data = Scale(prepared, options.follow_load, &arena);
+  ScaledRecords data = Scale(prepared, options, &arena);
   const Problem problem{&data, options.model, protocol.initial_state,
                         Parameters(data, options, protocol.initial_state, &arena)};
   Solution solution = SolutionAt(expected, problem.parameters);

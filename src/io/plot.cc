@@ -71,6 +71,11 @@ void Validate(const Plot& plot) {
       if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
       RequireDrawable("x of " + name, series.x, plot.panels[panel].log_x);
       RequireDrawable("y of " + name, series.y, plot.panels[panel].log_y);
+      if (series.style != PlotStyle::kIntervals) continue;
+      for (const auto* ends : {&series.lower, &series.upper}) {
+        RequireSameSize("ends of intervals of " + name, ends->size(), "points", series.y.size());
+        RequireDrawable("ends of intervals of " + name, *ends, plot.panels[panel].log_y);
+      }
     }
   }
 }
@@ -132,6 +137,10 @@ std::string StyleCommand(PlotStyle style, std::size_t series, bool in_legend) {
       break;
     case PlotStyle::kMarkers:
       command = fmt::format("points pt {} ps 0.9", marker);
+      break;
+    case PlotStyle::kIntervals:
+      // A key has no errors to draw.
+      command = fmt::format("{} pt {} ps 0.9 lw 1.5", in_legend ? "points" : "yerrorbars", marker);
       break;
     case PlotStyle::kLineAndPoints:
       command = fmt::format("linespoints lw 1.5 pt {} ps 0.9{}", marker, dashes);
@@ -249,7 +258,11 @@ class Script {
       for (std::size_t series = 0; series < all.size(); ++series) {
         Add("$data_{}_{} << END\n", panel, series);
         for (const std::size_t point : Thinned(all[series])) {
-          Add("{:.9g} {:.9g}\n", all[series].x[point], all[series].y[point]);
+          Add("{:.9g} {:.9g}", all[series].x[point], all[series].y[point]);
+          if (all[series].style == PlotStyle::kIntervals) {
+            Add(" {:.9g} {:.9g}", all[series].lower[point], all[series].upper[point]);
+          }
+          Add("\n");
         }
         Add("END\n");
       }
@@ -346,6 +359,9 @@ class Script {
       const auto [low, high] = std::ranges::minmax(series.*values);
       least = std::min(least, low);
       greatest = std::max(greatest, high);
+      if (name == 'x' || series.style != PlotStyle::kIntervals) continue;
+      least = std::min(least, std::ranges::min(series.lower));
+      greatest = std::max(greatest, std::ranges::max(series.upper));
     }
     // Half a decade at least, so that there are tics to read.
     constexpr double kLeastSpan = 0.5;
@@ -391,8 +407,9 @@ class Script {
     Add("plot ");
     for (std::size_t series = 0; series < panel.series.size(); ++series) {
       const PlotSeries& curve = panel.series[series];
-      Add("{}$data_{}_{} using 1:2 with {} notitle", series == 0 ? "" : ", ", index, series,
-          StyleCommand(curve.style, series, false));
+      const bool has_ends = curve.style == PlotStyle::kIntervals;
+      Add("{}$data_{}_{} using {} with {} notitle", series == 0 ? "" : ", ", index, series,
+          has_ends ? "1:2:3:4" : "1:2", StyleCommand(curve.style, series, false));
       if (curve.label.empty()) continue;
       Add(", keyentry with {} title {}", StyleCommand(curve.style, series, true),
           Quoted(curve.label));

@@ -33,7 +33,7 @@ constexpr std::array<CauseRow, 22> kCauses = {{
      nullptr, "give --plateau-slope"},
     {"force_drift", "a force that drifts by {}", nullptr, "give --drift"},
     {"normal_load", "a force that follows the measured load, which varies, to {}", nullptr,
-     "give --load-window, or --follow-load"},
+     "keep to one load with --load-window"},
     {"shape_of_law", "branches of another shape than the law's", nullptr,
      "compare the laws with --model auto"},
     {"guide_friction", "a friction of {} beside the contact's that turns at once with the motion",
@@ -58,8 +58,8 @@ constexpr std::array<CauseRow, 22> kCauses = {{
      "look at the ranges of the force sensor and its amplifier"},
     {"load_varies", "a friction that grows by {} from the middle of the stroke to its end",
      "a friction that falls by {} from the middle of the stroke to its end",
-     "look whether the normal load varies with the position; where it is recorded, give "
-     "--follow-load"},
+     "look whether the normal load varies with the position; where it is recorded, name its column "
+     "with --normal-load-column"},
     {"force_of_position", "a force that depends on the position", nullptr,
      "look for a spring, a cable or a tilt beside the contact, and measure it without it"},
     {"covariate", "a force in proportion to another column of the file, {}", nullptr,

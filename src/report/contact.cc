@@ -20,7 +20,8 @@ contact::UncertainValue Uncertain(const identification::ParameterEstimate& estim
           estimate.standard_error.value_or(known ? 0.0 : std::numeric_limits<double>::infinity())};
 }
 
-/// Of the errors of two parameters; 0 where the fit does not say.
+}  // namespace
+
 double Correlation(const FitResult& fit, std::string_view first, std::string_view second) {
   const std::size_t count = fit.parameters.size();
   const auto place = [&](std::string_view name) {
@@ -29,8 +30,6 @@ double Correlation(const FitResult& fit, std::string_view first, std::string_vie
   const double correlation = fit.correlation[place(first) * count + place(second)];
   return std::isfinite(correlation) ? std::clamp(correlation, -1.0, 1.0) : 0.0;
 }
-
-}  // namespace
 
 std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit,
                                                  const contact::KnownContact& known) {

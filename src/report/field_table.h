@@ -37,6 +37,7 @@ void AddLawFields(FieldTable& table);
 void AddLoopFields(FieldTable& table);
 void AddContactFields(FieldTable& table);
 void AddMappingFields(FieldTable& table);
+void AddLoadSeriesFields(FieldTable& table);
 
 /// Why there is no contact behind a torque.
 inline constexpr const char* kWhyNoContact =

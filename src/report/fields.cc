@@ -117,6 +117,7 @@ FieldTable MakeTable() {
   AddLoopFields(table);
   AddContactFields(table);
   AddMappingFields(table);
+  AddLoadSeriesFields(table);
   // What a fit that failed has not is null for that reason.
   for (Field<Report>& row : table.rows) {
     const bool is_of_contact = row.path.starts_with("contact.") || row.path.starts_with("mapping.");

@@ -65,6 +65,54 @@ std::string TitleOf(const Report& report) {
                      ParameterText("Tc", *fit.Find("slip_force")));
 }
 
+/// σ or Tc against the load: of the whole series a line, of each file alone an interval.
+struct LoadPanel {
+  std::string label;
+  double scale;  // of what is drawn over SI
+  identification::ParameterEstimate identification::RecordAlone::*alone;
+  bool is_stiffness;
+};
+
+io::PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
+  const FitResult& fit = report.fit;
+  io::PlotPanel panel{.x_label = quantity.is_stiffness ? "" : "normal load N [N]",
+                      .y_label = quantity.label,
+                      .series = {},
+                      .height = 1.2};
+  double least = report.load_series->contacts.front().normal_load;
+  double greatest = least;
+  io::PlotSeries alone;
+  alone.label = "each file alone, 95 %";
+  alone.style = PlotStyle::kIntervals;
+  for (const ContactUnderLoad& contact : report.load_series->contacts) {
+    least = std::min(least, contact.normal_load);
+    greatest = std::max(greatest, contact.normal_load);
+    if (!contact.alone) continue;
+    const ParameterEstimate& estimate = (*contact.alone).*quantity.alone;
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    alone.x.push_back(contact.normal_load);
+    alone.y.push_back(quantity.scale * estimate.value);
+    alone.lower.push_back(quantity.scale * *estimate.lower95);
+    alone.upper.push_back(quantity.scale * *estimate.upper95);
+  }
+  constexpr int kSteps = 60;
+  io::PlotSeries line;
+  line.label = quantity.is_stiffness ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
+                                     : std::string("Tc = μN, the series");
+  for (int i = 0; i <= kSteps; ++i) {
+    const double load = least + (greatest - least) * i / kSteps;
+    const double ratio = load / *fit.normal_load;
+    line.x.push_back(load);
+    const double value = quantity.is_stiffness
+                             ? fit.law.tangential_stiffness * std::pow(ratio, fit.load_exponent)
+                             : fit.law.slip_force * ratio;
+    line.y.push_back(quantity.scale * value);
+  }
+  panel.series.push_back(std::move(line));
+  if (!alone.x.empty()) panel.series.push_back(std::move(alone));
+  return panel;
+}
+
 }  // namespace
 
 io::Plot ToPlot(const Report& report) {
@@ -118,6 +166,16 @@ io::Plot ToPlot(const Report& report) {
   }
   if (!reversals.x.empty()) loop.series.push_back(std::move(reversals));
   plot.panels = {std::move(loop), std::move(residual)};
+  if (report.load_series) {
+    constexpr int kTaller = 400;  // [px]
+    plot.height += kTaller;
+    plot.panels.push_back(PanelOverLoad(
+        report, {fmt::format("σ [{}/{}]", report.units.force, axis.unit), 1 / axis.per_metre,
+                 &identification::RecordAlone::stiffness, /*is_stiffness=*/true}));
+    plot.panels.push_back(
+        PanelOverLoad(report, {fmt::format("Tc [{}]", report.units.force), 1.0,
+                               &identification::RecordAlone::slip_force, /*is_stiffness=*/false}));
+  }
   return plot;
 }
 

@@ -17,9 +17,10 @@ MeasuredLoop MeasuredLoopOf(const identification::RecordFit& record) {
 }
 
 LoopDescription DescribeLoop(const identification::FitResult& fit) {
-  const models::BranchLaw& law = fit.law;
+  const identification::RecordFit& widest = fit.WidestRecord();
+  const models::BranchLaw law = fit.LawOf(widest);
   LoopDescription loop;
-  loop.measured = MeasuredLoopOf(fit.WidestRecord());
+  loop.measured = MeasuredLoopOf(widest);
   const MeasuredLoop& measured = loop.measured;
   loop.contact_amplitude = models::ContactAmplitude(*fit.model, law, fit.rig, measured.amplitude);
   loop.model_energy = models::SteadyLoopEnergy(*fit.model, law, loop.contact_amplitude);

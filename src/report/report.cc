@@ -93,6 +93,7 @@ Report MakeReport(ReportInput input) {
         IdentifyContactOf(report.fit, report.fit.law_choice->law, report.known);
   }
   report.stiffness = TestStiffness(report.fit, report.contact);
+  report.load_series = DescribeLoadSeries(report.fit, report.known);
   report.contact_warnings = ContactWarnings(report);
   return report;
 }

@@ -283,6 +283,39 @@ std::string EnergyContradiction(const Finding& finding, const FitResult& fit, co
       Needed(finding, "amplitude"), units.displacement);
 }
 
+// --- the normal load
+
+std::string LoadFollowed(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "{}the normal load varies by ±{:.3g} %: the law follows it, Tc = μN and σ ∝ N^α within the "
+      "record, and σ and Tc are those under its mean",
+      WhichRecord(finding), 100 * Needed(finding, "variation"));
+}
+
+std::string LoadNotFollowed(const Finding& finding, const FitResult& fit, const Units&) {
+  return fmt::format(
+      "{}the normal load varies by ±{:.3g} %, of which {} has no account: the fit takes it for "
+      "constant; keep to one load with --load-window, or use --model mindlin-dahl without a rig",
+      WhichRecord(finding), 100 * Needed(finding, "variation"),
+      std::isinf(fit.rig.stiffness) ? std::string(fit.model->name)
+                                    : fmt::format("{} behind a rig", fit.model->name));
+}
+
+std::string RigNotTried(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "alpha = {:.3g} may be that of Mindlin's contact, 1/3, in a rig that gives way, which cannot "
+      "be tried under a load that varies: sigma and alpha are those of contact and rig together; "
+      "keep to one load with --load-window, or measure the rig's stiffness",
+      Needed(finding, "alpha"));
+}
+
+std::string AlphaLimitedByLoad(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "alpha would be {:.3g} or more, which the law of a varying load cannot be: slip is complete "
+      "at a finite displacement there; keep to one load with --load-window",
+      Needed(finding, "bound"));
+}
+
 // --- what the solver did not reach
 
 std::string WeightsNotSettled(const Finding&, const FitResult&, const Units&) {
@@ -300,7 +333,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 26> kSentences = {{
+constexpr std::array<Row, 30> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -325,6 +358,10 @@ constexpr std::array<Row, 26> kSentences = {{
     {"other_law_fits_better", OtherLawFitsBetter},
     {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
+    {"rig_not_tried", RigNotTried},
+    {"load_followed", LoadFollowed},
+    {"load_not_followed", LoadNotFollowed},
+    {"alpha_limited_by_load", AlphaLimitedByLoad},
     {"weights_not_settled", WeightsNotSettled},
     {"fit_failed", FitFailed},
 }};

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -232,6 +233,60 @@ std::string MappingText(const Report& report) {
                       : text;
 }
 
+/// A theory of the load's exponent in words.
+std::string Words(const LoadHypothesis& hypothesis) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
+      {"sphere", "smooth sphere, Hertz (1/3)"},
+      {"elements", "elements in parallel (α)"},
+      {"cone", "cone (1/2)"},
+      {"flat_punch", "flat punch (0)"},
+      {"rough", "rough contact (1)"},
+  }};
+  const auto row = std::ranges::find(kWords, hypothesis.name,
+                                     &std::pair<std::string_view, std::string_view>::first);
+  return std::string(row == kWords.end() ? hypothesis.name : row->second);
+}
+
+/// No number of what is not known.
+std::string ValueAndError(const contact::UncertainValue& value, const FitResult& fit,
+                          std::string_view parameter) {
+  const identification::ParameterEstimate& estimate = *fit.Find(parameter);
+  const bool is_known = estimate.status == identification::ParameterStatus::kFixed ||
+                        estimate.identifiability == identification::Identifiability::kIdentifiable;
+  return is_known ? fmt::format("{} {}", Significant(value.value), ErrorText(value)) : "-";
+}
+
+std::string LoadSeriesText(const LoadSeries& series, const FitResult& fit) {
+  std::string text = fmt::format(
+      "\nunder several loads (σ ∝ N^p, Tc = μN; the parameters above are at the mean, {:.6g} N):\n",
+      *fit.normal_load);
+  const bool has_radius = series.contacts.front().contact_radius.has_value();
+  const bool has_hertz = series.contacts.front().hertz_radius.has_value();
+  text += fmt::format("  {:>9} {:>23} {:>20}{}{}\n", "N [N]", "σ [N/m]", "Tc [N]",
+                      has_radius ? fmt::format(" {:>22}", "a = σG*/8 [m]") : "",
+                      has_hertz ? fmt::format(" {:>14}", "a of Hertz [m]") : "");
+  for (const ContactUnderLoad& contact : series.contacts) {
+    text += fmt::format("  {:>9.5g} {:>23} {:>20}", contact.normal_load,
+                        ValueAndError(contact.stiffness, fit, "sigma"),
+                        ValueAndError(contact.slip_force, fit, "slip_force"));
+    if (has_radius)
+      text += fmt::format(" {:>22}", ValueAndError(*contact.contact_radius, fit, "sigma"));
+    if (has_hertz) text += fmt::format(" {:>14}", Significant(*contact.hertz_radius));
+    text += "\n";
+  }
+  constexpr double kLeastChance = 1e-12;
+  for (const LoadHypothesis& hypothesis : series.hypotheses) {
+    if (!hypothesis.p_value) continue;
+    const double p_value = *hypothesis.p_value;
+    text +=
+        fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, p-value {}{}\n",
+                    Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
+                    p_value < kLeastChance ? "< 1e-12" : fmt::format("{:.3g}", p_value),
+                    p_value < kSignificance ? ": rejected" : "");
+  }
+  return text;
+}
+
 /// A trend over the cycles in words, where it is worth any.
 std::string TrendText(const char* what, const std::optional<loop::Trend>& trend,
                       const std::optional<double>& mean) {
@@ -407,6 +462,7 @@ std::string ToText(const Report& report) {
     return text + "\n" + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) +
            NotesText(report);
   }
+  if (report.load_series) text += LoadSeriesText(*report.load_series, fit);
   text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report);
   text += "\nis it Mindlin's contact?\n" + MappingText(report);
   return text + NotesText(report);

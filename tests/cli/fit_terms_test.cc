@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <numbers>
 #include <ostream>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "mindahl/models/variable_load.h"
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
 // between models, and what the report says of each.
@@ -169,16 +171,69 @@ TEST_F(FitTerms, SlopedPlateauHasASlopeOfItsOwn) {
 
 TEST_F(FitTerms, ForceFollowsALoadThatSwings) {
   std::vector<Sample> loop = Simulate({"--cycles", "2"});
+  std::vector<double> displacement;
+  std::vector<double> load;
   double sum = 0.0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    loop[i].normal_load = 100 + 3 * std::sin(0.05 * static_cast<double>(i));
-    sum += loop[i].normal_load;
+    load.push_back(100 + 5 * std::sin(0.05 * static_cast<double>(i)));
+    displacement.push_back(loop[i].displacement);
+    sum += load.back();
   }
   const double mean = sum / static_cast<double>(loop.size());
-  for (Sample& sample : loop) sample.force *= sample.normal_load / mean;
-  ExpectContact(Fit(loop, {"--follow-load"}), kNoiseFree);
-  // 3 % of a sine, where the load does not count: 2 % of Tc but for what offsets take up.
-  EXPECT_GT(Fit(loop)["residuals"]["normalized_rms"].get<double>(), 0.005);
+  std::vector<double> force(loop.size());
+  models::EvaluateForceUnderLoad({.friction_coefficient = kSlipForce / mean,
+                                  .reference_load = mean,
+                                  .reference_stiffness = kSigma},
+                                 displacement, load, force);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    loop[i].normal_load = load[i];
+    loop[i].force = force[i];
+  }
+  const json fit = Fit(loop);
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_NEAR(fit["contact"]["normal_load"].get<double>() / mean, 1, kNoiseFree);
+  ASSERT_EQ(fit["notes"].size(), 1U);
+  EXPECT_EQ(fit["notes"][0]["code"], "load_followed");
+}
+
+TEST_F(FitTerms, FilesUnderSeveralLoadsAreOneContact) {
+  constexpr double kExponent = 0.5;
+  Words words = {"fit"};
+  int file = 0;
+  for (const double load : {50.0, 100.0, 150.0}) {
+    const double ratio = load / 100;
+    std::vector<Sample> loop = Simulate({"--cycles", "2"});
+    // σ ∝ N^p and Tc ∝ N: the same loop over N along N^{1−p} the way.
+    for (Sample& sample : loop) {
+      sample.displacement *= std::pow(ratio, 1 - kExponent);
+      sample.force *= ratio;
+    }
+    const std::string path = Write(loop);
+    const std::string name = (directory_.path() / (std::to_string(++file) + ".csv")).string();
+    std::filesystem::rename(path, name);
+    words.push_back(name);
+  }
+  words.insert(words.end(), {"--normal-load", "50,100±1%,150", "--json", "-"});
+  const Outcome outcome = RunCommand(words);
+  ASSERT_EQ(outcome.status, cli::kDone) << outcome.err;
+  const json fit = outcome.Json();
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_NEAR(Value(fit, "load_exponent"), kExponent, kNoiseFree);
+  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), kSlipForce / 100,
+              kNoiseFree);
+  // 1 N of one of three loads.
+  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["standard_error"].get<double>(),
+              kSlipForce / 100 / 300, kNoiseFree);
+  const json& series = fit["load_series"];
+  EXPECT_EQ(series["reference_load"], 100.0);
+  ASSERT_EQ(series["records"].size(), 3U);
+  EXPECT_NEAR(series["records"][0]["sigma"]["value"].get<double>() / kSigma,
+              std::pow(0.5, kExponent), kNoiseFree);
+  EXPECT_NEAR(series["records"][2]["alone"]["slip_force"]["value"].get<double>() / kSlipForce, 1.5,
+              kNoiseFree);
+  ASSERT_EQ(series["hypotheses"].size(), 5U);
+  EXPECT_EQ(series["hypotheses"][2]["name"], "cone");
+  EXPECT_NEAR(series["hypotheses"][2]["difference"].get<double>(), 0.0, kNoiseFree);
 }
 
 TEST_F(FitTerms, SamplesOutsideTheLoadWindowDoNotCount) {
@@ -534,17 +589,28 @@ INSTANTIATE_TEST_SUITE_P(
                "--model: best not in {mindlin-dahl,mindlin,jenkins,dahl,auto}"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(FitCommand, LoadOptionsWithoutALoadNameTheColumnOption) {
-  for (const Words& option : {Words{"--follow-load"}, Words{"--load-window", "1:2"}}) {
+TEST(FitCommand, LoadWindowWithoutALoadNamesTheColumnOption) {
+  const Outcome outcome = RunCommand({"fit", testing::SampleRecord(), "--load-window", "1:2"});
+  EXPECT_EQ(outcome.status, cli::kBadInput);
+  ASSERT_THAT(outcome.Errors(), SizeIs(1));
+  EXPECT_THAT(outcome.Errors()[0], HasSubstr("--load-window needs a normal load: name its column "
+                                             "with --normal-load-column"));
+}
+
+TEST(FitCommand, LoadsThatHaveNoMeaningAreRefused) {
+  const auto error = [](const Words& more) {
     Words words = {"fit", testing::SampleRecord()};
-    words.insert(words.end(), option.begin(), option.end());
+    words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = RunCommand(words);
     EXPECT_EQ(outcome.status, cli::kBadInput);
-    ASSERT_THAT(outcome.Errors(), SizeIs(1));
-    EXPECT_THAT(outcome.Errors()[0],
-                HasSubstr(option[0] + " needs a normal load: name its column with "
-                                      "--normal-load-column"));
-  }
+    return outcome.Errors().empty() ? std::string() : outcome.Errors()[0];
+  };
+  EXPECT_THAT(error({"--follow-load"}), HasSubstr("--follow-load is no longer needed"));
+  EXPECT_THAT(error({"--normal-load", "25,50"}), HasSubstr("2 loads for 1 file"));
+  EXPECT_THAT(error({"--normal-load", "25,"}), HasSubstr("--normal-load: ''"));
+  EXPECT_THAT(error({"--fix", "load_exponent=0.5"}), HasSubstr("load_exponent has no effect"));
+  EXPECT_THAT(error({"--start", "load_exponent=0.5"}), HasSubstr("load_exponent has no effect"));
+  EXPECT_THAT(error({"--bound", "load_exponent=0:1"}), HasSubstr("load_exponent has no effect"));
 }
 
 }  // namespace

@@ -45,6 +45,8 @@ std::string Words(const Term& term) {
       return fmt::format("`{}`, else 0", term.option);
     case Presence::kOnDemand:
       return fmt::format("`{}`", term.option);
+    case Presence::kLoadSeries:
+      return "loads that differ";
   }
   return "";
 }

@@ -575,7 +575,6 @@ Record Complete() {
   record.force = testing::Respond(Model("mindlin-dahl"), kSticking, record.displacement);
   for (std::size_t i = 0; i < record.size(); ++i) {
     record.time.push_back(static_cast<double>(i));
-    record.normal_load.push_back(100.0 + 20.0 * std::sin(0.1 * static_cast<double>(i)));
   }
   return record;
 }
@@ -649,21 +648,26 @@ TEST(Departures, TurningPointsThatWerePutInTakeNoTime) {
   }
 }
 
-TEST(Departures, OfAForceThatFollowsTheLoadFollowItToo) {
+TEST(Departures, OfARecordUnderAnotherLoadAreInProportionToIt) {
+  // σ in proportion to the load: σ/Tc, and with it every branch over Tc, is the same in both.
   FitOptions options;
-  Stages constant(Complete(), options);
-  options.follow_load = true;
-  Stages following(Complete(), options);
-  const DepartureColumns plain = ColumnsOf(constant);
-  const DepartureColumns loaded = ColumnsOf(following);
-  const auto& ratio = following.data.records[0].load_ratio;
+  options.normal_loads = {120.0, 80.0};
+  Stages alone(Complete());
+  Stages series(std::vector<Record>{Complete(), Complete()}, options);
+  const Contact contact{&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0};
+  std::vector<double> theta = TrueTheta(series, contact);
+  theta[kLoadExponent] = 1.0;
+  const DepartureColumns plain = ColumnsOf(alone);
+  const DepartureColumns loaded =
+      ColumnsOfDepartures(series.problem, theta, series.buffers.response, 100);
   for (const std::string_view code :
        {"shape_of_law", "rig_in_series", "backlash", "displacement_sensor"}) {
     const auto c = static_cast<Eigen::Index>(PlaceOf(plain, code));
     const auto d = static_cast<Eigen::Index>(PlaceOf(loaded, code));
-    for (std::size_t i = 0; i < ratio.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      EXPECT_NEAR(loaded.columns(row, d), ratio[i] * plain.columns(row, c), kRounding) << code;
+    const Eigen::Index rows = plain.columns.rows();
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      EXPECT_NEAR(loaded.columns(i, d), 1.2 * plain.columns(i, c), kRounding) << code;
+      EXPECT_NEAR(loaded.columns(rows + i, d), 0.8 * plain.columns(i, c), kRounding) << code;
     }
   }
 }
@@ -718,6 +722,20 @@ TEST(Departures, OfTheDisplacementsRepeatsAndOfTheAmplitudeNeedThem) {
   EXPECT_EQ(PlaceOf(columns, "amplitude_dependence"), columns.of.size()) << "all strokes are alike";
 }
 
+TEST(Departures, AskForTheMeasuredLoadWhereTheLawDoesNotKnowThatItVaries) {
+  Record record = Complete();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.normal_load.push_back(100.0 + 20.0 * std::sin(0.1 * static_cast<double>(i)));
+  }
+  Stages following(record);
+  EXPECT_EQ(PlaceOf(ColumnsOf(following), "normal_load"), ColumnsOf(following).of.size());
+  FitOptions options;
+  options.terms = {"rig_stiffness"};
+  Stages behind_a_rig(record, options);
+  const DepartureColumns columns = ColumnsOf(behind_a_rig);
+  EXPECT_LT(PlaceOf(columns, "normal_load"), columns.of.size());
+}
+
 TEST(Departures, AreNotLookedForWhereTheyAreFitted) {
   FitOptions options;
   options.terms = {"viscous", "force_drift", "plateau_slope", "rig_stiffness"};
@@ -738,8 +756,8 @@ TEST(Departures, AreGivenUpFromTheLastWhereTheColumnsAreFew) {
     return ColumnsOfDepartures(stages.problem, theta, stages.buffers.response, columns).of;
   };
   EXPECT_EQ(most(3), (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_EQ(most(7), (std::vector<std::size_t>{0, 1, 2, 3, 4})) << "the law's shape has three";
-  EXPECT_EQ(most(8), (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 5, 5}));
+  EXPECT_EQ(most(6), (std::vector<std::size_t>{0, 1, 2, 3})) << "the law's shape has three";
+  EXPECT_EQ(most(7), (std::vector<std::size_t>{0, 1, 2, 3, 5, 5, 5}));
 }
 
 }  // namespace

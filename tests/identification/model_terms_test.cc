@@ -175,32 +175,6 @@ TEST(ModelTerms, ViscousForceIsRecovered) {
   EXPECT_EQ(RefusalOf(record, options), "viscous needs the time of every sample in every record");
 }
 
-/// A load that varies by ±5 % out of step with the motion, and the force with it.
-Record LoopUnderVaryingLoad() {
-  constexpr double kMeanLoad = 150.0;
-  Record record = Loop();
-  double sum = 0.0;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    record.normal_load.push_back(kMeanLoad * (1 + 0.05 * std::sin(0.07 * static_cast<double>(i))));
-    sum += record.normal_load.back();
-  }
-  const double mean = sum / static_cast<double>(record.size());
-  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] *= record.normal_load[i] / mean;
-  return record;
-}
-
-TEST(ModelTerms, FollowingTheLoadGivesTheParametersAtTheMeanLoad) {
-  const Record record = LoopUnderVaryingLoad();
-  FitOptions options;
-  options.follow_load = true;
-  const FitResult following = FitOne(record, options);
-  EXPECT_TRUE(Recovers(following, kLaw, kNoiseFree));
-  // Ignored, ±5 % leave some 5 %/√2 of a force that is near Tc for most of the loop.
-  const FitResult ignoring = FitOne(record);
-  EXPECT_GT(ignoring.residuals.normalized_rms, 0.015);
-  EXPECT_LT(ignoring.residuals.durbin_watson, 0.5) << "systematic";
-}
-
 TEST(ModelTerms, SamplesOutsideTheLoadWindowStillMakeHistory) {
   // A wide swing under another load, whose force was spoilt, and then inner loops that start from
   // where it ended.
@@ -253,11 +227,6 @@ TEST(ModelTerms, OptionsThatBreakARuleAreNamed) {
   Record loaded = Loop();
   loaded.normal_load.assign(loaded.size(), 200.0);
   EXPECT_THAT(RefusalOf(loaded, options), HasSubstr("nothing is left of record 1"));
-  options = {};
-  options.follow_load = true;
-  EXPECT_EQ(RefusalOf(Loop(), options), "following the load needs a normal load in every record");
-  loaded.normal_load.assign(loaded.size(), 0.0);
-  EXPECT_THAT(RefusalOf(loaded, options), HasSubstr("mean normal load [N] = 0 is invalid"));
   options = {};
   options.preparation.skip_cycles = 2;
   EXPECT_THAT(RefusalOf(Loop(1.2), options), HasSubstr("nothing is left of record 1"));

@@ -165,9 +165,7 @@ TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
     record.time.push_back(0.1 * static_cast<double>(i));
     record.normal_load.push_back(100.0 + static_cast<double>(i % 7));
   }
-  FitOptions options;
-  options.follow_load = true;
-  Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)}, options);
+  Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)});
   std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
   const ScaledRecords thin = Thin(stages.data, reversals, Stages::Memory());
   ASSERT_EQ(thin.records.size(), 2U);

@@ -43,8 +43,7 @@ class Stages {
   static identification::ScaledRecords ScaledRecordsOf(loop::PreparedRecords& prepared,
                                                        const identification::FitOptions& options) {
     identification::LeaveOutBeyondLags(options, prepared);
-    identification::ScaledRecords data =
-        identification::Scale(prepared, options.follow_load, Memory());
+    identification::ScaledRecords data = identification::Scale(prepared, options, Memory());
     identification::AddCovariates(options.covariates, /*with_others=*/true, prepared,
                                   options.offsets, data);
     if (identification::HasLag(options)) identification::SetClocks(data);

@@ -57,13 +57,14 @@ TEST(Terms, OfTheContactComeBeforeThoseOfARecord) {
 }
 
 TEST(Terms, OfTheLawStandWhereTheSolverLooksForThem) {
-  ASSERT_GT(Terms().size(), kRig);
+  ASSERT_GT(Terms().size(), kLoadExponent);
   EXPECT_EQ(Terms()[kStiffness].name, "sigma");
   EXPECT_EQ(Terms()[kShape].name, "alpha");
   EXPECT_EQ(Terms()[kSlipForce].name, "slip_force");
   EXPECT_EQ(Terms()[kRig].name, "rig_stiffness");
+  EXPECT_EQ(Terms()[kLoadExponent].name, "load_exponent");
   const testing::Stages stages(testing::Loop());
-  for (const std::size_t p : {kStiffness, kShape, kSlipForce, kRig}) {
+  for (const std::size_t p : {kStiffness, kShape, kSlipForce, kRig, kLoadExponent}) {
     EXPECT_EQ(stages.problem.parameters[p].term, &Terms()[p]);
   }
 }

@@ -539,6 +539,26 @@ bool IsOfOneAmplitude(const Thresholds& thresholds, double share) {
 /// Whether everything is as the stated value of the threshold makes it.
 using Case = std::function<bool(const Thresholds&)>;
 
+// --- normal loads
+
+bool IsLoadSeries(const Thresholds& thresholds, double difference) {
+  FitOptions options = With(thresholds);
+  options.normal_loads = {100.0, 100.0 * (1 + difference)};
+  const Record loop = LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 1.0, 40));
+  return Stages(std::vector<Record>{loop, loop}, options).data.is_load_series;
+}
+
+bool LoadIsFollowed(const Thresholds& thresholds, double amplitude) {
+  Record loop = LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 1.0, 40));
+  loop.displacement.pop_back();  // whole cycles of the load
+  loop.force.pop_back();
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const double phase = 2 * std::numbers::pi * static_cast<double>(i) / 20;
+    loop.normal_load.push_back(100.0 * (1 + amplitude * std::sin(phase)));
+  }
+  return Stages(loop, With(thresholds)).data.load_varies;
+}
+
 const std::map<std::string_view, Case>& Cases() {
   static const std::map<std::string_view, Case> cases = {
       {"significance",
@@ -723,6 +743,14 @@ const std::map<std::string_view, Case>& Cases() {
       {"seen_loop",
        [](const Thresholds& t) {
          return !LoopIsSeen(t, kBelow * 0.1) && LoopIsSeen(t, kAbove * 0.1);
+       }},
+      {"load_difference",
+       [](const Thresholds& t) {
+         return !IsLoadSeries(t, kBelow * 0.01) && IsLoadSeries(t, kAbove * 0.01);
+       }},
+      {"load_variation",
+       [](const Thresholds& t) {
+         return !LoadIsFollowed(t, kBelow * 0.01) && LoadIsFollowed(t, kAbove * 0.01);
        }},
   };
   return cases;

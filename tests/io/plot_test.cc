@@ -110,6 +110,22 @@ TEST(Plot, DrawsPointsOnlyForThatStyle) {
   EXPECT_EQ(Count(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kLine})), kDot), 0u);
 }
 
+TEST(Plot, DrawsIntervalsThatReachToTheirEnds) {
+  REQUIRE_GNUPLOT();
+  // A linear axis takes the ends in: 9 is beyond every point.
+  Plot plot = OnePanel({"", {0, 1, 2}, {1, 2, 1}, PlotStyle::kIntervals});
+  EXPECT_THROW(Svg(plot), InvalidArgument) << "no ends";
+  plot.panels.front().series.front().lower = {0, 1, 0};
+  plot.panels.front().series.front().upper = {2, 9, 2};
+  EXPECT_GE(
+      Count(Svg(plot), ">8</tspan>") + Count(Svg(plot), " 8</tspan>") + Count(Svg(plot), "> 8<"),
+      1u);
+  plot.panels.front().series.front().style = PlotStyle::kMarkers;
+  EXPECT_EQ(
+      Count(Svg(plot), ">8</tspan>") + Count(Svg(plot), " 8</tspan>") + Count(Svg(plot), "> 8<"),
+      0u);
+}
+
 TEST(Plot, LabelsLogarithmicAxesWithPowersOfTen) {
   REQUIRE_GNUPLOT();
   Plot plot = OnePanel({"", {1e-6, 1e-3}, {2e-19, 5e-11}});

@@ -82,6 +82,45 @@ TEST(Figure, NamesTheFilesOfAJointFit) {
   EXPECT_EQ(plot.panels[0].series[3].label, "fitted loop_2.csv");
 }
 
+TEST(Figure, DrawsStiffnessAndSlipForceOverTheLoadsOfASeries) {
+  report::ReportInput input = MadeInput({MadeRecord(1e-6), MadeRecord(2e-6)}, 2e-6);
+  input.fit.normal_load = 75.0;
+  input.fit.load_exponent = 0.5;
+  identification::ParameterEstimate& exponent = input.fit.parameters.emplace_back();
+  exponent.name = "load_exponent";
+  exponent.unit = "-";
+  exponent.value = 0.5;
+  const std::size_t count = input.fit.parameters.size();
+  input.fit.correlation.assign(count * count, 0.0);
+  for (std::size_t r = 0; r < 2; ++r) {
+    identification::RecordFit& record = input.fit.records[r];
+    record.normal_load = r == 0 ? 50.0 : 100.0;
+    record.load_ratio = *record.normal_load / 75.0;
+    identification::RecordAlone& alone = record.alone.emplace();
+    alone.stiffness.value = 3e7;
+    alone.stiffness.lower95 = 2e7;
+    alone.stiffness.upper95 = 5e7;
+    alone.slip_force.value = 10.0;  // with no interval: not drawn
+  }
+  const models::BranchLaw law = input.fit.law;
+  const Plot plot = ToPlot(report::MakeReport(std::move(input)));
+  ASSERT_THAT(plot.panels, SizeIs(4));
+  const PlotPanel& stiffness = plot.panels[2];
+  EXPECT_EQ(stiffness.y_label, "σ [N/µm]");
+  ASSERT_THAT(stiffness.series, SizeIs(2));
+  EXPECT_EQ(stiffness.series[0].x.front(), 50.0);
+  EXPECT_EQ(stiffness.series[0].x.back(), 100.0);
+  constexpr double kRounding = 1e-14;
+  EXPECT_NEAR(
+      stiffness.series[0].y.back() / (1e-6 * law.tangential_stiffness * std::sqrt(100.0 / 75)), 1,
+      kRounding);
+  EXPECT_THAT(stiffness.series[1].x, ElementsAre(50.0, 100.0));
+  EXPECT_NEAR(stiffness.series[1].lower[0], 20.0, 20 * kRounding);
+  EXPECT_NEAR(stiffness.series[1].upper[1], 50.0, 50 * kRounding);
+  ASSERT_THAT(plot.panels[3].series, SizeIs(1));
+  EXPECT_NEAR(plot.panels[3].series[0].y.front() / (law.slip_force * 50 / 75), 1, kRounding);
+}
+
 TEST(Figure, MarksTheReversalsOfEveryRecord) {
   report::ReportInput input =
       MadeInput({MadeRecord(1e-6), MadeRecord(2e-6)}, 2e-6);  // each turns in its middle

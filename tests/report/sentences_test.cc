@@ -66,7 +66,9 @@ Finding Complete(std::string_view code, std::string_view kind = "") {
                      {"delta_aicc", -31.5},
                      {"measured", 0.015},
                      {"model", 0.0325},
-                     {"r_squared", 0.0625}};
+                     {"r_squared", 0.0625},
+                     {"variation", 0.055},
+                     {"bound", 0.99}};
   return finding;
 }
 
@@ -117,6 +119,10 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
        "dahl",
        {"sigma, slip_force: Dahl's own law", "Masing's law", "ΔAICc = -31.5", "3.25e+07 N/m",
         "43.5 N", "--model dahl"}},
+      {"rig_not_tried", "", {"alpha = 0.0625", "--load-window"}},
+      {"load_followed", "", {"record 2: ", "±5.5 %", "the law follows it"}},
+      {"load_not_followed", "", {"record 2: ", "±5.5 %", "jenkins", "--load-window"}},
+      {"alpha_limited_by_load", "", {"0.99 or more", "--load-window"}},
       {"weights_not_settled", "", {"weights"}},
       {"fit_failed", "", {"no start led anywhere"}},
   };
@@ -235,8 +241,9 @@ TEST(FindingCodes, CoverWhatTheIdentificationFinds) {
 TEST(FindingCodes, HaveAVerdictUnlessTheyAreOfNoParameter) {
   // The judge would throw for a code that names a parameter and has no row.
   std::set<std::string> of_parameters = EmittedCodes();
-  for (const char* of_the_whole_fit : {"fit_failed", "weights_not_settled", "reversals_uncertain",
-                                       "glitches_left_out", "path_too_long", "no_closed_cycle"}) {
+  for (const char* of_the_whole_fit :
+       {"fit_failed", "weights_not_settled", "reversals_uncertain", "glitches_left_out",
+        "path_too_long", "no_closed_cycle", "load_followed", "load_not_followed"}) {
     EXPECT_EQ(of_parameters.erase(of_the_whole_fit), 1U) << of_the_whole_fit;
   }
   const std::string judge = Content(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src" /

@@ -11,6 +11,7 @@
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
+#include "mindahl/models/variable_load.h"
 
 namespace mindahl::coverage {
 
@@ -20,8 +21,8 @@ using models::BranchLaw;
 
 namespace {
 
-constexpr std::array<std::string_view, Coverage::kParameters> kNames = {"sigma", "alpha",
-                                                                        "slip_force"};
+constexpr std::array<std::string_view, Coverage::kParameters> kNames = {
+    "sigma", "alpha", "slip_force", "load_exponent"};
 
 /// Box and Muller: the same on every platform.
 class Normal {
@@ -38,7 +39,12 @@ class Normal {
 };
 
 /// A contact of the size of a fretting test, as far as units go.
-BranchLaw LawOf(const Scenario& scenario) { return {5e7, scenario.shape_exponent, 20.0}; }
+/// @param load  over the mean
+BranchLaw LawOf(const Scenario& scenario, double load = 1.0) {
+  return {5e7 * std::pow(load, scenario.load_exponent), scenario.shape_exponent, 20.0 * load};
+}
+
+constexpr double kMeanLoad = 50.0;  // [N]
 
 /// Off centre in both channels, so that offsets are to be found.
 constexpr double kForceOffset = 3.0;
@@ -95,8 +101,8 @@ void AddBeside(const Scenario& scenario, Record& record) {
   if (scenario.beside == Beside::kCovariate) record.covariates.push_back(std::move(column));
 }
 
-Record CleanRecord(const Scenario& scenario) {
-  const BranchLaw law = LawOf(scenario);
+Record CleanRecord(const Scenario& scenario, double load) {
+  const BranchLaw law = LawOf(scenario, load);
   Record record;
   record.displacement =
       models::MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
@@ -106,11 +112,33 @@ Record CleanRecord(const Scenario& scenario) {
   for (std::size_t i = 0; i < record.displacement.size(); ++i) {
     record.displacement[i] = record.displacement[i - i % scenario.dwell];
   }
-  record.force = ForceOn(law, record.displacement);
+  if (scenario.load_swing > 0) {
+    record.displacement.pop_back();  // whole cycles of the load, whose mean is then its mean
+    record.force.resize(record.displacement.size());
+    for (std::size_t i = 0; i < record.displacement.size(); ++i) {
+      const double cycles =
+          static_cast<double>(i) / static_cast<double>(scenario.samples_per_cycle);
+      record.normal_load.push_back(kMeanLoad * load *
+                                   (1 + scenario.load_swing * std::cos(2 * kTwoPi * cycles)));
+    }
+    models::EvaluateForceUnderLoad({.friction_coefficient = law.slip_force / (kMeanLoad * load),
+                                    .reference_load = kMeanLoad * load,
+                                    .reference_stiffness = law.tangential_stiffness,
+                                    .shape_exponent = law.shape_exponent},
+                                   record.displacement, record.normal_load, record.force);
+  } else {
+    record.force = ForceOn(law, record.displacement);
+  }
   if (scenario.beside != Beside::kNothing) AddBeside(scenario, record);
   for (double& force : record.force) force += kForceOffset;
   for (double& displacement : record.displacement) displacement += kDisplacementOffset;
   return record;
+}
+
+std::vector<Record> CleanRecords(const Scenario& scenario) {
+  std::vector<Record> records;
+  for (const double load : scenario.loads) records.push_back(CleanRecord(scenario, load));
+  return records;
 }
 
 double ForceNoise(const Scenario& scenario) {
@@ -120,9 +148,8 @@ double ForceNoise(const Scenario& scenario) {
                                  scenario.lambda * GrossSlipDisplacement(law));
 }
 
-Record NoisyRecord(const Scenario& scenario, const Record& clean, std::uint64_t seed) {
+Record NoisyRecord(const Scenario& scenario, const Record& clean, Normal& normal) {
   constexpr double kCorrelation = 0.9;
-  Normal normal(seed);
   Record record = clean;
   const double force_noise = ForceNoise(scenario);
   const double amplitude = scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
@@ -154,6 +181,9 @@ Record NoisyRecord(const Scenario& scenario, const Record& clean, std::uint64_t 
 FitOptions OptionsOf(const Scenario& scenario) {
   FitOptions options;
   options.initial_state = models::InitialState::kVirgin;
+  if (scenario.loads.size() > 1) {
+    for (const double load : scenario.loads) options.normal_loads.push_back(kMeanLoad * load);
+  }
   if (scenario.noise == Noise::kDisplacement && scenario.noise_is_known) {
     options.preparation.displacement_noise =
         scenario.displacement_noise * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
@@ -169,6 +199,7 @@ FitOptions OptionsOf(const Scenario& scenario) {
 std::vector<Scenario> Scenarios() {
   constexpr double kWhiteLow = 0.93;
   constexpr double kWhiteHigh = 0.97;
+  constexpr double kPartialSlipLow = 0.92;  // Tc is not reached: the likelihood is skewed
   return {
       {.name = "white 1 %, lambda 0.9",
        .lambda = 0.9,
@@ -231,6 +262,28 @@ std::vector<Scenario> Scenarios() {
        .force_noise = 0.005,
        .displacement_noise = 0.01,
        .dwell = 3},
+      {.name = "three loads, 0.4, 0.8 and 1.8 of the mean, p 1/3",
+       .cycles = 2,
+       .samples_per_cycle = 100,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .loads = {0.4, 0.8, 1.8}},
+      {.name = "three loads, 0.4, 0.8 and 1.8 of the mean, p 1/2, lambda 0.9",
+       .lambda = 0.9,
+       .cycles = 2,
+       .samples_per_cycle = 100,
+       .lowest_coverage = kPartialSlipLow,
+       .highest_coverage = kWhiteHigh,
+       .loads = {0.4, 0.8, 1.8},
+       .load_exponent = 0.5},
+      {.name = "load varies by 5 % at twice the frequency",
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .load_swing = 0.05},
+      {.name = "load varies by 30 % at twice the frequency",
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .load_swing = 0.3},
       {.name = "near a bound: alpha 0.01", .shape_exponent = 0.01, .lambda = 1.2},
       {.name = "at a bound: alpha 0", .shape_exponent = 0.0, .lambda = 1.2},
       {.name = "white 1 %, late by 1.5 samples: lag fitted",
@@ -250,9 +303,10 @@ std::vector<Scenario> Scenarios() {
 
 Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t first_seed) {
   const BranchLaw law = LawOf(scenario);
-  const std::array<double, Coverage::kParameters> truth = {law.tangential_stiffness,
-                                                           law.shape_exponent, law.slip_force};
-  const Record clean = CleanRecord(scenario);
+  const std::array<double, Coverage::kParameters> truth = {
+      law.tangential_stiffness, law.shape_exponent, law.slip_force, scenario.load_exponent};
+  const std::size_t parameters = scenario.loads.size() > 1 ? truth.size() : truth.size() - 1;
+  const std::vector<Record> clean = CleanRecords(scenario);
   const FitOptions options = OptionsOf(scenario);
 
   // The bound of Cramér and Rao for white noise of the force: the parabola at the truth.
@@ -260,21 +314,24 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   FitOptions known = options;
   known.preparation.displacement_noise.reset();
   known.force_noise = ForceNoise(scenario);
-  const identification::FitResult at_truth = identification::Fit({&clean, 1}, known);
-  for (std::size_t k = 0; k < bound.size(); ++k) {
+  const identification::FitResult at_truth = identification::Fit(clean, known);
+  for (std::size_t k = 0; k < parameters; ++k) {
     bound[k] = at_truth.Find(kNames[k])->standard_error.value_or(0.0);
   }
 
   Coverage coverage;
   coverage.loops = loops;
+  coverage.parameters = parameters;
   std::array<double, Coverage::kParameters> sum{};
   std::array<double, Coverage::kParameters> squares{};
   std::array<double, Coverage::kParameters> stated{};
   std::array<double, Coverage::kParameters> with_error{};
   for (std::size_t i = 0; i < loops; ++i) {
-    const Record record = NoisyRecord(scenario, clean, first_seed + i);
-    const identification::FitResult fit = identification::Fit({&record, 1}, options);
-    for (std::size_t k = 0; k < truth.size(); ++k) {
+    Normal normal(first_seed + i);
+    std::vector<Record> records;
+    for (const Record& record : clean) records.push_back(NoisyRecord(scenario, record, normal));
+    const identification::FitResult fit = identification::Fit(records, options);
+    for (std::size_t k = 0; k < parameters; ++k) {
       const identification::ParameterEstimate& estimate = *fit.Find(kNames[k]);
       const bool covers = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
                           (!estimate.upper95 || truth[k] <= *estimate.upper95);
@@ -289,7 +346,7 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
     }
   }
   const auto count = static_cast<double>(loops);
-  for (std::size_t k = 0; k < truth.size(); ++k) {
+  for (std::size_t k = 0; k < parameters; ++k) {
     const double mean = sum[k] / count;
     const double scatter = std::sqrt(std::max(squares[k] / count - mean * mean, 0.0));
     coverage.covered[k] /= count;

@@ -45,15 +45,21 @@ struct Scenario {
   std::size_t dwell = 1;          ///< samples at which the drive rests, with one reading
   double lowest_coverage = 0.90;  ///< what is promised, over kLoops
   double highest_coverage = 1.0;
+  /// Normal loads over their mean, a record each, of one contact with σ ∝ N^load_exponent; each is
+  /// driven to λ at its own load.
+  std::vector<double> loads = {1.0};
+  double load_exponent = 1.0 / 3;
+  double load_swing = 0.0;  ///< of the load about its mean, at twice the drive's frequency
 };
 
 /// The scenarios of docs/coverage.md.
 std::vector<Scenario> Scenarios();
 
-/// Of σ, α and Tc in this order.
+/// Of σ, α, Tc and, of several loads, load_exponent in this order.
 struct Coverage {
-  static constexpr std::size_t kParameters = 3;
+  static constexpr std::size_t kParameters = 4;
   std::size_t loops = 0;
+  std::size_t parameters = kParameters;       ///< how many of them the fit has
   std::array<double, kParameters> covered{};  ///< share of the intervals that cover the truth
   std::array<double, kParameters>
       error_ratio{};                             ///< root mean square stated error over the scatter

@@ -37,12 +37,21 @@ void PrintHead(std::size_t loops) {
 }
 
 void PrintRow(const Scenario& scenario, const Coverage& coverage) {
-  fmt::print("| {} |", scenario.name);
-  for (const double share : coverage.covered) fmt::print(" {:.1f} % |", 100 * share);
-  for (const double ratio : coverage.error_ratio) fmt::print(" {:.2f} |", ratio);
-  for (const double efficiency : coverage.efficiency) fmt::print(" {:.2f} |", efficiency);
-  for (const double bias : coverage.bias) fmt::print(" {:+.2f} |", bias);
-  fmt::print("\n");
+  const auto print = [&](std::string_view name, std::size_t begin, std::size_t end) {
+    // A row has three places a column.
+    const auto cells = [&](const auto& values, auto format) {
+      for (std::size_t k = begin; k < end; ++k) format(values[k]);
+      for (std::size_t k = end; k < begin + 3; ++k) fmt::print(" |");
+    };
+    fmt::print("| {} |", name);
+    cells(coverage.covered, [](double share) { fmt::print(" {:.1f} % |", 100 * share); });
+    cells(coverage.error_ratio, [](double ratio) { fmt::print(" {:.2f} |", ratio); });
+    cells(coverage.efficiency, [](double efficiency) { fmt::print(" {:.2f} |", efficiency); });
+    cells(coverage.bias, [](double bias) { fmt::print(" {:+.2f} |", bias); });
+    fmt::print("\n");
+  };
+  print(scenario.name, 0, 3);
+  if (coverage.parameters > 3) print("… its load_exponent", 3, 4);
   std::fflush(stdout);
 }
 
@@ -79,7 +88,8 @@ int main(int argc, char** argv) {
   for (const Scenario& scenario : scenarios) {
     const Coverage coverage = Measure(scenario, *loops);
     PrintRow(scenario, coverage);
-    for (const double share : coverage.covered) {
+    for (std::size_t k = 0; k < coverage.parameters; ++k) {
+      const double share = coverage.covered[k];
       kept = kept && share >= scenario.lowest_coverage - slack &&
              share <= scenario.highest_coverage + slack;
     }

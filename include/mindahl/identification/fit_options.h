@@ -43,10 +43,11 @@ struct FitOptions {
   /// parameter, NameOfCovariate(); fixing it gives it a known value. Every record must have them.
   std::vector<std::string> covariates;
 
-  /// The force follows the measured normal load, T·N/mean N: σ, α and Tc are those at the mean
-  /// load. The displacement at which the contact slips is taken not to change: for loads that vary
-  /// by some per cent. Needs the load of every record.
-  bool follow_load = false;
+  /// Normal load [N] of every record, or one for all; empty: the mean of a record's column. Where
+  /// records differ in it by more than Thresholds::load_difference they are one contact all the
+  /// same: Tc = μN, σ ∝ N^p with p the parameter load_exponent, α shared; σ and Tc are those at the
+  /// mean of the records' loads.
+  std::vector<double> normal_loads;
 
   /// Known standard deviation of the force noise [N]; empty: from the residuals.
   std::optional<double> force_noise;

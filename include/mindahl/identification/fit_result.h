@@ -81,6 +81,13 @@ struct StartReport {
   bool converged = false;
 };
 
+/// What a record of a load series says by itself, of Tc and σ at its load: the shape and whatever
+/// else all records share is held where the whole series has it.
+struct RecordAlone {
+  ParameterEstimate stiffness;   ///< σ [N/m]
+  ParameterEstimate slip_force;  ///< Tc [N]
+};
+
 /// One record as the fit sees it.
 struct RecordFit {
   loop::ReversalGate gate;             ///< `certain` where it was given
@@ -94,9 +101,14 @@ struct RecordFit {
   double displacement_noise = 0.0;    ///< [m] of the readings; 0 where they count as exact
   std::vector<unsigned char> counts;  ///< of each sample, 1 where it counts, else 0
   std::size_t left_out = 0;           ///< samples that do not count
-  ResidualStructure structure;        ///< of the residuals, in the displacement's sense
-  std::vector<double> fitted_force;   ///< [N], in the file's sense, offsets included
-  std::vector<double> residual;       ///< fitted − measured [N]
+  std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
+  double load_ratio = 1.0;            ///< of that to the mean of all, in a load series; else 1
+  bool load_varies = false;           ///< within the record, as the law was told
+  /// Of a load series, at Depth::kFull; empty where the record by itself is no fit.
+  std::optional<RecordAlone> alone;
+  ResidualStructure structure;       ///< of the residuals, in the displacement's sense
+  std::vector<double> fitted_force;  ///< [N], in the file's sense, offsets included
+  std::vector<double> residual;      ///< fitted − measured [N]
 };
 
 /// Pessimistic by default: a result that nobody filled in has not converged. What a depth does not
@@ -111,9 +123,13 @@ struct FitResult {
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc
   models::SeriesSpring rig;  ///< rigid where there is none
-  double rms = 0.0;          ///< [N] of the residuals that count, unweighted
-  double force_noise = 0.0;  ///< [N], known or estimated
-  std::size_t outliers = 0;  ///< samples that a robust loss gives less than half their weight
+  /// Mean of the records' normal loads [N], to which σ and Tc of a load series belong; empty where
+  /// not all are known.
+  std::optional<double> normal_load;
+  double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, and nothing's, where the records have one load
+  double rms = 0.0;            ///< [N] of the residuals that count, unweighted
+  double force_noise = 0.0;    ///< [N], known or estimated
+  std::size_t outliers = 0;    ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
   std::vector<BranchShape> branch_shapes;  ///< α of each branch on its own; empty where it is held
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
@@ -134,8 +150,17 @@ struct FitResult {
   /// nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(std::string_view code) const;
 
-  /// The record with the largest amplitude: the one that comes nearest to gross slip.
+  /// The record with the largest amplitude, in a load series over N^{1−p}, to which the gross-slip
+  /// displacement is in proportion: the one that comes nearest to gross slip.
   [[nodiscard]] const RecordFit& WidestRecord() const;
+
+  /// The law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
+  [[nodiscard]] models::BranchLaw LawOf(const RecordFit& record) const;
+
+  /// The largest force [N] of the widest record, as it would be at the mean load of all.
+  [[nodiscard]] double PeakForce() const;
+
+  [[nodiscard]] bool is_load_series() const { return Find("load_exponent") != nullptr; }
 };
 
 }  // namespace mindahl::identification

@@ -18,10 +18,11 @@ enum class Entry {
 
 /// When a parameter is fitted.
 enum class Presence {
-  kAlways,    ///< unless it is fixed
-  kOffsets,   ///< with FitOptions::offsets; held at 0 otherwise, and reported
-  kReported,  ///< where asked for; held at 0 otherwise, and reported
-  kOnDemand,  ///< where asked for or fixed; otherwise not there
+  kAlways,      ///< unless it is fixed
+  kOffsets,     ///< with FitOptions::offsets; held at 0 otherwise, and reported
+  kReported,    ///< where asked for; held at 0 otherwise, and reported
+  kOnDemand,    ///< where asked for or fixed; otherwise not there
+  kLoadSeries,  ///< where the records are under loads that differ; otherwise not there
 };
 
 /// The units in which a fit works, for the records' numbers to be of order one.

@@ -49,6 +49,8 @@ struct Thresholds {
   double one_amplitude = 0.01;
   double rival_law = 10.0;
   double seen_loop = 0.1;
+  double load_difference = 0.01;
+  double load_variation = 0.01;
 };
 
 struct ThresholdRow {

@@ -7,8 +7,8 @@
 namespace mindahl::io {
 
 /// Points are small dots for dense records. Markers are large, and of another shape in each series;
-/// they show few values one by one, alone or joined by a line.
-enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints };
+/// they show few values one by one, alone or joined by a line, or with an interval around each.
+enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kIntervals };
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
 struct PlotSeries {
@@ -16,6 +16,8 @@ struct PlotSeries {
   std::vector<double> x;  ///< finite, at least one; > 0 on a logarithmic axis
   std::vector<double> y;  ///< finite, as many as x; > 0 on a logarithmic axis
   PlotStyle style = PlotStyle::kLine;
+  std::vector<double> lower = {};  ///< ends of intervals of y, as many; for kIntervals alone
+  std::vector<double> upper = {};
 };
 
 /// One pair of axes. The legend stands above them, on the right of them when it has more than four

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mindahl/models/backbone.h"
+#include "mindahl/models/load_zone.h"
 #include "mindahl/models/variable_load.h"
 
 namespace mindahl::models {
@@ -62,23 +63,12 @@ class LoadedContactState {
   [[nodiscard]] std::size_t RememberedZones() const { return zones_.size(); }
 
  private:
-  /// Elements from `inner` outward, to the next zone or the rim, whose rest positions lie on the
-  /// line r(h) = intercept + slope·h.
-  struct Zone {
-    double inner = 0.0;       // h₁ [m]
-    double slope = 0.0;       // r' [–], within ±1; ±1 where the last slip was in that sense
-    double intercept = 0.0;   // r(0) [m], of the line
-    double force = 0.0;       // Σ r'·ΔTc [N] over the zones within
-    double slip_force = 0.0;  // Tc(h₁) [N]
-
-    [[nodiscard]] double RestAt(double h) const { return intercept + slope * h; }
-  };
+  using Zone = LoadZone<double>;
 
   /// The rim under a load.
   struct Rim {
     double normal_load = 0.0;
-    double slip_displacement = 0.0;  // δc(N), of the outermost elements
-    double slip_force = 0.0;         // Tc(N)
+    LoadRim<double> at;
   };
 
   class TrialZones;
@@ -86,12 +76,6 @@ class LoadedContactState {
   [[nodiscard]] Rim RimUnder(double normal_load) const;
   template <typename Zones>
   [[nodiscard]] double StepTo(Zones& zones, const Rim& rim, double displacement) const;
-  template <typename Zones>
-  [[nodiscard]] double Widen(Zones& zones, const Rim& rim, double slope) const;
-  template <typename Zones>
-  [[nodiscard]] double Slip(Zones& zones, const Rim& rim, double displacement,
-                            double stretch) const;
-  [[nodiscard]] double Share(double y) const;
 
   LoadDependentLaw law_;
   InitialLoading initial_;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/identification/fit.h"
@@ -10,6 +11,10 @@
 #include "mindahl/models/branch_law.h"
 
 namespace mindahl::report {
+
+/// Correlation of the errors of two parameters of a fit; 0 where the fit does not say.
+double Correlation(const identification::FitResult& fit, std::string_view first,
+                   std::string_view second);
 
 /// IdentifyContact() of a fit, with its errors and their correlation, and by the rules that
 /// keep it from saying what the record does not tell:

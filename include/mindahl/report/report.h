@@ -8,6 +8,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/report/load_series.h"
 #include "mindahl/report/loop_description.h"
 #include "mindahl/report/mapping_tests.h"
 #include "mindahl/report/units.h"
@@ -34,6 +35,7 @@ struct Report : ReportInput {
   /// By Masing's law where Dahl's own was fitted, and the other way round; empty where the two are
   /// not compared.
   contact::IdentifiedContact contact_by_other_law;
+  std::optional<LoadSeries> load_series;  ///< empty where the records have one load
   AlphaTest alpha;
   std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit
   std::vector<Warning> fit_warnings;      ///< what the fit found, and a person should act on

@@ -106,7 +106,7 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
 
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
-  const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);
+  const double force = std::min(result.law.slip_force, result.PeakForce());
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
          result.adequacy.misfit > thresholds.failing_misfit * force;
 }

@@ -129,7 +129,7 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
 
 std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
   // Where the slip force is open it says nothing of how well the loop is followed.
-  const double force = std::min(result.law.slip_force, result.WidestRecord().measures.peak_force);
+  const double force = std::min(result.law.slip_force, result.PeakForce());
   if (!(force > 0)) return std::nullopt;
   // What a robust loss has weighed down is not the model's.
   const double rms = result.outliers > 0 ? std::hypot(result.adequacy.misfit, result.force_noise)
@@ -158,7 +158,7 @@ std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thr
 }
 
 std::optional<Finding> FindExtrapolated(const FitResult& result, const Thresholds& thresholds) {
-  const double peak_force = result.WidestRecord().measures.peak_force;
+  const double peak_force = result.PeakForce();
   const ParameterEstimate& slip_force = *result.Find("slip_force");
   const double share = peak_force / slip_force.value;
   const bool is_known = slip_force.status == ParameterStatus::kFixed || !slip_force.upper95;
@@ -193,6 +193,17 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
                    .kind = "one_stroke"};
   }
   return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
+}
+
+std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution) {
+  const Parameter& shape = problem.parameters[kShape];
+  const bool is_limited = problem.data->load_varies && !shape.fixed &&
+                          shape.upper == kHighestShapeUnderLoad &&
+                          solution.side[kShape] == BoundSide::kUpper;
+  if (!is_limited) return std::nullopt;
+  return Finding{.code = "alpha_limited_by_load",
+                 .parameters = {"alpha"},
+                 .numbers = {{"bound", kHighestShapeUnderLoad}}};
 }
 
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {
@@ -251,6 +262,7 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
   // A contact that is rigid beside the rig is Jenkins' element again: the same curve, no other α.
   if (alternative.tangential_stiffness < thresholds.rigid_beside_rig * alternative.rig_stiffness) {
     finding.parameters = {"sigma", "alpha"};
+    if (result.is_load_series()) finding.parameters.emplace_back("load_exponent");
   } else {
     finding.severity = Severity::kNote;
   }

@@ -55,4 +55,7 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
 
 Finding FoundTurningPoints(double longest_overshoot);
 
+/// `alpha_limited_by_load`: α at the bound that the law of a varying load sets.
+std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution);
+
 }  // namespace mindahl::identification

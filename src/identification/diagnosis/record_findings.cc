@@ -91,12 +91,39 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
   return findings;
 }
 
+std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
+  std::vector<Finding> findings;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const ScaledRecord& record = data.records[r];
+    const bool is_followed = !record.load_ratio.empty();
+    if (!is_followed && record.load_change.empty()) continue;
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (record.counts[i] == 0) continue;
+      const double change = is_followed ? record.load_ratio[i] - 1 : record.load_change[i];
+      squares += change * change;
+      ++count;
+    }
+    Finding& finding = findings.emplace_back(
+        Finding{.code = is_followed ? "load_followed" : "load_not_followed",
+                .severity = is_followed ? Severity::kNote : Severity::kWarning,
+                .numbers = {{"variation", std::sqrt(2 * squares / std::max(count, 1.0))}}});
+    if (data.records.size() > 1) {
+      finding.numbers.emplace_back("record", static_cast<double>(r + 1));
+    }
+  }
+  return findings;
+}
+
 std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                                                const Thresholds& thresholds) {
   const RecordFit& record = result.WidestRecord();
   const std::optional<double> measured = EnergyThatCounts(record);
   // What a robust loss weighs down is in the measured energy all the same.
   if (!measured || !ClaimsAnAnswer(result) || result.outliers > 0) return std::nullopt;
+  // Whose energy is that of the load's course too.
+  if (record.load_varies) return std::nullopt;
   // These lose, or shift, energy that is not the contact's.
   const bool has_other = std::ranges::any_of(result.parameters, [](const ParameterEstimate& other) {
     const bool is_other = other.name == "viscous" || other.name == "lag" ||
@@ -105,9 +132,9 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   });
   if (has_other) return std::nullopt;
   const double amplitude = record.facts.amplitude;
+  const models::BranchLaw law = result.LawOf(record);
   const double model = models::SteadyLoopEnergy(
-      *result.model, result.law,
-      models::ContactAmplitude(*result.model, result.law, result.rig, amplitude));
+      *result.model, law, models::ContactAmplitude(*result.model, law, result.rig, amplitude));
   const double difference = std::abs(*measured - model);
   if (!(difference > thresholds.energy_difference * std::max(std::abs(*measured), model))) {
     return std::nullopt;

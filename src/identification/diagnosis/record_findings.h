@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "identification/problem/scaled_records.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
@@ -21,5 +22,10 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
 /// where the fit claims to know a parameter of the law, and no viscous force takes part of it.
 std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                                                const Thresholds& thresholds);
+
+/// `load_followed` where the normal load varies within a record and the law knows it,
+/// `load_not_followed` where it does not. Numbers: variation, the amplitude of a sine of the load's
+/// standard deviation over its mean, and record of several.
+std::vector<Finding> FindVaryingLoads(const ScaledRecords& data);
 
 }  // namespace mindahl::identification

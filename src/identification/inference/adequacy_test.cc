@@ -199,7 +199,8 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
     if (basis.cols() == 0) continue;
     const auto count = static_cast<double>(basis.cols());
     const auto first = static_cast<std::size_t>(places[0]);
-    DepartureFit fit{.departure = departures.of[first]};
+    DepartureFit fit;
+    fit.departure = departures.of[first];
     const std::size_t plain = departures.of.size() - departures.covariates.size();
     if (first >= plain) fit.covariate = departures.covariates[first - plain];
     const Eigen::MatrixXd correlated = basis.transpose() * products.free_correlated * basis;

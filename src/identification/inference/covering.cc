@@ -48,12 +48,11 @@ std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& r
 void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
   ParameterEstimate& slip_force = result.parameters[kSlipForce];
   const RecordFit& widest = result.WidestRecord();
-  const std::optional<double>& half_gap = widest.facts.half_gap;
-  const bool slips =
-      widest.measures.peak_force >= thresholds.mobilised_by_asymptote * slip_force.value;
-  if (!half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
-  slip_force.lower95 = std::min(*slip_force.lower95, *half_gap);
-  slip_force.upper95 = std::max(*slip_force.upper95, *half_gap);
+  const bool slips = result.PeakForce() >= thresholds.mobilised_by_asymptote * slip_force.value;
+  if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
+  const double half_gap = *widest.facts.half_gap / widest.load_ratio;
+  slip_force.lower95 = std::min(*slip_force.lower95, half_gap);
+  slip_force.upper95 = std::max(*slip_force.upper95, half_gap);
 }
 
 }  // namespace mindahl::identification

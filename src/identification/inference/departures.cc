@@ -101,7 +101,7 @@ constexpr std::array<Departure, 20> kDepartures = {{
     {.code = "normal_load",
      .meaning = "of the contact's force for as much of the measured load: 1 in proportion",
      .unit = "-",
-     .option = "--follow-load"},
+     .option = ""},
     {.code = "shape_of_law",
      .meaning = "bulge of each branch over its way to slip, where half of it is gone",
      .unit = "",
@@ -411,7 +411,7 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
   DeriveTwice(complete, time, neighbours.samples, curvature);
   std::vector<Place> places(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const double load = record.load_ratio.empty() ? 1.0 : record.load_ratio[i];
+    const double load = record.LoadAt(i);
     places[i] = {.displacement = record.displacement[i],
                  .time = time[i],
                  .velocity = velocity[i],
@@ -481,16 +481,13 @@ std::vector<double> StartsOf(const Column& column, const models::LoadingPath& pa
 }
 
 /// The upper extreme of the steady loop, on the branch from the lower one.
-Place SteadyExtreme(const Problem& problem, const LawPoint& point,
-                    std::span<const double> displacement) {
+Place SteadyExtreme(const Problem& problem, const LawPoint& point, const ScaledRecord& record) {
+  const std::span<const double> displacement = record.displacement;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const std::array<double, 2> stroke = {lowest, highest};
   const models::LoadingPath path = models::MakeLoadingPath(
       stroke, {}, problem.model->memory, {.state = models::InitialState::kSteady});
-  const models::NormalizedLaw law{
-      .rate = std::exp(point.log_rate),
-      .shape_exponent = point.shape,
-      .spring_travel = problem.parameters.has_rig() ? std::exp(point.log_travel) : 0.0};
+  const models::NormalizedLaw law = LawUnder(problem, point, record);
   models::NormalizedResponse response;
   std::array<double, 2> t{};
   response.Evaluate(*problem.model, law, path, stroke, t);
@@ -523,7 +520,7 @@ double FirstStart(const Column& column, const models::LoadingPath& path, const P
 /// @param first  what the column is on the first branch
 void FillColumn(const Column& column, const models::LoadingPath& path, double first,
                 std::span<const Place> places, std::span<const Place> origins,
-                std::span<const double> load_ratio, std::span<double> values) {
+                const ScaledRecord& record, std::span<double> values) {
   if (column.along == Along::kForce) {
     for (std::size_t i = 0; i < places.size(); ++i) values[i] = column.value(places[i]);
     return;
@@ -533,7 +530,7 @@ void FillColumn(const Column& column, const models::LoadingPath& path, double fi
     for (std::size_t i = run.begin; i < run.end; ++i) {
       values[i] =
           places[i].gain * start[static_cast<std::size_t>(run.branch)] + column.value(places[i]);
-      if (!load_ratio.empty()) values[i] *= load_ratio[i];
+      values[i] *= record.LoadAt(i);
     }
   }
 }
@@ -676,14 +673,14 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     }
     const models::LoadingPath& path = response.PathOf(r, theta);
     const Place extreme = problem.state == models::InitialState::kSteady
-                              ? SteadyExtreme(problem, point, record.displacement)
+                              ? SteadyExtreme(problem, point, record)
                               : Place{};
     const std::vector<Place> origins = FollowBranches(*problem.model, path, sensitivity, places);
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       const std::span<double> values(
           result.columns.col(static_cast<Eigen::Index>(c)).data() + begin, record.size());
       const double first = FirstStart(*wanted[c], path, extreme, origins);
-      FillColumn(*wanted[c], path, first, places, origins, record.load_ratio, values);
+      FillColumn(*wanted[c], path, first, places, origins, record, values);
       for (std::size_t i = 0; i < record.size(); ++i) values[i] *= record.root_weight[i];
     }
     for (std::size_t c = 0; c < result.covariates.size(); ++c) {

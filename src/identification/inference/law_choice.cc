@@ -30,6 +30,8 @@ const FrictionModel& OtherModel(const FrictionModel& model) {
 /// Have the two laws a σ and a Tc of their own? Not before the motion turns, and not for α = 0; σ
 /// and Tc that the user holds are of one law only.
 bool AreTwoLaws(const Problem& problem, const FitResult& result, const Thresholds& thresholds) {
+  // Dahl's own has no account of a load that varies.
+  if (problem.data->load_varies) return false;
   if (std::ranges::all_of(problem.data->records,
                           [](const ScaledRecord& record) { return record.reversals.empty(); })) {
     return false;

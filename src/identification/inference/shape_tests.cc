@@ -64,14 +64,19 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
   return test;
 }
 
+bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
+              const Thresholds& thresholds) {
+  return test.p_value < thresholds.significance &&
+         kMindlin - best.theta[kShape] > thresholds.shape_effect && !problem.parameters.has_rig();
+}
+
 std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords& thin,
                                      const Solution& best, const MindlinTest& test,
                                      const Noise& noise, const Estimates& estimates,
                                      const FitOptions& options, SearchBuffers& buffers) {
-  const bool wanted = test.p_value < options.thresholds.significance &&
-                      kMindlin - best.theta[kShape] > options.thresholds.shape_effect &&
-                      !problem.parameters.has_rig();
-  if (!wanted) return std::nullopt;
+  // The law of a load that varies has none.
+  const bool is_wanted = WantsRig(problem, best, test, options.thresholds);
+  if (!is_wanted || problem.data->load_varies) return std::nullopt;
   FitOptions with_rig = options;
   with_rig.terms.emplace_back("rig_stiffness");
   with_rig.fixed["alpha"] = kMindlin;

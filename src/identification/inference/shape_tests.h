@@ -38,4 +38,9 @@ std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution&
                                          const Noise& noise, const Estimates& estimates,
                                          Response& response);
 
+/// Is Mindlin's exponent rejected for a smaller one on a rigid rig, so that a rig that gives way
+/// may be what is behind it?
+bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
+              const Thresholds& thresholds);
+
 }  // namespace mindahl::identification

@@ -146,6 +146,13 @@ constexpr std::array kTable = {
         "a loop that explains less of the force is not seen, and none of it believed",
         "the rest of the force is three times the loop: a tenth of it that is regular is a "
         "third of the loop"},
+    ThresholdRow{"load_difference", &Thresholds::load_difference, "of the smaller",
+                 "mean loads of records further apart are a load series",
+                 "Tc then differs by as much, which a fit of one Tc sees; σ by a third of it"},
+    ThresholdRow{"load_variation", &Thresholds::load_variation, "of the mean",
+                 "amplitude of a sine of the load's standard deviation, white noise of its "
+                 "readings taken off, from which on the law follows the load",
+                 "the force differs by as much where the contact slips"},
 };
 
 }  // namespace

@@ -55,8 +55,9 @@ void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& 
   }
 }
 
-Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord& data,
+Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecords& all,
                         const FitOptions& options) {
+  const ScaledRecord& data = all.records[record];
   Parameter parameter{.term = &term, .record = record};
   parameter.scale = term.scale(data.units);
   if (term.reference != nullptr) parameter.reference = term.reference(data.units);
@@ -77,6 +78,9 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
       break;
     case Presence::kOnDemand:
       parameter.fixed = parameter.absent = !IsAskedFor(options, term);
+      break;
+    case Presence::kLoadSeries:
+      parameter.fixed = parameter.absent = !all.is_load_series;
       break;
   }
   return parameter;
@@ -130,20 +134,20 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
       }
       continue;
     }
-    parameters_.push_back(MakeParameter(term, 0, data.records.front(), options));
+    parameters_.push_back(MakeParameter(term, 0, data, options));
   }
   if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
   for (std::size_t r = 0; r < records_; ++r) {
     for (const Term& term : Terms()) {
       if (term.scope != Scope::kRecord) continue;
-      Parameter& parameter =
-          parameters_.emplace_back(MakeParameter(term, r, data.records[r], options));
+      Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
       if (term.name == "displacement_offset" && state == models::InitialState::kSteady) {
         Hold(parameter, parameter.reference);  // the centre of the loop
       }
     }
   }
   ApplyOptions(options);
+  if (data.load_varies) KeepShapeBelowOne(options);
   for (const Parameter& parameter : parameters_) {
     if (parameter.absent || !parameter.term->needs_time) continue;
     for (const ScaledRecord& record : data.records) {
@@ -162,6 +166,25 @@ Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memor
       reported_(other.reported_, memory),
       records_(other.records_),
       state_(other.state_) {}
+
+/// Under a load that varies slip must be complete at a finite displacement.
+void Parameters::KeepShapeBelowOne(const FitOptions& options) {
+  Parameter& shape = parameters_[kShape];
+  const double lowest = shape.fixed ? shape.theta : shape.lower;
+  if (shape.fixed ? lowest > kHighestShapeUnderLoad : lowest >= kHighestShapeUnderLoad) {
+    ThrowInvalid("alpha [-]", lowest,
+                 fmt::format("must be below {} where the normal load varies: its law slips at a "
+                             "finite displacement; keep to one load with a load window",
+                             kHighestShapeUnderLoad));
+  }
+  const auto start = options.start.find("alpha");
+  if (start != options.start.end() && start->second > kHighestShapeUnderLoad && !shape.fixed) {
+    ThrowInvalid(
+        "start of alpha [-]", start->second,
+        fmt::format("must be at most {} where the normal load varies", kHighestShapeUnderLoad));
+  }
+  shape.upper = std::min(shape.upper, kHighestShapeUnderLoad);
+}
 
 void Parameters::Sort() {
   free_.clear();
@@ -216,7 +239,14 @@ bool Parameters::IsCalled(std::size_t i, std::string_view name) const {
 
 Parameter& Parameters::Find(std::string_view name) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    if (IsCalled(i, name)) return parameters_[i];
+    if (!IsCalled(i, name)) continue;
+    if (parameters_[i].absent && parameters_[i].term->presence == Presence::kLoadSeries) {
+      throw InvalidArgument(fmt::format(
+          "{} has no effect: the records are not under loads that are known and differ by more "
+          "than 1 %; give --normal-load N1,N2,...",
+          name));
+    }
+    return parameters_[i];
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < parameters_.size(); ++i) names.push_back(NameOf(i));
@@ -306,6 +336,10 @@ models::BranchLaw Parameters::LawAt(std::span<const double> theta) const {
   return {.tangential_stiffness = parameters_[kStiffness].ToValue(theta[kStiffness]),
           .shape_exponent = theta[kShape],
           .slip_force = parameters_[kSlipForce].ToValue(theta[kSlipForce])};
+}
+
+double Parameters::LoadExponentAt(std::span<const double> theta) const {
+  return is_load_series() ? theta[kLoadExponent] : 1.0;
 }
 
 models::SeriesSpring Parameters::RigAt(std::span<const double> theta) const {

@@ -51,6 +51,11 @@ inline constexpr std::size_t kStiffness = 0;
 inline constexpr std::size_t kShape = 1;
 inline constexpr std::size_t kSlipForce = 2;
 inline constexpr std::size_t kRig = 3;
+inline constexpr std::size_t kLoadExponent = 4;
+
+/// Of α where the normal load varies: from here on the displacement at gross slip is beyond a
+/// hundred times Tc/σ, and its law that of no record.
+inline constexpr double kHighestShapeUnderLoad = 0.99;
 
 /// All parameters of a fit: the contact's in the order of Terms(), then each record's.
 class Parameters {
@@ -75,6 +80,8 @@ class Parameters {
   [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
   [[nodiscard]] bool has_lag() const { return !parameters_[PositionOf("lag", 0)].absent; }
+  /// Are the records under loads that differ?
+  [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }
 
   /// The name in options and results, numbered where there are several records.
   [[nodiscard]] std::string NameOf(std::size_t i) const;
@@ -94,11 +101,14 @@ class Parameters {
 
   /// σ, α, Tc in SI.
   [[nodiscard]] models::BranchLaw LawAt(std::span<const double> theta) const;
+  /// p of σ ∝ N^p; 1 where the records are under one load.
+  [[nodiscard]] double LoadExponentAt(std::span<const double> theta) const;
   /// The spring in series with the contact, in SI; rigid where it is absent.
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
   void ApplyOptions(const FitOptions& options);
+  void KeepShapeBelowOne(const FitOptions& options);
   void Sort();
   [[nodiscard]] Parameter& Find(std::string_view name);
   [[nodiscard]] bool IsCalled(std::size_t i, std::string_view name) const;

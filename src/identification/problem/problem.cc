@@ -10,7 +10,16 @@ LawPoint PointAt(const Problem& problem, std::span<const double> theta) {
   return {.log_rate = theta[kStiffness] - theta[kSlipForce],
           .shape = theta[kShape],
           .log_travel = problem.parameters.has_rig() ? theta[kSlipForce] - theta[kRig] : 0.0,
+          .load_exponent = problem.parameters.LoadExponentAt(theta),
           .theta = theta};
+}
+
+models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
+                               const ScaledRecord& record) {
+  const bool has_rig = problem.parameters.has_rig();
+  return {.rate = std::exp(at.log_rate + (at.load_exponent - 1) * record.log_load),
+          .shape_exponent = at.shape,
+          .spring_travel = has_rig ? std::exp(at.log_travel + record.log_load) : 0.0};
 }
 
 void Response::Bind(const Problem& problem) {
@@ -21,6 +30,13 @@ void Response::Bind(const Problem& problem) {
   unloaded_.resize(records);
   for (std::size_t r = 0; r < records; ++r) {
     unloaded_[r] = problem.parameters.PositionOf("displacement_offset", r);
+  }
+  if (problem.data->load_varies) histories_.resize(records);
+  for (std::size_t r = 0; r < records; ++r) {
+    const ScaledRecord& record = problem.data->records[r];
+    if (record.load_ratio.empty()) continue;
+    models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
+                              problem.state, histories_[r]);
   }
   lag_ = problem.parameters.PositionOf("lag", 0);
   has_lag_ = problem.parameters.has_lag();
@@ -71,18 +87,14 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
 
 void Response::Evaluate(const LawPoint& at, std::span<double> t) { Differentiate(at, t, {}); }
 
-models::NormalizedLaw Response::LawAt(const LawPoint& at) const {
-  return {.rate = std::exp(at.log_rate),
-          .shape_exponent = at.shape,
-          .spring_travel = problem_->parameters.has_rig() ? std::exp(at.log_travel) : 0.0};
-}
-
 void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
                                       models::OriginSensitivity& sensitivity) {
+  const ScaledRecord& record = problem_->data->records[r];
+  const models::NormalizedLaw law = LawUnder(*problem_, at, record);
   if (has_lag_) {
     const LaggedMotion& motion = MotionOf(r, at.theta);
-    response_.DifferentiateByOrigins(*problem_->model, LawAt(at), motion.path(),
-                                     motion.displacement(), sensitivity);
+    response_.DifferentiateByOrigins(*problem_->model, law, motion.path(), motion.displacement(),
+                                     sensitivity);
     for (auto* column : {&sensitivity.sample_slope, &sensitivity.sample_gain}) {
       for (std::size_t i = 0; i < motion.places().size(); ++i) {
         (*column)[i] = (*column)[motion.places()[i]];  // which is not before i
@@ -91,13 +103,40 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
     }
     return;
   }
-  response_.DifferentiateByOrigins(*problem_->model, LawAt(at), PathOf(r, at.theta),
-                                   problem_->data->records[r].displacement, sensitivity);
+  response_.DifferentiateByOrigins(*problem_->model, law, PathOf(r, at.theta), record.displacement,
+                                   sensitivity);
+}
+
+/// Of one record over its own slip force.
+void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<double> t,
+                                   const ResponseColumns& columns) {
+  const ScaledRecord& record = problem_->data->records[r];
+  const models::NormalizedLaw law = LawUnder(*problem_, at, record);
+  const bool wants_any = !columns.log_rate.empty() || !columns.shape_exponent.empty() ||
+                         !columns.unloaded_displacement.empty() ||
+                         !columns.log_spring_travel.empty();
+  const models::NormalizedGradient gradient{.log_rate = columns.log_rate,
+                                            .shape_exponent = columns.shape_exponent,
+                                            .unloaded_displacement = columns.unloaded_displacement,
+                                            .log_spring_travel = columns.log_spring_travel};
+  if (!record.load_ratio.empty()) {
+    const double unloaded = at.theta[unloaded_[r]];
+    if (wants_any) {
+      loaded_response_.Differentiate(law, histories_[r], unloaded, t, gradient);
+    } else {
+      loaded_response_.Evaluate(law, histories_[r], unloaded, t);
+    }
+  } else if (wants_any) {
+    response_.Differentiate(*problem_->model, law, PathOf(r, at.theta), record.displacement, t,
+                            gradient);
+  } else {
+    response_.Evaluate(*problem_->model, law, PathOf(r, at.theta), record.displacement, t);
+  }
 }
 
 void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<double> t,
                                    const ResponseColumns& columns) {
-  const models::NormalizedLaw law = LawAt(at);
+  const models::NormalizedLaw law = LawUnder(*problem_, at, problem_->data->records[r]);
   const LaggedMotion& motion = MotionOf(r, at.theta);
   const std::size_t size = motion.displacement().size();
   const std::array wanted = {columns.log_rate, columns.shape_exponent,
@@ -139,7 +178,6 @@ void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<
 
 void Response::Differentiate(const LawPoint& at, std::span<double> t,
                              const ResponseColumns& columns) {
-  const models::NormalizedLaw law = LawAt(at);
   std::size_t begin = 0;
   for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
     const ScaledRecord& record = problem_->data->records[r];
@@ -152,26 +190,17 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
                                 .unloaded_displacement = part(columns.unloaded_displacement),
                                 .log_spring_travel = part(columns.log_spring_travel),
                                 .lag = part(columns.lag)};
-    const std::span<double> values = t.subspan(begin, count);
-    const bool wants_any = !parts.log_rate.empty() || !parts.shape_exponent.empty() ||
-                           !parts.unloaded_displacement.empty() || !parts.log_spring_travel.empty();
+    const std::span<double> values = part(t);
     if (has_lag_) {
       DifferentiateLagged(at, r, values, parts);
-    } else if (wants_any) {
-      response_.Differentiate(*problem_->model, law, PathOf(r, at.theta), record.displacement,
-                              values,
-                              {.log_rate = parts.log_rate,
-                               .shape_exponent = parts.shape_exponent,
-                               .unloaded_displacement = parts.unloaded_displacement,
-                               .log_spring_travel = parts.log_spring_travel});
     } else {
-      response_.Evaluate(*problem_->model, law, PathOf(r, at.theta), record.displacement, values);
+      DifferentiateRecord(at, r, values, parts);
     }
-    if (!record.load_ratio.empty()) {
+    if (record.load != 1) {
       for (const std::span<double> column :
            {values, parts.log_rate, parts.shape_exponent, parts.unloaded_displacement,
             parts.log_spring_travel, parts.lag}) {
-        for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.load_ratio[i];
+        for (double& value : column) value *= record.load;
       }
     }
     begin += count;
@@ -273,6 +302,8 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
           value = slip_force * (residual[k] - gradient.log_rate[k] + gradient.log_spring_travel[k]);
         } else if (p == kRig) {
           value = -slip_force * gradient.log_spring_travel[k];
+        } else if (p == kLoadExponent) {
+          value = slip_force * record.log_load * gradient.log_rate[k];
         } else if (is_unloaded) {
           value = slip_force * gradient.unloaded_displacement[k];
         } else if (is_lag && has_lag) {

@@ -9,6 +9,7 @@
 #include "identification/problem/parameters.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
+#include "mindahl/models/loaded_response.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/normalized_response.h"
 
@@ -32,15 +33,20 @@ struct Problem {
 
 /// What the normalized response t depends on, in units of the data.
 struct LawPoint {
-  double log_rate = 0.0;    // ln(σ/Tc)
-  double shape = 0.0;       // α
-  double log_travel = 0.0;  // ln(Tc/k) of the rig; ignored without one
+  double log_rate = 0.0;       // ln(σ/Tc)
+  double shape = 0.0;          // α
+  double log_travel = 0.0;     // ln(Tc/k) of the rig; ignored without one
+  double load_exponent = 1.0;  // p; 1 where the records are under one load
   // Of all parameters, for where each record is unloaded and the lag.
   std::span<const double> theta;
 };
 
 /// The point of the law at θ.
 LawPoint PointAt(const Problem& problem, std::span<const double> theta);
+
+/// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
+models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
+                               const ScaledRecord& record);
 
 /// Derivatives of t, a column each of all samples; an empty one is not wanted.
 struct ResponseColumns {
@@ -51,9 +57,10 @@ struct ResponseColumns {
   std::span<double> lag;  // by θ of the lag; where the problem has one
 };
 
-/// t = T/Tc of all samples, one record after the other, load ratios included. Keeps the loading
-/// paths, which depend on the point only where a contact is unloaded and by its lag, and its
-/// buffers.
+/// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
+/// where a record is under one load, by the elements' (models/variable_load.h) where it varies.
+/// Keeps the loading paths, which depend on the point only where a contact is unloaded and by its
+/// lag, and its buffers.
 class Response {
  public:
   void Bind(const Problem& problem);
@@ -66,7 +73,8 @@ class Response {
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
 
  private:
-  [[nodiscard]] models::NormalizedLaw LawAt(const LawPoint& at) const;
+  void DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<double> t,
+                           const ResponseColumns& columns);
   [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
                                                  std::span<const double> theta) const;
   /// In the scaled time of a record.
@@ -91,6 +99,8 @@ class Response {
   std::vector<LaggedMotion> motions_;  // of each record
   std::vector<double> moved_;          // columns of all that a motion has
   models::OriginSensitivity sensitivity_;
+  std::vector<models::LoadedHistory> histories_;  // of records under a load that varies
+  models::NormalizedLoadedResponse loaded_response_;
 };
 
 /// The forces of the whole model at θ, of every sample [units of the data]; no weight.

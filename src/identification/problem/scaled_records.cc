@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 #include "mindahl/core/error.h"
@@ -49,35 +50,115 @@ void FillVelocity(ScaledRecord& record, double unit) {
   }
 }
 
-void FollowLoad(ScaledRecords& data, const loop::PreparedRecords& records) {
+/// Does a sample say under which load the record was made? Cycles that are only held out do.
+bool TellsLoad(const loop::PreparedRecord& record, const loop::PreparationOptions& options,
+               std::size_t r, std::size_t sample) {
+  if (record.counts[sample] != 0) return true;
+  if (r >= options.held_out.size() || options.held_out[r].empty()) return false;
+  const double load = record.record.normal_load[sample];
+  const bool is_in_window = !options.load_window || (load >= options.load_window->lower &&
+                                                     load <= options.load_window->upper);
+  return options.held_out[r][sample] && is_in_window;
+}
+
+struct MeasuredLoad {
+  double mean = 0.0;       // [N]
+  double amplitude = 0.0;  // [N] of a sine of the same standard deviation, but for white noise
+};
+
+MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
+                         const loop::PreparationOptions& options, std::size_t r) {
+  const std::span<const double> load = record.record.normal_load;
   double sum = 0.0;
   double count = 0.0;
-  for (const loop::PreparedRecord& record : records.records) {
-    if (record.record.normal_load.empty()) {
-      throw InvalidArgument("following the load needs a normal load in every record");
-    }
-    for (const double load : record.record.normal_load) sum += load;
-    count += static_cast<double>(record.size());
+  for (std::size_t i = 0; i < load.size(); ++i) {
+    if (!TellsLoad(record, options, r, i)) continue;
+    sum += load[i];
+    ++count;
   }
+  if (count == 0) return {};
   const double mean = sum / count;
-  RequirePositive("mean normal load [N]", mean);
-  for (std::size_t r = 0; r < records.records.size(); ++r) {
-    for (const double load : records.records[r].record.normal_load) {
-      data.records[r].load_ratio.push_back(load / mean);
+  double squares = 0.0;
+  double steps = 0.0;  // squared, from one sample to the next
+  double step_count = 0.0;
+  for (std::size_t i = 0; i < load.size(); ++i) {
+    if (!TellsLoad(record, options, r, i)) continue;
+    squares += (load[i] - mean) * (load[i] - mean);
+    if (i == 0 || !TellsLoad(record, options, r, i - 1)) continue;
+    steps += (load[i] - load[i - 1]) * (load[i] - load[i - 1]);
+    ++step_count;
+  }
+  // White noise of the readings has half the mean squared step for its variance; what varies
+  // smoothly hardly steps.
+  const double noise = step_count > 0 ? steps / (2 * step_count) : 0.0;
+  return {mean, std::sqrt(2 * std::max(squares / count - noise, 0.0))};
+}
+
+/// Has the law an account of a load that varies? It is of Masing's kind, its displacement that of
+/// the contact alone, and read with the force.
+bool KnowsVaryingLoads(const FitOptions& options) {
+  const auto has = [&options](const char* term) {
+    return std::ranges::find(options.terms, term) != options.terms.end() ||
+           options.fixed.contains(term);
+  };
+  return options.model->memory == models::Memory::kReturnPoint && !has("rig_stiffness") &&
+         !has("lag");
+}
+
+/// What the columns say of loads within the records.
+void TakeVaryingLoad(ScaledRecord& target, const loop::PreparedRecord& record,
+                     const MeasuredLoad& measured, bool is_known) {
+  for (const double load : record.record.normal_load) {
+    const double ratio = std::max(load, 0.0) / measured.mean;
+    if (is_known) {
+      target.load_ratio.push_back(ratio);
+    } else {
+      target.load_change.push_back(ratio - 1);
     }
   }
 }
 
-/// For the question whether the force follows a load that was measured.
-void NoteLoad(ScaledRecord& target, std::span<const double> load) {
-  constexpr double kSteady = 0.01;  // of the mean: a load that keeps to it is constant
-  if (load.empty()) return;
-  double sum = 0.0;
-  for (const double value : load) sum += value;
-  const double mean = sum / static_cast<double>(load.size());
-  const auto [least, greatest] = std::ranges::minmax(load);
-  if (!(greatest - least > kSteady * mean)) return;
-  for (const double value : load) target.load_change.push_back(value / mean - 1);
+void RequireLoads(const std::vector<double>& loads, std::size_t records) {
+  for (const double load : loads) RequirePositive("normal load [N]", load);
+  if (loads.size() == 1 || loads.size() == records || loads.empty()) return;
+  throw InvalidArgument(fmt::format(
+      "{} normal loads for {} records: give one for all, or one a record", loads.size(), records));
+}
+
+void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
+               const FitOptions& options) {
+  RequireLoads(options.normal_loads, records.records.size());
+  bool all_known = true;
+  for (std::size_t r = 0; r < records.records.size(); ++r) {
+    const loop::PreparedRecord& record = records.records[r];
+    MeasuredLoad measured;
+    if (!record.record.normal_load.empty()) {
+      measured = MeasureLoad(record, options.preparation, r);
+      const bool varies = measured.mean > 0 &&
+                          measured.amplitude > options.thresholds.load_variation * measured.mean;
+      const bool is_known = varies && KnowsVaryingLoads(options);
+      if (varies) TakeVaryingLoad(data.records[r], record, measured, is_known);
+      data.load_varies = data.load_varies || is_known;
+    }
+    const double mean = options.normal_loads.empty()
+                            ? measured.mean
+                            : options.normal_loads[std::min(r, options.normal_loads.size() - 1)];
+    data.mean_load.push_back(mean);
+    all_known = all_known && mean > 0;
+  }
+  if (!all_known) {
+    data.mean_load.clear();
+    return;
+  }
+  for (const double load : data.mean_load) data.reference_load += load;
+  data.reference_load /= static_cast<double>(data.mean_load.size());
+  const auto [least, greatest] = std::ranges::minmax(data.mean_load);
+  data.is_load_series = greatest > (1 + options.thresholds.load_difference) * least;
+  if (!data.is_load_series) return;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    data.records[r].load = data.mean_load[r] / data.reference_load;
+    data.records[r].log_load = std::log(data.records[r].load);
+  }
 }
 
 /// nullptr where the record has none of that name.
@@ -117,7 +198,7 @@ double MeanCycleDuration(std::span<const double> time, std::size_t samples, std:
   return whole > 0 ? 2 * whole / static_cast<double>(reversals + 1) : 1.0;
 }
 
-ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
+ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options,
                     std::pmr::memory_resource* memory) {
   ScaledRecords scaled(memory);
   scaled.sense = records.force_sense;
@@ -167,10 +248,9 @@ ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
       target.root_weight.push_back(prepared.counts[i] != 0 ? 1.0 : 0.0);
     }
     target.counts.assign(prepared.counts.begin(), prepared.counts.end());
-    if (!follow_load) NoteLoad(target, prepared.record.normal_load);
     if (!time.empty()) FillVelocity(target, scaled.records.front().units.half_duration);
   }
-  if (follow_load) FollowLoad(scaled, records);
+  TakeLoads(scaled, records, options);
   return scaled;
 }
 
@@ -213,6 +293,9 @@ ScaledRecords Thin(const ScaledRecords& data,
   thin.force = data.force;
   thin.sense = data.sense;
   thin.covariates.assign(data.covariates.begin(), data.covariates.end());
+  thin.reference_load = data.reference_load;
+  thin.is_load_series = data.is_load_series;
+  thin.load_varies = data.load_varies;
   thin.records.reserve(data.records.size());
   reversals.clear();
   reversals.reserve(data.records.size());
@@ -222,8 +305,12 @@ ScaledRecords Thin(const ScaledRecords& data,
     turns.reserve(record.reversals.size());
     target.units = record.units;
     if (!record.clock.empty()) target.whole = &record;
+    target.load = record.load;
+    target.log_load = record.log_load;
     const std::size_t strokes = record.reversals.size() + 1;
-    const std::size_t kept = strokes <= kDenseStrokes ? kKeptOfAStroke : 2;
+    // Under a load that varies the way between samples is part of the history.
+    const bool is_dense = strokes <= kDenseStrokes || !record.load_ratio.empty();
+    const std::size_t kept = is_dense ? kKeptOfAStroke : 2;
     const std::size_t most = std::min(record.size(), strokes * (kept + 1) + 1);
     for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
       column->reserve(most);

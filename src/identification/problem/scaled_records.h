@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 
@@ -31,9 +32,10 @@ struct ScaledRecord {
   std::pmr::vector<double> force;         // (sense·T − force_reference)/force unit
   std::pmr::vector<double> time;      // −1 … 1 over the record; by sample where it has no time
   std::pmr::vector<double> velocity;  // in the first record's time; empty where there is none
-  std::pmr::vector<double> load_ratio;     // N over its mean; empty where it is taken as constant
-  std::pmr::vector<double> load_change;    // N over its mean less 1; empty where it is followed
-  std::pmr::vector<double> root_weight;    // of each residual; 0 where the sample does not count
+  /// N over its mean, where the law knows that it varies: empty where it is taken as constant.
+  std::pmr::vector<double> load_ratio;
+  std::pmr::vector<double> load_change;  // N over its mean less 1, where it varies and is not known
+  std::pmr::vector<double> root_weight;  // of each residual; 0 where the sample does not count
   std::pmr::vector<unsigned char> counts;  // 1 where the sample counts, else 0
   /// 1 for a turning point between the samples, which counts for nothing but makes history; empty
   /// where there are none (turning_points.h).
@@ -46,6 +48,13 @@ struct ScaledRecord {
   /// The record that this one has some samples of, where a lag needs its motion; else null.
   const ScaledRecord* whole = nullptr;
   TermUnits units;
+  double load = 1.0;      // mean of N over that of all records; 1 where they are not a load series
+  double log_load = 0.0;  // its logarithm
+
+  /// N of a sample over the mean of all records, as far as the law knows it.
+  [[nodiscard]] double LoadAt(std::size_t i) const {
+    return load_ratio.empty() ? load : load * load_ratio[i];
+  }
 
   [[nodiscard]] std::size_t size() const { return force.size(); }
   [[nodiscard]] TermSample SampleAt(std::size_t i) const {
@@ -69,23 +78,31 @@ struct CovariateColumn {
 
 /// All records in common units: what makes a fit independent of the units of its files.
 struct ScaledRecords {
-  explicit ScaledRecords(std::pmr::memory_resource* memory) : records(memory), covariates(memory) {}
+  explicit ScaledRecords(std::pmr::memory_resource* memory)
+      : records(memory), covariates(memory), mean_load(memory) {}
 
   std::pmr::vector<ScaledRecord> records;
   std::pmr::vector<CovariateColumn> covariates;  // first those that are fitted
   double length = 1.0;                           // [m]: largest half range of displacement
   double force = 1.0;                            // [N]: largest half range of force
   int sense = 1;
-  std::size_t counted = 0;  // samples that count
+  std::size_t counted = 0;             // samples that count
+  std::pmr::vector<double> mean_load;  // [N] of each record; empty unless all are known
+  double reference_load = 0.0;         // [N]: the mean of these; 0 where they are not known
+  bool is_load_series = false;         // do these differ?
+  bool load_varies = false;            // within a record, and the law knows it
 
   [[nodiscard]] std::size_t samples() const;
 };
 
 /// Every sample that counts does so alike.
-/// @param follow_load  the force is in proportion to the load, N over its mean
+/// The normal loads of the records are those of the options, else the means of their columns over
+/// what counts; they are a series where the largest is beyond the smallest by more than the
+/// threshold. A column that varies by more than its threshold enters the law, unless that is one
+/// without an account of it: Dahl's own, or one behind a rig. A reading below 0 is lift-off.
 /// @throws InvalidArgument when displacement or force does not change, or by less than 1e-100 or
-///   more than 1e100, and where a load that is to be followed is missing
-ScaledRecords Scale(const loop::PreparedRecords& records, bool follow_load,
+///   more than 1e100, and for loads that are not one for all or one a record, and positive
+ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options,
                     std::pmr::memory_resource* memory);
 
 /// Adds columns beside displacement and force, each less the middle of its range in the record, so

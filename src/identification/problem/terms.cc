@@ -18,6 +18,8 @@ constexpr double kWidest = 10.0;
 // Of a cycle: a channel that is later has a filter or a clock of its own. Samples that near to the
 // ends of a record do not count under a lag that is fitted.
 constexpr double kLongestLag = 0.05;
+// The theories have exponents of the load between 0 and 1.
+constexpr double kLargestLoadExponent = 5.0;
 
 double One(const TermUnits& /*units*/) { return 1.0; }
 double Force(const TermUnits& units) { return units.force; }
@@ -61,6 +63,13 @@ constexpr std::array kTerms = {
          .option = "--rig-stiffness",
          .argument = "K|fit",
          .help = "stiffness of the rig in series with the contact [N/m], or fit; default rigid"},
+    Term{.name = "load_exponent",
+         .unit = "-",
+         .meaning = "p of σ ∝ N^p, of records whose loads differ",
+         .presence = Presence::kLoadSeries,
+         .lowest = -kLargestLoadExponent,
+         .highest = kLargestLoadExponent,
+         .scale = One},
     Term{.name = "plateau_slope",
          .unit = "N/m",
          .meaning = "of a force beside the contact's, slope·δ",

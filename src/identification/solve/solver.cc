@@ -99,7 +99,9 @@ void Solver::ChooseSearched() {
     const Parameter& parameter = parameters[p];
     if (p == kShape) {
       searched_.push_back({Role::kShapeExponent, p, parameter.lower, parameter.upper});
-    } else if (parameter.term->entry == Entry::kLaw && p > kRig) {
+    } else if (p == kLoadExponent) {
+      searched_.push_back({Role::kExponentOfLoad, p, parameter.lower, parameter.upper});
+    } else if (parameter.term->entry == Entry::kLaw && p > kLoadExponent) {
       const Role role = parameter.term->name == "lag" ? Role::kLag : Role::kUnloaded;
       searched_.push_back({role, p, parameter.lower, parameter.upper});
     }
@@ -183,7 +185,9 @@ LawPoint Solver::PointOf(std::span<const double> u) const {
   double log_stiffness = held_theta_[kStiffness];
   double log_slip_force = held_theta_[kSlipForce];
   double log_rig = held_theta_[kRig];
-  LawPoint point{.shape = held_theta_[kShape], .theta = held_theta_};
+  LawPoint point{.shape = held_theta_[kShape],
+                 .load_exponent = problem_->parameters.LoadExponentAt(held_theta_),
+                 .theta = held_theta_};
   double log_rate = 0.0;
   double log_travel = 0.0;
   for (std::size_t j = 0; j < u.size(); ++j) {
@@ -208,6 +212,9 @@ LawPoint Solver::PointOf(std::span<const double> u) const {
         break;
       case Role::kLogRig:
         log_rig = u[j];
+        break;
+      case Role::kExponentOfLoad:
+        point.load_exponent = u[j];
         break;
     }
   }
@@ -286,6 +293,20 @@ void Solver::SplitByRecord(std::span<const double> all) {
   }
 }
 
+/// ∂t/∂p = ln(N/N₀)·∂t/∂ln κ, of each record's load.
+void Solver::FillLoadExponent(std::span<const double> by_log_rate) {
+  for (std::size_t j = 0; j < searched_.size(); ++j) {
+    if (searched_[j].role != Role::kExponentOfLoad) continue;
+    const std::span<double> column = Derivative(j);
+    std::size_t k = 0;
+    for (const ScaledRecord& record : problem_->data->records) {
+      for (std::size_t i = 0; i < record.size(); ++i, ++k) {
+        column[k] = record.log_load * by_log_rate[k];
+      }
+    }
+  }
+}
+
 std::pair<std::size_t, std::size_t> Solver::RowsOf(std::size_t record) const {
   std::size_t begin = 0;
   for (std::size_t r = 0; r < record; ++r) begin += problem_->data->records[r].size();
@@ -320,14 +341,16 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
   columns.shape_exponent = wants(Role::kShapeExponent);
   columns.log_spring_travel = natural ? wants(Role::kLogRig) : wants(Role::kLogTravel);
   const bool tied = natural && Searches(Role::kLogSlipForce);
-  if (tied && (columns.log_rate.empty() || (has_rig && columns.log_spring_travel.empty()))) {
-    // ∂T/∂ln Tc needs both; those that are not searched go into scratch behind the rest.
+  const bool lacks_rate = columns.log_rate.empty() && (tied || Searches(Role::kExponentOfLoad));
+  if (lacks_rate || (tied && has_rig && columns.log_spring_travel.empty())) {
+    // ∂T/∂ln Tc needs both, ∂T/∂p the first; what is not searched goes into scratch behind the
+    // rest.
     derivatives_.resize((searched_.size() + 2) * samples_);
     columns.shape_exponent = wants(Role::kShapeExponent);  // the buffer has moved
     columns.log_rate = wants(Role::kLogStiffness);
     columns.log_spring_travel = wants(Role::kLogRig);
     if (columns.log_rate.empty()) columns.log_rate = Derivative(searched_.size());
-    if (has_rig && columns.log_spring_travel.empty()) {
+    if (tied && has_rig && columns.log_spring_travel.empty()) {
       columns.log_spring_travel = Derivative(searched_.size() + 1);
     }
   }
@@ -338,6 +361,7 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
   }
   columns.lag = wants(Role::kLag);
   response_->Differentiate(point, response_values_, columns);
+  if (Searches(Role::kExponentOfLoad)) FillLoadExponent(columns.log_rate);
   if (tied) {
     const std::span<double> column = wants(Role::kLogSlipForce);
     for (std::size_t i = 0; i < samples_; ++i) {

@@ -61,7 +61,8 @@ class Solver {
     kLag,
     kLogStiffness,
     kLogSlipForce,
-    kLogRig
+    kLogRig,
+    kExponentOfLoad
   };
   struct Searched {
     Role role;
@@ -91,6 +92,7 @@ class Solver {
   void Linearise(std::span<const double> u);
   double Evaluate(std::span<const double> u, bool with_gradient);
   void SplitByRecord(std::span<const double> all);
+  void FillLoadExponent(std::span<const double> by_log_rate);
   [[nodiscard]] std::pair<std::size_t, std::size_t> RowsOf(std::size_t record) const;
   void ProjectOut(std::span<double> column) const;
   bool Step(double damping, std::span<const unsigned char> frozen, std::span<double> step) const;

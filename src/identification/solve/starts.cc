@@ -62,6 +62,15 @@ class Plane {
     const Parameters& parameters = problem_.parameters;
     const double log_reach = std::log(look.reach);
     LawPoint point{.log_rate = log_reach, .shape = look.shape, .theta = theta_};
+    if (parameters.is_load_series()) {
+      // Elements in parallel make it α.
+      const Parameter& exponent = parameters[kLoadExponent];
+      if (!exponent.fixed) {
+        theta_[kLoadExponent] =
+            std::clamp(std::min(look.shape, 1.0), exponent.lower, exponent.upper);
+      }
+      point.load_exponent = theta_[kLoadExponent];
+    }
     std::size_t record = 0;
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       if (parameters[p].term->name != "displacement_offset") continue;

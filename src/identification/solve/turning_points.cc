@@ -129,6 +129,9 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
   turned->data.sense = data.sense;
   turned->data.counted = data.counted;
   turned->data.covariates = data.covariates;
+  turned->data.mean_load = data.mean_load;
+  turned->data.reference_load = data.reference_load;
+  turned->data.is_load_series = data.is_load_series;
   turned->data.records.reserve(data.records.size());
   turned->reversals.resize(data.records.size());
   std::size_t next_overshoot = 0;
@@ -137,6 +140,8 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
     ScaledRecord& target = turned->data.records.emplace_back(memory);
     target.units = record.units;
     target.covariates.resize(record.covariates.size());
+    target.load = record.load;
+    target.log_load = record.log_load;
     const std::span<const double> x = record.displacement;
     const auto copy = [&](std::size_t i) {
       target.displacement.push_back(x[i]);
@@ -146,7 +151,6 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
       target.counts.push_back(record.counts[i]);
       target.inserted.push_back(0);
       if (!record.velocity.empty()) target.velocity.push_back(record.velocity[i]);
-      if (!record.load_ratio.empty()) target.load_ratio.push_back(record.load_ratio[i]);
       if (!record.load_change.empty()) target.load_change.push_back(record.load_change[i]);
       for (std::size_t c = 0; c < record.covariates.size(); ++c) {
         target.covariates[c].push_back(record.covariates[c][i]);
@@ -194,8 +198,7 @@ TurningPointColumns::TurningPointColumns(const Problem& problem, std::span<const
     for (const models::BranchRun& run : path.runs) {
       const BranchMotion& branch = motion[static_cast<std::size_t>(run.branch)];
       for (std::size_t i = run.begin; i < run.end; ++i) {
-        const double weight = slip_force * record.root_weight[i] *
-                              (record.load_ratio.empty() ? 1.0 : record.load_ratio[i]);
+        const double weight = slip_force * record.root_weight[i] * record.load;
         if (weight == 0) continue;
         const auto add = [&](double factor, const SparseGradient& gradient) {
           for (const auto& [k, value] : gradient) {

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cmath>
+
+#include "mindahl/models/load_zone.h"
+#include "models/tangent.h"
+
+namespace mindahl::models {
+
+/// A step of a contact under a varying load, straight in (δ, δc).
+template <typename Real>
+struct LoadStep {
+  LoadRim<Real> from;
+  LoadRim<Real> to;
+  double from_displacement = 0.0;
+  double displacement = 0.0;
+  Real force{};  // before the step
+};
+
+/// The load rises faster than anything can slip: elements come into contact at the rim, each
+/// resting where δ is when it does. On the line of those before it makes no zone of its own.
+template <typename Real, typename Zones>
+Real WidenLoadZones(const LoadStep<Real>& step, const Real& slope, Zones& zones) {
+  const Real intercept = Real(step.from_displacement) - slope * step.from.slip_displacement;
+  const bool goes_on = !zones.empty() && ValueOf(zones.back().slope) == ValueOf(slope) &&
+                       ValueOf(zones.back().intercept) == ValueOf(intercept);
+  if (!goes_on) {
+    zones.push_back(
+        {step.from.slip_displacement, slope, intercept, step.force, step.from.slip_force});
+  }
+  return step.force + slope * (step.to.slip_force - step.from.slip_force);
+}
+
+/// An annulus slips to the rest positions δ − s·(δc − h), s the sign of `stretch`, which is δ − r
+/// at the rim. As |r'| <= 1, what slips is outside of what sticks.
+/// @param share  (width, δc) of an annulus to the share of the slip force that it carries
+template <typename Real, typename Zones, typename Share>
+Real SlipLoadZones(const LoadStep<Real>& step, double stretch, const Share& share, Zones& zones) {
+  const double s = std::copysign(1.0, stretch);
+  const Real& limit = step.to.slip_displacement;
+  const Real displacement(step.displacement);
+  const Real intercept = displacement - s * limit;
+  while (!zones.empty()) {
+    const LoadZone<Real>& stuck = zones.back();
+    // What the rim exceeds its slip limit by, and how fast that falls inward.
+    Real excess = s * (displacement - stuck.RestAt(limit));
+    if (!(ValueOf(excess) > 0)) excess = Real(0.0);
+    const Real rate = Real(1.0) - s * stuck.slope;
+    if (ValueOf(excess) < ValueOf(rate) * (ValueOf(limit) - ValueOf(stuck.inner))) {
+      const Real width = excess / rate;
+      const Real slipping = share(width, limit);
+      const Real stuck_slip_force = step.to.slip_force * (Real(1.0) - slipping);
+      const Real stuck_force = stuck.force + stuck.slope * (stuck_slip_force - stuck.slip_force);
+      zones.push_back({limit - width, Real(s), intercept, stuck_force, stuck_slip_force});
+      return stuck_force + s * (step.to.slip_force * slipping);
+    }
+    zones.pop_back();
+  }
+  zones.push_back({Real(0.0), Real(s), intercept, Real(0.0), Real(0.0)});
+  return s * step.to.slip_force;
+}
+
+/// The force after a step; the zones, which cover 0 <= h < δc innermost first, are those after it.
+/// docs/theory.md §11 has the rules.
+template <typename Real, typename Zones, typename Share>
+Real TakeLoadStep(const LoadStep<Real>& step, const Share& share, Zones& zones) {
+  const double limit = ValueOf(step.to.slip_displacement);
+  if (limit == 0) {
+    zones.clear();
+    return Real(0.0);
+  }
+  const double travel = step.displacement - step.from_displacement;
+  const double widening = limit - ValueOf(step.from.slip_displacement);
+  Real force = step.force;
+  if (widening < 0) {
+    // What a falling load lifts off is forgotten.
+    while (ValueOf(zones.back().inner) >= limit) zones.pop_back();
+    const double rest = ValueOf(zones.back().RestAt(step.to.slip_displacement));
+    force = SlipLoadZones(step, step.displacement - rest, share, zones);
+  } else if (widening < std::abs(travel)) {
+    force = SlipLoadZones(step, travel, share, zones);
+  } else if (widening > 0) {
+    const Real slope = Real(travel) / (step.to.slip_displacement - step.from.slip_displacement);
+    force = WidenLoadZones(step, slope, zones);
+  }
+  return Within(force, step.to.slip_force);
+}
+
+}  // namespace mindahl::models

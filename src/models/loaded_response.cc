@@ -1,0 +1,246 @@
+#include "mindahl/models/loaded_response.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "mindahl/core/error.h"
+#include "mindahl/models/backbone.h"
+#include "mindahl/models/branch_law.h"
+#include "models/load_zones.h"
+#include "models/tangent.h"
+
+namespace mindahl::models {
+namespace {
+
+/// Directions of the derivatives; the last is left out where there is no such parameter.
+enum Direction : std::size_t { kLogRate, kShapeExponent, kUnloadedDisplacement };
+
+/// δc and Tc over μN₀ under a load: δc = (N/N₀)^β/(κβ), β = 1 − α.
+class RimLaw {
+ public:
+  RimLaw(double log_rate, double shape_exponent)
+      : log_rate_(log_rate), remaining_(1 - shape_exponent) {}
+
+  void At(double load_ratio, double log_load_ratio, LoadRim<double>& rim) const {
+    rim.slip_force = load_ratio;
+    rim.slip_displacement =
+        load_ratio > 0 ? std::exp(remaining_ * log_load_ratio - log_rate_) / remaining_ : 0.0;
+  }
+
+  template <std::size_t kDirections>
+  void At(double load_ratio, double log_load_ratio, LoadRim<Tangent<kDirections>>& rim) const {
+    LoadRim<double> values;
+    At(load_ratio, log_load_ratio, values);
+    rim.slip_force = values.slip_force;
+    rim.slip_displacement = values.slip_displacement;
+    if (!(load_ratio > 0)) return;
+    rim.slip_displacement.slope[kLogRate] = -values.slip_displacement;
+    rim.slip_displacement.slope[kShapeExponent] =
+        values.slip_displacement * (1 / remaining_ - log_load_ratio);
+  }
+
+ private:
+  double log_rate_;
+  double remaining_;
+};
+
+/// Share of the slip force that an annulus of some width carries: φ(y), y = width/(δc·β).
+template <typename Shape>
+struct ShareOfWidth {
+  Shape shape;
+  double shape_exponent;
+
+  double operator()(double width, double slip_displacement) const {
+    return shape.Force(width / (slip_displacement * (1 - shape_exponent)));
+  }
+
+  template <std::size_t kDirections>
+  Tangent<kDirections> operator()(const Tangent<kDirections>& width,
+                                  const Tangent<kDirections>& slip_displacement) const {
+    const Tangent<kDirections> remaining =
+        Tangent<kDirections>::Along(1 - shape_exponent, kShapeExponent, -1.0);
+    const Tangent<kDirections> y = width / (slip_displacement * remaining);
+    const auto phi = backbone::Differentiate(y.value, shape_exponent);
+    Tangent<kDirections> share = y.Through(phi.force, phi.slope);
+    share.slope[kShapeExponent] += phi.shape_derivative;
+    return share;
+  }
+};
+
+/// Runs through a history.
+/// @param at_rest  where the contact is unloaded, with its derivatives
+/// @param keep     takes each sample and its force over μN₀
+template <typename Real, typename Share, typename Keep>
+void Follow(const LoadedHistory& history, const RimLaw& law, const Share& share,
+            const Real& at_rest, std::vector<LoadZone<Real>>& zones, Keep keep) {
+  LoadStep<Real> step;
+  const std::size_t first = history.before.empty() ? 0 : history.before.front();
+  law.At(history.load_ratio[first], history.log_load_ratio[first], step.from);
+  step.from_displacement = ValueOf(at_rest);
+  step.force = Real(0.0);
+  zones.clear();
+  if (ValueOf(step.from.slip_displacement) > 0) {
+    zones.push_back({Real(0.0), Real(0.0), at_rest, Real(0.0), Real(0.0)});
+  }
+  double load = history.load_ratio[first];
+  const auto move = [&](std::size_t i) {
+    if (history.load_ratio[i] == load) {
+      step.to = step.from;
+    } else {
+      load = history.load_ratio[i];
+      law.At(load, history.log_load_ratio[i], step.to);
+    }
+    step.displacement = history.displacement[i];
+    step.force = TakeLoadStep(step, share, zones);
+    step.from = step.to;
+    step.from_displacement = step.displacement;
+  };
+  for (const std::size_t i : history.before) move(i);
+  for (std::size_t i = 0; i < history.displacement.size(); ++i) {
+    move(i);
+    keep(i, step.force);
+  }
+}
+
+void Require(const NormalizedLaw& law, const LoadedHistory& history, std::span<const double> t) {
+  Validate(BranchLaw{law.rate, law.shape_exponent, 1.0});
+  if (law.shape_exponent >= 1) {
+    ThrowInvalid("shape exponent [-]", law.shape_exponent,
+                 "must be < 1 under a varying load: slip is complete at a finite displacement");
+  }
+  if (law.spring_travel != 0) {
+    ThrowInvalid("travel of the spring in series [m]", law.spring_travel,
+                 "must be 0 under a varying load");
+  }
+  RequireSameSize("displacement", history.displacement.size(), "response", t.size());
+}
+
+/// The nearest values that never fall, or never grow, from begin to end.
+void MakeMonotone(std::span<double> values, bool grows, std::vector<double>& means,
+                  std::vector<double>& counts) {
+  means.clear();
+  counts.clear();
+  for (const double value : values) {
+    means.push_back(value);
+    counts.push_back(1.0);
+    while (means.size() > 1) {
+      const double last = means.back();
+      double& before = means[means.size() - 2];
+      if (grows ? last >= before : last <= before) break;
+      double& count = counts[counts.size() - 2];
+      before += (last - before) * (counts.back() / (count + counts.back()));
+      count += counts.back();
+      means.pop_back();
+      counts.pop_back();
+    }
+  }
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < means.size(); ++k) {
+    const auto end = i + static_cast<std::size_t>(counts[k]);
+    // What stands alone keeps its last digit.
+    for (; i < end; ++i) {
+      if (counts[k] > 1) values[i] = means[k];
+    }
+  }
+}
+
+}  // namespace
+
+void MakeLoadedHistory(std::span<const double> displacement, std::span<const double> load_ratio,
+                       std::span<const std::size_t> reversals, InitialState state,
+                       LoadedHistory& history) {
+  RequireSameSize("displacement", displacement.size(), "load ratio", load_ratio.size());
+  if (displacement.empty()) throw InvalidArgument("a history needs at least one sample");
+  history.displacement.assign(displacement.begin(), displacement.end());
+  history.load_ratio.assign(load_ratio.begin(), load_ratio.end());
+  history.log_load_ratio.clear();
+  for (const double ratio : load_ratio) {
+    RequireNonNegative("load ratio [-]", ratio);
+    history.log_load_ratio.push_back(ratio > 0 ? std::log(ratio) : 0.0);  // 0: lifted off
+  }
+  std::vector<double> means;
+  std::vector<double> counts;
+  std::size_t begin = 0;
+  for (std::size_t stroke = 0; stroke <= reversals.size(); ++stroke) {
+    const std::size_t end = stroke < reversals.size() ? reversals[stroke] : displacement.size() - 1;
+    const bool grows = displacement[end] > displacement[begin];
+    MakeMonotone(std::span(history.displacement).subspan(begin, end - begin + 1), grows, means,
+                 counts);
+    begin = end;
+  }
+  history.before.clear();
+  if (state == InitialState::kVirgin) return;
+  const auto [lowest, highest] = std::ranges::minmax_element(displacement);
+  const auto low = static_cast<std::size_t>(lowest - displacement.begin());
+  const auto high = static_cast<std::size_t>(highest - displacement.begin());
+  const std::size_t first_end = reversals.empty() ? displacement.size() - 1 : reversals.front();
+  const bool sets_out_up = displacement[first_end] > displacement.front();
+  history.before = sets_out_up ? std::vector{high, low} : std::vector{low, high};
+  // From the first sample to where the motion has turned twice and comes by there again.
+  if (reversals.size() < 2) return;
+  const std::size_t stroke_end = reversals.size() > 2 ? reversals[2] : displacement.size() - 1;
+  for (std::size_t i = 0; i <= stroke_end; ++i) {
+    const bool is_back = i > reversals[1] && (sets_out_up ? displacement[i] > displacement.front()
+                                                          : displacement[i] < displacement.front());
+    if (is_back) break;
+    history.before.push_back(i);
+  }
+}
+
+struct NormalizedLoadedResponse::Buffers {
+  std::vector<LoadZone<double>> plain;
+  std::vector<LoadZone<Tangent<2>>> by_law;
+  std::vector<LoadZone<Tangent<3>>> by_all;
+};
+
+NormalizedLoadedResponse::NormalizedLoadedResponse() : buffers_(std::make_unique<Buffers>()) {}
+NormalizedLoadedResponse::NormalizedLoadedResponse(NormalizedLoadedResponse&&) noexcept = default;
+NormalizedLoadedResponse& NormalizedLoadedResponse::operator=(NormalizedLoadedResponse&&) noexcept =
+    default;
+NormalizedLoadedResponse::~NormalizedLoadedResponse() = default;
+
+void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHistory& history,
+                                        double unloaded, std::span<double> t) {
+  Require(law, history, t);
+  const double at_rest = history.before.empty() ? unloaded : 0.0;
+  backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
+    Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
+           ShareOfWidth<std::decay_t<decltype(shape)>>{shape, law.shape_exponent}, at_rest,
+           buffers_->plain, [&](std::size_t i, double force) { t[i] = force; });
+  });
+}
+
+void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const LoadedHistory& history,
+                                             double unloaded, std::span<double> t,
+                                             const NormalizedGradient& gradient) {
+  Require(law, history, t);
+  const auto keep = [](std::span<double> column, std::size_t i, double value) {
+    if (!column.empty()) column[i] = value;
+  };
+  const RimLaw rim(std::log(law.rate), law.shape_exponent);
+  using Share = ShareOfWidth<backbone::GeneralShape<double>>;
+  const Share share{backbone::GeneralShape<double>{law.shape_exponent}, law.shape_exponent};
+  std::ranges::fill(gradient.log_spring_travel, 0.0);
+  if (!history.before.empty() || gradient.unloaded_displacement.empty()) {
+    std::ranges::fill(gradient.unloaded_displacement, 0.0);
+    const Tangent<2> at_rest(history.before.empty() ? unloaded : 0.0);
+    Follow(history, rim, share, at_rest, buffers_->by_law,
+           [&](std::size_t i, const Tangent<2>& force) {
+             t[i] = force.value;
+             keep(gradient.log_rate, i, force.slope[kLogRate]);
+             keep(gradient.shape_exponent, i, force.slope[kShapeExponent]);
+           });
+    return;
+  }
+  const auto at_rest = Tangent<3>::Along(unloaded, kUnloadedDisplacement);
+  Follow(history, rim, share, at_rest, buffers_->by_all,
+         [&](std::size_t i, const Tangent<3>& force) {
+           t[i] = force.value;
+           keep(gradient.log_rate, i, force.slope[kLogRate]);
+           keep(gradient.shape_exponent, i, force.slope[kShapeExponent]);
+           keep(gradient.unloaded_displacement, i, force.slope[kUnloadedDisplacement]);
+         });
+}
+
+}  // namespace mindahl::models

@@ -1,0 +1,88 @@
+#include "mindahl/report/load_series.h"
+
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+#include "mindahl/report/contact.h"
+
+namespace mindahl::report {
+
+using contact::UncertainValue;
+using identification::FitResult;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+
+namespace {
+
+/// Infinite where the fit leaves the parameter open.
+double ErrorOf(const ParameterEstimate& estimate) {
+  if (estimate.status == ParameterStatus::kFixed) return 0.0;
+  return estimate.standard_error.value_or(std::numeric_limits<double>::infinity());
+}
+
+/// Error of a + factor·b, from their errors and correlation.
+double ErrorOfSum(double a, double factor, double b, double correlation) {
+  const double scaled = factor * b;
+  if (scaled == 0) return a;
+  return std::sqrt(std::max(a * a + scaled * scaled + 2 * correlation * a * scaled, 0.0));
+}
+
+LoadHypothesis Test(std::string_view name, double exponent, const FitResult& fit,
+                    double exponent_error) {
+  LoadHypothesis test{.name = name, .exponent = exponent};
+  const ParameterEstimate& fitted = *fit.Find("load_exponent");
+  if (fitted.status == ParameterStatus::kFixed) return test;
+  test.difference = fitted.value - exponent;
+  const bool is_known = fitted.identifiability == identification::Identifiability::kIdentifiable;
+  if (!is_known || !(exponent_error > 0) || std::isinf(exponent_error)) return test;
+  test.z = *test.difference / exponent_error;
+  const boost::math::students_t distribution(fit.residuals.degrees_of_freedom);
+  test.p_value = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(*test.z)));
+  return test;
+}
+
+ContactUnderLoad ContactUnder(const FitResult& fit, const identification::RecordFit& record,
+                              const contact::KnownContact& known) {
+  const ParameterEstimate& sigma = *fit.Find("sigma");
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  const models::BranchLaw law = fit.LawOf(record);
+  const double relative =
+      ErrorOfSum(ErrorOf(sigma) / sigma.value, std::log(record.load_ratio),
+                 ErrorOf(*fit.Find("load_exponent")), Correlation(fit, "sigma", "load_exponent"));
+  ContactUnderLoad contact{
+      .normal_load = *record.normal_load,
+      .stiffness = {law.tangential_stiffness, law.tangential_stiffness * relative},
+      .slip_force = {law.slip_force, record.load_ratio * ErrorOf(slip_force)},
+      .alone = record.alone};
+  contact::KnownContact under_load = known;
+  under_load.normal_load = UncertainValue{contact.normal_load};
+  const contact::IdentifiedContact identified =
+      contact::IdentifyContact(contact.stiffness, contact.slip_force, under_load);
+  if (identified.contact_radius) contact.contact_radius = *identified.contact_radius;
+  if (identified.hertz) contact.hertz_radius = identified.hertz->contact_radius.value;
+  return contact;
+}
+
+}  // namespace
+
+std::optional<LoadSeries> DescribeLoadSeries(const FitResult& fit,
+                                             const contact::KnownContact& known) {
+  if (!fit.is_load_series()) return std::nullopt;
+  LoadSeries series;
+  for (const identification::RecordFit& record : fit.records) {
+    series.contacts.push_back(ContactUnder(fit, record, known));
+  }
+  const double error = ErrorOf(*fit.Find("load_exponent"));
+  const ParameterEstimate& alpha = *fit.Find("alpha");
+  // p − α, of which both are fitted.
+  const double error_from_alpha =
+      ErrorOfSum(error, -1.0, ErrorOf(alpha), Correlation(fit, "load_exponent", "alpha"));
+  series.hypotheses = {Test("sphere", contact::kMindlinShapeExponent, fit, error),
+                       Test("elements", alpha.value, fit, error_from_alpha),
+                       Test("cone", 0.5, fit, error), Test("flat_punch", 0.0, fit, error),
+                       Test("rough", 1.0, fit, error)};
+  return series;
+}
+
+}  // namespace mindahl::report

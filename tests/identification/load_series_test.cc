@@ -1,0 +1,236 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "identification/stages.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/models/steady_loop.h"
+#include "recovery/recovered.h"
+
+// Records of one contact under several loads: Tc = μN, σ ∝ N^p, α shared.
+namespace mindahl::identification {
+namespace {
+
+using loop::Record;
+using models::BranchLaw;
+using testing::Generator;
+
+constexpr std::array kLoads = {25.0, 50.0, 105.0};  // [N], of mean 60
+constexpr double kMeanLoad = 60.0;
+constexpr BranchLaw kAtMean{4e7, 1.0 / 3, 24.0};  // μ = 0.4
+constexpr double kReach = 1.3e-6;                 // [m]: from 1.9 to 1.1 times gross slip, p = 1/3
+
+BranchLaw LawUnder(double load, double exponent, double shape_exponent = 1.0 / 3) {
+  const double ratio = load / kMeanLoad;
+  return {kAtMean.tangential_stiffness * std::pow(ratio, exponent), shape_exponent,
+          kAtMean.slip_force * ratio};
+}
+
+/// One loop a load, offsets of their own.
+std::vector<Record> Series(double exponent, double shape_exponent = 1.0 / 3) {
+  std::vector<Record> records;
+  double offset = 1.0;
+  for (const double load : kLoads) {
+    const auto displacement = testing::Cycling(testing::Wave::kSine, kReach, 2.0, 150);
+    const BranchLaw law = LawUnder(load, exponent, shape_exponent);
+    records.push_back(testing::Shifted(
+        testing::MakeRecord(displacement,
+                            testing::Respond(testing::Model("mindlin-dahl"), law, displacement)),
+        1e-7 * offset, offset));
+    offset += 1.0;
+  }
+  return records;
+}
+
+/// Behind a spring, driven to the same force.
+std::vector<Record> SeriesInRig(double exponent, double stiffness) {
+  std::vector<Record> records = Series(exponent);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const double offset = 1.0 + static_cast<double>(r);
+    for (std::size_t i = 0; i < records[r].size(); ++i) {
+      records[r].displacement[i] += (records[r].force[i] - offset) / stiffness;
+    }
+  }
+  return records;
+}
+
+FitOptions UnderLoads() {
+  FitOptions options;
+  options.normal_loads = {kLoads.begin(), kLoads.end()};
+  return options;
+}
+
+class LoadSeries : public ::testing::TestWithParam<double> {};
+
+TEST_P(LoadSeries, RecoversContactAndExponent) {
+  const FitResult fit = Fit(Series(GetParam()), UnderLoads());
+  EXPECT_TRUE(testing::Recovers(fit, kAtMean, testing::kNoiseFree));
+  ASSERT_NE(fit.Find("load_exponent"), nullptr);
+  EXPECT_NEAR(fit.load_exponent, GetParam(), testing::kNoiseFree);
+  EXPECT_EQ(fit.Find("load_exponent")->identifiability, Identifiability::kIdentifiable);
+  EXPECT_DOUBLE_EQ(*fit.normal_load, kMeanLoad);
+}
+
+// A flat punch, Hertz, a cone, a rough contact.
+INSTANTIATE_TEST_SUITE_P(OverTheTheories, LoadSeries, ::testing::Values(0.0, 1.0 / 3, 0.5, 1.0));
+
+TEST(LoadSeriesFit, TellsTheRigFromTheContact) {
+  // 1/σ_seen = 1/k + 1/σ(N): with α and p free too. The condition is some hundred times that of a
+  // fit without a rig.
+  constexpr double kTolerance = 100 * testing::kNoiseFree;
+  constexpr double kRigStiffness = 6e7;
+  FitOptions options = UnderLoads();
+  options.terms = {"rig_stiffness"};
+  const FitResult fit = Fit(SeriesInRig(1.0 / 3, kRigStiffness), options);
+  EXPECT_TRUE(testing::Recovers(fit, kAtMean, kTolerance));
+  EXPECT_NEAR(fit.load_exponent, 1.0 / 3, kTolerance);
+  EXPECT_NEAR(fit.rig.stiffness / kRigStiffness, 1, kTolerance);
+}
+
+TEST(LoadSeriesFit, CoversTheTruthUnderNoise) {
+  // 5 standard errors: for normal errors once in 10⁶.
+  constexpr double kErrors = 5.0;
+  constexpr double kNoise = 0.1;  // [N]
+  for (const double exponent : {0.0, 1.0 / 3, 0.5}) {
+    Generator generator(17);
+    std::vector<Record> records = Series(exponent);
+    for (Record& record : records) {
+      record = testing::WithForceNoise(std::move(record), kNoise, generator);
+    }
+    const FitResult fit = Fit(records, UnderLoads());
+    ASSERT_TRUE(fit.converged);
+    const auto expect = [&](const char* name, double truth) {
+      const ParameterEstimate& estimate = *fit.Find(name);
+      ASSERT_TRUE(estimate.standard_error) << name;
+      EXPECT_LT(std::abs(estimate.value - truth), kErrors * *estimate.standard_error) << name;
+    };
+    expect("sigma", kAtMean.tangential_stiffness);
+    expect("alpha", kAtMean.shape_exponent);
+    expect("slip_force", kAtMean.slip_force);
+    expect("load_exponent", exponent);
+    EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+    // What each record says by itself agrees, within the errors of both.
+    for (const RecordFit& record : fit.records) {
+      ASSERT_TRUE(record.alone);
+      const BranchLaw law = fit.LawOf(record);
+      EXPECT_LT(std::abs(record.alone->stiffness.value - law.tangential_stiffness),
+                2 * kErrors * *record.alone->stiffness.standard_error);
+      EXPECT_LT(std::abs(record.alone->slip_force.value - law.slip_force),
+                2 * kErrors * *record.alone->slip_force.standard_error);
+    }
+  }
+}
+
+TEST(LoadSeriesFit, TakesLoadsOfColumnsForTheSame) {
+  std::vector<Record> records = Series(1.0 / 3);
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    records[r].normal_load.assign(records[r].size(), kLoads[r]);
+  }
+  const FitResult fit = Fit(records);
+  EXPECT_TRUE(testing::Recovers(fit, kAtMean, testing::kNoiseFree));
+  EXPECT_NEAR(fit.load_exponent, 1.0 / 3, testing::kNoiseFree);
+}
+
+TEST(LoadSeriesFit, HoldsAnExponentThatIsGiven) {
+  FitOptions options = UnderLoads();
+  options.fixed["load_exponent"] = 0.5;
+  const FitResult fit = Fit(Series(0.5), options);
+  EXPECT_TRUE(testing::Recovers(fit, kAtMean, testing::kNoiseFree));
+  EXPECT_EQ(fit.Find("load_exponent")->status, ParameterStatus::kFixed);
+}
+
+TEST(LoadSeriesFit, SearchesTheExponentWhereStiffnessIsHeld) {
+  FitOptions options = UnderLoads();
+  options.fixed["sigma"] = kAtMean.tangential_stiffness;
+  const FitResult fit = Fit(Series(0.5), options);
+  EXPECT_TRUE(testing::Recovers(fit, kAtMean, testing::kNoiseFree));
+  EXPECT_NEAR(fit.load_exponent, 0.5, testing::kNoiseFree);
+}
+
+TEST(LoadSeriesFit, HasTheDerivativesOfItsDifferences) {
+  // (step)² = 1e-10 of third derivatives of order 10, on a Jacobian of order 1; rounding 1e-11.
+  constexpr double kTolerance = 1e-7;
+  FitOptions options = UnderLoads();
+  options.terms = {"rig_stiffness"};
+  testing::Stages stages(SeriesInRig(1.0 / 3, 6e7), options);
+  FitResult fit = Fit(stages.records, options);
+  std::vector<double> theta = stages.ThetaOf(fit);
+  // Away from the solution, where a wrong derivative is no accident's.
+  theta[kStiffness] += 0.05;
+  theta[kLoadExponent] += 0.1;
+  theta[kShape] = 0.6;  // smooth at slip
+  for (std::size_t r = 0; r < kLoads.size(); ++r) {
+    // On a sample the virgin curve's curvature jumps.
+    theta[stages.problem.parameters.PositionOf("displacement_offset", r)] += 0.007;
+  }
+  const auto& free = stages.problem.parameters.free();
+  const std::vector<std::size_t> columns(free.begin(), free.end());
+  Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(stages.problem.size()),
+                           static_cast<Eigen::Index>(columns.size()));
+  std::vector<double> residual(stages.problem.size());
+  Response response;
+  response.Bind(stages.problem);
+  Differentiate(stages.problem, theta, response, columns, residual,
+                {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
+  const Eigen::MatrixXd expected = stages.DifferencesAt(theta);
+  for (Eigen::Index c = 0; c < jacobian.cols(); ++c) {
+    EXPECT_LT((jacobian.col(c) - expected.col(c)).norm(),
+              kTolerance * std::max(expected.col(c).norm(), 1.0))
+        << stages.problem.parameters.NameOf(columns[static_cast<std::size_t>(c)]);
+  }
+}
+
+TEST(LoadSeriesFit, IsNoneOfRecordsUnderOneLoad) {
+  const std::vector<Record> records = Series(1.0 / 3);
+  const std::vector<Record> same = {records[1], records[1]};
+  const FitResult unknown = Fit(same);
+  EXPECT_EQ(unknown.Find("load_exponent"), nullptr);
+  EXPECT_FALSE(unknown.normal_load);
+  FitOptions options;
+  options.normal_loads = {50.0};
+  const FitResult one = Fit(same, options);
+  EXPECT_EQ(one.Find("load_exponent"), nullptr);
+  EXPECT_EQ(one.normal_load, 50.0);
+  EXPECT_EQ(one.law.slip_force, unknown.law.slip_force);
+  options.normal_loads = {50.0, 50.4};  // within the threshold of a hundredth
+  EXPECT_EQ(Fit(same, options).Find("load_exponent"), nullptr);
+}
+
+std::string MessageOfFit(const std::vector<Record>& records, const FitOptions& options) {
+  try {
+    Fit(records, options);
+  } catch (const InvalidArgument& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(LoadSeriesFit, RefusesWhatHasNoMeaning) {
+  const std::vector<Record> records = Series(1.0 / 3);
+  FitOptions options;
+  options.normal_loads = {25.0, 50.0};
+  EXPECT_NE(MessageOfFit(records, options).find("2 normal loads for 3 records"), std::string::npos);
+  options.normal_loads = {25.0, 50.0, -1.0};
+  EXPECT_NE(MessageOfFit(records, options).find("normal load [N] = -1"), std::string::npos);
+  options = {};
+  options.fixed["load_exponent"] = 0.5;
+  EXPECT_NE(MessageOfFit(records, options).find("load_exponent has no effect"), std::string::npos);
+}
+
+TEST(LoadSeriesFit, NamesTheRecordThatComesNearestToSlip) {
+  // All are driven as far: under the least load that is farthest beyond slip, as p < 1.
+  const FitResult fit = Fit(Series(1.0 / 3), UnderLoads());
+  EXPECT_EQ(&fit.WidestRecord(), &fit.records.front());
+  const BranchLaw law = fit.LawOf(fit.records.front());
+  EXPECT_NEAR(law.slip_force / LawUnder(25, 1.0 / 3).slip_force, 1, testing::kNoiseFree);
+  EXPECT_NEAR(law.tangential_stiffness / LawUnder(25, 1.0 / 3).tangential_stiffness, 1,
+              testing::kNoiseFree);
+}
+
+}  // namespace
+}  // namespace mindahl::identification
