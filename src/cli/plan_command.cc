@@ -435,25 +435,20 @@ void RunPlan(const PlanOptions& options, Console& console) {
 
 void AddPlanCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<PlanOptions>();
-  CLI::App* command = app.add_subcommand(
-      "plan",
-      "What should be measured: the standard errors of sigma, alpha and Tc that a loop of each\n"
-      "amplitude would give (Cramer-Rao), and the least amplitude that reaches a wanted "
-      "precision.\n"
-      "Exit status 3 when none does.");
+  CLI::App* command =
+      app.add_subcommand("plan",
+                         "What should be measured: the standard errors that a loop of\n"
+                         "each amplitude would give, and the least that reaches a wanted\n"
+                         "precision. Exit status 3 when none does.");
   AddLawOptions(*command, options->law);
   const std::string expected = "What is expected";
   command
-      ->add_option(
-          "--record", options->record,
-          "a record whose fit gives contact and noise, in the place of parameters; --alpha "
-          "is what is assumed where it does not tell")
+      ->add_option("--record", options->record,
+                   "its fit gives contact and noise; --alpha where it does not tell")
       ->type_name("FILE")
       ->group(expected);
   AddOptional(*command, "--rig-stiffness", options->rig_stiffness,
-              "stiffness of the rig in series with the contact [N/m], known unless it is fitted "
-              "(--with rig_stiffness); default rigid",
-              "K")
+              "of the rig in series [N/m]; known, but for --with rig_stiffness", "K")
       ->group(expected);
   AddOptional(*command, "--force-noise", options->force_noise,
               "standard deviation of the force noise [N]", "S")
@@ -465,14 +460,13 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       ->group(expected);
   command
       ->add_option("--autocorrelation", options->autocorrelation,
-                   "of the force noise from one sample to the next, 0 to 1 [-]; default 0, white")
+                   "of the force noise between samples, in [0, 1) [-]; default 0")
       ->type_name("RHO")
       ->group(expected);
   const std::string loop = "The loop";
   command
       ->add_option("--amplitude", options->amplitudes,
-                   "amplitude X [m], repeatable; default 13 from a tenth of the displacement at "
-                   "slip to ten times it")
+                   "amplitude X [m], repeatable; default 13 about slip")
       ->type_name("X")
       ->group(loop);
   command->add_option("--cycles", options->cycles, "cycles of the sine, >= 1")
@@ -485,22 +479,18 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       ->group(loop);
   command
       ->add_option("--initial-state", options->initial_state,
-                   "virgin: the record has the contact's first loading; steady: it begins later")
+                   "virgin: with the first loading; steady: begun later")
       ->capture_default_str()
       ->check(CLI::IsMember({"virgin", "steady", "both"}))
       ->group(loop);
   const std::string fit = "The fit";
   command
       ->add_option("--with", options->with,
-                   "terms that are fitted beside sigma, alpha, Tc and the offsets: "
-                   "rig_stiffness, plateau_slope, viscous, force_drift")
+                   "terms that are fitted too: rig_stiffness, plateau_slope …")
       ->type_name("TERM")
       ->delimiter(',')
       ->group(fit);
-  command
-      ->add_option("--want", options->want,
-                   "standard error that is wanted, in the parameter's unit or in percent of it: "
-                   "alpha=0.01,slip_force=1%")
+  command->add_option("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%")
       ->type_name("NAME=ERROR")
       ->delimiter(',')
       ->group(fit);

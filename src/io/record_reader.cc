@@ -400,6 +400,10 @@ class RoleAssigner {
     TakeRecognized(kDisplacement, displacement);
     TakeRecognized(kForce, force);
     TakeRecognized(kTime, time);
+    // A load that is fitted as a force of its own is not also the law's, unless it is asked to be.
+    for (const std::string& covariate : columns.covariates) {
+      taken_[finder_.Chosen(covariate, kCovariate)] = true;
+    }
     TakeRecognized(kNormalLoad, normal_load);
     const bool is_guessed = !displacement;
     const Assignment assigned{

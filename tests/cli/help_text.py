@@ -22,7 +22,7 @@ KEPT = pathlib.Path(__file__).resolve().parent / "help"
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
 WIDE_LINES_LEFT = {"mindahl": 12, "fit": 13, "simulate": 6, "contact": 2, "tradeoff": 3,
-                   "recommend": 4}
+                   "recommend": 4, "plan": 2}
 
 # What an option may take without having a unit: names, files and whole numbers.
 WITHOUT_UNIT = re.compile(r"^(|COL|FILE|PATH|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
@@ -34,6 +34,9 @@ EXEMPT = {
     ("fit", "--samples"): "counts",
     ("simulate", "--steps"): "a count",
     ("recommend", "--tolerance"): "relative, and says so",
+    ("plan", "--cycles"): "a count",
+    ("plan", "--with"): "names",
+    ("plan", "--want"): "in the unit of the parameter, or in percent",
     ("convert", "--tolerance"): "relative, and says so",
     ("convert", "--beta"): "a share, and says so",
 }

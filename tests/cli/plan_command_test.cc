@@ -44,8 +44,8 @@ TEST(PlanCommand, ExitsWithThreeWhereNoAmplitudeDoes) {
 }
 
 TEST(PlanCommand, ARecordThatDoesNotTellAlphaIsPlannedForWithMindlins) {
-  const testing::TemporaryDirectory directory;
-  const std::string file = directory / "far.csv";
+  const TemporaryDirectory directory;
+  const std::string file = directory.path() / "far.csv";
   ASSERT_EQ(RunCommand({"simulate", "--model", "mindlin", "--sigma", "4e7", "--slip-force", "40",
                         "--lambda", "0.2", "--cycles", "3", "--noise-force", "0.05", "-o", file})
                 .status,
@@ -61,8 +61,8 @@ TEST(PlanCommand, ARecordThatDoesNotTellAlphaIsPlannedForWithMindlins) {
 }
 
 TEST(PlanCommand, DrawsTheErrors) {
-  const testing::TemporaryDirectory directory;
-  const std::string file = directory / "plan.svg";
+  const TemporaryDirectory directory;
+  const std::string file = directory.path() / "plan.svg";
   EXPECT_EQ(RunPlan({"--force-noise", "0.4", "--plot", file}).status, kDone);
   EXPECT_GT(std::filesystem::file_size(file), 1000u);
 }

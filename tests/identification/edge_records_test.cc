@@ -59,8 +59,13 @@ TEST(EdgeRecords, FiveSamplesOfWhichThreeAreOneUnderEveryLoss) {
 }
 
 TEST(EdgeRecords, AsManySamplesAsFreeParameters) {
-  const Record record = MakeRecord({1.0, 1.0002828427124746, 1.0004}, {0, 20, 20});
+  // σ, α and Tc: at the file's zeros the contact is unloaded.
+  const Record record = MakeRecord({0.0, 0.0002828427124746, 0.0004}, {0, 20, 20});
   ExpectNumbersOrNone(Fit(std::vector{record}, {}));
+  // Elsewhere the force has an offset too.
+  const std::vector<Record> elsewhere = {
+      MakeRecord({1.0, 1.0002828427124746, 1.0004}, {0, 20, 20})};
+  EXPECT_THAT(RefusalOf(elsewhere, {}), HasSubstr("3 samples are too few for 4 free parameters"));
 }
 
 TEST(EdgeRecords, AForceNoiseWhoseSquareIsNoNumberIsRefused) {

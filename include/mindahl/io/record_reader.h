@@ -71,7 +71,8 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// `x / mm`, `disp_mm`) or in the units row; else m, N, s, with a note. An angle and a torque go
 /// together: one of the two has the other's unit, rad or N m, where it names none.
 ///
-/// *Covariates.* Those chosen, their numbers as they are. Then up to kMostOtherColumns of the
+/// *Covariates.* Those chosen, their numbers as they are; one is not recognised as a normal load
+/// besides. Then up to kMostOtherColumns of the
 /// others in their order, called by their header's name, without its unit, or else by number: of
 /// those that hold a number in every row, and not the same in all.
 ///

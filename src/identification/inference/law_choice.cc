@@ -157,7 +157,10 @@ std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
   if (!same_curve) states.push_back(problem.state);
   if (maybe_virgin) states.push_back(InitialState::kVirgin);
   // A record that starts at an extreme passes for virgin as well, without a virgin branch.
-  if (problem.state == InitialState::kVirgin && !options.initial_state) {
+  const bool is_origin_given = std::ranges::any_of(options.fixed, [](const auto& fixed) {
+    return fixed.first.starts_with("displacement_offset");
+  });
+  if (problem.state == InitialState::kVirgin && !options.initial_state && !is_origin_given) {
     states.push_back(InitialState::kSteady);
   }
   for (const InitialState state : states) {

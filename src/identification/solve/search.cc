@@ -22,7 +22,9 @@ double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOp
   const bool has_covariate = std::ranges::any_of(
       candidate.problem.parameters.free(),
       [&](std::size_t p) { return candidate.problem.parameters[p].term->of_column; });
-  const ScaledRecords& looked_at = is_enough && !has_covariate ? thin : *candidate.problem.data;
+  const bool has_kinks = HasKinks(candidate.problem.parameters);
+  const ScaledRecords& looked_at =
+      is_enough && !has_covariate && !has_kinks ? thin : *candidate.problem.data;
   const Problem problem{&looked_at, candidate.problem.model, candidate.problem.state,
                         Parameters(candidate.problem.parameters, memory)};
   candidate.starts = FindStarts(problem, options, rival, buffers.solver, buffers.response,

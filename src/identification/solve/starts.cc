@@ -28,6 +28,9 @@ constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 
 constexpr double kNear = 4.0;
 constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
+/// Where α is held at 0 there are several minima next to each other.
+constexpr std::size_t kStartsAmongKinks = 4;
+
 constexpr double kHighestDrawnShape = 3.0;
 constexpr std::size_t kDrawsPerStart = 20;  // the regression refuses some of them
 
@@ -305,6 +308,10 @@ std::optional<StartingPoint> GivenStart(const Problem& thin, const FitOptions& o
 
 }  // namespace
 
+bool HasKinks(const Parameters& parameters) {
+  return parameters[kShape].fixed && parameters[kShape].theta == 0;
+}
+
 std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
                                            double rival, Solver& solver, Response& response,
                                            Solution& scratch, std::pmr::memory_resource* memory) {
@@ -326,8 +333,10 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
     return thin.parameters[p].term->presence == Presence::kOnDemand;
   });
   const bool is_beaten = looks.front().cost > kBeyondRival * rival;
+  const std::size_t most =
+      HasKinks(thin.parameters) ? std::max(options.starts, kStartsAmongKinks) : options.starts;
   for (Look look : looks) {
-    const bool is_wanted = bent || starts.size() < options.starts ||
+    const bool is_wanted = bent || starts.size() < most ||
                            (starts.size() < 2 && look.cost < kHopeless * looks.front().cost);
     if (!is_wanted || !std::isfinite(look.cost)) break;
     plane.At(look);
@@ -352,8 +361,8 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
         std::ranges::upper_bound(starts.begin(), start, start->cost, {}, &StartingPoint::cost),
         start, start + 1);
   }
-  if (starts.size() > options.starts)
-    starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(options.starts), starts.end());
+  if (starts.size() > most)
+    starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(most), starts.end());
   // Where all looks have the wrong sense, so have all draws.
   if (starts.empty() || options.starts <= starts.size()) return starts;
   Draws draws(options.seed);

@@ -17,6 +17,10 @@ struct StartingPoint {
   bool drawn = false;              // at random, not from the look
 };
 
+/// Is α held at 0? Then the likelihood has a kink wherever a sample begins to slip, and minima next
+/// to each other: all samples are looked at, and four starts followed.
+bool HasKinks(const Parameters& parameters);
+
 /// Starting points from the data, best first.
 ///
 /// On a thinned record the cost is looked at over the plane of σX/Tc and α, Tc and all that is
@@ -26,8 +30,8 @@ struct StartingPoint {
 /// of each third of the plane, goes on to the minimum of the thinned record. Where options ask for
 /// more than these four, the others are drawn at random over the same range, seeded.
 /// @param thin      the problem on its thinned record
-/// @param rival     look of another past of the contact; looks ten times as dear are not
-///                  followed, and stand for what they are. Infinite where there is none
+/// @param rival     look of another past of the contact; of looks ten times as dear the best alone
+///                  is followed. Infinite where there is none
 /// @param solver    bound to it here
 /// @returns empty where no point has the sense of the force
 std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
