@@ -54,7 +54,9 @@ struct Products {
     norms = columns.colwise().norm().transpose();
     for (double& norm : norms) norm = norm > 0 ? norm : 1.0;
     columns *= norms.cwiseInverse().asDiagonal();
-    plain = columns.transpose() * columns;
+    plain = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+    plain.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+    plain.triangularView<Eigen::StrictlyUpper>() = plain.transpose();
     residual = columns.transpose() * residuals;
     inverse_of_law = Inverse(plain.topLeftCorner(law, law));
     shares = inverse_of_law * plain.topRightCorner(law, departures.cols());

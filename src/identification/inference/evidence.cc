@@ -9,6 +9,12 @@
 #include "identification/problem/scaled_records.h"
 
 namespace mindahl::identification {
+namespace {
+
+/// Boost would evaluate in long double, at several times the cost, to round the last digit well.
+using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
+}  // namespace
 
 Evidence::Evidence(std::size_t samples, double effective)
     : samples_(static_cast<double>(samples)), effective_(effective) {}
@@ -32,7 +38,8 @@ double Evidence::Aicc(double sum_of_squares, std::size_t parameters) const {
 }
 
 double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom) {
-  const boost::math::fisher_f distribution(numerator_degrees, degrees_of_freedom);
+  const boost::math::fisher_f_distribution<double, InDouble> distribution(numerator_degrees,
+                                                                          degrees_of_freedom);
   return boost::math::cdf(boost::math::complement(distribution, f));
 }
 
@@ -41,12 +48,13 @@ double PValueOfF(double f, double degrees_of_freedom) {
 }
 
 double ChiSquaredQuantile(double degrees_of_freedom, double chance) {
-  const boost::math::chi_squared distribution(degrees_of_freedom);
+  const boost::math::chi_squared_distribution<double, InDouble> distribution(degrees_of_freedom);
   return boost::math::quantile(boost::math::complement(distribution, chance));
 }
 
 double StudentQuantile95(double degrees_of_freedom) {
-  return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
+  return boost::math::quantile(
+      boost::math::students_t_distribution<double, InDouble>(degrees_of_freedom), 0.975);
 }
 
 }  // namespace mindahl::identification

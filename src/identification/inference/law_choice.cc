@@ -57,7 +57,17 @@ struct OtherFit {
   Solution solution;
 };
 
-/// From the law that runs through the same steady loop, and from that of the fit itself.
+/// A cost to 1e-4 tells 2 ln Λ to 1e-4 of the samples: enough where the other law is far off.
+SolverOptions RoughlyAs(const FitOptions& options) {
+  constexpr double kCost = 1e-4;
+  constexpr double kStep = 1e-6;
+  SolverOptions rough = SolverOptionsOf(options);
+  rough.function_tolerance = std::max(rough.function_tolerance, kCost);
+  rough.parameter_tolerance = std::max(rough.parameter_tolerance, kStep);
+  return rough;
+}
+
+/// From the law that runs through the same steady loop, and from that of the fit itself, roughly.
 OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult& result,
                   const models::BranchLaw& equivalent, InitialState state,
                   const FitOptions& options, SearchBuffers& buffers) {
@@ -83,7 +93,7 @@ OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult&
     theta[kShape] = parameters[kShape].ToTheta(law.shape_exponent);
     theta[kSlipForce] = parameters[kSlipForce].ToTheta(law.slip_force);
     theta[kRig] = best.theta[kRig];
-    buffers.solver.Solve(theta, SolverOptionsOf(options), buffers.scratch);
+    buffers.solver.Solve(theta, RoughlyAs(options), buffers.scratch);
     if (buffers.scratch.sum_of_squares < other.solution.sum_of_squares) {
       std::swap(other.solution, buffers.scratch);
     }
@@ -97,6 +107,14 @@ double EffectiveSamples(const Problem& problem, const Solution& solution, Respon
   EvaluateResidual(problem, solution.theta, response, residual);
   return static_cast<double>(problem.data->counted) /
          AutocorrelationOf(*problem.data, residual).SquaredCorrelations();
+}
+
+void Polish(const FitOptions& options, SearchBuffers& buffers, OtherFit& other) {
+  buffers.solver.Bind(other.problem, buffers.response);
+  buffers.solver.Solve(other.solution.theta, SolverOptionsOf(options), buffers.scratch);
+  if (buffers.scratch.sum_of_squares <= other.solution.sum_of_squares) {
+    std::swap(other.solution, buffers.scratch);
+  }
 }
 
 double CriterionOf(const Evidence& evidence, const Problem& problem, const Solution& solution) {
@@ -163,16 +181,28 @@ std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
   if (problem.state == InitialState::kVirgin && !options.initial_state && !is_origin_given) {
     states.push_back(InitialState::kSteady);
   }
+  const double samples_of_best =
+      states.empty() ? 0.0 : EffectiveSamples(problem, best, buffers.response);
   for (const InitialState state : states) {
-    const OtherFit other = FitOther(problem, best, result, equivalent, state, options, buffers);
+    OtherFit other = FitOther(problem, best, result, equivalent, state, options, buffers);
+    const auto evidence_of = [&] {
+      const bool is_better = other.solution.sum_of_squares < best.sum_of_squares;
+      return Evidence(problem.data->counted,
+                      is_better ? EffectiveSamples(other.problem, other.solution, buffers.response)
+                                : samples_of_best);
+    };
+    const auto delta_by = [&](const Evidence& evidence) {
+      return CriterionOf(evidence, other.problem, other.solution) -
+             CriterionOf(evidence, problem, best);
+    };
+    Evidence evidence = evidence_of();
+    double delta = delta_by(evidence);
+    if (delta < 0 || LawIsUndecided(delta / 2, options.thresholds)) {
+      Polish(options, buffers, other);
+      evidence = evidence_of();
+      delta = delta_by(evidence);
+    }
     if (!other.solution.converged) continue;
-    const bool is_better = other.solution.sum_of_squares < best.sum_of_squares;
-    const Evidence evidence(problem.data->counted,
-                            is_better
-                                ? EffectiveSamples(other.problem, other.solution, buffers.response)
-                                : EffectiveSamples(problem, best, buffers.response));
-    const double delta =
-        CriterionOf(evidence, other.problem, other.solution) - CriterionOf(evidence, problem, best);
     // Where the laws are one curve, a virgin past says something only if it is the better one.
     if (state != problem.state && same_curve &&
         (delta > 0 || LawIsUndecided(delta, options.thresholds))) {
