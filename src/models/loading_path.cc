@@ -21,9 +21,8 @@ void RequireDisplacements(std::span<const double> displacement) {
     ThrowInvalid("samples of the displacement history [-]",
                  static_cast<double>(displacement.size()), "must be <= 2147483640");
   }
-  bool all = true;  // without a jump: the usual case
-  for (const double x : displacement) all &= IsWithinReach(x);
-  for (std::size_t i = 0; !all && i < displacement.size(); ++i) {
+  if (AreWithinReach(displacement)) return;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
     if (!IsWithinReach(displacement[i])) {
       RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
     }

@@ -207,14 +207,20 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
   }
 }
 
-double ColumnAt(const Problem& problem, std::size_t parameter, std::size_t r, std::size_t sample) {
+void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r, double factor,
+               std::span<double> to) {
   const Parameter& linear = problem.parameters[parameter];
-  if (linear.term->scope == Scope::kRecord && linear.record != r) return 0.0;
-  TermSample at = problem.data->records[r].SampleAt(sample);
-  if (linear.term->of_column) {
-    at.covariate = problem.data->records[r].covariates[linear.column][sample];
+  if (linear.term->scope == Scope::kRecord && linear.record != r) return;
+  const ScaledRecord& record = problem.data->records[r];
+  const auto column = linear.term->column;
+  const std::span<const double> covariate =
+      linear.term->of_column ? std::span<const double>(record.covariates[linear.column])
+                             : std::span<const double>();
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    TermSample at = record.SampleAt(i);
+    if (!covariate.empty()) at.covariate = covariate[i];
+    to[i] += factor * column(at);
   }
-  return linear.term->column(at);
 }
 
 namespace {
@@ -229,11 +235,7 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
     std::size_t begin = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const std::size_t count = problem.data->records[r].size();
-      if (parameter.term->scope == Scope::kContact || parameter.record == r) {
-        for (std::size_t i = 0; i < count; ++i) {
-          force[begin + i] += theta[p] * ColumnAt(problem, p, r, i);
-        }
-      }
+      AddColumn(problem, p, r, theta[p], force.subspan(begin, count));
       begin += count;
     }
   }
@@ -288,29 +290,33 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
     std::size_t k = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const ScaledRecord& record = problem.data->records[r];
-      const bool elsewhere = parameter.term->scope == Scope::kRecord && parameter.record != r;
-      for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-        double value = 0.0;
-        if (elsewhere) {
-        } else if (parameter.term->column != nullptr) {
-          value = ColumnAt(problem, p, r, i);
-        } else if (p == kStiffness) {
-          value = slip_force * gradient.log_rate[k];
-        } else if (p == kShape) {
-          value = slip_force * gradient.shape_exponent[k];
-        } else if (p == kSlipForce) {
-          value = slip_force * (residual[k] - gradient.log_rate[k] + gradient.log_spring_travel[k]);
-        } else if (p == kRig) {
-          value = -slip_force * gradient.log_spring_travel[k];
-        } else if (p == kLoadExponent) {
-          value = slip_force * record.log_load * gradient.log_rate[k];
-        } else if (is_unloaded) {
-          value = slip_force * gradient.unloaded_displacement[k];
-        } else if (is_lag && has_lag) {
-          value = slip_force * gradient.lag[k];
-        }
-        jacobian[c * samples + k] = record.root_weight[i] * value;
+      const std::span<double> column = jacobian.subspan(c * samples + k, record.size());
+      std::ranges::fill(column, 0.0);
+      const std::size_t begin = k;
+      k += record.size();
+      if (parameter.term->scope == Scope::kRecord && parameter.record != r) continue;
+      if (parameter.term->column != nullptr) AddColumn(problem, p, r, 1.0, column);
+      const auto add = [&](std::span<const double> derivative, double factor) {
+        for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * derivative[begin + i];
+      };
+      if (p == kStiffness) {
+        add(gradient.log_rate, slip_force);
+      } else if (p == kShape) {
+        add(gradient.shape_exponent, slip_force);
+      } else if (p == kSlipForce) {
+        add(residual, slip_force);
+        add(gradient.log_rate, -slip_force);
+        add(gradient.log_spring_travel, slip_force);
+      } else if (p == kRig) {
+        add(gradient.log_spring_travel, -slip_force);
+      } else if (p == kLoadExponent) {
+        add(gradient.log_rate, slip_force * record.log_load);
+      } else if (is_unloaded) {
+        add(gradient.unloaded_displacement, slip_force);
+      } else if (is_lag && has_lag) {
+        add(gradient.lag, slip_force);
       }
+      for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }
   }
   Complete(problem, theta, residual);

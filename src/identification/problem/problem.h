@@ -111,9 +111,11 @@ void Predict(const Problem& problem, std::span<const double> theta, Response& re
 void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
                       std::span<double> residual);
 
-/// The column of a linear parameter: of a record's, zero on the others; no weight.
-double ColumnAt(const Problem& problem, std::size_t parameter, std::size_t record,
-                std::size_t sample);
+/// Adds a multiple of the column of a linear parameter, without weights; nothing where it is
+/// another record's.
+/// @param to  of the record's samples
+void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record, double factor,
+               std::span<double> to);
 
 /// Weighted residuals and their derivatives by the parameters at `columns`.
 /// @param residual  size() values

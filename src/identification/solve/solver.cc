@@ -116,7 +116,7 @@ void Solver::OrthogonaliseColumns() {
   for (const ScaledRecord& record : data.records) {
     for (std::size_t i = 0; i < record.size(); ++i, ++row) {
       weight_[row] = record.root_weight[i];
-      measured_[row] = record.root_weight[i] * record.force[i];
+      measured_[row] = record.force[i];
     }
   }
   columns_.clear();
@@ -136,20 +136,19 @@ void Solver::OrthogonaliseColumns() {
         basis_.resize(columns_.size() * samples_);
       }
       if (!is_held) std::ranges::fill(Basis(place), 0.0);
+      // What is held is taken off the measured force as it is, which is weighted with the rest.
+      const std::span<double> to = is_held ? std::span(measured_) : Basis(place);
+      const double factor = is_held ? -held_theta_[p] : 1.0;
       std::size_t k = 0;
       for (std::size_t r = 0; r < data.records.size(); ++r) {
-        for (std::size_t i = 0; i < data.records[r].size(); ++i, ++k) {
-          if (k < begin || k >= end) continue;
-          const double value = weight_[k] * ColumnAt(*problem_, p, r, i);
-          if (is_held) {
-            measured_[k] -= held_theta_[p] * value;
-          } else {
-            basis_[place * samples_ + k] = value;
-          }
-        }
+        const std::size_t size = data.records[r].size();
+        AddColumn(*problem_, p, r, factor, to.subspan(k, size));
+        k += size;
       }
+      if (!is_held) Weigh(to, 1.0, weight_);
     }
   }
+  Weigh(measured_, 1.0, weight_);
   const std::size_t count = columns_.size();
   triangle_.assign(count * count, 0.0);
   measured_projections_.resize(count);
