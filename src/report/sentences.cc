@@ -101,15 +101,15 @@ std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& un
 std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
       "slip_force: the loop (T* = {:.4g} {} at X = {:.4g} {}) does not approach gross slip and "
-      "fits "
-      "any larger slip force as well; raise the amplitude until the force levels off",
+      "fits any larger slip force as well; raise the amplitude until the force levels off (mindahl "
+      "plan --record says how far)",
       Needed(finding, "peak_force"), units.force, Needed(finding, "amplitude"), units.displacement);
 }
 
 std::string TooWide(const char* parameter, const Finding& finding) {
   return fmt::format(
       "{}: the 95 % interval {:.3g} … {:.3g} is too wide to call it known; record more samples, "
-      "less noise or a larger amplitude",
+      "less noise or a larger amplitude (mindahl plan --record says which)",
       parameter, Needed(finding, "lower"), Needed(finding, "upper"));
 }
 
@@ -117,7 +117,8 @@ std::string AlphaNotIdentifiable(const Finding& finding, const FitResult&, const
   if (finding.kind == "wide") return TooWide("alpha", finding);
   if (finding.kind != "with_slip_force") ThrowKind(finding);
   return "alpha: known only together with slip_force (the ratio alpha/slip_force enters the loop); "
-         "raise the amplitude until the force levels off, or fix one of them";
+         "raise the amplitude until the force levels off (mindahl plan --record says how far), or "
+         "fix one of them";
 }
 
 std::string SigmaNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
