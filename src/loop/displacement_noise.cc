@@ -18,14 +18,15 @@ namespace {
 /// no fixed number of samples.
 bool IsQuantised(std::span<const double> displacement, double step) {
   constexpr double kWhole = 1e-6;
-  constexpr double kMost = 0.99;
+  constexpr double kMostBroken = 0.01;  // of the pairs
   constexpr std::size_t kFewestRests = 3;
   // Multiples of a finer step are no more whole than rounding leaves them, nor any reading's.
   constexpr double kFinest = 1e-9;
   if (displacement.empty()) return false;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   if (!(step > kFinest * (highest - lowest))) return false;
-  std::size_t whole = 0;
+  const auto pairs = static_cast<double>(displacement.size() - 1);
+  std::size_t broken = 0;
   std::size_t rest = 1;                           // samples
   std::array<std::size_t, kFewestRests> rests{};  // different ones
   std::size_t known_rests = 0;
@@ -33,7 +34,9 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   for (std::size_t i = 1; i < displacement.size(); ++i) {
     const double steps = std::abs(displacement[i] - displacement[i - 1]) / step;
     const double nearest = std::round(steps);
-    if (std::abs(steps - nearest) < kWhole) ++whole;
+    if (!(std::abs(steps - nearest) < kWhole)) {
+      if (static_cast<double>(++broken) > kMostBroken * pairs) return false;
+    }
     if (nearest > 1) is_even = false;
     if (steps == 0) {
       ++rest;
@@ -45,8 +48,6 @@ bool IsQuantised(std::span<const double> displacement, double step) {
       rest = 1;
     }
   }
-  const auto pairs = static_cast<double>(displacement.size() - 1);
-  if (static_cast<double>(whole) < kMost * pairs) return false;
   return is_even ? known_rests == kFewestRests : known_rests > 1;
 }
 

@@ -199,12 +199,15 @@ std::size_t SpikeAt(Channel& channel, std::size_t i, const GlitchRules& rules) {
 /// One pass: a spike may hide another, until it is mended.
 bool FindSpikes(Channel& channel, const GlitchRules& rules) {
   bool found = false;
-  for (std::size_t i = 2; i + 2 < channel.size(); ++i) {
+  Column values = channel.values();
+  for (std::size_t i = 2; i + 2 < values.size(); ++i) {
     // Hardly a sample of a clean record leaves its neighbour so.
-    if (!(channel.Step(i) > rules.spike * channel.Step(i - 1))) continue;
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (!(step > rules.spike * std::abs(values[i - 1] - values[i - 2]))) continue;
     const std::size_t samples = SpikeAt(channel, i, rules);
     if (samples == 0) continue;
     channel.LeaveOut(i, i + samples, Glitch::kSpike);
+    values = channel.values();
     found = true;
   }
   return found;
@@ -244,14 +247,16 @@ bool GoesOn(Column values, std::size_t begin, std::size_t end) {
 
 void FindHeld(Channel& channel, const Channel& other, const GlitchRules& rules) {
   const std::size_t size = channel.size();
+  Column values = channel.values();
   for (std::size_t begin = 0; begin + rules.shortest_held < size;) {
     std::size_t end = begin + 1;
-    while (end < size && channel.values()[end] == channel.values()[begin]) ++end;
+    while (end < size && values[end] == values[begin]) ++end;
     if (end < size && end - begin >= rules.shortest_held && Moves(other, begin + 1, end) &&
         JumpsAtTheEnd(channel, begin, end, rules) && !JumpsAtTheEnd(other, begin, end, rules) &&
         GoesOn(other.values(), begin, end) &&
         channel.Step(end) > rules.held_jump * channel.usual_step()) {
       channel.LeaveOut(begin + 1, end, Glitch::kHeld);
+      values = channel.values();
     }
     begin = end;
   }

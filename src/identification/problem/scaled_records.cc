@@ -235,17 +235,23 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
                     .force_sense = sense,
                     .force_reference = sense * RangeOf(force).middle,
                     .displacement_reference = RangeOf(displacement).middle};
-    target.displacement.reserve(size);
-    target.force.reserve(size);
-    target.time.reserve(size);
-    target.root_weight.reserve(size);
+    for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
+      column->resize(size);
+    }
+    // One column after the other: each is a vector's work.
+    const TermUnits units = target.units;
+    for (std::size_t i = 0; i < size; ++i) {
+      target.displacement[i] = (displacement[i] - units.displacement_reference) / units.length;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      target.force[i] = (sense * force[i] - units.force_reference) / units.force;
+    }
     for (std::size_t i = 0; i < size; ++i) {
       const double at = time.empty() ? static_cast<double>(i) : time[i];
-      target.displacement.push_back((displacement[i] - target.units.displacement_reference) /
-                                    scaled.length);
-      target.force.push_back((sense * force[i] - target.units.force_reference) / scaled.force);
-      target.time.push_back((at - first) / target.units.half_duration - 1);
-      target.root_weight.push_back(prepared.counts[i] != 0 ? 1.0 : 0.0);
+      target.time[i] = (at - first) / units.half_duration - 1;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      target.root_weight[i] = prepared.counts[i] != 0 ? 1.0 : 0.0;
     }
     target.counts.assign(prepared.counts.begin(), prepared.counts.end());
     if (!time.empty()) FillVelocity(target, scaled.records.front().units.half_duration);
