@@ -313,11 +313,11 @@ void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
 
 /// Adequacy, and intervals that cover what its causes would change.
 void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
-                        const Estimates& estimates, const FitOptions& options,
-                        SearchBuffers& buffers, FitResult& result) {
+                        const DisplacementEffect& displacement, const Estimates& estimates,
+                        const FitOptions& options, SearchBuffers& buffers, FitResult& result) {
   const Thresholds& thresholds = options.thresholds;
   AdequacyTest test =
-      TestAdequacy(problem, solution, noise, estimates, thresholds, buffers.response);
+      TestAdequacy(problem, solution, noise, displacement, estimates, thresholds, buffers.response);
   // A load that varies would have to be read as late.
   if (IsDoubtful(test, thresholds) && !problem.data->load_varies) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
@@ -371,9 +371,9 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
   noise.repeating = only_rounding ? 1.0 : repeating;
   DescribeFit(problem, noise, result);
-  const Estimates estimates(problem, solution, noise,
-                            EffectOf(displacement_errors, problem, solution, noise),
-                            options.thresholds, buffers.response);
+  const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
+  const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
+                            buffers.response);
   const auto& reported = problem.parameters.reported();
   for (std::size_t k = 0; k < reported.size(); ++k) {
     estimates.Fill(reported[k], result.parameters[k]);
@@ -423,7 +423,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
                                              options.thresholds, result.PeakForce(),
                                              buffers.response, result.parameters)));
   }
-  ConsiderDepartures(problem, solution, noise, estimates, options, buffers, result);
+  ConsiderDepartures(problem, solution, noise, displacement, estimates, options, buffers, result);
   Append(result.findings, FindUnseenLoop(result, options.thresholds));
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));

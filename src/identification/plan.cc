@@ -15,6 +15,7 @@
 #include "mindahl/core/arena.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
@@ -24,6 +25,22 @@ namespace mindahl::identification {
 namespace {
 
 using models::InitialState;
+
+/// @throws InvalidArgument for a term whose column no protocol says
+void RequireTerms(const FitOptions& options) {
+  for (const std::string& name : options.terms) {
+    const Term* term = FindTerm(name);
+    if (term != nullptr && (name == "lag" || name == "load_exponent" || term->of_column)) {
+      throw InvalidArgument(fmt::format(
+          "'{}' cannot be planned for: must be one of rig_stiffness, plateau_slope, viscous, "
+          "force_drift",
+          name));
+    }
+  }
+  if (!options.covariates.empty()) {
+    throw InvalidArgument("a covariate cannot be planned for: it is not known before");
+  }
+}
 
 void Require(const Expectation& expected, const Protocol& protocol, const FitOptions& options) {
   models::Validate(expected.law);
@@ -38,6 +55,7 @@ void Require(const Expectation& expected, const Protocol& protocol, const FitOpt
   if (options.model == nullptr || options.model->memory != models::Memory::kReturnPoint) {
     throw InvalidArgument("the model of a plan must have Masing's rules: mindlin-dahl, mindlin");
   }
+  RequireTerms(options);
 }
 
 bool IsRigid(const models::SeriesSpring& rig) { return std::isinf(rig.stiffness); }

@@ -326,6 +326,10 @@ void Summarise(LoopFacts& facts) {
   facts.energy_trend = TrendOf(energies.numbers, energies.values);
 }
 
+/// Of its width: a cycle that ends so near to where it began loses what a closed one does, but for
+/// twice that share.
+constexpr double kReturn = 0.05;
+
 /// Forces in the displacement's sense.
 LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   LoopFacts facts;
@@ -333,7 +337,9 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
       TurningPoints(record.displacement, reversals, std::pmr::get_default_resource());
   const Points points = turns;
   for (std::size_t k = 0; k + 2 < points.size(); k += 2) {
-    facts.cycles.push_back(MeasureCycle(record, points.subspan(k, 3)));
+    CycleFacts& cycle = facts.cycles.emplace_back(MeasureCycle(record, points.subspan(k, 3)));
+    const double way = record.displacement[points[k + 2]] - record.displacement[points[k]];
+    cycle.returns = std::abs(way) <= kReturn * 2 * cycle.amplitude;
   }
   facts.closed = !facts.cycles.empty();
   if (!facts.closed) return facts;

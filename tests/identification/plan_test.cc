@@ -200,6 +200,9 @@ TEST(Plan, RefusesWhatMeansNothing) {
   FitOptions dahl;
   dahl.model = models::FindFrictionModel("dahl");
   EXPECT_THROW(ExpectFit(Quiet(), Loop(1.0), dahl), InvalidArgument);
+  FitOptions late;
+  late.terms = {"lag"};
+  EXPECT_THROW(ExpectFit(Quiet(), Loop(1.0), late), InvalidArgument);
   const ExpectedFit fit = ExpectFit(Quiet(), Loop(1.0));
   EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
   EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);

@@ -39,13 +39,21 @@ Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
   return finding;
 }
 
+/// Does a cycle of two strokes end elsewhere than it began? It is no loop of its amplitude then.
+/// One of a long stroke and a short one is no such cycle: its reversals are doubtful.
+/// @param widest  amplitude of the record's widest swings [m]
+bool RunsOn(const loop::CycleFacts& cycle, double widest) {
+  constexpr double kTwoStrokes = 0.6;  // half of it is one stroke's
+  return !cycle.returns && cycle.amplitude > kTwoStrokes * widest;
+}
+
 /// Mean energy [J] of the widest steady cycles, of those most of whose samples count.
 std::optional<double> EnergyThatCounts(const RecordFit& record) {
   const std::vector<loop::CycleFacts>& cycles = record.facts.cycles;
   double sum = 0.0;
   double count = 0.0;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
-    if (!cycles[k].steady) continue;
+    if (!cycles[k].steady || RunsOn(cycles[k], record.measures.amplitude)) continue;
     const std::size_t end = k + 1 < cycles.size() ? cycles[k + 1].start : record.counts.size();
     const auto samples = std::span(record.counts).subspan(cycles[k].start, end - cycles[k].start);
     if (2 * static_cast<std::size_t>(std::ranges::count(samples, 0)) > samples.size()) continue;

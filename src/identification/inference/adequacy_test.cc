@@ -142,13 +142,41 @@ struct Products {
   Eigen::VectorXd free_residual;    //
 };
 
+/// The Jacobian without the columns of parameters at a bound: what these would still explain, they
+/// may not.
+Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
+                              Eigen::MatrixXd jacobian) {
+  const auto& free = problem.parameters.free();
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const Parameter& parameter = problem.parameters[free[j]];
+    if (parameter.bounded_by_user && solution.side[free[j]] != BoundSide::kInside) {
+      jacobian.col(static_cast<Eigen::Index>(j)).setZero();
+    }
+  }
+  return jacobian;
+}
+
+/// AᵀRA; where the displacement has errors AᵀSRSA + AᵀEEᵀA/(K s²), as for the law's own errors.
+Eigen::MatrixXd CorrelationOf(const ScaledRecords& data, const Noise& noise,
+                              const Autocorrelation& autocorrelation,
+                              const DisplacementEffect& displacement, const Products& products) {
+  if (displacement.residuals.size() == 0) {
+    return autocorrelation.order == 0 ? products.plain
+                                      : CorrelatedProduct(data, autocorrelation, products.columns);
+  }
+  const Eigen::MatrixXd drawn = products.columns.transpose() * displacement.residuals;
+  const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), products.columns.rows());
+  return CorrelatedProduct(data, autocorrelation, share.asDiagonal() * products.columns) +
+         drawn * drawn.transpose() / (static_cast<double>(drawn.cols()) * displacement.variance);
+}
+
 }  // namespace
 
 AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
-                          const Estimates& estimates, const Thresholds& thresholds,
-                          Response& response) {
+                          const DisplacementEffect& displacement, const Estimates& estimates,
+                          const Thresholds& thresholds, Response& response) {
   AdequacyTest test;
-  const Eigen::MatrixXd& jacobian = estimates.jacobian();
+  const Eigen::MatrixXd jacobian = WithoutBounds(problem, solution, estimates.jacobian());
   const Eigen::VectorXd& residual = estimates.residual();
   const auto samples = static_cast<double>(problem.data->counted);
   const auto parameters = static_cast<double>(jacobian.cols());
@@ -169,9 +197,7 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
   const Eigen::VectorXd rest = residual - products.columns * in_columns;
   const Autocorrelation autocorrelation =
       AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
-  products.Correlate(autocorrelation.order == 0
-                         ? products.plain
-                         : CorrelatedProduct(*problem.data, autocorrelation, products.columns));
+  products.Correlate(CorrelationOf(*problem.data, noise, autocorrelation, displacement, products));
   const Eigen::MatrixXd own = all.transpose() * products.free_correlated * all;
 
   // Of correlated noise a fit takes up more than its parameters' number.

@@ -36,9 +36,11 @@ struct AdequacyTest {
   std::vector<DepartureFit> fits;   // of the departures that the record can tell
 };
 
+/// @param displacement  what drawn errors of the displacement do to the residuals: that is noise
+/// too
 AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
-                          const Estimates& estimates, const Thresholds& thresholds,
-                          Response& response);
+                          const DisplacementEffect& displacement, const Estimates& estimates,
+                          const Thresholds& thresholds, Response& response);
 
 /// By how much a departure moves a parameter, in halves of its 95 % interval; 0 where that is open.
 double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
