@@ -17,8 +17,8 @@ using Words = std::vector<std::string>;
 Outcome FitOf(Words drive, const Words& options) {
   const TemporaryDirectory directory;
   const std::string file = directory.path() / "loop.csv";
-  Words simulate = {"simulate", "--sigma", "1e7", "--slip-force", "10",
-                    "--noise-force", "0.05", "-o", file};
+  Words simulate = {"simulate", "--sigma", "1e7", "--slip-force", "10", "--noise-force",
+                    "0.05",     "-o",      file};
   simulate.insert(simulate.end(), drive.begin(), drive.end());
   EXPECT_EQ(RunCommand(simulate).status, kDone);
   Words fit = {"fit", file, "--json", "-"};
