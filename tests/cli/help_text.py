@@ -44,7 +44,7 @@ EXEMPT = {
 # Options of other programs in the documentation.
 OF_OTHERS = {
     "--preset", "--build", "--target", "--peers",
-    "--details", "--half", "--jobs", "--kind", "--loops", "--write",
+    "--details", "--half", "--jobs", "--kind", "--loops", "--repeats", "--rounds", "--write",
 }
 
 
