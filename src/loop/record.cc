@@ -3,31 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 
+#include "core/magnitudes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {
 namespace {
 
-/// Vectors of integers tell it: one more in the exponent carries into the sign where all of its
-/// bits are set.
-bool AreAllFinite(std::span<const double> column) {
-  constexpr std::uint64_t kExponent = 0x7ff0000000000000;
-  constexpr std::uint64_t kOne = 0x0010000000000000;
-  std::uint64_t carried = 0;
-  for (const double value : column) {
-    carried |= (std::bit_cast<std::uint64_t>(value) & kExponent) + kOne;
-  }
-  return (carried >> 63) == 0;
-}
-
 void RequireFiniteColumn(std::string_view quantity, std::span<const double> column) {
-  if (AreAllFinite(column)) return;
+  if (AreAllWithin(column, std::numeric_limits<double>::max())) return;
   const auto row = std::ranges::find_if_not(column, [](double x) { return std::isfinite(x); });
   ThrowInvalid(fmt::format("{} of sample {}", quantity, row - column.begin()), *row,
                "must be finite");

@@ -8,10 +8,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/instruction_sets.h"
 #include "mindahl/models/backbone.h"
-
-// A function that is always inlined takes the instruction set of its caller.
-#define MINDAHL_INLINE inline __attribute__((always_inline))
 
 namespace mindahl::models {
 namespace {
@@ -249,8 +247,8 @@ namespace {
 
 MINDAHL_BLOCKS(Baseline, )
 #if defined(__x86_64__)
-MINDAHL_BLOCKS(Avx2, __attribute__((target("avx2,fma"))))
-MINDAHL_BLOCKS(Avx512, __attribute__((target("avx512f,avx512dq"))))
+MINDAHL_BLOCKS(Avx2, MINDAHL_TARGET_AVX2)
+MINDAHL_BLOCKS(Avx512, MINDAHL_TARGET_AVX512)
 #endif
 #undef MINDAHL_BLOCKS
 
@@ -273,10 +271,8 @@ void Keep(const Column& column, std::size_t begin, std::size_t count, std::span<
 std::vector<const BranchKernel*> BranchKernels() {
   std::vector<const BranchKernel*> kernels = {&kBaseline};
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) kernels.push_back(&kAvx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) {
-    kernels.push_back(&kAvx512);
-  }
+  if (HasAvx2()) kernels.push_back(&kAvx2);
+  if (HasAvx512()) kernels.push_back(&kAvx512);
 #endif
   return kernels;
 }

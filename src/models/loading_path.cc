@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/magnitudes.h"
 #include "mindahl/core/error.h"
 #include "models/madelung.h"
 #include "models/within_reach.h"
@@ -21,7 +22,7 @@ void RequireDisplacements(std::span<const double> displacement) {
     ThrowInvalid("samples of the displacement history [-]",
                  static_cast<double>(displacement.size()), "must be <= 2147483640");
   }
-  if (AreWithinReach(displacement)) return;
+  if (AreAllWithin(displacement, kLargestPathDisplacement)) return;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     if (!IsWithinReach(displacement[i])) {
       RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);

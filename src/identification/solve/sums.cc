@@ -3,8 +3,7 @@
 #include <cstddef>
 #include <cstring>
 
-// A function that is always inlined takes the instruction set of its caller.
-#define MINDAHL_INLINE inline __attribute__((always_inline))
+#include "core/instruction_sets.h"
 
 namespace mindahl::identification {
 namespace {
@@ -121,16 +120,16 @@ struct Sums {
 
 MINDAHL_SUMS(Baseline, 2, )
 #if defined(__x86_64__)
-MINDAHL_SUMS(Avx2, 4, __attribute__((target("avx2,fma"))))
-MINDAHL_SUMS(Avx512, 8, __attribute__((target("avx512f,avx512dq"))))
+MINDAHL_SUMS(Avx2, 4, MINDAHL_TARGET_AVX2)
+MINDAHL_SUMS(Avx512, 8, MINDAHL_TARGET_AVX512)
 #endif
 #undef MINDAHL_SUMS
 
 const Sums& Widest() {
   static const Sums& widest = []() -> const Sums& {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return kAvx512;
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kAvx2;
+    if (HasAvx512()) return kAvx512;
+    if (HasAvx2()) return kAvx2;
 #endif
     return kBaseline;
   }();

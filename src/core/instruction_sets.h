@@ -1,0 +1,23 @@
+#pragma once
+
+/// For functions that are built for several instruction sets, of which one is chosen at run time.
+
+// A function that is always inlined takes the instruction set of its caller.
+#define MINDAHL_INLINE inline __attribute__((always_inline))
+
+#if defined(__x86_64__)
+#define MINDAHL_TARGET_AVX2 __attribute__((target("avx2,fma")))
+#define MINDAHL_TARGET_AVX512 __attribute__((target("avx512f,avx512dq")))
+
+namespace mindahl {
+
+/// Has the processor what MINDAHL_TARGET_AVX2 asks for?
+inline bool HasAvx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+
+/// And MINDAHL_TARGET_AVX512?
+inline bool HasAvx512() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
+}
+
+}  // namespace mindahl
+#endif
