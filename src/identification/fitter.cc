@@ -103,15 +103,6 @@ struct Attempt {
   std::pmr::memory_resource* memory;
 };
 
-/// As many independent samples as tell the variance of a solution's residuals.
-double EffectiveSamples(const Attempt& attempt, const Candidate& candidate) {
-  std::pmr::vector<double> residual(candidate.problem.size(), attempt.memory);
-  EvaluateResidual(candidate.problem, candidate.solution->theta, attempt.buffers.response,
-                   residual);
-  return static_cast<double>(attempt.data.counted) /
-         AutocorrelationOf(attempt.data, residual, {}, attempt.memory).SquaredCorrelations();
-}
-
 /// The past that the options name; nothing where both have to be tried.
 std::optional<InitialState> GivenState(const Attempt& attempt) {
   if (attempt.options.initial_state) return attempt.options.initial_state;
@@ -172,7 +163,9 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   rival.reset();
   bool is_close = false;
   if (std::isfinite(better.solution->sum_of_squares)) {  // else neither was even started
-    const Evidence evidence(attempt.data.counted, EffectiveSamples(attempt, better));
+    const Evidence evidence(attempt.data.counted,
+                            EffectiveSamples(better.problem, better.solution->theta,
+                                             attempt.buffers.response, attempt.memory));
     const auto criterion = [&](const Candidate& candidate) {
       return evidence.Aicc(candidate.solution->sum_of_squares,
                            candidate.problem.parameters.free().size());
@@ -553,7 +546,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   LeaveOutBeyondLags(options, prepared);
   ScaledRecords data = Scale(prepared, options, &arena);
   AddCovariates(options.covariates, depth != Depth::kEstimate, prepared, options.offsets, data);
-  if (HasLag(options)) SetClocks(data);
+  if (HasTerm(options, "lag")) SetClocks(data);
   std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
   const ScaledRecords thin = Thin(data, thin_reversals, &arena);
   const Attempt attempt{options, prepared, data, thin, buffers, &arena};

@@ -156,18 +156,15 @@ Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
   return jacobian;
 }
 
-/// AᵀRA; where the displacement has errors AᵀSRSA + AᵀEEᵀA/(K s²), as for the law's own errors.
+/// AᵀRA
 Eigen::MatrixXd CorrelationOf(const ScaledRecords& data, const Noise& noise,
                               const Autocorrelation& autocorrelation,
                               const DisplacementEffect& displacement, const Products& products) {
-  if (displacement.residuals.size() == 0) {
-    return autocorrelation.order == 0 ? products.plain
-                                      : CorrelatedProduct(data, autocorrelation, products.columns);
+  if (displacement.residuals.size() > 0) {
+    return CorrelatedProduct(data, autocorrelation, noise, displacement, products.columns);
   }
-  const Eigen::MatrixXd drawn = products.columns.transpose() * displacement.residuals;
-  const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), products.columns.rows());
-  return CorrelatedProduct(data, autocorrelation, share.asDiagonal() * products.columns) +
-         drawn * drawn.transpose() / (static_cast<double>(drawn.cols()) * displacement.variance);
+  return autocorrelation.order == 0 ? products.plain
+                                    : CorrelatedProduct(data, autocorrelation, products.columns);
 }
 
 }  // namespace

@@ -101,14 +101,6 @@ OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult&
   return other;
 }
 
-/// As many independent residuals as say the same of a variance.
-double EffectiveSamples(const Problem& problem, const Solution& solution, Response& response) {
-  std::vector<double> residual(problem.size());
-  EvaluateResidual(problem, solution.theta, response, residual);
-  return static_cast<double>(problem.data->counted) /
-         AutocorrelationOf(*problem.data, residual).SquaredCorrelations();
-}
-
 void Polish(const FitOptions& options, SearchBuffers& buffers, OtherFit& other) {
   buffers.solver.Bind(other.problem, buffers.response);
   buffers.solver.Solve(other.solution.theta, SolverOptionsOf(options), buffers.scratch);
@@ -182,14 +174,15 @@ std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
     states.push_back(InitialState::kSteady);
   }
   const double samples_of_best =
-      states.empty() ? 0.0 : EffectiveSamples(problem, best, buffers.response);
+      states.empty() ? 0.0 : EffectiveSamples(problem, best.theta, buffers.response);
   for (const InitialState state : states) {
     OtherFit other = FitOther(problem, best, result, equivalent, state, options, buffers);
     const auto evidence_of = [&] {
       const bool is_better = other.solution.sum_of_squares < best.sum_of_squares;
       return Evidence(problem.data->counted,
-                      is_better ? EffectiveSamples(other.problem, other.solution, buffers.response)
-                                : samples_of_best);
+                      is_better
+                          ? EffectiveSamples(other.problem, other.solution.theta, buffers.response)
+                          : samples_of_best);
     };
     const auto delta_by = [&](const Evidence& evidence) {
       return CriterionOf(evidence, other.problem, other.solution) -

@@ -53,6 +53,14 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
   return EstimateAutocorrelation(series, counts);
 }
 
+double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
+                        std::pmr::memory_resource* memory) {
+  std::pmr::vector<double> residual(problem.size(), memory);
+  EvaluateResidual(problem, theta, response, residual);
+  return static_cast<double>(problem.data->counted) /
+         AutocorrelationOf(*problem.data, residual, {}, memory).SquaredCorrelations();
+}
+
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
                                   const Eigen::MatrixXd& jacobian) {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
@@ -63,6 +71,15 @@ Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelati
     begin += rows;
   }
   return product;
+}
+
+Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
+                                  const Noise& noise, const DisplacementEffect& displacement,
+                                  const Eigen::MatrixXd& jacobian) {
+  const Eigen::MatrixXd drawn = jacobian.transpose() * displacement.residuals;
+  const Eigen::Map<const Eigen::VectorXd> share(noise.force_share.data(), jacobian.rows());
+  return drawn * drawn.transpose() / (static_cast<double>(drawn.cols()) * displacement.variance) +
+         CorrelatedProduct(data, autocorrelation, share.asDiagonal() * jacobian);
 }
 
 LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t> columns,
@@ -105,14 +122,10 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
       }
     }
   }
-  Eigen::MatrixXd correlated = Eigen::MatrixXd::Zero(size, size);
-  if (displacement.residuals.size() > 0) {
-    const Eigen::MatrixXd drawn = jacobian.transpose() * displacement.residuals;
-    correlated =
-        drawn * drawn.transpose() / (static_cast<double>(drawn.cols()) * displacement.variance);
-    jacobian.array().colwise() *= Eigen::Map<const Eigen::ArrayXd>(noise.force_share.data(), rows);
-  }
-  correlated += CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian);
+  const Eigen::MatrixXd correlated =
+      displacement.residuals.size() > 0
+          ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, jacobian)
+          : CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian);
   result.absorbed = (factor * correlated).trace();
   const Eigen::MatrixXd product = factor * correlated * factor;
   const Eigen::MatrixXd sandwich = (product + product.transpose()) / 2;  // to the last bit

@@ -50,8 +50,19 @@ Autocorrelation AutocorrelationOf(
     std::span<const unsigned char> tells = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
+/// As many independent samples as tell the variance of a solution's residuals: those that count
+/// over what their autocorrelation costs. Binds the response to the problem.
+double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
+                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+
 /// (JᵀRJ) of all records.
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
+                                  const Eigen::MatrixXd& jacobian);
+
+/// The same where the displacement has errors: JᵀSRSJ + JᵀEEᵀJ/(K s²), as of LocalUncertainty.
+/// @param displacement  with residuals drawn
+Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
+                                  const Noise& noise, const DisplacementEffect& displacement,
                                   const Eigen::MatrixXd& jacobian);
 
 /// Singular value decomposition of the Jacobian, columns scaled to unit norm: never fails, and

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
 
@@ -51,11 +52,6 @@ Lags LagsOf(const FitOptions& options, double cycle) {
 
 }  // namespace
 
-bool HasLag(const FitOptions& options) {
-  return options.fixed.contains("lag") ||
-         std::ranges::find(options.terms, "lag") != options.terms.end();
-}
-
 bool MayHaveClocks(const ScaledRecords& data) {
   const bool timed = !data.records.front().velocity.empty();
   return std::ranges::all_of(data.records, [&](const ScaledRecord& record) {
@@ -83,7 +79,7 @@ void SetClocks(ScaledRecords& data) {
 }
 
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records) {
-  if (!HasLag(options)) return;
+  if (!HasTerm(options, "lag")) return;
   const loop::PreparedRecord& first = records.records.front();
   for (const loop::PreparedRecord& record : records.records) {
     const std::span<const double> time = record.record.time;

@@ -13,9 +13,6 @@
 /// Forces that are read some time after the displacement: T_file(t) = T(δ(t − lag)).
 namespace mindahl::identification {
 
-/// Is the lag fitted or given?
-bool HasLag(const FitOptions& options);
-
 /// Have all records a time that goes on, or none a time?
 bool MayHaveClocks(const ScaledRecords& data);
 

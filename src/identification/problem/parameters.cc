@@ -102,6 +102,11 @@ Parameter MakeParameterOfColumn(const Term& term, std::size_t column, const Scal
 
 }  // namespace
 
+bool HasTerm(const FitOptions& options, const std::string& name) {
+  return options.fixed.contains(name) ||
+         std::ranges::find(options.terms, name) != options.terms.end();
+}
+
 double Parameter::ToValue(double at_theta) const {
   return term->positive ? scale * std::exp(at_theta) : reference + scale * at_theta;
 }

@@ -15,6 +15,9 @@
 
 namespace mindahl::identification {
 
+/// Does a fit have a term that is on demand, to find or at a given value?
+bool HasTerm(const FitOptions& options, const std::string& name);
+
 /// A term of one fit, as the solver sees it: θ, non-dimensional and of order one.
 ///   value = scale·exp(θ) where the term is positive,  else  value = reference + scale·θ
 struct Parameter {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -97,12 +98,8 @@ MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
 /// Has the law an account of a load that varies? It is of Masing's kind, its displacement that of
 /// the contact alone, and read with the force.
 bool KnowsVaryingLoads(const FitOptions& options) {
-  const auto has = [&options](const char* term) {
-    return std::ranges::find(options.terms, term) != options.terms.end() ||
-           options.fixed.contains(term);
-  };
-  return options.model->memory == models::Memory::kReturnPoint && !has("rig_stiffness") &&
-         !has("lag");
+  return options.model->memory == models::Memory::kReturnPoint &&
+         !HasTerm(options, "rig_stiffness") && !HasTerm(options, "lag");
 }
 
 /// What the columns say of loads within the records.
@@ -185,12 +182,63 @@ constexpr std::size_t kKeptOfAStroke = 8;
 /// Strokes that are thinned so: more are thinned to their ends and one sample in between.
 constexpr std::size_t kDenseStrokes = 16;
 
+/// Every column of values a sample, of one record with that of the other.
+template <typename Visit>
+void ForEachColumn(ScaledRecord& to, const ScaledRecord& from, Visit visit) {
+  visit(to.displacement, from.displacement);
+  visit(to.force, from.force);
+  visit(to.time, from.time);
+  visit(to.velocity, from.velocity);
+  visit(to.load_ratio, from.load_ratio);
+  visit(to.load_change, from.load_change);
+  visit(to.root_weight, from.root_weight);
+  visit(to.counts, from.counts);
+  visit(to.clock, from.clock);
+  for (std::size_t c = 0; c < from.covariates.size(); ++c) {
+    visit(to.covariates[c], from.covariates[c]);
+  }
+}
+
 }  // namespace
+
+ScaledRecord ScaledRecord::WithoutSamples(std::pmr::memory_resource* memory) const {
+  ScaledRecord record(memory);
+  record.units = units;
+  record.load = load;
+  record.log_load = log_load;
+  record.covariates.resize(covariates.size());
+  return record;
+}
+
+void ScaledRecord::Reserve(const ScaledRecord& from, std::size_t samples) {
+  ForEachColumn(*this, from, [samples](auto& to, const auto& column) {
+    if (!column.empty()) to.reserve(samples);
+  });
+}
+
+void ScaledRecord::Append(const ScaledRecord& from, std::size_t i) {
+  ForEachColumn(*this, from, [i](auto& to, const auto& column) {
+    if (!column.empty()) to.push_back(column[i]);
+  });
+}
 
 std::size_t ScaledRecords::samples() const {
   std::size_t count = 0;
   for (const ScaledRecord& record : records) count += record.size();
   return count;
+}
+
+ScaledRecords ScaledRecords::WithoutRecords(std::pmr::memory_resource* memory) const {
+  ScaledRecords scaled(memory);
+  scaled.covariates.assign(covariates.begin(), covariates.end());
+  scaled.length = length;
+  scaled.force = force;
+  scaled.sense = sense;
+  scaled.mean_load.assign(mean_load.begin(), mean_load.end());
+  scaled.reference_load = reference_load;
+  scaled.is_load_series = is_load_series;
+  scaled.load_varies = load_varies;
+  return scaled;
 }
 
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
@@ -294,51 +342,23 @@ void AddCovariates(std::span<const std::string> fitted, bool with_others,
 ScaledRecords Thin(const ScaledRecords& data,
                    std::pmr::vector<std::pmr::vector<std::size_t>>& reversals,
                    std::pmr::memory_resource* memory) {
-  ScaledRecords thin(memory);
-  thin.length = data.length;
-  thin.force = data.force;
-  thin.sense = data.sense;
-  thin.covariates.assign(data.covariates.begin(), data.covariates.end());
-  thin.reference_load = data.reference_load;
-  thin.is_load_series = data.is_load_series;
-  thin.load_varies = data.load_varies;
+  ScaledRecords thin = data.WithoutRecords(memory);
   thin.records.reserve(data.records.size());
   reversals.clear();
   reversals.reserve(data.records.size());
   for (const ScaledRecord& record : data.records) {
-    ScaledRecord& target = thin.records.emplace_back(memory);
+    ScaledRecord& target = thin.records.emplace_back(record.WithoutSamples(memory));
     std::pmr::vector<std::size_t>& turns = reversals.emplace_back();
     turns.reserve(record.reversals.size());
-    target.units = record.units;
     if (!record.clock.empty()) target.whole = &record;
-    target.load = record.load;
-    target.log_load = record.log_load;
     const std::size_t strokes = record.reversals.size() + 1;
     // Under a load that varies the way between samples is part of the history.
     const bool is_dense = strokes <= kDenseStrokes || !record.load_ratio.empty();
     const std::size_t kept = is_dense ? kKeptOfAStroke : 2;
     const std::size_t most = std::min(record.size(), strokes * (kept + 1) + 1);
-    for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
-      column->reserve(most);
-    }
-    target.counts.reserve(most);
-    if (!record.velocity.empty()) target.velocity.reserve(most);
-    if (!record.load_ratio.empty()) target.load_ratio.reserve(most);
-    if (!record.clock.empty()) target.clock.reserve(most);
-    target.covariates.resize(record.covariates.size());
-    for (auto& covariate : target.covariates) covariate.reserve(most);
+    target.Reserve(record, most);
     const auto keep = [&](std::size_t i) {
-      target.displacement.push_back(record.displacement[i]);
-      target.force.push_back(record.force[i]);
-      target.time.push_back(record.time[i]);
-      target.root_weight.push_back(record.root_weight[i]);
-      if (!record.velocity.empty()) target.velocity.push_back(record.velocity[i]);
-      if (!record.load_ratio.empty()) target.load_ratio.push_back(record.load_ratio[i]);
-      if (!record.clock.empty()) target.clock.push_back(record.clock[i]);
-      for (std::size_t c = 0; c < target.covariates.size(); ++c) {
-        target.covariates[c].push_back(record.covariates[c][i]);
-      }
-      target.counts.push_back(record.counts[i]);
+      target.Append(record, i);
       thin.counted += record.counts[i];
     };
     std::size_t begin = 0;

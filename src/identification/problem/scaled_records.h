@@ -56,6 +56,14 @@ struct ScaledRecord {
     return load_ratio.empty() ? load : load * load_ratio[i];
   }
 
+  /// What does not depend on its samples, of a record that has others.
+  [[nodiscard]] ScaledRecord WithoutSamples(std::pmr::memory_resource* memory) const;
+  /// Room for so many samples of another record.
+  void Reserve(const ScaledRecord& from, std::size_t samples);
+  /// Appends a sample of another record, in all of the columns that it has; `inserted` is for those
+  /// who put samples in.
+  void Append(const ScaledRecord& from, std::size_t i);
+
   [[nodiscard]] std::size_t size() const { return force.size(); }
   [[nodiscard]] TermSample SampleAt(std::size_t i) const {
     return {displacement[i], time[i], velocity.empty() ? 0.0 : velocity[i]};
@@ -93,6 +101,8 @@ struct ScaledRecords {
   bool load_varies = false;            // within a record, and the law knows it
 
   [[nodiscard]] std::size_t samples() const;
+  /// Units, loads and covariates without records, and none that counts.
+  [[nodiscard]] ScaledRecords WithoutRecords(std::pmr::memory_resource* memory) const;
 };
 
 /// Every sample that counts does so alike.

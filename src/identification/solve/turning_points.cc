@@ -123,38 +123,18 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
                                                   std::span<const double> overshoot) {
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   auto turned = std::make_unique<TurnedRecords>(
-      TurnedRecords{ScaledRecords(memory), {}, {overshoot.begin(), overshoot.end()}});
-  turned->data.length = data.length;
-  turned->data.force = data.force;
-  turned->data.sense = data.sense;
+      TurnedRecords{data.WithoutRecords(memory), {}, {overshoot.begin(), overshoot.end()}});
   turned->data.counted = data.counted;
-  turned->data.covariates = data.covariates;
-  turned->data.mean_load = data.mean_load;
-  turned->data.reference_load = data.reference_load;
-  turned->data.is_load_series = data.is_load_series;
   turned->data.records.reserve(data.records.size());
   turned->reversals.resize(data.records.size());
   std::size_t next_overshoot = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
-    ScaledRecord& target = turned->data.records.emplace_back(memory);
-    target.units = record.units;
-    target.covariates.resize(record.covariates.size());
-    target.load = record.load;
-    target.log_load = record.log_load;
+    ScaledRecord& target = turned->data.records.emplace_back(record.WithoutSamples(memory));
     const std::span<const double> x = record.displacement;
     const auto copy = [&](std::size_t i) {
-      target.displacement.push_back(x[i]);
-      target.force.push_back(record.force[i]);
-      target.time.push_back(record.time[i]);
-      target.root_weight.push_back(record.root_weight[i]);
-      target.counts.push_back(record.counts[i]);
+      target.Append(record, i);
       target.inserted.push_back(0);
-      if (!record.velocity.empty()) target.velocity.push_back(record.velocity[i]);
-      if (!record.load_change.empty()) target.load_change.push_back(record.load_change[i]);
-      for (std::size_t c = 0; c < record.covariates.size(); ++c) {
-        target.covariates[c].push_back(record.covariates[c][i]);
-      }
     };
     const auto put_in = [&](std::size_t i, double sense) {
       turned->reversals[r].push_back(target.size());
