@@ -12,10 +12,7 @@ inline bool Established(const identification::FitResult& fit, bool strict) {
   if (!fit.converged) return false;
   if (!strict) return true;
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) return false;
-  return std::ranges::all_of(fit.parameters, [](const identification::ParameterEstimate& estimate) {
-    return estimate.status == identification::ParameterStatus::kFixed ||
-           estimate.identifiability == identification::Identifiability::kIdentifiable;
-  });
+  return std::ranges::all_of(fit.parameters, &identification::ParameterEstimate::is_known);
 }
 
 }  // namespace mindahl::cli

@@ -129,9 +129,7 @@ FitOptions FitOptionsOf(const PlanOptions& options) {
 
 bool IsIdentified(const identification::FitResult& fit, std::string_view name) {
   const ParameterEstimate* estimate = fit.Find(name);
-  return estimate != nullptr &&
-         (estimate->status == identification::ParameterStatus::kFixed ||
-          estimate->identifiability == identification::Identifiability::kIdentifiable);
+  return estimate != nullptr && estimate->is_known();
 }
 
 /// From a record: its fit's law and noise. Where it does not identify α, that is taken to be

@@ -47,8 +47,7 @@ bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t s
 /// A parameter by its sign: no number of what is not known.
 std::string ParameterText(const char* sign, const ParameterEstimate& estimate) {
   const std::string unit = estimate.unit == "-" ? "" : " " + estimate.unit;
-  if (estimate.status == identification::ParameterStatus::kFixed ||
-      estimate.identifiability == Identifiability::kIdentifiable) {
+  if (estimate.is_known()) {
     return fmt::format("{} = {:.4g}{}", sign, estimate.value, unit);
   }
   if (estimate.identifiability == Identifiability::kBoundedBelow && estimate.lower95) {

@@ -251,9 +251,8 @@ std::string Words(const LoadHypothesis& hypothesis) {
 std::string ValueAndError(const contact::UncertainValue& value, const FitResult& fit,
                           std::string_view parameter) {
   const identification::ParameterEstimate& estimate = *fit.Find(parameter);
-  const bool is_known = estimate.status == identification::ParameterStatus::kFixed ||
-                        estimate.identifiability == identification::Identifiability::kIdentifiable;
-  return is_known ? fmt::format("{} {}", Significant(value.value), ErrorText(value)) : "-";
+  return estimate.is_known() ? fmt::format("{} {}", Significant(value.value), ErrorText(value))
+                             : "-";
 }
 
 std::string LoadSeriesText(const LoadSeries& series, const FitResult& fit) {

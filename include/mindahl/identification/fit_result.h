@@ -25,8 +25,9 @@ namespace mindahl::identification {
 /// How much of a fit is wanted; each depth has all of the one before.
 enum class Depth {
   kEstimate,   ///< values, rms, convergence: for work that is done again and again
-  kIntervals,  ///< and noise, standard errors, intervals, correlations, residuals and verdicts from
-               ///< the parabola of the likelihood
+  kErrors,     ///< and facts of the record, noise, standard errors, intervals, correlations and
+               ///< residuals from the parabola of the likelihood, as if the model were adequate
+  kIntervals,  ///< and adequacy, its causes, and verdicts; intervals cover what these would change
   kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α and
                ///< of the law
 };
@@ -50,6 +51,11 @@ struct ParameterEstimate {
   std::optional<double> upper95;
   ParameterStatus status = ParameterStatus::kFixed;
   Identifiability identifiability = Identifiability::kNotIdentifiable;
+
+  /// Given, or identifiable.
+  [[nodiscard]] bool is_known() const {
+    return status == ParameterStatus::kFixed || identifiability == Identifiability::kIdentifiable;
+  }
 };
 
 /// α as one kind of branch tells it, the other parameters shared: a departure from one law shows
@@ -97,7 +103,7 @@ struct RecordFit {
   /// record is sampled so coarsely that it had to be fitted.
   std::vector<double> overshoot;
   loop::LoopMeasures measures;        ///< with the force in the displacement's sense
-  loop::LoopFacts facts;              ///< likewise, cycle by cycle; from depth kIntervals on
+  loop::LoopFacts facts;              ///< likewise, cycle by cycle; from depth kErrors on
   double displacement_noise = 0.0;    ///< [m] of the readings; 0 where they count as exact
   std::vector<unsigned char> counts;  ///< of each sample, 1 where it counts, else 0
   std::size_t left_out = 0;           ///< samples that do not count
