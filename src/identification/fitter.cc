@@ -35,6 +35,7 @@
 #include "mindahl/core/arena.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/identification/too_few_samples.h"
 #include "mindahl/loop/preparation.h"
 
@@ -218,9 +219,8 @@ void FillRecords(const Attempt& attempt, Depth depth, FitResult& result) {
     fit.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
     fit.overshoot.clear();
     fit.measures = prepared.measures;
-    fit.facts = depth == Depth::kEstimate
-                    ? loop::LoopFacts()
-                    : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
+    fit.facts = depth < Depth::kErrors ? loop::LoopFacts()
+                                       : loop::MeasureFacts(prepared, attempt.prepared.force_sense);
     fit.displacement_noise = prepared.displacement_noise;
     fit.counts.assign(prepared.counts.begin(), prepared.counts.end());
     fit.left_out = prepared.left_out;
@@ -343,15 +343,12 @@ std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const 
   return tells;
 }
 
-/// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
-/// @param rival  the other past of the contact, where the record hardly tells; else null
-void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution, Noise& noise,
-           const DisplacementErrors& displacement_errors, const Candidate* rival,
-           FitResult& result) {
+/// What the residuals say of the noise, and of themselves.
+void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
+                  Noise& noise, FitResult& result) {
   const FitOptions& options = attempt.options;
-  SearchBuffers& buffers = attempt.buffers;
   std::vector<double> residual(problem.size());
-  EvaluateResidual(problem, solution.theta, buffers.response, residual);
+  EvaluateResidual(problem, solution.theta, attempt.buffers.response, residual);
   // Rounding errors are autocorrelated as they like: nothing is to be learnt from them.
   const double rms =
       std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
@@ -364,9 +361,10 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
   noise.repeating = only_rounding ? 1.0 : repeating;
   DescribeFit(problem, noise, result);
-  const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
-  const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
-                            buffers.response);
+}
+
+/// Standard errors, intervals and correlations of the parabola.
+void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& result) {
   const auto& reported = problem.parameters.reported();
   for (std::size_t k = 0; k < reported.size(); ++k) {
     estimates.Fill(reported[k], result.parameters[k]);
@@ -375,6 +373,37 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     }
   }
   Append(result.findings, FindUndetermined(problem, estimates.local()));
+}
+
+/// What there is at Depth::kErrors.
+void InferErrors(const Attempt& attempt, const Problem& problem, const Solution& solution,
+                 Noise& noise, const DisplacementErrors& displacement_errors, FitResult& result) {
+  MeasureNoise(attempt, problem, solution, noise, result);
+  const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
+  FillErrors(problem,
+             Estimates(problem, solution, noise, displacement, attempt.options.thresholds,
+                       attempt.buffers.response),
+             result);
+  Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
+  for (Finding& finding : FindWideIntervals(result, attempt.options.thresholds)) {
+    result.findings.push_back(std::move(finding));
+  }
+  Append(result.findings, FindExtrapolated(result, attempt.options.thresholds));
+  Judge(result.parameters, result.findings);
+}
+
+/// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
+/// @param rival  the other past of the contact, where the record hardly tells; else null
+void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution, Noise& noise,
+           const DisplacementErrors& displacement_errors, const Candidate* rival,
+           FitResult& result) {
+  const FitOptions& options = attempt.options;
+  SearchBuffers& buffers = attempt.buffers;
+  MeasureNoise(attempt, problem, solution, noise, result);
+  const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
+  const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
+                            buffers.response);
+  FillErrors(problem, estimates, result);
   if (result.depth == Depth::kFull) {
     result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
     const double peak_force = result.PeakForce();
@@ -505,11 +534,16 @@ void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& opti
 }  // namespace
 
 struct Fitter::State {
-  explicit State(FitOptions given) : options(std::move(given)) { RequireOptions(options); }
+  explicit State(FitOptions given) : options(std::move(given)), continued(options) {
+    RequireOptions(options);
+  }
 
-  void Fit(std::span<const RecordView> records, Depth depth);
+  void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
+  void Continue(const RecordView& record, Depth depth);
+  [[nodiscard]] bool MayContinue() const;
 
   FitOptions options;
+  FitOptions continued;  // the same, from where the last fit ended
   Arena arena;
   SearchBuffers buffers;
   Solution first;
@@ -518,13 +552,13 @@ struct Fitter::State {
   FitResult result;
 };
 
-void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
+void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
   arena.Reset();
   result.depth = depth;
   result.converged = false;
   result.termination.assign("not run");
   result.iterations = 0;
-  result.model = options.model;
+  result.model = given.model;
   result.law = {};
   result.rig = {};
   result.normal_load.reset();
@@ -542,46 +576,45 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.adequacy = {};
   descents.clear();
 
-  loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);
-  LeaveOutBeyondLags(options, prepared);
-  ScaledRecords data = Scale(prepared, options, &arena);
-  AddCovariates(options.covariates, depth != Depth::kEstimate, prepared, options.offsets, data);
-  if (HasTerm(options, "lag")) SetClocks(data);
+  loop::PreparedRecords prepared = loop::Prepare(records, given.preparation, &arena);
+  LeaveOutBeyondLags(given, prepared);
+  ScaledRecords data = Scale(prepared, given, &arena);
+  AddCovariates(given.covariates, depth >= Depth::kIntervals, prepared, given.offsets, data);
+  if (HasTerm(given, "lag")) SetClocks(data);
   std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
   const ScaledRecords thin = Thin(data, thin_reversals, &arena);
-  const Attempt attempt{options, prepared, data, thin, buffers, &arena};
-  RequireRigStifferThanLoop(options, prepared);
-  RequireNoise(options, data);
+  const Attempt attempt{given, prepared, data, thin, buffers, &arena};
+  RequireRigStifferThanLoop(given, prepared);
+  RequireNoise(given, data);
   result.force_sense = prepared.force_sense;
   FillRecords(attempt, depth, result);
   if (!data.mean_load.empty()) result.normal_load = data.reference_load;
 
-  const bool full = depth != Depth::kEstimate;
-  if (full) {
-    result.findings = FindInRecords(result.records, options.thresholds);
+  const bool is_judged = depth >= Depth::kIntervals;
+  if (is_judged) {
+    result.findings = FindInRecords(result.records, given.thresholds);
     for (Finding& finding : FindVaryingLoads(data)) result.findings.push_back(std::move(finding));
   }
-  std::vector<Descent>* const recorded = full ? &descents : nullptr;
+  std::vector<Descent>* const recorded = is_judged ? &descents : nullptr;
   std::optional<Candidate> rival;
   std::optional<Candidate> best(FitBestState(attempt, first, second, recorded, rival));
   const DisplacementErrors displacement_errors(prepared, data);
-  const bool is_weighted = options.loss != Loss::kNone || displacement_errors.any();
+  const bool is_weighted = given.loss != Loss::kNone || displacement_errors.any();
   Noise noise;
   bool settled = true;
   std::optional<TurningPointFit> turned;
   if (std::isfinite(best->solution->sum_of_squares)) {
     if (is_weighted) {
       const auto fit_with_weights = [&] {
-        settled =
-            FitWithWeights(best->problem, data, options, displacement_errors, buffers.solver,
-                           buffers.response, SolverOptionsOf(options), *best->solution, noise);
+        settled = FitWithWeights(best->problem, data, given, displacement_errors, buffers.solver,
+                                 buffers.response, SolverOptionsOf(given), *best->solution, noise);
       };
       fit_with_weights();
       // Outliers may have hidden the past and the valley: once more from all starts, as weighted.
-      if (options.loss != Loss::kNone) {
+      if (given.loss != Loss::kNone) {
         std::pmr::vector<std::pmr::vector<std::size_t>> reversals(&arena);
         const ScaledRecords weighted_thin = Thin(data, reversals, &arena);
-        const Attempt weighted{options, prepared, data, weighted_thin, buffers, &arena};
+        const Attempt weighted{given, prepared, data, weighted_thin, buffers, &arena};
         descents.clear();
         best.emplace(FitBestState(weighted, first, second, recorded, rival));
         fit_with_weights();
@@ -595,14 +628,13 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
       const bool has_lag = best->problem.parameters.has_lag();
       // Nor under a load that varies: the way between the samples is not the displacement's alone.
       if (best->solution->converged && !gated && !has_lag && !data.load_varies) {
-        turned =
-            FitTurningPointsIfNeeded(best->problem, *best->solution, options, buffers.response);
+        turned = FitTurningPointsIfNeeded(best->problem, *best->solution, given, buffers.response);
       }
       if (turned) {
         best->problem.data = &turned->records->data;
         *best->solution = turned->solution;
       }
-      noise = PlainNoise(*best->problem.data, options, best->solution->sum_of_squares,
+      noise = PlainNoise(*best->problem.data, given, best->solution->sum_of_squares,
                          best->problem.parameters.free().size() +
                              (turned ? turned->records->overshoot.size() : 0));
     }
@@ -612,7 +644,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
   result.termination.assign(solution.termination);
   result.iterations = solution.iterations;
   result.converged = solution.converged;
-  if (full) ReportStarts(best->problem, descents, result);
+  if (is_judged) ReportStarts(best->problem, descents, result);
   if (!std::isfinite(solution.sum_of_squares)) {
     result.converged = false;
     result.parameters.clear();  // otherwise their names' memory is used again
@@ -640,11 +672,41 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth) {
     }
     result.findings.push_back(FoundTurningPoints(longest));
   }
-  if (full) {
+  if (is_judged) {
     Infer(attempt, best->problem, solution, noise, displacement_errors,
           rival && !turned ? &*rival : nullptr, result);
+  } else if (depth == Depth::kErrors) {
+    InferErrors(attempt, best->problem, solution, noise, displacement_errors, result);
   }
-  if (depth == Depth::kFull && data.is_load_series) FitRecordsAlone(records, options, result);
+  if (depth == Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
+}
+
+/// Is the last fit's end a start? Not of a likelihood with several minima, nor at a bound.
+bool Fitter::State::MayContinue() const {
+  return result.converged && options.starts == 1 &&
+         std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {
+           return estimate.status == ParameterStatus::kAtLowerBound ||
+                  estimate.status == ParameterStatus::kAtUpperBound ||
+                  (estimate.name == "alpha" && estimate.status == ParameterStatus::kFixed &&
+                   estimate.value == 0);
+         });
+}
+
+void Fitter::State::Continue(const RecordView& record, Depth depth) {
+  if (MayContinue()) {
+    for (const ParameterEstimate& estimate : result.parameters) {
+      if (estimate.status == ParameterStatus::kFixed) continue;
+      const Term& term = *FindTerm(TermNameOf(estimate.name));
+      if (term.entry == Entry::kLaw || estimate.name == "slip_force") {
+        continued.start[estimate.name] = estimate.value;
+      }
+    }
+    const double last_rms = result.rms;
+    Fit({&record, 1}, depth, continued);
+    constexpr double kAsGood = 1.5;  // times the last rms
+    if (result.converged && result.rms <= kAsGood * last_rms) return;
+  }
+  Fit({&record, 1}, depth, options);
 }
 
 Fitter::Fitter(FitOptions options) : state_(std::make_unique<State>(std::move(options))) {}
@@ -655,7 +717,12 @@ Fitter::~Fitter() = default;
 const FitOptions& Fitter::options() const { return state_->options; }
 
 const FitResult& Fitter::Fit(std::span<const RecordView> records, Depth depth) {
-  state_->Fit(records, depth);
+  state_->Fit(records, depth, state_->options);
+  return state_->result;
+}
+
+const FitResult& Fitter::Continue(const RecordView& record, Depth depth) {
+  state_->Continue(record, depth);
   return state_->result;
 }
 

@@ -115,7 +115,7 @@ std::vector<std::vector<Record>> Assortment() {
 }
 
 TEST(Fitter, GivesForAnyRecordWhatAFreshOneGives) {
-  for (const Depth depth : {Depth::kEstimate, Depth::kIntervals, Depth::kFull}) {
+  for (const Depth depth : {Depth::kEstimate, Depth::kErrors, Depth::kIntervals, Depth::kFull}) {
     Fitter used;
     for (int round = 0; round < 2; ++round) {
       int number = 0;
@@ -152,10 +152,12 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
     const std::vector<RecordView> views(records.begin(), records.end());
     Fitter fitter;
     const FitResult estimate = fitter.Fit(views, Depth::kEstimate);
+    const FitResult errors = fitter.Fit(views, Depth::kErrors);
     const FitResult intervals = fitter.Fit(views, Depth::kIntervals);
     const FitResult full = fitter.Fit(views, Depth::kFull);
     ASSERT_EQ(estimate.parameters.size(), full.parameters.size());
     for (std::size_t k = 0; k < estimate.parameters.size(); ++k) {
+      EXPECT_EQ(estimate.parameters[k].value, errors.parameters[k].value);
       EXPECT_EQ(estimate.parameters[k].value, intervals.parameters[k].value);
       EXPECT_EQ(estimate.parameters[k].value, full.parameters[k].value);
       EXPECT_EQ(estimate.parameters[k].status, full.parameters[k].status);
@@ -165,11 +167,93 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
     EXPECT_EQ(estimate.converged, full.converged);
     EXPECT_TRUE(estimate.correlation.empty());
     EXPECT_TRUE(estimate.starts.empty());
+    EXPECT_TRUE(errors.starts.empty());
+    EXPECT_EQ(errors.correlation.size(), full.correlation.size());
+    EXPECT_EQ(errors.adequacy.tried, 0U);
+    EXPECT_EQ(errors.records.front().facts.closed, full.records.front().facts.closed);
     EXPECT_EQ(intervals.correlation.size(), full.correlation.size());
     EXPECT_FALSE(intervals.mindlin_test);
     EXPECT_TRUE(intervals.branch_shapes.empty());
+    EXPECT_EQ(errors.residuals.effective_samples, full.residuals.effective_samples);
     EXPECT_EQ(intervals.residuals.effective_samples, full.residuals.effective_samples);
   }
+}
+
+FitOptions OfSteadyCycles() {
+  FitOptions options;
+  options.initial_state = InitialState::kSteady;
+  return options;
+}
+
+/// One steady cycle, from a turning point to the next but one.
+Record NoisyCycle(std::uint64_t seed, double scale = 1.0) {
+  const Record cycle = testing::From(Loop(1.25), 30);
+  Generator generator(seed);
+  return WithForceNoise(testing::Scaled(cycle, 1.0, scale), 0.01 * scale * kLaw.slip_force,
+                        generator);
+}
+
+TEST(Fitter, HasTheErrorsOfTheParabolaBeforeAnyVerdict) {
+  Fitter fitter(OfSteadyCycles());
+  const Record cycle = NoisyCycle(11);
+  const FitResult errors = fitter.Fit(cycle, Depth::kErrors);
+  const FitResult intervals = fitter.Fit(cycle, Depth::kIntervals);
+  ASSERT_EQ(intervals.adequacy.verdict, AdequacyVerdict::kAdequate);  // nothing to cover besides
+  for (std::size_t k = 0; k < errors.parameters.size(); ++k) {
+    ExpectSame(errors.parameters[k].standard_error, intervals.parameters[k].standard_error,
+               errors.parameters[k].name);
+    ExpectSame(errors.parameters[k].upper95, intervals.parameters[k].upper95,
+               errors.parameters[k].name);
+  }
+}
+
+// Steps end where the next would lower the cost by 1e-10 of it. The steps shrink by a factor of 0.9
+// at the worst, where the residuals bend the cost as much as the law does: Σ of the rest is five
+// times as much, in either of two fits, of χ² = n: (Δ/error)² < 10·5·1e-10·n, n = 121.
+constexpr double kSolverTolerance = 1e-2;  // standard errors
+constexpr double kSameRms = 1e-8;          // 10·5·1e-10/2, and as much again
+
+void ExpectSameMinimum(const FitResult& one, const FitResult& other) {
+  ASSERT_TRUE(one.converged);
+  EXPECT_NEAR(one.rms, other.rms, kSameRms * other.rms);
+  for (const char* name : {"sigma", "alpha", "slip_force"}) {
+    const ParameterEstimate& expected = *other.Find(name);
+    ASSERT_TRUE(expected.standard_error) << name;
+    EXPECT_NEAR(one.Find(name)->value, expected.value, kSolverTolerance * *expected.standard_error)
+        << name;
+  }
+}
+
+TEST(Fitter, GoesOnFromOneCycleToTheNextToTheSameMinimum) {
+  Fitter going(OfSteadyCycles());
+  Fitter fresh(OfSteadyCycles());
+  going.Fit(NoisyCycle(1), Depth::kErrors);
+  constexpr std::uint64_t kCycles = 100;
+  for (std::uint64_t seed = 2; seed < kCycles; ++seed) {
+    const Record cycle = NoisyCycle(seed);
+    const FitResult expected = fresh.Fit(cycle, Depth::kErrors);
+    ExpectSameMinimum(going.Continue(cycle, Depth::kErrors), expected);
+  }
+}
+
+TEST(Fitter, GoesOnOverAJumpOfTheFriction) {
+  Fitter going(OfSteadyCycles());
+  Fitter fresh(OfSteadyCycles());
+  for (const double scale : {1.0, 3.0, 0.2, 10.0}) {
+    const Record cycle = NoisyCycle(17, scale);
+    const FitResult expected = fresh.Fit(cycle, Depth::kErrors);
+    ExpectSameMinimum(going.Continue(cycle, Depth::kErrors), expected);
+  }
+}
+
+TEST(Fitter, GoesOnAfterAFitThatFailedAsIfItHadNotBeen) {
+  FitOptions options = OfSteadyCycles();
+  options.preparation.force_sense = 1;
+  Fitter going(options);
+  Fitter fresh(options);
+  const Record cycle = NoisyCycle(5);
+  ASSERT_FALSE(going.Continue(testing::Scaled(cycle, 1.0, -1.0), Depth::kErrors).converged);
+  ExpectSame(going.Continue(cycle, Depth::kErrors), fresh.Fit(cycle, Depth::kErrors));
 }
 
 }  // namespace

@@ -40,6 +40,12 @@ class Fitter {
     return Fit({&record, 1}, depth);
   }
 
+  /// Fit() of a record like the one before, from where the fit of that ended, without a look at the
+  /// plane. By Fit() itself where there is none to go on from, where it ended at a bound, and where
+  /// this does not converge or leaves 1.5 times the residuals: what it finds is Fit()'s minimum, to
+  /// the solver's tolerance.
+  const FitResult& Continue(const loop::RecordView& record, Depth depth = Depth::kFull);
+
   [[nodiscard]] const FitOptions& options() const;
 
  private:

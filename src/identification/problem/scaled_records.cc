@@ -216,9 +216,12 @@ void ScaledRecord::Reserve(const ScaledRecord& from, std::size_t samples) {
   });
 }
 
-void ScaledRecord::Append(const ScaledRecord& from, std::size_t i) {
-  ForEachColumn(*this, from, [i](auto& to, const auto& column) {
-    if (!column.empty()) to.push_back(column[i]);
+void ScaledRecord::Append(const ScaledRecord& from, std::size_t begin, std::size_t end) {
+  ForEachColumn(*this, from, [begin, end](auto& to, const auto& column) {
+    if (column.empty()) return;
+    const auto first = column.begin();
+    to.insert(to.end(), first + static_cast<std::ptrdiff_t>(begin),
+              first + static_cast<std::ptrdiff_t>(end));
   });
 }
 

@@ -62,7 +62,9 @@ struct ScaledRecord {
   void Reserve(const ScaledRecord& from, std::size_t samples);
   /// Appends a sample of another record, in all of the columns that it has; `inserted` is for those
   /// who put samples in.
-  void Append(const ScaledRecord& from, std::size_t i);
+  void Append(const ScaledRecord& from, std::size_t i) { Append(from, i, i + 1); }
+  /// Likewise from `begin` to before `end`.
+  void Append(const ScaledRecord& from, std::size_t begin, std::size_t end);
 
   [[nodiscard]] std::size_t size() const { return force.size(); }
   [[nodiscard]] TermSample SampleAt(std::size_t i) const {

@@ -132,31 +132,25 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
     const ScaledRecord& record = data.records[r];
     ScaledRecord& target = turned->data.records.emplace_back(record.WithoutSamples(memory));
     const std::span<const double> x = record.displacement;
-    const auto copy = [&](std::size_t i) {
-      target.Append(record, i);
-      target.inserted.push_back(0);
+    std::size_t copied = 0;
+    const auto copy_until = [&](std::size_t end) {
+      target.Append(record, copied, end);
+      target.inserted.resize(target.size(), 0);
+      copied = end;
     };
-    const auto put_in = [&](std::size_t i, double sense) {
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      const std::size_t i = record.reversals[k];
+      const double sense = SenseOfTurn(record, k);
+      const bool turns_before = sense * (x[i - 1] - x[i + 1]) > 0;
+      copy_until(turns_before ? i : i + 1);
       turned->reversals[r].push_back(target.size());
-      copy(i);
+      target.Append(record, i);
       target.displacement.back() = x[i] + sense * overshoot[next_overshoot++];
       target.root_weight.back() = 0.0;
       target.counts.back() = 0;
-      target.inserted.back() = 1;
-    };
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const bool turns = next < record.reversals.size() && record.reversals[next] == i;
-      if (!turns) {
-        copy(i);
-        continue;
-      }
-      const double sense = SenseOfTurn(record, next++);
-      const bool turns_before = sense * (x[i - 1] - x[i + 1]) > 0;
-      if (turns_before) put_in(i, sense);
-      copy(i);
-      if (!turns_before) put_in(i, sense);
+      target.inserted.push_back(1);
     }
+    copy_until(x.size());
     target.reversals = turned->reversals[r];
   }
   return turned;
