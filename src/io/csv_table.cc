@@ -12,9 +12,9 @@
 #include <optional>
 #include <utility>
 
+#include "io/cell_fault.h"
 #include "io/csv_layout.h"
 #include "io/csv_tokenizer.h"
-#include "io/message_text.h"
 #include "io/number_cell.h"
 #include "io/thousands.h"
 #include "mindahl/core/error.h"
@@ -58,9 +58,8 @@ class DecimalMarkCheck {
   void Add(char mark, const CsvRow& row, std::size_t column, const std::string& file) {
     if (mark == '\0' || mark == mark_) return;
     if (mark_ != '\0') {
-      throw InputError(fmt::format(
-          "{}:{}:{}: '{}' has the decimal mark '{}' and line {} has '{}': use one throughout", file,
-          row.line, column + 1, ForMessage(row[column]), mark, line_, mark_));
+      throw InputError(fmt::format("{}:{}:{}: {}", file, row.line, column + 1,
+                                   DescribeSecondMark(row[column], mark, line_, mark_)));
     }
     mark_ = mark;
     line_ = row.line;
@@ -72,12 +71,10 @@ class DecimalMarkCheck {
 };
 
 void RequireNoExtraCells(const CsvRow& row, std::size_t columns, const std::string& file) {
-  for (std::size_t cell = columns; cell < row.size(); ++cell) {
-    if (Trimmed(row[cell]).empty()) continue;
-    throw InputError(fmt::format("{}:{}:{}: '{}' is one cell too many: the table has {} column{}",
-                                 file, row.line, cell + 1, ForMessage(row[cell]), columns,
-                                 columns == 1 ? "" : "s"));
-  }
+  std::size_t column = 0;
+  const std::string fault = DescribeExtraCell(row, columns, column);
+  if (fault.empty()) return;
+  throw InputError(fmt::format("{}:{}:{}: {}", file, row.line, column + 1, fault));
 }
 
 }  // namespace
@@ -173,25 +170,8 @@ void CsvTable::ThrowNotANumber(std::size_t row_index, std::size_t column) const 
   CsvTokenizer tokenizer(text_, delimiter, offsets_[row_index], lines_[row_index]);
   CsvRow row;
   tokenizer.Next(row);
-  const std::string where = fmt::format("{}:{}:{}", file_, row.line, column + 1);
-  if (column >= row.size()) {
-    throw InputError(fmt::format("{}: the row has {} cell{} of {}: complete it or remove it", where,
-                                 row.size(), row.size() == 1 ? "" : "s", columns()));
-  }
-  const std::string_view text = row[column];
-  switch (ReadNumber(text, delimiter != Delimiter::kComma).kind) {
-    case NumberCell::Kind::kEmpty:
-      throw InputError(
-          fmt::format("{}: '' is not a number: fill in the cell or remove the row", where));
-    case NumberCell::Kind::kTooLarge:
-      throw InputError(
-          fmt::format("{}: '{}' is too large: must be below 1.8e308", where, ForMessage(text)));
-    default:
-      throw InputError(
-          fmt::format("{}: '{}' is not a number: write it like -1.5e-3, or remove the "
-                      "row",
-                      where, ForMessage(text)));
-  }
+  throw InputError(fmt::format("{}:{}:{}: {}", file_, row.line, column + 1,
+                               DescribeCellFault(row, column, columns(), delimiter)));
 }
 
 }  // namespace mindahl::io

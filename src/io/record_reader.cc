@@ -15,6 +15,7 @@
 
 #include "io/column_name.h"
 #include "io/message_text.h"
+#include "io/record_of_table.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
@@ -572,8 +573,7 @@ std::vector<double> ReadPathColumn(const CsvTable& table, const Role& role,
 
 }  // namespace
 
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
-  const CsvTable table = ReadCsvTable(path);
+RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   const ColumnFinder finder(table);
   RecordFile file;
   if (table.preamble_rows() > 0) {
@@ -618,6 +618,10 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
   covariates.ReadChosen(columns.covariates);
   covariates.ReadOthers();
   return file;
+}
+
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
+  return RecordOf(ReadCsvTable(path), columns);
 }
 
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,

@@ -1,10 +1,60 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace mindahl::loop {
+
+/// Finds reversals while samples arrive, as FindReversals() does of a whole record: a reversal is
+/// known once the displacement has retreated from its extremum by more than the gate.
+class ReversalFinder {
+ public:
+  /// @param gate  [m], finite, >= 0
+  explicit ReversalFinder(double gate) : gate_(gate) {}
+
+  /// @param displacement  [m] of the next sample, finite
+  /// @returns the index of the reversal that this sample makes known
+  std::optional<std::size_t> Add(double displacement) {
+    const std::size_t i = count_++;
+    if (i == 0) {
+      high_ = low_ = displacement;
+      return std::nullopt;
+    }
+    if (direction_ >= 0 && displacement > high_) {
+      highest_ = i;
+      high_ = displacement;
+    }
+    if (direction_ <= 0 && displacement < low_) {
+      lowest_ = i;
+      low_ = displacement;
+    }
+    if (direction_ >= 0 && high_ - displacement > gate_) {
+      const bool turns = direction_ > 0;
+      direction_ = -1;
+      lowest_ = i;
+      low_ = displacement;
+      if (turns) return highest_;
+    } else if (direction_ <= 0 && displacement - low_ > gate_) {
+      const bool turns = direction_ < 0;
+      direction_ = 1;
+      highest_ = i;
+      high_ = displacement;
+      if (turns) return lowest_;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  double gate_;
+  std::size_t count_ = 0;
+  std::size_t highest_ = 0;
+  std::size_t lowest_ = 0;
+  double high_ = 0.0;
+  double low_ = 0.0;
+  int direction_ = 0;  // unknown until the displacement has left the gate
+};
 
 /// Samples at which the direction of displacement reverses.
 ///

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mindahl/io/record_reader.h"
+
+namespace mindahl::io {
+
+/// Samples of a record [m, N, s, N], or [rad, N m, s, N], in the order of the file.
+struct Samples {
+  std::vector<double> displacement;
+  std::vector<double> force;
+  std::vector<double> time;         ///< empty where the file has none
+  std::vector<double> normal_load;  ///< likewise
+  std::vector<std::size_t> lines;   ///< of the file, 1-based
+
+  [[nodiscard]] std::size_t size() const { return lines.size(); }
+};
+
+/// What becomes of a row in which a cell that is needed is missing or no finite number, or that has
+/// a cell too many.
+enum class BrokenRows { kRefuse, kSkip };
+
+/// A record read piece by piece, in memory that does not depend on its length.
+///
+/// Delimiter, decimal mark, header, columns and units are found as ReadRecord() finds them, from
+/// the first mebibyte; every row is then read by the same rules, but that a quoted cell ends with
+/// its line. Lines end in LF or CRLF. Covariates are not read.
+class RecordStream {
+ public:
+  /// @throws InputError as ReadRecord() does of a file that ends with that mebibyte
+  RecordStream(const std::filesystem::path& path, const RecordColumns& columns, BrokenRows broken);
+  ~RecordStream();
+  RecordStream(const RecordStream&) = delete;
+  RecordStream& operator=(const RecordStream&) = delete;
+
+  /// Columns, units and notes; without samples.
+  [[nodiscard]] const RecordFile& layout() const;
+
+  /// Replaces the samples by the next, as many as a mebibyte holds.
+  /// @returns false at the end of the file, when there are none
+  /// @throws InputError naming file, line and column of a broken row that is not skipped, and where
+  ///   the file cannot be read
+  bool Next(Samples& samples);
+
+  /// Rows that were skipped so far, and the first of them as an error would have named it.
+  [[nodiscard]] std::size_t broken_rows() const;
+  [[nodiscard]] const std::string& first_broken_row() const;
+
+  /// Bytes read so far.
+  [[nodiscard]] std::uintmax_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mindahl::io

@@ -1,0 +1,248 @@
+#include "mindahl/io/record_stream.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "io/csv_layout.h"
+#include "io/number_row.h"
+#include "io/record_of_table.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/units.h"
+#include "mindahl/io/csv_table.h"
+
+namespace mindahl::io {
+namespace {
+
+constexpr std::size_t kPiece = 1 << 20;  // bytes read at a time
+
+/// A line longer than that is no row of a record.
+constexpr std::size_t kLongestLine = 16 * kPiece;
+
+constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
+
+/// A text in pieces of whole lines.
+class LinePieces {
+ public:
+  explicit LinePieces(const std::filesystem::path& path)
+      : name_(path.string()), file_(std::fopen(path.c_str(), "rb"), &std::fclose) {
+    if (!file_) Fail();
+  }
+
+  /// @returns whole lines, the last of the file perhaps without its end; empty at the end. Valid
+  ///   until the next call
+  std::string_view Next() {
+    buffer_.erase(0, given_);
+    given_ = 0;
+    std::size_t end = std::string::npos;  // of the last line's end
+    while (end == std::string::npos && !at_end_) {
+      if (buffer_.size() > kLongestLine) {
+        throw InputError(
+            fmt::format("{}: has a line of more than {} bytes: lines must end in LF or CRLF", name_,
+                        kLongestLine));
+      }
+      const std::size_t before = buffer_.size();
+      buffer_.resize(before + kPiece);
+      const std::size_t size = std::fread(buffer_.data() + before, 1, kPiece, file_.get());
+      if (std::ferror(file_.get()) != 0) Fail();
+      buffer_.resize(before + size);
+      bytes_ += size;
+      at_end_ = size < kPiece;
+      end = buffer_.rfind('\n');
+    }
+    given_ = at_end_ ? buffer_.size() : end + 1;
+    return std::string_view(buffer_).substr(0, given_);
+  }
+
+  [[nodiscard]] bool at_end() const { return at_end_; }
+  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
+
+ private:
+  [[noreturn]] void Fail() const {
+    throw InputError(fmt::format("cannot read '{}': {}", name_, std::strerror(errno)));
+  }
+
+  std::string name_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  std::string buffer_;
+  std::size_t given_ = 0;  // bytes of it that were returned
+  bool at_end_ = false;
+  std::uintmax_t bytes_ = 0;
+};
+
+/// Takes the first line off a text, without its end.
+std::string_view TakeLine(std::string_view& text) {
+  const void* const found = std::memchr(text.data(), '\n', text.size());
+  const std::size_t size =
+      found == nullptr ? text.size()
+                       : static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
+  std::string_view line = text.substr(0, size);
+  text.remove_prefix(std::min(size + 1, text.size()));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+struct Channel {
+  std::size_t column;  // from 0
+  Unit unit;
+  std::vector<double> Samples::*values;
+  std::string_view name;
+};
+
+}  // namespace
+
+struct RecordStream::State {
+  State(const std::filesystem::path& path, const RecordColumns& columns, BrokenRows policy)
+      : name(path.string()), pieces(path), broken(policy) {
+    Open(pieces.Next(), columns);
+  }
+
+  void Open(std::string_view text, const RecordColumns& columns);
+  std::string WholeRows(std::string_view text, const CsvLayout& found) const;
+  bool Next(Samples& samples);
+  void Read(std::string_view text, Samples& samples);
+  void MindBrokenRow(std::size_t column, const std::string& fault);
+
+  std::string name;
+  LinePieces pieces;
+  BrokenRows broken;
+  RecordFile layout;
+  std::vector<Channel> channels;
+  std::optional<NumberRowReader> rows;
+  std::string_view first;  // rows of the first piece
+  std::size_t line = 0;    // last that was read
+  std::size_t broken_rows = 0;
+  std::string first_broken_row;
+};
+
+/// Finds out from the first piece what the file holds.
+void RecordStream::State::Open(std::string_view text, const RecordColumns& columns) {
+  if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
+  const bool is_text = !text.empty() && text.find('\0') == std::string_view::npos;
+  if (!is_text) ParseCsvTable(std::string(text), name);  // refuses it in its words
+  const CsvLayout found = FindCsvLayout(text, name);
+  first = text.substr(found.data_offset);
+  line = found.data_line - 1;
+  const CsvTable table = ParseCsvTable(WholeRows(text, found), name);
+  layout = RecordOf(table, columns);
+  const auto add = [&](const ChosenColumn& column, const std::optional<Unit>& unit,
+                       std::vector<double> Samples::*values, std::string_view what) {
+    channels.push_back({column.number - 1, *unit, values, what});
+  };
+  add(layout.displacement,
+      layout.is_torsional ? AngleUnit(layout.displacement.unit)
+                          : LengthUnit(layout.displacement.unit),
+      &Samples::displacement, "displacement");
+  add(layout.force,
+      layout.is_torsional ? TorqueUnit(layout.force.unit) : ForceUnit(layout.force.unit),
+      &Samples::force, "force");
+  if (layout.time) add(*layout.time, TimeUnit(layout.time->unit), &Samples::time, "time");
+  if (layout.normal_load) {
+    add(*layout.normal_load, ForceUnit(layout.normal_load->unit), &Samples::normal_load,
+        "normal load");
+  }
+  std::vector<std::size_t> wanted;
+  for (const Channel& channel : channels) wanted.push_back(channel.column);
+  rows.emplace(found.delimiter, table.columns(), std::move(wanted));
+  layout.record = {};
+  layout.lines.clear();
+  layout.covariates.clear();
+}
+
+/// The header and the rows that are not broken in any column that mostly holds numbers: what rows
+/// become of is for Read() to say.
+std::string RecordStream::State::WholeRows(std::string_view text, const CsvLayout& found) const {
+  const std::string_view header = text.substr(0, found.data_offset);
+  const auto select = [&](const std::vector<std::size_t>& numeric) {
+    NumberRowReader reader(found.delimiter, found.columns, numeric);
+    std::vector<double> values(numeric.size());
+    std::string selected(header);
+    for (std::string_view rest = text.substr(found.data_offset); !rest.empty();) {
+      const std::string_view row = TakeLine(rest);
+      const bool may_be_cut = rest.empty() && !pieces.at_end();
+      if (may_be_cut || reader.Read(row, 1, values) != NumberRowReader::Row::kNumbers) continue;
+      selected.append(row).append("\n");
+    }
+    return selected;
+  };
+  const CsvTable table = ParseCsvTable(select({}), name);
+  std::vector<std::size_t> numeric;
+  for (std::size_t column = 0; column < table.columns(); ++column) {
+    const auto is_number = [](double value) { return !std::isnan(value); };
+    const auto numbers = std::ranges::count_if(table.NumbersOrNan(column), is_number);
+    if (2 * static_cast<std::size_t>(numbers) > table.rows()) numeric.push_back(column);
+  }
+  return select(numeric);
+}
+
+bool RecordStream::State::Next(Samples& samples) {
+  samples.lines.clear();
+  for (const Channel& channel : channels) (samples.*channel.values).clear();
+  while (samples.lines.empty()) {
+    const std::string_view text = first.empty() ? pieces.Next() : std::exchange(first, {});
+    if (text.empty()) return false;
+    Read(text, samples);
+  }
+  return true;
+}
+
+void RecordStream::State::Read(std::string_view text, Samples& samples) {
+  std::array<double, 4> values{};  // of displacement, force, time and normal load
+  const std::span<double> wanted(values.data(), channels.size());
+  while (!text.empty()) {
+    const std::string_view row = TakeLine(text);
+    ++line;
+    switch (rows->Read(row, line, wanted)) {
+      case NumberRowReader::Row::kNone:
+        continue;
+      case NumberRowReader::Row::kBroken:
+        MindBrokenRow(rows->fault_column(), rows->fault());
+        continue;
+      case NumberRowReader::Row::kNumbers:
+        break;
+    }
+    bool is_finite = true;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      const double value = channels[k].unit.ToSi(values[k]);
+      if (is_finite && !std::isfinite(value)) {
+        MindBrokenRow(channels[k].column,
+                      fmt::format("{} = {} {} is too large: must be below 1.8e308 in SI units",
+                                  channels[k].name, values[k], channels[k].unit.symbol));
+        is_finite = false;
+      }
+      values[k] = value;
+    }
+    if (!is_finite) continue;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      (samples.*channels[k].values).push_back(values[k]);
+    }
+    samples.lines.push_back(line);
+  }
+}
+
+void RecordStream::State::MindBrokenRow(std::size_t column, const std::string& fault) {
+  const std::string message = fmt::format("{}:{}:{}: {}", name, line, column + 1, fault);
+  if (broken == BrokenRows::kRefuse) throw InputError(message);
+  if (broken_rows++ == 0) first_broken_row = message;
+}
+
+RecordStream::RecordStream(const std::filesystem::path& path, const RecordColumns& columns,
+                           BrokenRows broken)
+    : state_(std::make_unique<State>(path, columns, broken)) {}
+RecordStream::~RecordStream() = default;
+
+const RecordFile& RecordStream::layout() const { return state_->layout; }
+bool RecordStream::Next(Samples& samples) { return state_->Next(samples); }
+std::size_t RecordStream::broken_rows() const { return state_->broken_rows; }
+const std::string& RecordStream::first_broken_row() const { return state_->first_broken_row; }
+std::uintmax_t RecordStream::bytes() const { return state_->pieces.bytes(); }
+
+}  // namespace mindahl::io
