@@ -15,5 +15,6 @@ void AddConvertCommand(CLI::App& app, Console& console);
 void AddTradeoffCommand(CLI::App& app, Console& console);
 void AddRecommendCommand(CLI::App& app, Console& console);
 void AddPlanCommand(CLI::App& app, Console& console);
+void AddTrackCommand(CLI::App& app, Console& console);
 
 }  // namespace mindahl::cli

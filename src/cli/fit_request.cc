@@ -23,6 +23,7 @@ using identification::Term;
 namespace {
 
 constexpr std::string_view kFitIt = "fit";
+constexpr std::string_view kColumnGroup = "Columns and units";
 
 double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
   double value = 0.0;
@@ -199,26 +200,8 @@ Loss FindLoss(std::string_view name) {
   return Loss::kNone;
 }
 
-void AddColumnOptions(CLI::App& command, FitRequest& options) {
-  const std::string group = "Columns and units";
-  const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    command.add_option(name, choice.column, description)->type_name("COL")->group(group);
-  };
-  const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
-  };
-  column("--displacement", options.columns.displacement,
-         "column by header name or 1-based number; default a recognised name, else column 1");
-  column("--force", options.columns.force, "likewise, else column 2");
-  column("--time", options.columns.time, "time column; optional");
-  column("--normal-load-column", options.columns.normal_load, "normal load column; optional");
-  unit("--displacement-unit", options.columns.displacement,
-       "m, mm, um, nm, in; of an angle rad, mrad, deg, rev;\ndefault the header's, else m");
-  unit("--force-unit", options.columns.force,
-       "N, mN, uN, kN, MN, lbf, kgf, kip; of a torque 'N m', 'mN m', 'uN m',\n"
-       "'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
-  unit("--time-unit", options.columns.time, "s, ms, us, min; default the header's, else s");
-  unit("--normal-load-unit", options.columns.normal_load, "as --force-unit of a force");
+void AddWindowOptions(CLI::App& command, FitRequest& options) {
+  const std::string group(kColumnGroup);
   command.add_option("--time-window", options.time_window, "fit only samples from LO to HI [s]")
       ->type_name("LO:HI")
       ->group(group);
@@ -285,6 +268,30 @@ std::string DescribeParameters() {
   return fmt::format(
       "hold a parameter: {}, {}; with several files the latter are numbered, force_offset_2",
       contact, record);
+}
+
+}  // namespace
+
+void AddColumnOptions(CLI::App& command, FitRequest& options) {
+  const std::string group(kColumnGroup);
+  const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
+    command.add_option(name, choice.column, description)->type_name("COL")->group(group);
+  };
+  const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
+    command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
+  };
+  column("--displacement", options.columns.displacement,
+         "column by header name or 1-based number; default a recognised name, else column 1");
+  column("--force", options.columns.force, "likewise, else column 2");
+  column("--time", options.columns.time, "time column; optional");
+  column("--normal-load-column", options.columns.normal_load, "normal load column; optional");
+  unit("--displacement-unit", options.columns.displacement,
+       "m, mm, um, nm, in; of an angle rad, mrad, deg, rev;\ndefault the header's, else m");
+  unit("--force-unit", options.columns.force,
+       "N, mN, uN, kN, MN, lbf, kgf, kip; of a torque 'N m', 'mN m', 'uN m',\n"
+       "'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
+  unit("--time-unit", options.columns.time, "s, ms, us, min; default the header's, else s");
+  unit("--normal-load-unit", options.columns.normal_load, "as --force-unit of a force");
 }
 
 void AddModelOptions(CLI::App& command, FitRequest& options) {
@@ -371,8 +378,6 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       ->group(group);
 }
 
-}  // namespace
-
 FitOptions MakeFitOptions(const FitRequest& options) {
   FitOptions fit;
   if (options.model != kAutomatic) fit.model = models::FindFrictionModel(options.model);
@@ -434,6 +439,7 @@ std::optional<Interval> TimeWindow(const FitRequest& request) {
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddColumnOptions(command, request);
+  AddWindowOptions(command, request);
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);
 }

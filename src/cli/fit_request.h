@@ -49,6 +49,11 @@ struct FitRequest {
 /// Adds them to a command.
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
 
+/// Of these, which columns there are, and in what unit.
+void AddColumnOptions(CLI::App& command, FitRequest& request);
+/// And what is fitted to them.
+void AddModelOptions(CLI::App& command, FitRequest& request);
+
 /// @throws InputError naming the option that breaks a rule, or two that contradict each other
 identification::FitOptions MakeFitOptions(const FitRequest& request);
 

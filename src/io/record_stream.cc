@@ -121,6 +121,7 @@ struct RecordStream::State {
   std::size_t line = 0;    // last that was read
   std::size_t broken_rows = 0;
   std::string first_broken_row;
+  std::string refusal;  // of a row that is reached next
 };
 
 /// Finds out from the first piece what the file holds.
@@ -187,6 +188,7 @@ bool RecordStream::State::Next(Samples& samples) {
   samples.lines.clear();
   for (const Channel& channel : channels) (samples.*channel.values).clear();
   while (samples.lines.empty()) {
+    if (!refusal.empty()) throw InputError(refusal);
     const std::string_view text = first.empty() ? pieces.Next() : std::exchange(first, {});
     if (text.empty()) return false;
     Read(text, samples);
@@ -197,7 +199,7 @@ bool RecordStream::State::Next(Samples& samples) {
 void RecordStream::State::Read(std::string_view text, Samples& samples) {
   std::array<double, 4> values{};  // of displacement, force, time and normal load
   const std::span<double> wanted(values.data(), channels.size());
-  while (!text.empty()) {
+  while (!text.empty() && refusal.empty()) {
     const std::string_view row = TakeLine(text);
     ++line;
     switch (rows->Read(row, line, wanted)) {
@@ -230,8 +232,11 @@ void RecordStream::State::Read(std::string_view text, Samples& samples) {
 
 void RecordStream::State::MindBrokenRow(std::size_t column, const std::string& fault) {
   const std::string message = fmt::format("{}:{}:{}: {}", name, line, column + 1, fault);
-  if (broken == BrokenRows::kRefuse) throw InputError(message);
-  if (broken_rows++ == 0) first_broken_row = message;
+  if (broken == BrokenRows::kRefuse) {
+    refusal = message;
+  } else if (broken_rows++ == 0) {
+    first_broken_row = message;
+  }
 }
 
 RecordStream::RecordStream(const std::filesystem::path& path, const RecordColumns& columns,

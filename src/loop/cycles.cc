@@ -29,8 +29,8 @@ std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement
                  : displacement[end] - lowest <= tolerance;
   };
   const std::size_t last = displacement.size() - 1;
-  if (at_extreme(0, points.front())) points.insert(points.begin(), 0);
-  if (at_extreme(last, reversals.back())) points.push_back(last);
+  if (points.front() != 0 && at_extreme(0, points.front())) points.insert(points.begin(), 0);
+  if (points.back() != last && at_extreme(last, reversals.back())) points.push_back(last);
   return points;
 }
 

@@ -16,10 +16,11 @@ set(stages_solve problem solve)
 set(stages_inference problem solve inference)
 set(stages_diagnosis problem solve inference diagnosis)
 set(stages_judge judge)
-set(allowed_cli core contact loop models methods tradeoff convert identification io report)
+set(allowed_campaign core loop models identification report)
+set(allowed_cli core contact loop models methods tradeoff convert identification io report campaign)
 
 set(errors "")
-foreach(module core contact loop models methods tradeoff convert identification io report cli)
+foreach(module core contact loop models methods tradeoff convert identification io report campaign cli)
   file(GLOB_RECURSE files ${SOURCE_DIR}/include/mindahl/${module}/*.h
        ${SOURCE_DIR}/src/${module}/*.h ${SOURCE_DIR}/src/${module}/*.cc)
   if(NOT files)

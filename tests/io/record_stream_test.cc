@@ -155,6 +155,16 @@ TEST_F(RecordStreamTest, FindsABrokenRowFarBeyondTheFirstPiece) {
       fmt::format(":{}:3: the row has 2 cells of 3: complete it or remove it", kManyRows + 2));
 }
 
+TEST_F(RecordStreamTest, GivesTheSamplesBeforeARowThatItRefuses) {
+  const std::filesystem::path path = Write("x,F\n0,.5\n1.5,1\n1,oops\n-2,1E5\n3,4\n");
+  RecordStream stream(path, {}, BrokenRows::kRefuse);
+  Samples samples;
+  ASSERT_TRUE(stream.Next(samples));
+  EXPECT_EQ(samples.displacement, (std::vector<double>{0, 1.5}));
+  EXPECT_THROW(stream.Next(samples), InputError);
+  EXPECT_THROW(stream.Next(samples), InputError);
+}
+
 TEST_F(RecordStreamTest, RefusesWhatHoldsNoRecord) {
   for (const char* text : {"", "x,F\n", "words alone\n", "x\n1\n2\n"}) {
     const std::filesystem::path path = Write(text);

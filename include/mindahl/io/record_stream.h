@@ -42,10 +42,11 @@ class RecordStream {
   /// Columns, units and notes; without samples.
   [[nodiscard]] const RecordFile& layout() const;
 
-  /// Replaces the samples by the next, as many as a mebibyte holds.
+  /// Replaces the samples by the next, as many as a mebibyte holds, or as there are before a row
+  /// that is refused.
   /// @returns false at the end of the file, when there are none
-  /// @throws InputError naming file, line and column of a broken row that is not skipped, and where
-  ///   the file cannot be read
+  /// @throws InputError naming file, line and column of such a row, and where the file cannot be
+  ///   read
   bool Next(Samples& samples);
 
   /// Rows that were skipped so far, and the first of them as an error would have named it.

@@ -71,7 +71,9 @@ struct LoopFacts {
 };
 
 /// @param record       with the force in any sense
-/// @param reversals    as from FindReversals on the same record
+/// @param reversals    as from FindReversals on the same record; the first and the last sample may
+/// be
+///   among them, where the record is known to begin or end at one
 /// @param force_sense  ±1, see ForceSense; forces and what they make are in the displacement's
 /// sense
 /// @throws InvalidArgument when the record is empty or inconsistent, or an energy overflows

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace mindahl::campaign {
+
+/// A quantity over the cycles of a test, in memory that the number of cycles does not change: means
+/// over bins of equally many values, at most kMostBins of them.
+class Course {
+ public:
+  struct Bin {
+    std::size_t first_cycle = 0;
+    std::size_t last_cycle = 0;
+    double cycle = 0.0;  ///< mean number
+    double value = 0.0;  ///< mean
+    std::size_t count = 0;
+  };
+
+  static constexpr std::size_t kMostBins = 512;
+
+  /// @param cycle  its number, larger than the last
+  /// @param value  finite
+  void Add(std::size_t cycle, double value);
+
+  [[nodiscard]] std::span<const Bin> bins() const { return bins_; }
+
+ private:
+  std::vector<Bin> bins_;
+  std::size_t width_ = 1;  // values to a bin
+};
+
+/// What counts as a change.
+struct ChangeThresholds {
+  /// Chance [-] of a change, or of a trend, where there is none: one test in a hundred.
+  double chance = 0.01;
+  /// [-] of a stretch's mean: less over a whole stretch is no trend that matters.
+  double trend = 0.01;
+  /// [-] of the mean before: a smaller step is a bend of the course, not a transition.
+  double step = 0.02;
+  /// [-] of the first stretch's slope: where it has fallen to that, the running-in is over.
+  double settled = 0.2;
+};
+
+/// A part of a course that is a straight line.
+struct Stretch {
+  std::size_t first_cycle = 0;
+  std::size_t last_cycle = 0;
+  double at_start = 0.0;  ///< the line there
+  double at_end = 0.0;
+  double slope = 0.0;          ///< a cycle
+  double slope_p_value = 1.0;  ///< of no slope
+  bool trends = false;         ///< beyond chance and large enough to matter
+};
+
+enum class ChangeKind {
+  kEndOfRunningIn,  ///< what went on from the beginning settles
+  kTransition,      ///< a step
+  kBend,            ///< the rate changes
+};
+
+/// "end_of_running_in", "transition", "bend".
+std::string_view NameOf(ChangeKind kind);
+
+struct Change {
+  ChangeKind kind = ChangeKind::kBend;
+  std::size_t cycle = 0;    ///< the first after it
+  std::size_t lower95 = 0;  ///< of that cycle
+  std::size_t upper95 = 0;
+  double before = 0.0;   ///< the quantity there, on the line before
+  double after = 0.0;    ///< and on the line after
+  double p_value = 1.0;  ///< of no change there, over all places where it might have been
+};
+
+/// A course in stretches, one more than changes.
+struct CourseDescription {
+  std::vector<Stretch> stretches;
+  std::vector<Change> changes;
+};
+
+/// Cuts a course into straight stretches, at most six: of all ways to cut it into k, that of the
+/// least squares S_k (dynamic programming; Bellman & Roth 1969); and one change more, or two, as
+/// long as
+///   n_eff ln(S_k/S_k+1) > 2 ln(n/chance)
+/// for each, n bins, n_eff of them independent by the residuals' lag-one correlation: beyond the
+/// likelihood ratio that a level and a slope more reach by chance at any of the n places.
+/// Positions have the interval in which n_eff ln(S/S_min) < 3.84, the quantile of χ²₁.
+/// @returns nothing for fewer than two bins; one stretch for too few to tell, below eight
+/// Cost: n² a stretch, 10 ms for 512 bins.
+CourseDescription FindChanges(const Course& course, const ChangeThresholds& thresholds = {});
+
+}  // namespace mindahl::campaign

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/campaign/cycle_splitter.h"
+#include "mindahl/identification/fit.h"
+
+namespace mindahl::campaign {
+
+/// A fitted value and one standard error; empty where there is none.
+struct FittedValue {
+  std::optional<double> value;
+  std::optional<double> standard_error;
+};
+
+/// What one cycle, or several fitted together, says. In the units of loop::LoopFacts and
+/// identification::FitResult; facts are the means of the cycles fitted together.
+struct CycleFit {
+  std::size_t number = 1;
+  std::size_t first_line = 0;
+  std::optional<double> start_time;  ///< [s]
+  std::size_t samples = 0;
+  // Facts, of no model; empty where the record closes no cycle.
+  std::optional<double> amplitude;
+  std::optional<double> peak_force;
+  std::optional<double> sliding_amplitude;
+  std::optional<double> half_gap;
+  std::optional<double> energy;  ///< a cycle
+  std::optional<double> energy_ratio;
+  std::optional<double> energy_friction_coefficient;
+  std::optional<double> slope_after_reversal;
+  std::optional<double> normal_load;  ///< mean, given or of the column
+  // The fit; empty where it failed.
+  FittedValue sigma;
+  FittedValue alpha;
+  FittedValue slip_force;
+  FittedValue force_offset;
+  std::optional<double> rms;
+  /// Tc/N, where the load is known and Tc identifiable.
+  std::optional<double> friction_coefficient;
+  std::optional<bool> slips_grossly;  ///< the fitted law at the cycle's amplitude
+  /// What to mind, each one of CycleFlags().
+  std::vector<std::string> flags;
+};
+
+/// What a flag of a cycle says.
+struct CycleFlag {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// not_converged, sigma_open, …: every flag that a cycle may have.
+std::span<const CycleFlag> CycleFlags();
+
+/// Fits one cycle after the other, each from where the last one ended: by Fitter::Continue() at
+/// Depth::kErrors, so that each has the minimum that a fit of it alone has, to the solver's
+/// tolerance, and the standard errors of its noise.
+class CycleFitter {
+ public:
+  /// @param options  of each cycle: steady unless the past is given; with the gate that split them
+  /// @throws InvalidArgument as Fitter
+  explicit CycleFitter(identification::FitOptions options);
+
+  /// A cycle that cannot be fitted is one with the flag not_converged.
+  CycleFit Fit(const Cycle& cycle);
+
+ private:
+  identification::Fitter fitter_;
+};
+
+}  // namespace mindahl::campaign

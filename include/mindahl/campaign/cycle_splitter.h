@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/record.h"
+#include "mindahl/loop/reversals.h"
+
+/// Records of many cycles, each fitted on its own as it goes by.
+namespace mindahl::campaign {
+
+/// One cycle of a longer record, or several in a row: from a turning point to the next but one,
+/// both samples included.
+struct Cycle {
+  std::size_t number = 1;      ///< of the first, counted from 1
+  std::size_t first_line = 0;  ///< of the file
+  loop::Record record;
+};
+
+/// Cuts samples that arrive piece by piece into cycles. A cycle begins at the first turning point
+/// and at every second one after it; what comes before the first and after the last is none.
+/// Memory: the samples since the cycle's first.
+class CycleSplitter {
+ public:
+  /// @param gate      [m]: excursions up to this are noise, as FindReversals() takes it
+  /// @param together  cycles to a piece, >= 1
+  /// @throws InvalidArgument for a gate or a number beyond these
+  explicit CycleSplitter(double gate, std::size_t together = 1);
+
+  /// @param samples  the next, [m, N, s, N]; time and normal load may be empty, always or never
+  /// @param lines    of the file, one a sample
+  /// @param cycles   those that are complete now are appended
+  /// @throws InvalidArgument where a cycle has more than kMostSamples
+  void Add(const loop::RecordView& samples, std::span<const std::size_t> lines,
+           std::vector<Cycle>& cycles);
+
+  /// Begins anew, as at the start of another file; cycles are numbered on.
+  /// @returns samples that were part of no cycle, since the last one or in all
+  std::size_t Restart();
+
+  /// Cycles that were complete so far.
+  [[nodiscard]] std::size_t cycles() const { return cycles_; }
+
+  /// No cycle is that long: its record holds no turning points, or the gate hides them.
+  static constexpr std::size_t kMostSamples = 20'000'000;
+
+ private:
+  void Complete(std::size_t turning_point, std::vector<Cycle>& cycles);
+
+  double gate_;
+  std::size_t together_;
+  loop::ReversalFinder finder_;
+  loop::Record kept_;               // from the cycle's first sample on
+  std::vector<std::size_t> lines_;  // of those
+  std::size_t dropped_ = 0;         // samples before them
+  std::size_t begin_ = 0;           // of the cycle, in those
+  std::size_t turns_ = 0;           // turning points since the cycle's first, with it
+  std::size_t cycles_ = 0;
+};
+
+}  // namespace mindahl::campaign

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <future>
+#include <span>
+#include <vector>
+
+#include "mindahl/campaign/cycle_fit.h"
+#include "mindahl/campaign/cycle_splitter.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/loop/record.h"
+
+namespace mindahl::campaign {
+
+struct TrackOptions {
+  /// Of each fit. The reversal gate splits the record; without one it is 0.
+  identification::FitOptions fit;
+  std::size_t together = 1;  ///< cycles in a row that are one fit, >= 1
+  std::size_t every = 1;     ///< one fit of so many that there could be, >= 1
+  std::size_t threads = 1;   ///< that fit, beside the one that calls, >= 1
+  std::size_t skipped = 0;   ///< fits at the beginning that are not made: a multiple of kBatch
+};
+
+/// Fits of a batch begin one where the last one ended, the first anew: whatever the number of
+/// threads, and wherever a run begins, a batch has the same results.
+inline constexpr std::size_t kBatch = 64;
+
+/// Takes the samples of a long record and gives the fits of its cycles, in their order and by whole
+/// batches but for the last. Memory: of a batch a thread, and one cycle.
+class Tracker {
+ public:
+  using Done = std::function<void(std::span<const CycleFit>)>;
+
+  /// @param done  called by Add() and Finish(), in the thread that calls these
+  /// @throws InvalidArgument for options that break a rule
+  Tracker(TrackOptions options, Done done);
+
+  /// @param samples, lines  as CycleSplitter takes them
+  /// Waits where as many batches are at work as there are threads.
+  void Add(const loop::RecordView& samples, std::span<const std::size_t> lines);
+
+  /// What follows is another file.
+  /// @returns samples at the end of the last that are part of no cycle
+  std::size_t NextFile() { return splitter_.Restart(); }
+
+  /// Fits what is left.
+  void Finish();
+
+  /// Whole cycles that went by, fitted or not.
+  [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
+
+ private:
+  void Begin();
+  void Deliver();
+
+  TrackOptions options_;
+  Done done_;
+  CycleSplitter splitter_;
+  std::vector<Cycle> cycles_;  // that were split off at last
+  std::vector<Cycle> batch_;
+  std::size_t pieces_ = 0;  // that the splitter gave
+  std::size_t fits_ = 0;    // of those, to be made or skipped
+  std::deque<std::future<std::vector<CycleFit>>> at_work_;
+};
+
+}  // namespace mindahl::campaign

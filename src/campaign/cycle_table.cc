@@ -1,0 +1,133 @@
+#include "mindahl/campaign/cycle_table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <charconv>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/report/units.h"
+
+namespace mindahl::campaign {
+namespace {
+
+using Number = std::optional<double>;
+
+/// A column of numbers, and where a fit has them.
+struct NumberColumn {
+  std::string_view name;
+  std::string_view unit;  // of a record of forces; "" of a pure number
+  Number& (*of)(CycleFit&);
+};
+
+constexpr std::array kNumbers = {
+    NumberColumn{"start_time", "s", [](CycleFit& fit) -> Number& { return fit.start_time; }},
+    NumberColumn{"amplitude", "m", [](CycleFit& fit) -> Number& { return fit.amplitude; }},
+    NumberColumn{"peak_force", "N", [](CycleFit& fit) -> Number& { return fit.peak_force; }},
+    NumberColumn{"sliding_amplitude", "m",
+                 [](CycleFit& fit) -> Number& { return fit.sliding_amplitude; }},
+    NumberColumn{"half_gap", "N", [](CycleFit& fit) -> Number& { return fit.half_gap; }},
+    NumberColumn{"energy", "J", [](CycleFit& fit) -> Number& { return fit.energy; }},
+    NumberColumn{"energy_ratio", "", [](CycleFit& fit) -> Number& { return fit.energy_ratio; }},
+    NumberColumn{"energy_friction_coefficient", "",
+                 [](CycleFit& fit) -> Number& { return fit.energy_friction_coefficient; }},
+    NumberColumn{"slope_after_reversal", "N/m",
+                 [](CycleFit& fit) -> Number& { return fit.slope_after_reversal; }},
+    NumberColumn{"normal_load", "N", [](CycleFit& fit) -> Number& { return fit.normal_load; }},
+    NumberColumn{"sigma", "N/m", [](CycleFit& fit) -> Number& { return fit.sigma.value; }},
+    NumberColumn{"sigma_error", "N/m",
+                 [](CycleFit& fit) -> Number& { return fit.sigma.standard_error; }},
+    NumberColumn{"alpha", "", [](CycleFit& fit) -> Number& { return fit.alpha.value; }},
+    NumberColumn{"alpha_error", "",
+                 [](CycleFit& fit) -> Number& { return fit.alpha.standard_error; }},
+    NumberColumn{"slip_force", "N", [](CycleFit& fit) -> Number& { return fit.slip_force.value; }},
+    NumberColumn{"slip_force_error", "N",
+                 [](CycleFit& fit) -> Number& { return fit.slip_force.standard_error; }},
+    NumberColumn{"force_offset", "N",
+                 [](CycleFit& fit) -> Number& { return fit.force_offset.value; }},
+    NumberColumn{"force_offset_error", "N",
+                 [](CycleFit& fit) -> Number& { return fit.force_offset.standard_error; }},
+    NumberColumn{"rms", "N", [](CycleFit& fit) -> Number& { return fit.rms; }},
+    NumberColumn{"friction_coefficient", "",
+                 [](CycleFit& fit) -> Number& { return fit.friction_coefficient; }},
+};
+
+constexpr std::string_view kPartial = "partial";
+constexpr std::string_view kGross = "gross";
+
+// cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags.
+constexpr std::size_t kColumns = 3 + kNumbers.size() + 3;
+
+std::vector<std::string_view> CellsOf(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (;;) {
+    const std::size_t comma = line.find(',');
+    cells.push_back(line.substr(0, comma));
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+template <typename Value>
+Value ValueOf(std::string_view cell) {
+  Value value{};
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size()) {
+    throw InputError(fmt::format("'{}' is not a number", cell));
+  }
+  return value;
+}
+
+}  // namespace
+
+std::string CycleTableHeader(bool is_torsional) {
+  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+  std::string header = "cycle,first_line,samples";
+  for (const NumberColumn& column : kNumbers) {
+    header += fmt::format(",{}", column.name);
+    if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
+  }
+  return header + ",slip_regime,accumulated_energy [J],flags\n";
+}
+
+std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
+  CycleFit values = fit;
+  std::string row = fmt::format("{},{},{}", fit.number, fit.first_line, fit.samples);
+  for (const NumberColumn& column : kNumbers) {
+    row += ',';
+    if (const Number& number = column.of(values)) row += fmt::format("{}", *number);
+  }
+  row += ',';
+  if (fit.slips_grossly) row += *fit.slips_grossly ? kGross : kPartial;
+  return row + fmt::format(",{},{}\n", accumulated_energy, fmt::join(fit.flags, " "));
+}
+
+CycleTableEntry ReadCycleTableRow(std::string_view line) {
+  const std::vector<std::string_view> cells = CellsOf(line);
+  if (cells.size() != kColumns) {
+    throw InputError(fmt::format("has {} cells of {}", cells.size(), kColumns));
+  }
+  CycleTableEntry entry;
+  entry.fit.number = ValueOf<std::size_t>(cells[0]);
+  entry.fit.first_line = ValueOf<std::size_t>(cells[1]);
+  entry.fit.samples = ValueOf<std::size_t>(cells[2]);
+  for (std::size_t k = 0; k < kNumbers.size(); ++k) {
+    if (!cells[3 + k].empty()) kNumbers[k].of(entry.fit) = ValueOf<double>(cells[3 + k]);
+  }
+  const std::string_view regime = cells[kColumns - 3];
+  if (!regime.empty()) entry.fit.slips_grossly = regime == kGross;
+  entry.accumulated_energy = ValueOf<double>(cells[kColumns - 2]);
+  std::string_view flags = cells[kColumns - 1];
+  while (!flags.empty()) {
+    const std::size_t blank = std::min(flags.find(' '), flags.size());
+    entry.fit.flags.emplace_back(flags.substr(0, blank));
+    flags.remove_prefix(std::min(blank + 1, flags.size()));
+  }
+  return entry;
+}
+
+}  // namespace mindahl::campaign

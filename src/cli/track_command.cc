@@ -1,0 +1,559 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <memory_resource>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/cycle_output.h"
+#include "cli/fit_records.h"
+#include "cli/fit_request.h"
+#include "cli/json_output.h"
+#include "cli/output_path.h"
+#include "cli/progress.h"
+#include "cli/text_output.h"
+#include "cli/whole_number.h"
+#include "mindahl/campaign/changes.h"
+#include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/tracker.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/version.h"
+#include "mindahl/io/record_stream.h"
+#include "mindahl/loop/preparation.h"
+#include "mindahl/report/units.h"
+
+namespace mindahl::cli {
+namespace {
+
+using campaign::CycleFit;
+using identification::FitOptions;
+
+struct TrackCommandOptions {
+  FitRequest request;
+  std::optional<double> normal_load;
+  std::size_t average = 1;
+  std::size_t every = 1;
+  std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+  std::string broken_rows = "refuse";
+  std::string output;
+  std::string json_path;
+  bool resume = false;
+  bool overwrite = false;
+};
+
+/// A quantity whose course over the test is described.
+struct TrackedQuantity {
+  std::string_view name;
+  std::string_view unit;  // of a record of forces
+  std::string_view open_flag;
+  std::optional<double> (*of)(const CycleFit&);
+};
+
+constexpr std::array kTracked = {
+    TrackedQuantity{"sigma", "N/m", "sigma_open",
+                    [](const CycleFit& fit) { return fit.sigma.value; }},
+    TrackedQuantity{"alpha", "-", "alpha_open",
+                    [](const CycleFit& fit) { return fit.alpha.value; }},
+    TrackedQuantity{"slip_force", "N", "slip_force_open",
+                    [](const CycleFit& fit) { return fit.slip_force.value; }},
+    TrackedQuantity{"friction_coefficient", "-", "",
+                    [](const CycleFit& fit) { return fit.friction_coefficient; }},
+    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }},
+    TrackedQuantity{"energy", "J", "", [](const CycleFit& fit) { return fit.energy; }},
+};
+
+bool HasFlag(const CycleFit& fit, std::string_view flag) {
+  return !flag.empty() && std::ranges::find(fit.flags, flag) != fit.flags.end();
+}
+
+/// What a run adds up while cycles go by.
+struct Totals {
+  std::size_t fits = 0;
+  std::size_t flagged = 0;
+  std::map<std::string, std::size_t> flags;
+  double energy = 0.0;  // J
+  std::array<campaign::Course, kTracked.size()> courses;
+
+  void Add(const CycleFit& fit) {
+    ++fits;
+    flagged += fit.flags.empty() ? 0 : 1;
+    for (const std::string& flag : fit.flags) ++flags[flag];
+    for (std::size_t k = 0; k < kTracked.size(); ++k) {
+      const std::optional<double> value = kTracked[k].of(fit);
+      if (!value || HasFlag(fit, "not_converged") || HasFlag(fit, kTracked[k].open_flag)) continue;
+      courses[k].Add(fit.number, *value);
+    }
+  }
+};
+
+/// What was read.
+struct Reading {
+  std::size_t samples = 0;
+  std::size_t cycles = 0;
+  std::size_t unused_samples = 0;
+  std::size_t broken_rows = 0;
+  loop::ReversalGate gate;
+};
+
+void RequireOptions(const TrackCommandOptions& options) {
+  const FitRequest& request = options.request;
+  if (request.model == kAutomatic) {
+    throw InputError(
+        "--model auto: a model is chosen for a test, not for each cycle: choose one by fit "
+        "--cycles and name it here");
+  }
+  if (!request.covariates.empty()) {
+    throw InputError("--covariate is not read by track: fit a part of the record with fit");
+  }
+  if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
+  if (options.resume && options.overwrite) {
+    throw InputError("--resume and --overwrite contradict each other: give one of the two");
+  }
+  std::error_code error;
+  const bool is_there = std::filesystem::exists(options.output, error);
+  if (is_there && !options.resume && !options.overwrite) {
+    throw InputError(fmt::format(
+        "--output: {} exists: add --resume to go on with it, or --overwrite", options.output));
+  }
+}
+
+loop::RecordView ViewOf(const io::Samples& samples) {
+  return {samples.displacement, samples.force, samples.time, samples.normal_load};
+}
+
+void Append(const io::Samples& from, io::Samples& to) {
+  const auto append = [](const auto& source, auto& target) {
+    target.insert(target.end(), source.begin(), source.end());
+  };
+  append(from.displacement, to.displacement);
+  append(from.force, to.force);
+  append(from.time, to.time);
+  append(from.normal_load, to.normal_load);
+  append(from.lines, to.lines);
+}
+
+/// The first samples, as many as tell how the record is to be read: some cycles.
+io::Samples ReadHead(io::RecordStream& stream) {
+  constexpr std::size_t kReversals = 8;
+  constexpr std::size_t kMostSamples = 1'000'000;
+  io::Samples head;
+  io::Samples piece;
+  while (stream.Next(piece)) {
+    Append(piece, head);
+    const bool is_enough = loop::ChooseReversalGate(head.displacement).count >= kReversals ||
+                           head.size() >= kMostSamples;
+    if (is_enough) break;
+  }
+  return head;
+}
+
+/// Gate and sense of the force, one for all cycles.
+/// @throws InputError where the head shows no turning points
+void ChooseReading(const io::Samples& head, const std::string& file, FitOptions& fit,
+                   Reading& reading, const Messages& messages) {
+  std::pmr::monotonic_buffer_resource memory;
+  const loop::RecordView view = ViewOf(head);
+  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, fit.preparation, &memory);
+  const loop::PreparedRecord& record = prepared.records.front();
+  reading.gate = record.gate_choice;
+  const bool is_given = fit.preparation.reversal_gate.has_value();
+  fit.preparation.reversal_gate = record.reversal_gate;
+  fit.preparation.force_sense = prepared.force_sense;
+  if (!is_given && record.reversal_gate > 0) {
+    messages.Note(
+        fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
+                    "says another",
+                    record.reversal_gate, head.size()));
+  }
+  if (!record.gate_choice.certain) {
+    messages.Warn(fmt::format(
+        "{}: the reversals are uncertain: of its first {} samples {} by a gate of {:.3g} m, {} by "
+        "{:.3g} m: set --reversal-gate",
+        file, head.size(), record.gate_choice.count, record.gate_choice.gate,
+        record.gate_choice.other_count, record.gate_choice.other_gate));
+  }
+}
+
+class Run {
+ public:
+  Run(const TrackCommandOptions& options, Console& console)
+      : options_(options), console_(console), messages_{console.err, "track"} {}
+
+  void Go();
+
+ private:
+  void Begin(io::RecordStream& stream, const io::Samples& head);
+  void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
+  void Take(std::span<const CycleFit> fits);
+  [[noreturn]] void ThrowOther() const;
+  void SayProgress();
+  void WriteSummary();
+  [[nodiscard]] std::string Json() const;
+  [[nodiscard]] std::string_view UnitOf(std::string_view unit) const {
+    return report::UnitIn(is_torsional_ ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
+  }
+
+  const TrackCommandOptions& options_;
+  Console& console_;
+  Messages messages_;
+  FitOptions fit_;
+  bool is_torsional_ = false;
+  Reading reading_;
+  Totals totals_;
+  std::optional<CycleOutput::Kept> kept_;  // until its last batch was made again
+  std::size_t resumed_ = 0;                // fits that were there
+  std::optional<CycleOutput> output_;
+  std::optional<campaign::Tracker> tracker_;
+  std::optional<Progress> progress_;
+  std::uintmax_t bytes_ = 0;  // of all files
+  std::uintmax_t bytes_before_ = 0;
+  const io::RecordStream* stream_ = nullptr;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void Run::Begin(io::RecordStream& stream, const io::Samples& head) {
+  is_torsional_ = stream.layout().is_torsional;
+  fit_ = MakeFitOptions(options_.request);
+  if (options_.normal_load) fit_.normal_loads = {*options_.normal_load};
+  ChooseReading(head, options_.request.files.front(), fit_, reading_, messages_);
+  const std::string header = campaign::CycleTableHeader(is_torsional_);
+  std::error_code error;
+  if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
+    kept_ = CycleOutput::Read(options_.output, header, [&](const campaign::CycleTableEntry& entry) {
+      totals_.Add(entry.fit);
+    });
+    resumed_ = kept_->fits;
+    if (kept_->fits == 0) kept_.reset();
+  }
+  if (kept_) totals_.energy = kept_->energy_before_last_batch;
+  tracker_.emplace(campaign::TrackOptions{.fit = fit_,
+                                          .together = options_.average,
+                                          .every = options_.every,
+                                          .threads = options_.threads,
+                                          .skipped = kept_ ? kept_->fits - campaign::kBatch : 0},
+                   [this](std::span<const CycleFit> fits) { Take(fits); });
+  progress_.emplace(console_.err, "tracking cycles");
+}
+
+/// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
+void Run::Take(std::span<const CycleFit> fits) {
+  std::string rows;
+  const auto stands_for = static_cast<double>(options_.average * options_.every);
+  for (const CycleFit& fit : fits) {
+    totals_.energy += fit.energy.value_or(0.0) * stands_for;
+    rows += campaign::CycleTableRow(fit, totals_.energy);
+  }
+  if (kept_) {
+    if (rows != kept_->last_batch) ThrowOther();
+    output_.emplace(options_.output, campaign::CycleTableHeader(is_torsional_), &*kept_);
+    kept_.reset();
+    return;
+  }
+  if (!output_)
+    output_.emplace(options_.output, campaign::CycleTableHeader(is_torsional_), nullptr);
+  output_->Append(rows);
+  for (const CycleFit& fit : fits) totals_.Add(fit);
+  SayProgress();
+}
+
+void Run::ThrowOther() const {
+  throw InputError(
+      fmt::format("--resume: {} was made from another record or with other options, its row {} or "
+                  "one soon after comes out differently: give those, another --output, or "
+                  "--overwrite",
+                  options_.output, kept_->fits - campaign::kBatch + 1));
+}
+
+void Run::SayProgress() {
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double share = static_cast<double>(bytes_before_ + stream_->bytes()) /
+                       static_cast<double>(std::max<std::uintmax_t>(bytes_, 1));
+  const auto made = static_cast<double>(totals_.fits - resumed_);
+  progress_->Say(fmt::format("{} cycles, {:.0f} % of {:.3g} MB, {:.3g} a second, {:.0f} s left",
+                             tracker_->cycles(), 100 * share, static_cast<double>(bytes_) / 1e6,
+                             made / seconds, seconds * (1 - share) / std::max(share, 1e-3)));
+}
+
+void Run::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
+  stream_ = &stream;
+  while (piece.size() > 0) {
+    reading_.samples += piece.size();
+    tracker_->Add(ViewOf(piece), piece.lines);
+    if (!stream.Next(piece)) break;
+  }
+  reading_.unused_samples += tracker_->NextFile();
+  reading_.broken_rows += stream.broken_rows();
+  bytes_before_ += stream.bytes();
+  if (stream.broken_rows() > 0) {
+    messages_.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}",
+                               stream.broken_rows(), file, stream.first_broken_row()));
+  }
+}
+
+void Run::Go() {
+  RequireOptions(options_);
+  const std::vector<std::string>& files = options_.request.files;
+  for (const std::string& file : files) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (!error) bytes_ += size;
+  }
+  const io::BrokenRows broken =
+      options_.broken_rows == "skip" ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
+  try {
+    for (const std::string& file : files) {
+      io::RecordStream stream(file, options_.request.columns, broken);
+      for (const std::string& note : stream.layout().notes) messages_.Note(note);
+      if (tracker_ && stream.layout().is_torsional != is_torsional_) {
+        throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", files.front(),
+                                     is_torsional_ ? "torque" : "force", file,
+                                     is_torsional_ ? "force" : "torque"));
+      }
+      io::Samples first;
+      if (!tracker_) {
+        first = ReadHead(stream);
+        Begin(stream, first);
+      } else {
+        stream.Next(first);
+      }
+      ReadFile(file, std::move(first), stream);
+    }
+    tracker_->Finish();
+    if (kept_) ThrowOther();  // a record that ends before them
+  } catch (const InputError& error) {
+    // What is done is kept; unless the fault is that it is another's, or nothing was done.
+    if (!tracker_ || kept_) throw;
+    try {
+      tracker_->Finish();
+    } catch (const InputError&) {
+      // The disk: the first message says so.
+    }
+    throw InputError(fmt::format("{}; {} rows are kept in {}: mend the fault and add --resume",
+                                 error.what(), totals_.fits, options_.output));
+  }
+  progress_.reset();
+  reading_.cycles = tracker_->cycles();
+  if (reading_.cycles == 0) {
+    throw InputError(fmt::format(
+        "{}: no whole cycle: the displacement turns {} times by more than {:.3g} m: choose another "
+        "column with --displacement, or a smaller --reversal-gate",
+        fmt::join(files, ", "), reading_.gate.count, *fit_.preparation.reversal_gate));
+  }
+  const auto failed = totals_.flags.find("not_converged");
+  const bool none = failed != totals_.flags.end() && failed->second == totals_.fits;
+  console_.exit_status = none ? kNotEstablished : kDone;
+  if (!options_.json_path.empty()) WriteText(Json(), options_.json_path, console_);
+  if (options_.json_path != "-") WriteSummary();
+}
+
+/// "N/m" as " [N/m]", nothing of a pure number.
+std::string InBrackets(std::string_view unit) {
+  return unit == "-" ? "" : fmt::format(" [{}]", unit);
+}
+
+/// "p 0.003", or that it is beyond telling.
+std::string ChanceText(double p_value) {
+  return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
+}
+
+std::string TextOf(const campaign::Change& change) {
+  const std::string_view what =
+      change.kind == campaign::ChangeKind::kTransition ? "a step" : "another rate";
+  return fmt::format("at cycle {} ({} to {}) {}, {:.5g} to {:.5g}, {}", change.cycle,
+                     change.lower95, change.upper95, what, change.before, change.after,
+                     ChanceText(change.p_value));
+}
+
+std::string TextOf(const campaign::Stretch& stretch) {
+  return fmt::format("from cycle {} to {} a trend, {:.5g} to {:.5g}, {}", stretch.first_cycle,
+                     stretch.last_cycle, stretch.at_start, stretch.at_end,
+                     ChanceText(stretch.slope_p_value));
+}
+
+/// What happened, in order; a running-in, which bends as it goes, is one line.
+std::vector<std::string> TextOf(const campaign::CourseDescription& course) {
+  std::vector<std::string> lines;
+  const auto settled = std::ranges::find(course.changes, campaign::ChangeKind::kEndOfRunningIn,
+                                         &campaign::Change::kind);
+  std::size_t first = 0;  // stretch to be told
+  if (settled != course.changes.end()) {
+    lines.push_back(fmt::format("running-in up to cycle {} ({} to {}), {:.5g} to {:.5g}, {}",
+                                settled->cycle, settled->lower95, settled->upper95,
+                                course.stretches.front().at_start, settled->before,
+                                ChanceText(settled->p_value)));
+    first = static_cast<std::size_t>(settled - course.changes.begin()) + 1;
+  }
+  for (std::size_t k = first; k < course.stretches.size(); ++k) {
+    if (k > first) lines.push_back(TextOf(course.changes[k - 1]));
+    if (course.stretches[k].trends) lines.push_back(TextOf(course.stretches[k]));
+  }
+  return lines;
+}
+
+void Run::WriteSummary() {
+  std::string text = fmt::format("{} cycles of {} samples, {} fits in {}\n", reading_.cycles,
+                                 reading_.samples, totals_.fits, options_.output);
+  if (resumed_ > 0) text += fmt::format("{} of them were there already\n", resumed_);
+  if (reading_.unused_samples > 0) {
+    text +=
+        fmt::format("{} samples at the ends are part of no whole cycle\n", reading_.unused_samples);
+  }
+  text += fmt::format("{:.6g} J dissipated in all\n", totals_.energy);
+  if (totals_.flagged > 0) {
+    text += fmt::format("\n{} cycles have a flag:\n", totals_.flagged);
+    for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+      const auto found = totals_.flags.find(std::string(flag.name));
+      if (found == totals_.flags.end()) continue;
+      text += fmt::format("  {:<18}{:>8}   {}\n", flag.name, found->second, flag.meaning);
+    }
+  }
+  text += fmt::format("\n  {:<30}{:>14}{:>14}\n", "over the test", "at first", "at last");
+  std::string changes;
+  for (std::size_t k = 0; k < kTracked.size(); ++k) {
+    const campaign::CourseDescription course = campaign::FindChanges(totals_.courses[k]);
+    if (course.stretches.empty()) continue;
+    const std::string name =
+        fmt::format("{}{}", kTracked[k].name, InBrackets(UnitOf(kTracked[k].unit)));
+    text += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
+                        course.stretches.back().at_end);
+    for (const std::string& line : TextOf(course)) {
+      changes += fmt::format("  {:<21} {}\n", kTracked[k].name, line);
+    }
+  }
+  text += changes.empty() ? "\nNothing changed beyond chance.\n" : "\nChanges:\n" + changes;
+  console_.out << text;
+}
+
+std::string Run::Json() const {
+  nlohmann::ordered_json json;
+  json["schema"] = "mindahl.track/1";
+  json["version"] = Version();
+  json["input"] = {{"files", options_.request.files},
+                   {"samples", reading_.samples},
+                   {"cycles", reading_.cycles},
+                   {"unused_samples", reading_.unused_samples},
+                   {"broken_rows", reading_.broken_rows}};
+  json["reversals"] = {{"gate", *fit_.preparation.reversal_gate},
+                       {"certain", reading_.gate.certain}};
+  json["output"] = options_.output;
+  json["fits"] = totals_.fits;
+  json["flagged"] = totals_.flagged;
+  nlohmann::ordered_json flags = nlohmann::ordered_json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = totals_.flags.find(std::string(flag.name));
+    flags[std::string(flag.name)] = found == totals_.flags.end() ? 0 : found->second;
+  }
+  json["flags"] = flags;
+  json["accumulated_energy"] = totals_.energy;
+  nlohmann::ordered_json quantities = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < kTracked.size(); ++k) {
+    const campaign::CourseDescription course = campaign::FindChanges(totals_.courses[k]);
+    if (course.stretches.empty()) continue;
+    nlohmann::ordered_json stretches = nlohmann::ordered_json::array();
+    for (const campaign::Stretch& stretch : course.stretches) {
+      stretches.push_back({{"first_cycle", stretch.first_cycle},
+                           {"last_cycle", stretch.last_cycle},
+                           {"at_start", stretch.at_start},
+                           {"at_end", stretch.at_end},
+                           {"slope", stretch.slope},
+                           {"slope_p_value", stretch.slope_p_value},
+                           {"trends", stretch.trends}});
+    }
+    nlohmann::ordered_json changes = nlohmann::ordered_json::array();
+    for (const campaign::Change& change : course.changes) {
+      changes.push_back({{"kind", campaign::NameOf(change.kind)},
+                         {"cycle", change.cycle},
+                         {"ci95", {change.lower95, change.upper95}},
+                         {"before", change.before},
+                         {"after", change.after},
+                         {"p_value", change.p_value}});
+    }
+    quantities[std::string(kTracked[k].name)] = {
+        {"unit", UnitOf(kTracked[k].unit)}, {"stretches", stretches}, {"changes", changes}};
+  }
+  json["quantities"] = quantities;
+  return json.dump(2) + "\n";
+}
+
+void RunTrack(const TrackCommandOptions& options, Console& console) {
+  RequireDistinctFiles(options.request.files);
+  std::vector<std::string> read = console.inputs;
+  read.insert(read.end(), options.request.files.begin(), options.request.files.end());
+  RequireOutputPaths(
+      {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}}, read);
+  Run(options, console).Go();
+}
+
+}  // namespace
+
+void AddTrackCommand(CLI::App& app, Console& console) {
+  const auto options = std::make_shared<TrackCommandOptions>();
+  CLI::App* command = app.add_subcommand(
+      "track",
+      "Fits every cycle of a long record as it goes by, in memory that does not depend on\n"
+      "the record's length: one row a cycle, and what changed over the test. A run that was\n"
+      "ended at any moment goes on with --resume. Exit status 3 when no fit converged.");
+  command
+      ->add_option("files", options->request.files,
+                   "CSV records of one test, in order; a cycle ends with its file")
+      ->type_name("FILE")
+      ->required();
+  AddColumnOptions(*command, options->request);
+  AddModelOptions(*command, options->request);
+  const std::string cycles = "Cycles";
+  AddOptional(*command, "--normal-load", options->normal_load,
+              "normal load N [N] of all cycles; default the column's mean over each", "N")
+      ->group(cycles);
+  command->add_option("--average", options->average, "fit so many cycles in a row together")
+      ->capture_default_str()
+      ->check(WholeNumber(1, 1'000'000))
+      ->group(cycles);
+  command->add_option("--every", options->every, "fit one cycle of so many")
+      ->capture_default_str()
+      ->check(WholeNumber(1, 1'000'000'000))
+      ->group(cycles);
+  command
+      ->add_option("--broken-rows", options->broken_rows,
+                   "a row without a number in a column that is needed ends the run, or is\n"
+                   "skipped and counted")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"refuse", "skip"}))
+      ->group(cycles);
+  command
+      ->add_option("--threads", options->threads,
+                   "that fit; the table does not depend on it; default one a core")
+      ->check(WholeNumber(1, 1024))
+      ->group(cycles);
+  const std::string group = "Results";
+  command->add_option("--output", options->output, "table of cycles as CSV, one row a cycle")
+      ->type_name("PATH")
+      ->required()
+      ->group(group);
+  command->add_option("--json", options->json_path, "summary as JSON; - for standard output alone")
+      ->type_name("PATH")
+      ->group(group);
+  command
+      ->add_flag("--resume", options->resume,
+                 "go on with the table that is there: the same files and options")
+      ->group(group);
+  command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
+      ->group(group);
+  command->callback([options, &console] { RunTrack(*options, console); });
+}
+
+}  // namespace mindahl::cli

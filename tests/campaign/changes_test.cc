@@ -1,0 +1,258 @@
+#include "mindahl/campaign/changes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "support/histories.h"
+
+namespace mindahl::campaign {
+namespace {
+
+using testing::Generator;
+using testing::Normal;
+
+constexpr double kLevel = 60.0;
+constexpr double kNoise = 0.5;
+
+/// A truth with noise whose lag-one correlation is φ.
+Course CourseOf(std::size_t cycles, std::uint64_t seed,
+                const std::function<double(std::size_t)>& truth, double phi = 0.0,
+                double noise = kNoise) {
+  Generator generator(seed);
+  Course course;
+  double error = noise * Normal(generator);
+  for (std::size_t cycle = 1; cycle <= cycles; ++cycle) {
+    course.Add(cycle, truth(cycle) + error);
+    error = phi * error + std::sqrt(1 - phi * phi) * noise * Normal(generator);
+  }
+  return course;
+}
+
+double Level(std::size_t /*cycle*/) { return kLevel; }
+
+TEST(Course, HoldsMeansInBinsOfOneSize) {
+  Course course;
+  constexpr std::size_t kCycles = 10'000;
+  for (std::size_t cycle = 1; cycle <= kCycles; ++cycle) {
+    course.Add(cycle, 2.0 * static_cast<double>(cycle));
+  }
+  EXPECT_LE(course.bins().size(), Course::kMostBins);
+  EXPECT_GT(course.bins().size(), Course::kMostBins / 2);
+  std::size_t count = 0;
+  std::size_t next = 1;
+  for (const Course::Bin& bin : course.bins()) {
+    EXPECT_EQ(bin.first_cycle, next);
+    EXPECT_NEAR(bin.value, 2 * bin.cycle, 1e-9 * bin.value);
+    EXPECT_NEAR(bin.cycle,
+                (static_cast<double>(bin.first_cycle) + static_cast<double>(bin.last_cycle)) / 2,
+                1e-9 * bin.cycle);
+    count += bin.count;
+    next = bin.last_cycle + 1;
+  }
+  EXPECT_EQ(count, kCycles);
+}
+
+TEST(Changes, AreNoneInNothing) {
+  EXPECT_TRUE(FindChanges(Course()).stretches.empty());
+  Course one;
+  one.Add(1, kLevel);
+  EXPECT_TRUE(FindChanges(one).stretches.empty());
+}
+
+TEST(Changes, DescribeAStraightLineToTheLastDigits) {
+  Course course;
+  for (std::size_t cycle = 1; cycle <= 100; ++cycle) {
+    course.Add(cycle, 3.0 + 0.25 * static_cast<double>(cycle));
+  }
+  const CourseDescription description = FindChanges(course);
+  ASSERT_EQ(description.stretches.size(), 1U);
+  EXPECT_TRUE(description.changes.empty());
+  const Stretch& stretch = description.stretches.front();
+  EXPECT_EQ(stretch.first_cycle, 1U);
+  EXPECT_EQ(stretch.last_cycle, 100U);
+  EXPECT_NEAR(stretch.at_start, 3.25, 1e-12);
+  EXPECT_NEAR(stretch.at_end, 28.0, 1e-12);
+  EXPECT_NEAR(stretch.slope, 0.25, 1e-14);
+  EXPECT_TRUE(stretch.trends);
+}
+
+// A chance of 0.01 is asked of each change; of 300 courses 3 are expected, 9 are beyond chance.
+constexpr int kCourses = 300;
+constexpr int kMostFalse = 9;
+
+TEST(Changes, AreNotFoundInNoise) {
+  for (const double phi : {0.0, 0.5}) {
+    for (const std::size_t cycles : {20U, 100U, 2000U}) {
+      int found = 0;
+      for (int k = 0; k < kCourses / 3; ++k) {
+        const CourseDescription description =
+            FindChanges(CourseOf(cycles, static_cast<std::uint64_t>(k), Level, phi));
+        found += description.changes.empty() ? 0 : 1;
+      }
+      EXPECT_LE(found, kMostFalse) << cycles << " cycles, phi " << phi;
+    }
+  }
+}
+
+TEST(Changes, TrendsAreNotFoundInNoise) {
+  // Noise so large that a slope by chance is more than 1 % of the level.
+  int found = 0;
+  for (int k = 0; k < kCourses; ++k) {
+    const CourseDescription description =
+        FindChanges(CourseOf(100, static_cast<std::uint64_t>(k), Level, 0.0, 20 * kNoise));
+    for (const Stretch& stretch : description.stretches) found += stretch.trends ? 1 : 0;
+  }
+  EXPECT_LE(found, kMostFalse);
+}
+
+TEST(Changes, FindAStepWhereItIs) {
+  constexpr std::size_t kCycles = 1000;
+  constexpr std::size_t kStep = 601;
+  int covered = 0;
+  int more = 0;
+  for (int k = 0; k < 100; ++k) {
+    const CourseDescription description =
+        FindChanges(CourseOf(kCycles, static_cast<std::uint64_t>(k), [](std::size_t cycle) {
+          return cycle < kStep ? kLevel : 0.97 * kLevel;
+        }));
+    ASSERT_FALSE(description.changes.empty()) << k;
+    more += description.changes.size() > 1 ? 1 : 0;
+    const Change& change = *std::ranges::min_element(description.changes, {}, &Change::p_value);
+    EXPECT_EQ(change.kind, ChangeKind::kTransition);
+    EXPECT_NEAR(change.before, kLevel, 0.3);
+    EXPECT_NEAR(change.after, 0.97 * kLevel, 0.3);
+    EXPECT_LT(change.p_value, 1e-10);
+    // Bins are of two cycles.
+    covered += change.lower95 <= kStep && kStep <= change.upper95 + 1 ? 1 : 0;
+  }
+  EXPECT_GE(covered, 89);  // 95, less 2.5 of their scatter
+  EXPECT_LE(more, 4);      // one in a hundred by chance
+}
+
+TEST(Changes, FindTheEndOfARunningIn) {
+  // Up by 10 in 200 cycles, and level from there.
+  const CourseDescription description = FindChanges(CourseOf(1000, 1, [](std::size_t cycle) {
+    return kLevel + 10 * std::min(1.0, static_cast<double>(cycle) / 200);
+  }));
+  ASSERT_EQ(description.changes.size(), 1U);
+  EXPECT_EQ(description.changes.front().kind, ChangeKind::kEndOfRunningIn);
+  EXPECT_LE(description.changes.front().lower95, 201U);
+  EXPECT_GE(description.changes.front().upper95 + 2, 201U);
+  EXPECT_TRUE(description.stretches[0].trends);
+  EXPECT_FALSE(description.stretches[1].trends);
+}
+
+TEST(Changes, FindTheOnsetOfWear) {
+  const CourseDescription description = FindChanges(CourseOf(1000, 1, [](std::size_t cycle) {
+    return kLevel - 10 * std::max(0.0, static_cast<double>(cycle) / 500 - 1);
+  }));
+  ASSERT_EQ(description.changes.size(), 1U);
+  EXPECT_EQ(description.changes.front().kind, ChangeKind::kBend);
+  EXPECT_LE(description.changes.front().lower95, 510U);
+  EXPECT_GE(description.changes.front().upper95, 490U);
+  EXPECT_FALSE(description.stretches[0].trends);
+  EXPECT_TRUE(description.stretches[1].trends);
+  EXPECT_NEAR(description.stretches[1].slope, -0.02, 1e-3);
+}
+
+TEST(Changes, DoNotDependOnTheUnit) {
+  const auto in_unit = [](double unit) {
+    return FindChanges(CourseOf(
+        500, 3, [unit](std::size_t cycle) { return unit * (cycle < 300 ? kLevel : 0.9 * kLevel); },
+        0.0, unit * kNoise));
+  };
+  for (const double unit : {1e-12, 1e9}) {
+    const CourseDescription one = in_unit(1.0);
+    const CourseDescription other = in_unit(unit);
+    ASSERT_EQ(one.changes.size(), other.changes.size());
+    EXPECT_EQ(one.changes.front().cycle, other.changes.front().cycle);
+    EXPECT_NEAR(other.changes.front().p_value / one.changes.front().p_value, 1.0, 1e-3);
+  }
+}
+
+// --- Thresholds: each decides about a course that lies within a factor of two of it
+// ----------------
+
+TEST(ChangeThresholds, StepIsTwoPercentOfTheLevel) {
+  const auto kind_of = [](double step) {
+    return FindChanges(CourseOf(
+                           2000, 1,
+                           [step](std::size_t cycle) {
+                             return cycle < 1001 ? kLevel : (1 - step) * kLevel;
+                           },
+                           0.0, 0.2))
+        .changes.front()
+        .kind;
+  };
+  EXPECT_EQ(kind_of(0.012), ChangeKind::kBend);
+  EXPECT_EQ(kind_of(0.03), ChangeKind::kTransition);
+}
+
+TEST(ChangeThresholds, TrendIsOnePercentOfTheLevel) {
+  const auto trends = [](double share) {
+    return FindChanges(CourseOf(
+                           2000, 1,
+                           [share](std::size_t cycle) {
+                             return kLevel * (1 + share * static_cast<double>(cycle) / 2000);
+                           },
+                           0.0, 0.2))
+        .stretches.front()
+        .trends;
+  };
+  EXPECT_FALSE(trends(0.006));
+  EXPECT_TRUE(trends(0.015));
+}
+
+TEST(ChangeThresholds, RunningInHasSettledAtAFifthOfItsSlope) {
+  const auto kind_of = [](double share) {
+    return FindChanges(CourseOf(
+                           2000, 1,
+                           [share](std::size_t cycle) {
+                             const double x = static_cast<double>(cycle) / 1000;
+                             return kLevel + 10 * (std::min(x, 1.0) + share * std::max(x - 1, 0.0));
+                           },
+                           0.0, 0.2))
+        .changes.front()
+        .kind;
+  };
+  EXPECT_EQ(kind_of(0.13), ChangeKind::kEndOfRunningIn);
+  EXPECT_EQ(kind_of(0.3), ChangeKind::kBend);
+}
+
+TEST(ChangeThresholds, ChanceIsOneInAHundred) {
+  // At ten times the chance, or ten times less, another share of courses has a change.
+  const auto found = [](double chance) {
+    ChangeThresholds thresholds;
+    thresholds.chance = chance;
+    int count = 0;
+    for (int k = 0; k < 100; ++k) {
+      const double step = 0.9;  // standard deviations, of 100 cycles
+      count += FindChanges(CourseOf(100, static_cast<std::uint64_t>(k),
+                                    [step](std::size_t cycle) {
+                                      return cycle < 51 ? kLevel : kLevel + step * kNoise;
+                                    }),
+                           thresholds)
+                       .changes.empty()
+                   ? 0
+                   : 1;
+    }
+    return count;
+  };
+  const int at_default = found(ChangeThresholds().chance);
+  EXPECT_GT(found(0.1), at_default + 5);
+  EXPECT_LT(found(0.001), at_default - 5);
+}
+
+TEST(ChangeKinds, HaveNames) {
+  EXPECT_EQ(NameOf(ChangeKind::kEndOfRunningIn), "end_of_running_in");
+  EXPECT_EQ(NameOf(ChangeKind::kTransition), "transition");
+  EXPECT_EQ(NameOf(ChangeKind::kBend), "bend");
+}
+
+}  // namespace
+}  // namespace mindahl::campaign

@@ -1,0 +1,193 @@
+#include "mindahl/campaign/cycle_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "campaign/test_record.h"
+#include "mindahl/campaign/cycle_splitter.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl::campaign {
+namespace {
+
+using testing::kCycleLaw;
+using testing::kCycleReach;
+using testing::kCycleSamples;
+using testing::LinesOf;
+using testing::TestRecord;
+
+std::vector<Cycle> CyclesOf(const loop::Record& record) {
+  CycleSplitter splitter(0.0);
+  std::vector<Cycle> cycles;
+  splitter.Add(record, LinesOf(record), cycles);
+  return cycles;
+}
+
+bool HasFlag(const CycleFit& fit, const std::string& flag) {
+  return std::ranges::find(fit.flags, flag) != fit.flags.end();
+}
+
+TEST(CycleFitter, FindsTheTruthOfACleanCycle) {
+  constexpr double kExact = 1e-8;
+  CycleFitter fitter({});
+  for (const Cycle& cycle : CyclesOf(TestRecord(4, 1, 0.0))) {
+    const CycleFit fit = fitter.Fit(cycle);
+    EXPECT_EQ(fit.number, cycle.number);
+    EXPECT_EQ(fit.first_line, cycle.first_line);
+    EXPECT_EQ(fit.samples, cycle.record.size());
+    EXPECT_EQ(fit.start_time, cycle.record.time.front());
+    EXPECT_TRUE(fit.flags.empty()) << fit.flags.front();
+    EXPECT_NEAR(*fit.sigma.value, kCycleLaw.tangential_stiffness,
+                kExact * kCycleLaw.tangential_stiffness);
+    EXPECT_NEAR(*fit.alpha.value, kCycleLaw.shape_exponent, kExact);
+    EXPECT_NEAR(*fit.slip_force.value, kCycleLaw.slip_force, kExact * kCycleLaw.slip_force);
+    EXPECT_NEAR(*fit.amplitude, kCycleReach, kExact * kCycleReach);
+    EXPECT_TRUE(*fit.slips_grossly);
+    EXPECT_FALSE(fit.normal_load);
+    EXPECT_FALSE(fit.friction_coefficient);
+  }
+}
+
+TEST(CycleFitter, HasTheMinimumAndTheErrorsOfAFitAlone) {
+  constexpr double kSolverTolerance = 1e-2;  // standard errors, as of Fitter::Continue()
+  identification::FitOptions options;
+  options.initial_state = models::InitialState::kSteady;
+  CycleFitter fitter(options);
+  for (const Cycle& cycle : CyclesOf(TestRecord(60))) {
+    const CycleFit fit = fitter.Fit(cycle);
+    const identification::FitResult alone =
+        identification::Fit({&cycle.record, 1}, options, identification::Depth::kErrors);
+    for (const auto& [name, value] :
+         {std::pair("sigma", &fit.sigma), std::pair("alpha", &fit.alpha),
+          std::pair("slip_force", &fit.slip_force), std::pair("force_offset", &fit.force_offset)}) {
+      const identification::ParameterEstimate& expected = *alone.Find(name);
+      const double error = *expected.standard_error;
+      EXPECT_NEAR(*value->value, expected.value, kSolverTolerance * error) << name;
+      EXPECT_NEAR(*value->standard_error, error, kSolverTolerance * error) << name;
+    }
+    // Steady to the last sample, the cycle is closed for whoever sees it alone.
+    EXPECT_EQ(*fit.energy, alone.records.front().facts.energy_per_cycle);
+    EXPECT_EQ(fit.half_gap, alone.records.front().facts.half_gap);
+  }
+}
+
+TEST(CycleFitter, HasErrorsThatTellTheScatter) {
+  constexpr int kCycles = 400;
+  CycleFitter fitter({});
+  double sum = 0.0;
+  double squares = 0.0;
+  double variance = 0.0;
+  int count = 0;
+  for (const Cycle& cycle : CyclesOf(TestRecord(kCycles + 1))) {
+    const CycleFit fit = fitter.Fit(cycle);
+    sum += *fit.slip_force.value;
+    squares += *fit.slip_force.value * *fit.slip_force.value;
+    variance += *fit.slip_force.standard_error * *fit.slip_force.standard_error;
+    ++count;
+  }
+  ASSERT_EQ(count, kCycles);
+  const double mean = sum / count;
+  const double scatter = std::sqrt(squares / count - mean * mean);
+  // The scatter of 400 is known to 1/√800 = 3.5 %, three times that.
+  EXPECT_NEAR(scatter / std::sqrt(variance / count), 1.0, 0.106);
+  EXPECT_NEAR(mean, kCycleLaw.slip_force, 4 * scatter / std::sqrt(count));
+}
+
+TEST(CycleFitter, TellsFrictionWhereTheLoadIsKnown) {
+  constexpr double kLoad = 120.0;
+  std::vector<Cycle> cycles = CyclesOf(TestRecord(2));
+  identification::FitOptions options;
+  options.normal_loads = {kLoad};
+  const CycleFit given = CycleFitter(options).Fit(cycles.front());
+  EXPECT_EQ(*given.normal_load, kLoad);
+  EXPECT_EQ(*given.friction_coefficient, *given.slip_force.value / kLoad);
+  EXPECT_EQ(*given.energy_friction_coefficient,
+            *given.energy / (4 * kLoad * *given.sliding_amplitude));
+  cycles.front().record.normal_load.assign(cycles.front().record.size(), kLoad);
+  const CycleFit of_column = CycleFitter({}).Fit(cycles.front());
+  EXPECT_DOUBLE_EQ(*of_column.normal_load, kLoad);
+  EXPECT_DOUBLE_EQ(*of_column.friction_coefficient, *given.friction_coefficient);
+}
+
+/// A cycle so short of slip that it is a line: X = reach.
+loop::Record Partial(double reach) {
+  loop::Record record = TestRecord(2, 1, 0.0);
+  for (double& x : record.displacement) x *= reach / kCycleReach;
+  record.force = testing::Respond(testing::Model("mindlin-dahl"), kCycleLaw, record.displacement);
+  testing::Generator generator(4);
+  for (double& force : record.force) force += 0.05 * testing::Normal(generator);
+  return record;
+}
+
+TEST(CycleFitter, SaysWhatACycleLeavesOpen) {
+  const std::vector<Cycle> cycles = CyclesOf(Partial(0.1 * kCycleReach));
+  const CycleFit fit = CycleFitter({}).Fit(cycles.front());
+  EXPECT_TRUE(HasFlag(fit, "slip_force_open"));
+  EXPECT_FALSE(fit.friction_coefficient);
+}
+
+TEST(CycleFitter, SaysThatACycleDoesNotClose) {
+  Cycle cycle = CyclesOf(TestRecord(2)).front();
+  const std::size_t half = cycle.record.size() / 2;
+  for (std::size_t i = half; i < cycle.record.size(); ++i) {
+    const double way = cycle.record.displacement[half] - cycle.record.displacement[i];
+    cycle.record.displacement[i] = cycle.record.displacement[half] - 0.9 * way;
+  }
+  EXPECT_TRUE(HasFlag(CycleFitter({}).Fit(cycle), "not_closed"));
+  EXPECT_FALSE(HasFlag(CycleFitter({}).Fit(CyclesOf(TestRecord(2)).front()), "not_closed"));
+}
+
+TEST(CycleFitter, SaysThatGlitchesWereLeftOut) {
+  Cycle cycle = CyclesOf(TestRecord(2)).front();
+  cycle.record.force[40] = 1e4;
+  EXPECT_TRUE(HasFlag(CycleFitter({}).Fit(cycle), "glitches"));
+}
+
+TEST(CycleFitter, SaysThatThereIsNoLoop) {
+  Cycle cycle = CyclesOf(TestRecord(2)).front();
+  for (std::size_t i = 0; i < cycle.record.size(); ++i) {
+    cycle.record.force[i] = 1e7 * cycle.record.displacement[i];
+  }
+  EXPECT_TRUE(HasFlag(CycleFitter({}).Fit(cycle), "no_loop"));
+}
+
+TEST(CycleFitter, GoesOnAfterACycleThatCannotBeFitted) {
+  CycleFitter fitter({});
+  std::vector<Cycle> cycles = CyclesOf(TestRecord(4));
+  const CycleFit before = fitter.Fit(cycles[0]);
+  Cycle still = cycles[1];
+  std::ranges::fill(still.record.displacement, 0.0);
+  const CycleFit failed = fitter.Fit(still);
+  EXPECT_TRUE(HasFlag(failed, "not_converged"));
+  EXPECT_FALSE(failed.sigma.value && !HasFlag(failed, "not_converged"));
+  const CycleFit after = fitter.Fit(cycles[2]);
+  EXPECT_TRUE(after.flags.empty());
+  EXPECT_NEAR(*after.slip_force.value, *before.slip_force.value,
+              6 * *before.slip_force.standard_error);
+}
+
+TEST(CycleFitter, FitsCyclesTogetherWithSmallerErrors) {
+  const loop::Record record = TestRecord(10);
+  CycleSplitter splitter(0.0, 9);
+  std::vector<Cycle> nine;
+  splitter.Add(record, LinesOf(record), nine);
+  ASSERT_EQ(nine.size(), 1U);
+  const CycleFit together = CycleFitter({}).Fit(nine.front());
+  const CycleFit one = CycleFitter({}).Fit(CyclesOf(record).front());
+  // √9; autocorrelation is estimated from 120 residuals, to 1/√120, and counts twice.
+  EXPECT_NEAR(*one.slip_force.standard_error / *together.slip_force.standard_error, 3.0, 0.8);
+}
+
+TEST(CycleFitter, NamesEachFlagOnce) {
+  for (const CycleFlag& flag : CycleFlags()) {
+    EXPECT_EQ(std::ranges::count(CycleFlags(), flag.name, &CycleFlag::name), 1) << flag.name;
+    EXPECT_FALSE(flag.meaning.empty());
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::campaign

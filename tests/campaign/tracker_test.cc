@@ -1,0 +1,98 @@
+#include "mindahl/campaign/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "campaign/test_record.h"
+#include "mindahl/campaign/cycle_table.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl::campaign {
+namespace {
+
+using testing::LinesOf;
+using testing::TestRecord;
+
+constexpr std::size_t kCycles = 150;  // two batches and a part
+
+/// The rows of a run, the samples given in pieces of that size.
+std::vector<std::string> Rows(TrackOptions options, std::size_t piece = 1000) {
+  static const loop::Record record = TestRecord(kCycles + 1);
+  static const std::vector<std::size_t> lines = LinesOf(record);
+  std::vector<std::string> rows;
+  Tracker tracker(std::move(options), [&](std::span<const CycleFit> fits) {
+    EXPECT_LE(fits.size(), kBatch);
+    for (const CycleFit& fit : fits) rows.push_back(CycleTableRow(fit, 0.0));
+  });
+  for (std::size_t begin = 0; begin < record.size(); begin += piece) {
+    const std::size_t size = std::min(piece, record.size() - begin);
+    const auto part = [&](const std::vector<double>& values) {
+      return std::span(values).subspan(begin, size);
+    };
+    tracker.Add({part(record.displacement), part(record.force), part(record.time)},
+                std::span(lines).subspan(begin, size));
+  }
+  tracker.Finish();
+  return rows;
+}
+
+TEST(Tracker, HasTheSameRowsWhateverTheThreadsAndThePieces) {
+  const std::vector<std::string> rows = Rows({});
+  ASSERT_EQ(rows.size(), kCycles);
+  for (const std::size_t threads : {2U, 3U, 8U}) {
+    TrackOptions options;
+    options.threads = threads;
+    EXPECT_EQ(Rows(options, 77 * threads), rows) << threads;
+  }
+}
+
+TEST(Tracker, BeginsAtALaterBatchWithItsRows) {
+  const std::vector<std::string> rows = Rows({});
+  for (const std::size_t skipped : {kBatch, 2 * kBatch}) {
+    TrackOptions options;
+    options.skipped = skipped;
+    EXPECT_EQ(Rows(options), std::vector<std::string>(
+                                 rows.begin() + static_cast<std::ptrdiff_t>(skipped), rows.end()));
+  }
+}
+
+TEST(Tracker, FitsOneCycleOfSoMany) {
+  TrackOptions options;
+  options.every = 10;
+  const std::vector<std::string> rows = Rows(options);
+  ASSERT_EQ(rows.size(), kCycles / 10);
+  EXPECT_TRUE(rows[0].starts_with("1,"));
+  EXPECT_TRUE(rows[1].starts_with("11,"));
+  EXPECT_TRUE(rows.back().starts_with("141,"));
+}
+
+TEST(Tracker, FitsCyclesTogether) {
+  TrackOptions options;
+  options.together = 5;
+  options.every = 2;
+  const std::vector<std::string> rows = Rows(options);
+  ASSERT_EQ(rows.size(), kCycles / 10);
+  EXPECT_TRUE(rows[1].starts_with("11,"));
+}
+
+TEST(Tracker, RefusesOptionsBeforeItBegins) {
+  const auto make = [](TrackOptions options) { Tracker(std::move(options), {}); };
+  TrackOptions options;
+  options.every = 0;
+  EXPECT_THROW(make(options), InvalidArgument);
+  options = {};
+  options.threads = 0;
+  EXPECT_THROW(make(options), InvalidArgument);
+  options = {};
+  options.skipped = kBatch + 1;
+  EXPECT_THROW(make(options), InvalidArgument);
+  options = {};
+  options.fit.max_iterations = 0;
+  EXPECT_THROW(make(options), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::campaign

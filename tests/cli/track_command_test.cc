@@ -1,0 +1,322 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "campaign/test_record.h"
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+#include "mindahl/campaign/tracker.h"
+
+// mindahl track: a table that nothing ends half-way.
+namespace mindahl {
+namespace {
+
+using testing::Cells;
+using testing::Lines;
+using testing::Outcome;
+using testing::RunCommand;
+using testing::TestRecord;
+
+constexpr std::size_t kCycles = 200;  // three batches and a part
+
+std::string TextOf(const loop::Record& record) {
+  std::string text = "time [s],displacement [m],force [N]\n";
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    text += fmt::format("{},{},{}\n", record.time[i], record.displacement[i], record.force[i]);
+  }
+  return text;
+}
+
+/// Its slip force falls by a tenth after the 120th cycle.
+std::string StepText() {
+  return TextOf(TestRecord(kCycles + 1, 1, testing::kCycleNoise,
+                           [](std::size_t cycle) { return cycle <= 120 ? 1.0 : 0.9; }));
+}
+
+std::string ContentOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream content;
+  content << file.rdbuf();
+  return content.str();
+}
+
+class TrackCommand : public ::testing::Test {
+ protected:
+  std::string Path(const std::string& name) const { return (directory_.path() / name).string(); }
+  std::string Write(const std::string& name, const std::string& text) const {
+    return directory_.Write(name, text).string();
+  }
+  /// The table of an undisturbed run.
+  std::string Whole() {
+    const Outcome outcome = RunCommand({"track", record_, "--output", Path("whole.csv")});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return ContentOf(Path("whole.csv"));
+  }
+
+  TemporaryDirectory directory_;
+  std::string record_ = Write("record.csv", StepText());
+};
+
+TEST_F(TrackCommand, WritesARowACycle) {
+  const std::vector<std::string> rows = Lines(Whole());
+  ASSERT_EQ(rows.size(), 1 + kCycles);
+  const std::vector<std::string> names = Cells(rows[0]);
+  EXPECT_EQ(names[0], "cycle");
+  EXPECT_EQ(names[3], "start_time [s]");
+  double energy = 0.0;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const std::vector<std::string> cells = Cells(rows[k]);
+    EXPECT_EQ(cells[0], std::to_string(k));
+    energy += std::stod(cells[8]);
+    EXPECT_NEAR(std::stod(cells[24]), energy, 1e-12 * energy);
+  }
+}
+
+// What fit says of the rows of one cycle.
+TEST_F(TrackCommand, SaysOfACycleWhatFitSaysOfItsRows) {
+  constexpr double kSolverTolerance = 1e-2;  // standard errors
+  const std::vector<std::string> rows = Lines(Whole());
+  const std::vector<std::string> lines = Lines(ContentOf(record_));
+  for (const std::size_t cycle : {1U, 2U, 65U, 121U, 200U}) {
+    const std::vector<std::string> cells = Cells(rows[cycle]);
+    const std::size_t first = std::stoul(cells[1]);
+    std::string text = lines[0] + "\n";
+    for (std::size_t i = 0; i < std::stoul(cells[2]); ++i) text += lines[first - 1 + i] + "\n";
+    const Outcome fit = RunCommand({"fit", Write("cycle.csv", text), "--initial-state", "steady",
+                                    "--force-sign", "same", "--json", "-"});
+    const nlohmann::json parameters = fit.Json()["parameters"];
+    const nlohmann::json slip_force = parameters["slip_force"];
+    EXPECT_NEAR(std::stod(cells[17]), slip_force["value"].get<double>(),
+                kSolverTolerance * slip_force["standard_error"].get<double>());
+    const nlohmann::json sigma = parameters["sigma"];
+    EXPECT_NEAR(std::stod(cells[13]), sigma["value"].get<double>(),
+                kSolverTolerance * sigma["standard_error"].get<double>());
+    EXPECT_NEAR(std::stod(cells[8]), fit.Json()["measured"]["energy_per_cycle"].get<double>(),
+                1e-9 * std::stod(cells[8]));
+  }
+}
+
+TEST_F(TrackCommand, WritesTheSameBytesWithAnyNumberOfThreads) {
+  const std::string whole = Whole();
+  for (const char* threads : {"1", "2", "5"}) {
+    const std::string path = Path(fmt::format("{}.csv", threads));
+    EXPECT_EQ(RunCommand({"track", record_, "--output", path, "--threads", threads}).status, 0);
+    EXPECT_EQ(ContentOf(path), whole) << threads;
+  }
+}
+
+TEST_F(TrackCommand, GoesOnFromWhereverItWasKilled) {
+  const std::string whole = Whole();
+  const std::string path = Path("killed.csv");
+  const std::size_t step = whole.size() / 23;
+  for (std::size_t bytes = 0; bytes <= whole.size(); bytes += step) {
+    Write("killed.csv", whole.substr(0, bytes));
+    const Outcome outcome = RunCommand({"track", record_, "--output", path, "--resume"});
+    const bool has_header = bytes == 0 || bytes > Lines(whole)[0].size();
+    if (!has_header) {  // the header is written as one block
+      EXPECT_EQ(outcome.status, 2);
+      continue;
+    }
+    ASSERT_EQ(outcome.status, 0) << bytes << outcome.err;
+    EXPECT_EQ(ContentOf(path), whole) << "killed after " << bytes << " bytes";
+  }
+}
+
+TEST_F(TrackCommand, SummarisesAResumedRunLikeAWholeOne) {
+  const auto summary = [&](const std::string& output, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"track", record_, "--output", output, "--json", "-"};
+    words.insert(words.end(), more.begin(), more.end());
+    nlohmann::json json = RunCommand(words).Json();
+    json.erase("output");
+    return json;
+  };
+  const nlohmann::json whole = summary(Path("one.csv"), {});
+  const std::string text = ContentOf(Path("one.csv"));
+  Write("two.csv", text.substr(0, text.size() * 2 / 3));
+  EXPECT_EQ(summary(Path("two.csv"), {"--resume"}), whole);
+}
+
+TEST_F(TrackCommand, RefusesToGoOnWithAnotherTest) {
+  const std::string whole = Whole();
+  Write("other.csv", whole.substr(0, whole.size() / 2));
+  const Outcome options = RunCommand(
+      {"track", record_, "--output", Path("other.csv"), "--resume", "--fix", "alpha=0.3"});
+  EXPECT_EQ(options.status, 2);
+  EXPECT_NE(options.err.find("made from another record or with other options"), std::string::npos)
+      << options.err;
+  EXPECT_EQ(ContentOf(Path("other.csv")), whole.substr(0, whole.size() / 2));
+  const std::string text = ContentOf(record_);
+  Write("shorter.csv", text.substr(0, text.rfind('\n', text.size() / 4) + 1));
+  EXPECT_EQ(
+      RunCommand({"track", Path("shorter.csv"), "--output", Path("other.csv"), "--resume"}).status,
+      2);
+  EXPECT_EQ(ContentOf(Path("other.csv")), whole.substr(0, whole.size() / 2));
+  Write("else.csv", "x,F\n1,2\n");
+  const Outcome table = RunCommand({"track", record_, "--output", Path("else.csv"), "--resume"});
+  EXPECT_EQ(table.status, 2);
+  EXPECT_EQ(ContentOf(Path("else.csv")), "x,F\n1,2\n");
+}
+
+TEST_F(TrackCommand, WritesOverNothingUnasked) {
+  const std::string whole = Whole();
+  const Outcome refused = RunCommand({"track", record_, "--output", Path("whole.csv")});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.Errors().size(), 1U);
+  EXPECT_NE(refused.err.find("--resume"), std::string::npos) << refused.err;
+  EXPECT_EQ(ContentOf(Path("whole.csv")), whole);
+  EXPECT_EQ(
+      RunCommand({"track", record_, "--output", Path("whole.csv"), "--overwrite", "--every", "50"})
+          .status,
+      0);
+  EXPECT_EQ(Lines(ContentOf(Path("whole.csv"))).size(), 5U);
+}
+
+TEST_F(TrackCommand, KeepsWhatIsDoneWhereARowIsBroken) {
+  std::vector<std::string> lines = Lines(ContentOf(record_));
+  const std::string good = lines[15'000];
+  lines[15'000] = "12.3,oops,4";
+  const std::string broken = Write("broken.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+  const std::string output = Path("broken_table.csv");
+  const Outcome outcome = RunCommand({"track", broken, "--output", output});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("broken.csv:15001:2: 'oops' is not a number"), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("add --resume"), std::string::npos);
+  const std::string part = ContentOf(output);
+  EXPECT_GT(Lines(part).size(), 100U);
+  lines[15'000] = good;
+  Write("broken.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+  EXPECT_EQ(RunCommand({"track", broken, "--output", output, "--resume"}).status, 0);
+  EXPECT_EQ(ContentOf(output), Whole());
+}
+
+TEST_F(TrackCommand, SkipsBrokenRowsWhereAsked) {
+  std::vector<std::string> lines = Lines(ContentOf(record_));
+  lines[15'000] = "12.3,oops,4";
+  const std::string broken = Write("broken.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+  const Outcome outcome = RunCommand(
+      {"track", broken, "--output", Path("t.csv"), "--broken-rows", "skip", "--json", "-"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.Json()["input"]["broken_rows"], 1);
+  EXPECT_EQ(outcome.Json()["fits"], kCycles);
+  EXPECT_NE(outcome.err.find("1 broken rows"), std::string::npos) << outcome.err;
+}
+
+/// Lets no file grow beyond a size while it lives, as a full disk does.
+class FullDisk {
+ public:
+  explicit FullDisk(std::size_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    handler_ = std::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int) = nullptr;
+};
+
+TEST_F(TrackCommand, KeepsWholeRowsOnAFullDisk) {
+  const std::string whole = Whole();
+  const std::string output = Path("full.csv");
+  {
+    const FullDisk full(whole.size() / 2);
+    const Outcome outcome = RunCommand({"track", record_, "--output", output});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("cannot write"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.Errors().size(), 1U);
+  }
+  const std::string part = ContentOf(output);
+  EXPECT_EQ(part, whole.substr(0, part.size()));
+  EXPECT_EQ(part.back(), '\n');
+  EXPECT_EQ((Lines(part).size() - 1) % campaign::kBatch, 0U);
+  EXPECT_EQ(RunCommand({"track", record_, "--output", output, "--resume"}).status, 0);
+  EXPECT_EQ(ContentOf(output), whole);
+}
+
+TEST_F(TrackCommand, SaysWhatChangedAndWhen) {
+  const Outcome outcome = RunCommand({"track", record_, "--output", Path("t.csv"), "--json", "-"});
+  const nlohmann::json json = outcome.Json();
+  EXPECT_EQ(json["schema"], "mindahl.track/1");
+  const nlohmann::json changes = json["quantities"]["slip_force"]["changes"];
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_EQ(changes[0]["kind"], "transition");
+  EXPECT_LE(changes[0]["ci95"][0], 121);
+  EXPECT_GE(changes[0]["ci95"][1], 120);
+  EXPECT_TRUE(json["quantities"]["sigma"]["changes"].empty());
+  const Outcome text = RunCommand({"track", record_, "--output", Path("u.csv")});
+  EXPECT_NE(text.out.find("a step"), std::string::npos) << text.out;
+}
+
+TEST_F(TrackCommand, TakesSeveralFilesForOneTest) {
+  const Outcome outcome = RunCommand({"track", record_, Write("second.csv", StepText()), "--output",
+                                      Path("t.csv"), "--json", "-"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.Json()["input"]["cycles"], 2 * kCycles);
+  const std::vector<std::string> rows = Lines(ContentOf(Path("t.csv")));
+  EXPECT_EQ(Cells(rows[kCycles + 1])[0], std::to_string(kCycles + 1));
+  EXPECT_EQ(Cells(rows[kCycles + 1])[1], Cells(rows[1])[1]);
+}
+
+TEST_F(TrackCommand, TellsFrictionUnderAGivenLoad) {
+  const Outcome outcome = RunCommand(
+      {"track", record_, "--output", Path("t.csv"), "--normal-load", "120", "--json", "-"});
+  const nlohmann::json friction = outcome.Json()["quantities"]["friction_coefficient"];
+  EXPECT_NEAR(friction["stretches"][0]["at_start"].get<double>(), 0.5, 0.005);
+}
+
+TEST_F(TrackCommand, StandsForTheCyclesThatItLeavesOut) {
+  const auto energy = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"track",       record_,  "--output", Path("e.csv"),
+                                      "--overwrite", "--json", "-"};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words).Json()["accumulated_energy"].get<double>();
+  };
+  const double whole = energy({});
+  EXPECT_NEAR(energy({"--every", "4"}), whole, 0.01 * whole);
+  EXPECT_NEAR(energy({"--average", "5"}), whole, 1e-3 * whole);
+}
+
+TEST_F(TrackCommand, RefusesWhatItCannotDo) {
+  struct Case {
+    std::vector<std::string> words;
+    std::string said;
+  };
+  const std::string one_stroke = Write("stroke.csv", "x,F\n0,0\n1,1\n2,2\n3,2.5\n4,2.7\n");
+  for (const Case& refused :
+       {Case{{record_, "--model", "auto"}, "--model auto"},
+        Case{{record_, "--covariate", "1"}, "--covariate"},
+        Case{{record_, "--normal-load", "-3"}, "--normal-load"},
+        Case{{record_, "--resume", "--overwrite"}, "contradict"},
+        Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},
+        Case{{Path("nowhere.csv")}, "nowhere.csv"}}) {
+    std::vector<std::string> words = {"track", "--output", Path("refused.csv")};
+    words.insert(words.end(), refused.words.begin(), refused.words.end());
+    const Outcome outcome = RunCommand(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.out;
+    EXPECT_NE(outcome.err.find(refused.said), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.Errors().size(), 1U) << outcome.err;
+    EXPECT_TRUE(outcome.out.empty());
+    EXPECT_FALSE(std::filesystem::exists(Path("refused.csv"))) << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace mindahl
