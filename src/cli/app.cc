@@ -155,6 +155,7 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   AddRecommendCommand(app, console);
   AddPlanCommand(app, console);
   AddTrackCommand(app, console);
+  AddBatchCommand(app, console);
 
   if (const auto unknown = UnknownCommand(app, argc, argv)) {
     err << fmt::format("mindahl: there is no command '{}': must be one of {}; see mindahl --help\n",

@@ -16,5 +16,6 @@ void AddTradeoffCommand(CLI::App& app, Console& console);
 void AddRecommendCommand(CLI::App& app, Console& console);
 void AddPlanCommand(CLI::App& app, Console& console);
 void AddTrackCommand(CLI::App& app, Console& console);
+void AddBatchCommand(CLI::App& app, Console& console);
 
 }  // namespace mindahl::cli

@@ -25,7 +25,6 @@
 #include "cli/json_output.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
-#include "cli/text_output.h"
 #include "cli/whole_number.h"
 #include "mindahl/campaign/changes.h"
 #include "mindahl/campaign/cycle_table.h"
@@ -202,7 +201,7 @@ class Run {
   [[noreturn]] void ThrowOther() const;
   void SayProgress();
   void WriteSummary();
-  [[nodiscard]] std::string Json() const;
+  [[nodiscard]] nlohmann::ordered_json Json() const;
   [[nodiscard]] std::string_view UnitOf(std::string_view unit) const {
     return report::UnitIn(is_torsional_ ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
   }
@@ -357,7 +356,7 @@ void Run::Go() {
   const auto failed = totals_.flags.find("not_converged");
   const bool none = failed != totals_.flags.end() && failed->second == totals_.fits;
   console_.exit_status = none ? kNotEstablished : kDone;
-  if (!options_.json_path.empty()) WriteText(Json(), options_.json_path, console_);
+  if (!options_.json_path.empty()) WriteJson(Json(), options_.json_path, console_);
   if (options_.json_path != "-") WriteSummary();
 }
 
@@ -439,7 +438,7 @@ void Run::WriteSummary() {
   console_.out << text;
 }
 
-std::string Run::Json() const {
+nlohmann::ordered_json Run::Json() const {
   nlohmann::ordered_json json;
   json["schema"] = "mindahl.track/1";
   json["version"] = Version();
@@ -487,7 +486,7 @@ std::string Run::Json() const {
         {"unit", UnitOf(kTracked[k].unit)}, {"stretches", stretches}, {"changes", changes}};
   }
   json["quantities"] = quantities;
-  return json.dump(2) + "\n";
+  return json;
 }
 
 void RunTrack(const TrackCommandOptions& options, Console& console) {
@@ -503,11 +502,12 @@ void RunTrack(const TrackCommandOptions& options, Console& console) {
 
 void AddTrackCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TrackCommandOptions>();
-  CLI::App* command = app.add_subcommand(
-      "track",
-      "Fits every cycle of a long record as it goes by, in memory that does not depend on\n"
-      "the record's length: one row a cycle, and what changed over the test. A run that was\n"
-      "ended at any moment goes on with --resume. Exit status 3 when no fit converged.");
+  CLI::App* command =
+      app.add_subcommand("track",
+                         "Fits every cycle of a long record as it goes by, in memory that its\n"
+                         "length does not change: one row a cycle, and what changed over the\n"
+                         "test. A run that was ended goes on with --resume. Exit status 3 when\n"
+                         "no fit converged.");
   command
       ->add_option("files", options->request.files,
                    "CSV records of one test, in order; a cycle ends with its file")

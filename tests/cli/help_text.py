@@ -22,10 +22,11 @@ KEPT = pathlib.Path(__file__).resolve().parent / "help"
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
 WIDE_LINES_LEFT = {"mindahl": 12, "fit": 13, "simulate": 6, "contact": 2, "tradeoff": 3,
-                   "recommend": 4, "plan": 2}
+                   "recommend": 4, "plan": 2,
+                   "track": 10, "batch": 13}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
-WITHOUT_UNIT = re.compile(r"^(|COL|FILE|PATH|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
+WITHOUT_UNIT = re.compile(r"^(|COL|FILE|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
 # And these, each with the reason.
 EXEMPT = {
     ("fit", "--start"): "in the unit of the parameter, which --fix lists",
@@ -35,6 +36,14 @@ EXEMPT = {
     ("simulate", "--steps"): "a count",
     ("recommend", "--tolerance"): "relative, and says so",
     ("plan", "--cycles"): "a count",
+    ("track", "--threads"): "a count",
+    ("batch", "--threads"): "a count",
+    ("batch", "--start"): "in the unit of the parameter, which --fix lists",
+    ("batch", "--bound"): "likewise",
+    ("batch", "--cycles"): "counts",
+    ("batch", "--samples"): "counts",
+    ("track", "--start"): "in the unit of the parameter, which --fix lists",
+    ("track", "--bound"): "likewise",
     ("plan", "--with"): "names",
     ("plan", "--want"): "in the unit of the parameter, or in percent",
     ("convert", "--tolerance"): "relative, and says so",

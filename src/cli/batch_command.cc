@@ -1,0 +1,357 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <future>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/established.h"
+#include "cli/fit_records.h"
+#include "cli/fit_request.h"
+#include "cli/json_output.h"
+#include "cli/output_path.h"
+#include "cli/progress.h"
+#include "cli/whole_number.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/version.h"
+#include "mindahl/io/atomic_file.h"
+#include "mindahl/report/json.h"
+#include "mindahl/report/report.h"
+
+namespace mindahl::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct BatchCommandOptions {
+  FitRequest request;
+  bool strict = false;
+  std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+  std::string output;
+  std::string json_path;
+};
+
+/// What became of a file.
+struct FileFit {
+  bool done = false;     // fitted, and established as fit's exit status says it
+  Json fit;              // of `fit --json`; null where there is none
+  std::string fault;     // why not done
+  std::string messages;  // notes and warnings of the run
+};
+
+/// A column of the table, and where `fit --json` has it.
+struct BatchColumn {
+  std::string_view name;
+  std::string_view pointer;
+};
+
+constexpr std::array kColumns = {
+    BatchColumn{"samples", "/input/samples"},
+    BatchColumn{"model", "/model"},
+    BatchColumn{"initial_state", "/initial_state"},
+    BatchColumn{"adequacy", "/adequacy/verdict"},
+    BatchColumn{"cycles", "/input/cycles"},
+    BatchColumn{"amplitude", "/loop/amplitude"},
+    BatchColumn{"peak_force", "/loop/peak_force"},
+    BatchColumn{"half_gap", "/measured/half_gap/value"},
+    BatchColumn{"sliding_amplitude", "/measured/sliding_amplitude"},
+    BatchColumn{"energy_per_cycle", "/measured/energy_per_cycle"},
+    BatchColumn{"energy_ratio", "/measured/energy_ratio"},
+    BatchColumn{"sigma", "/parameters/sigma/value"},
+    BatchColumn{"sigma_error", "/parameters/sigma/standard_error"},
+    BatchColumn{"sigma_lower95", "/parameters/sigma/ci95/0"},
+    BatchColumn{"sigma_upper95", "/parameters/sigma/ci95/1"},
+    BatchColumn{"sigma_verdict", "/parameters/sigma/identifiability"},
+    BatchColumn{"alpha", "/parameters/alpha/value"},
+    BatchColumn{"alpha_error", "/parameters/alpha/standard_error"},
+    BatchColumn{"alpha_lower95", "/parameters/alpha/ci95/0"},
+    BatchColumn{"alpha_upper95", "/parameters/alpha/ci95/1"},
+    BatchColumn{"alpha_verdict", "/parameters/alpha/identifiability"},
+    BatchColumn{"slip_force", "/parameters/slip_force/value"},
+    BatchColumn{"slip_force_error", "/parameters/slip_force/standard_error"},
+    BatchColumn{"slip_force_lower95", "/parameters/slip_force/ci95/0"},
+    BatchColumn{"slip_force_upper95", "/parameters/slip_force/ci95/1"},
+    BatchColumn{"slip_force_verdict", "/parameters/slip_force/identifiability"},
+    BatchColumn{"rms", "/residuals/rms"},
+    BatchColumn{"r_squared", "/residuals/r_squared"},
+    BatchColumn{"slip_regime", "/loop/slip_regime"},
+    BatchColumn{"normal_load", "/contact/normal_load"},
+    BatchColumn{"friction_coefficient", "/contact/friction_coefficient/value"},
+    BatchColumn{"friction_coefficient_error", "/contact/friction_coefficient/standard_error"},
+    BatchColumn{"contact_radius", "/contact/contact_radius/value"},
+};
+
+/// A quantity that repeats of a test have in common, by the names of its columns.
+struct Repeated {
+  std::string_view name;
+  std::string_view verdict;
+};
+constexpr std::array kRepeated = {
+    Repeated{"sigma", "sigma_verdict"}, Repeated{"alpha", "alpha_verdict"},
+    Repeated{"slip_force", "slip_force_verdict"}, Repeated{"friction_coefficient", ""}};
+
+Json ValueAt(const Json& fit, std::string_view pointer) {
+  const Json::json_pointer at{std::string(pointer)};
+  if (fit.is_null() || !fit.contains(at)) return nullptr;
+  return fit.at(at);
+}
+
+Json ValueOf(const Json& fit, std::string_view column) {
+  const auto found = std::ranges::find(kColumns, column, &BatchColumn::name);
+  return found == kColumns.end() ? Json(nullptr) : ValueAt(fit, found->pointer);
+}
+
+FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict) {
+  FileFit result;
+  FitRequest request = batch;
+  request.files = {file};
+  std::ostringstream messages;
+  try {
+    const report::Report report = FitRecords(request, {messages, "batch"});
+    result.fit = Json::parse(report::ToJson(report));
+    result.done = Established(report.fit, strict);
+    if (!result.done) {
+      result.fault = report.fit.converged ? "not established: a free parameter is not identifiable "
+                                            "or the model inadequate"
+                                          : report.fit.termination;
+    }
+  } catch (const InputError& error) {
+    result.fault = error.what();
+  } catch (const InvalidArgument& error) {
+    result.fault = fmt::format("{}: {}", file, error.what());
+  }
+  result.messages = messages.str();
+  return result;
+}
+
+/// In the order of the files, whatever the number of threads.
+std::vector<FileFit> FitFiles(const BatchCommandOptions& options, Progress& progress) {
+  const std::vector<std::string>& files = options.request.files;
+  std::vector<FileFit> fits;
+  std::deque<std::future<FileFit>> at_work;
+  for (std::size_t next = 0; fits.size() < files.size();) {
+    while (next < files.size() && at_work.size() < options.threads) {
+      at_work.push_back(std::async(std::launch::async, [&options, &file = files[next]] {
+        return FitFile(options.request, file, options.strict);
+      }));
+      ++next;
+    }
+    fits.push_back(at_work.front().get());
+    at_work.pop_front();
+    progress.Say(fmt::format("fitted {} of {} files", fits.size(), files.size()));
+  }
+  return fits;
+}
+
+/// A cell of text (RFC 4180).
+std::string Quoted(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char character : text) {
+    if (character == '"') quoted += '"';
+    quoted += character;
+  }
+  return quoted + '"';
+}
+
+std::string CellOf(const Json& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return Quoted(value.get<std::string>());
+  return value.dump();  // as many digits as read back the same double
+}
+
+std::string WarningsOf(const Json& fit) {
+  std::vector<std::string> codes;
+  for (const Json& warning : ValueAt(fit, "/warnings")) codes.push_back(warning["code"]);
+  return fmt::format("{}", fmt::join(codes, " "));
+}
+
+std::string TableOf(const std::vector<std::string>& files, const std::vector<FileFit>& fits) {
+  std::string table = "file,done";
+  for (const BatchColumn& column : kColumns) table += fmt::format(",{}", column.name);
+  table += ",warnings,fault\n";
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const FileFit& fit = fits[k];
+    table += fmt::format("{},{}", Quoted(files[k]), fit.done ? "yes" : "no");
+    for (const BatchColumn& column : kColumns) {
+      table += "," + CellOf(ValueAt(fit.fit, column.pointer));
+    }
+    table += fmt::format(",{},{}\n", WarningsOf(fit.fit), Quoted(fit.fault));
+  }
+  return table;
+}
+
+/// How far repeats of a test are from each other, beside what each says of its own error.
+struct Scatter {
+  std::size_t files = 0;
+  double mean = 0.0;
+  double standard_deviation = 0.0;
+  double stated_error = 0.0;  ///< root of the mean square of the standard errors
+  /// Of Σ(x − mean)²/e² by chi squared: is the scatter what the errors say? The mean is weighted.
+  double p_value = 1.0;
+};
+
+std::optional<Scatter> ScatterOf(const std::vector<FileFit>& fits, const Repeated& quantity) {
+  std::vector<double> values;
+  std::vector<double> errors;
+  for (const FileFit& fit : fits) {
+    const Json value = ValueOf(fit.fit, quantity.name);
+    const Json error = ValueOf(fit.fit, std::string(quantity.name) + "_error");
+    const Json verdict = ValueOf(fit.fit, quantity.verdict);
+    const bool is_known = verdict.is_null() || verdict == "identifiable";
+    if (!value.is_number() || !error.is_number() || !(error.get<double>() > 0) || !is_known) {
+      continue;
+    }
+    values.push_back(value);
+    errors.push_back(error);
+  }
+  if (values.size() < 2) return std::nullopt;
+  const auto count = static_cast<double>(values.size());
+  Scatter scatter{.files = values.size()};
+  double weights = 0.0;
+  double weighted = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    scatter.mean += values[k] / count;
+    scatter.stated_error += errors[k] * errors[k] / count;
+    weights += 1 / (errors[k] * errors[k]);
+    weighted += values[k] / (errors[k] * errors[k]);
+  }
+  scatter.stated_error = std::sqrt(scatter.stated_error);
+  double squares = 0.0;
+  double chi_squared = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    squares += (values[k] - scatter.mean) * (values[k] - scatter.mean);
+    chi_squared += std::pow((values[k] - weighted / weights) / errors[k], 2);
+  }
+  scatter.standard_deviation = std::sqrt(squares / (count - 1));
+  const boost::math::chi_squared distribution(count - 1);
+  scatter.p_value = boost::math::cdf(boost::math::complement(distribution, chi_squared));
+  return scatter;
+}
+
+std::string TextOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options) {
+  const auto done = std::ranges::count_if(fits, &FileFit::done);
+  std::string text =
+      fmt::format("{} of {} files fitted, in {}\n", done, fits.size(), options.output);
+  std::string scatter;
+  for (const Repeated& quantity : kRepeated) {
+    const std::optional<Scatter> found = ScatterOf(fits, quantity);
+    if (!found) continue;
+    scatter += fmt::format(
+        "  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14.2g}   {}\n", quantity.name, found->files, found->mean,
+        found->standard_deviation, found->stated_error,
+        found->p_value < 0.01 ? fmt::format("more than the errors, p {:.1g}", found->p_value)
+                              : fmt::format("as the errors say, p {:.2g}", found->p_value));
+  }
+  if (!scatter.empty()) {
+    text += fmt::format("\nif these are repeats:\n  {:<22}{:>6}{:>14}{:>14}{:>14}\n", "", "files",
+                        "mean", "scatter", "stated error") +
+            scatter;
+  }
+  return text;
+}
+
+Json JsonOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options) {
+  Json json;
+  json["schema"] = "mindahl.batch/1";
+  json["version"] = Version();
+  json["output"] = options.output;
+  Json files = Json::array();
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    files.push_back({{"file", options.request.files[k]},
+                     {"done", fits[k].done},
+                     {"fault", fits[k].fault.empty() ? Json(nullptr) : Json(fits[k].fault)},
+                     {"fit", fits[k].fit}});
+  }
+  json["files"] = files;
+  Json repeats = Json::object();
+  for (const Repeated& quantity : kRepeated) {
+    const std::optional<Scatter> found = ScatterOf(fits, quantity);
+    if (!found) continue;
+    repeats[std::string(quantity.name)] = {{"files", found->files},
+                                           {"mean", found->mean},
+                                           {"standard_deviation", found->standard_deviation},
+                                           {"stated_error", found->stated_error},
+                                           {"p_value", found->p_value}};
+  }
+  json["repeats"] = repeats;
+  return json;
+}
+
+void RunBatch(const BatchCommandOptions& options, Console& console) {
+  const FitRequest& request = options.request;
+  Validate(request.contact);
+  RequireDistinctFiles(request.files);
+  std::vector<std::string> read = console.inputs;
+  read.insert(read.end(), request.files.begin(), request.files.end());
+  RequireOutputPaths(
+      {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}}, read);
+  MakeFitOptions(request);  // what is wrong with the options is no fault of a file
+  std::vector<FileFit> fits;
+  {
+    Progress progress(console.err, "fitting files");
+    fits = FitFiles(options, progress);
+  }
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    console.err << fits[k].messages;
+    if (fits[k].fault.empty()) continue;
+    console.err << fmt::format("mindahl batch: warning: {}: {}\n", request.files[k], fits[k].fault);
+  }
+  io::WriteFileAtomically(options.output, TableOf(request.files, fits));
+  if (!options.json_path.empty()) WriteJson(JsonOf(fits, options), options.json_path, console);
+  if (options.json_path != "-") console.out << TextOf(fits, options);
+  console.exit_status = std::ranges::all_of(fits, &FileFit::done) ? kDone : kNotEstablished;
+}
+
+}  // namespace
+
+void AddBatchCommand(CLI::App& app, Console& console) {
+  const auto options = std::make_shared<BatchCommandOptions>();
+  CLI::App* command =
+      app.add_subcommand("batch",
+                         "Fits each file on its own, with any option of fit for all of them:\n"
+                         "one row a file, and the scatter between files beside their stated\n"
+                         "errors. A file that fails does not stop the others: exit status 3\n"
+                         "when any did.");
+  command->add_option("files", options->request.files, "CSV records, each a test of its own")
+      ->type_name("FILE")
+      ->required();
+  AddFitOptions(*command, options->request, NormalLoads::kOne);
+  const std::string group = "Results";
+  command->add_option("--output", options->output, "table as CSV, one row a file, in SI units")
+      ->type_name("PATH")
+      ->required()
+      ->group(group);
+  command
+      ->add_option("--json", options->json_path,
+                   "what fit says of each as JSON; - for standard output alone")
+      ->type_name("PATH")
+      ->group(group);
+  command
+      ->add_option("--threads", options->threads,
+                   "that fit; the results do not depend on it; default one a core")
+      ->check(WholeNumber(1, 1024))
+      ->group(group);
+  command
+      ->add_flag("--strict", options->strict,
+                 "a file fails too where a free parameter is not identifiable\n"
+                 "or the model inadequate")
+      ->group(group);
+  command->callback([options, &console] { RunBatch(*options, console); });
+}
+
+}  // namespace mindahl::cli

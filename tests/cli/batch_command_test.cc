@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+
+// mindahl batch: each file a fit of its own.
+namespace mindahl {
+namespace {
+
+using testing::Cells;
+using testing::Lines;
+using testing::Outcome;
+using testing::RunCommand;
+
+class BatchCommand : public ::testing::Test {
+ protected:
+  std::string Path(const std::string& name) const { return (directory_.path() / name).string(); }
+
+  /// A repeat of one test, with noise of its own; of another slip force where one is given.
+  std::string Repeat(int seed, const std::string& slip_force = "15") {
+    const std::string path = Path(fmt::format("repeat_{}.csv", seed));
+    EXPECT_EQ(RunCommand({"simulate", "--sigma", "5e7", "--slip-force", slip_force, "--lambda",
+                          "1.3", "--cycles", "3", "--samples-per-cycle", "240", "--noise-force",
+                          "0.1", "--seed", std::to_string(seed), "-o", path})
+                  .status,
+              0);
+    return path;
+  }
+
+  std::vector<std::vector<std::string>> Table() const {
+    std::ifstream file(Path("table.csv"));
+    std::vector<std::vector<std::string>> rows;
+    for (std::string line; std::getline(file, line);) rows.push_back(Cells(line));
+    return rows;
+  }
+
+  static std::string Cell(const std::vector<std::vector<std::string>>& table, std::size_t row,
+                          const std::string& column) {
+    for (std::size_t k = 0; k < table[0].size(); ++k) {
+      if (table[0][k] == column && k < table[row].size()) return table[row][k];
+    }
+    return "";
+  }
+
+  Outcome Batch(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"batch", "--output", Path("table.csv")};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(BatchCommand, SaysOfEachFileWhatFitSays) {
+  const std::vector<std::string> files = {Repeat(1), Repeat(2)};
+  const Outcome outcome = Batch({files[0], files[1], "--normal-load", "50", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto table = Table();
+  ASSERT_EQ(table.size(), 3U);
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const nlohmann::json fit =
+        RunCommand({"fit", files[k], "--normal-load", "50", "--json", "-"}).Json();
+    EXPECT_EQ(outcome.Json()["files"][k]["fit"], fit);
+    EXPECT_EQ(Cell(table, k + 1, "file"), files[k]);
+    EXPECT_EQ(Cell(table, k + 1, "done"), "yes");
+    EXPECT_EQ(Cell(table, k + 1, "adequacy"), "adequate");
+    EXPECT_EQ(std::stod(Cell(table, k + 1, "sigma")),
+              fit["parameters"]["sigma"]["value"].get<double>());
+    EXPECT_EQ(std::stod(Cell(table, k + 1, "slip_force_upper95")),
+              fit["parameters"]["slip_force"]["ci95"][1].get<double>());
+    EXPECT_EQ(std::stod(Cell(table, k + 1, "half_gap")),
+              fit["measured"]["half_gap"]["value"].get<double>());
+    EXPECT_EQ(std::stod(Cell(table, k + 1, "friction_coefficient")),
+              fit["contact"]["friction_coefficient"]["value"].get<double>());
+    EXPECT_EQ(Cell(table, k + 1, "fault"), "");
+  }
+}
+
+TEST_F(BatchCommand, HasEveryColumnSomewhere) {
+  const std::string file = Repeat(1);
+  Batch({file, "--normal-load", "50", "--compliance", "2e-11"});
+  const auto table = Table();
+  for (const std::string& column : table[0]) {
+    if (column == "fault" || column == "warnings") continue;
+    EXPECT_NE(Cell(table, 1, column), "") << column;
+  }
+}
+
+TEST_F(BatchCommand, GoesOnPastAFileThatFails) {
+  const std::string good = Repeat(1);
+  const std::string broken = directory_.Write("broken.csv", "x,F\n1,2\n3,oops\n").string();
+  const Outcome outcome = Batch({broken, Path("absent.csv"), good});
+  EXPECT_EQ(outcome.status, 3);
+  const auto table = Table();
+  ASSERT_EQ(table.size(), 4U);
+  EXPECT_EQ(Cell(table, 1, "done"), "no");
+  EXPECT_EQ(Cell(table, 1, "sigma"), "");
+  EXPECT_EQ(Cell(table, 2, "done"), "no");
+  EXPECT_EQ(Cell(table, 3, "done"), "yes");
+  EXPECT_NE(outcome.err.find("broken.csv:3:2: 'oops' is not a number"), std::string::npos);
+  EXPECT_NE(outcome.err.find("absent.csv"), std::string::npos);
+  EXPECT_NE(outcome.out.find("1 of 3 files fitted"), std::string::npos) << outcome.out;
+}
+
+TEST_F(BatchCommand, WritesTheSameWithAnyNumberOfThreads) {
+  const std::vector<std::string> files = {Repeat(1), Repeat(2), Repeat(3)};
+  const auto content = [&](const std::string& threads) {
+    Batch({files[0], files[1], files[2], "--threads", threads});
+    std::ifstream file(Path("table.csv"));
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  };
+  const std::string one = content("1");
+  EXPECT_EQ(content("2"), one);
+  EXPECT_EQ(content("7"), one);
+}
+
+TEST_F(BatchCommand, FindsTheScatterOfRepeatsInTheirErrors) {
+  std::vector<std::string> words = {"--json", "-"};
+  for (int seed = 1; seed <= 12; ++seed) words.push_back(Repeat(seed));
+  const nlohmann::json repeats = Batch(words).Json()["repeats"];
+  for (const char* name : {"sigma", "slip_force"}) {
+    EXPECT_EQ(repeats[name]["files"], 12) << name;
+    // χ² of 11: within its 0.1 % quantiles.
+    EXPECT_GT(repeats[name]["p_value"].get<double>(), 1e-3) << name;
+    EXPECT_LT(repeats[name]["p_value"].get<double>(), 1 - 1e-3) << name;
+  }
+  EXPECT_NEAR(repeats["slip_force"]["mean"].get<double>(), 15.0,
+              4 * repeats["slip_force"]["stated_error"].get<double>() / std::sqrt(12.0));
+}
+
+TEST_F(BatchCommand, FindsMoreScatterThanTheErrorsSay) {
+  const nlohmann::json repeats =
+      Batch({"--json", "-", Repeat(1, "15"), Repeat(2, "16"), Repeat(3, "14")}).Json()["repeats"];
+  EXPECT_LT(repeats["slip_force"]["p_value"].get<double>(), 1e-6);
+  EXPECT_NEAR(repeats["slip_force"]["standard_deviation"].get<double>(), 1.0, 0.05);
+}
+
+TEST_F(BatchCommand, FailsAFileThatIsNotEstablishedWhereStrict) {
+  const std::string small = Path("small.csv");
+  RunCommand({"simulate", "--sigma", "5e7", "--slip-force", "15", "--lambda", "0.05",
+              "--noise-force", "0.05", "--cycles", "3", "-o", small});
+  EXPECT_EQ(Batch({small}).status, 0);
+  EXPECT_EQ(Batch({small, "--strict"}).status, 3);
+  EXPECT_EQ(Cell(Table(), 1, "done"), "no");
+}
+
+TEST_F(BatchCommand, RefusesOptionsBeforeAnyFile) {
+  const std::string file = Repeat(1);
+  const Outcome outcome = Batch({file, "--fix", "alpha=x"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.Errors().size(), 1U);
+  EXPECT_FALSE(std::filesystem::exists(Path("table.csv")));
+  EXPECT_EQ(RunCommand({"batch", file, "--output", file}).status, 2);
+}
+
+}  // namespace
+}  // namespace mindahl
