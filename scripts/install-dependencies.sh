@@ -12,7 +12,7 @@ packages=(
 for group in "$@"; do
   case $group in
     --checks) packages+=(clang-format clang-tidy-19) ;;
-    --peers) packages+=(python3-lmfit) ;;
+    --peers) packages+=(python3-lmfit python3-pandas) ;;
     *)
       echo "install-dependencies: there is no group '$group': --checks or --peers" >&2
       exit 2

@@ -421,20 +421,24 @@ void Run::WriteSummary() {
       text += fmt::format("  {:<18}{:>8}   {}\n", flag.name, found->second, flag.meaning);
     }
   }
-  text += fmt::format("\n  {:<30}{:>14}{:>14}\n", "over the test", "at first", "at last");
+  std::string courses;
   std::string changes;
   for (std::size_t k = 0; k < kTracked.size(); ++k) {
     const campaign::CourseDescription course = campaign::FindChanges(totals_.courses[k]);
     if (course.stretches.empty()) continue;
     const std::string name =
         fmt::format("{}{}", kTracked[k].name, InBrackets(UnitOf(kTracked[k].unit)));
-    text += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
-                        course.stretches.back().at_end);
+    courses += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
+                           course.stretches.back().at_end);
     for (const std::string& line : TextOf(course)) {
       changes += fmt::format("  {:<21} {}\n", kTracked[k].name, line);
     }
   }
-  text += changes.empty() ? "\nNothing changed beyond chance.\n" : "\nChanges:\n" + changes;
+  if (!courses.empty()) {
+    text +=
+        fmt::format("\n  {:<30}{:>14}{:>14}\n{}", "over the test", "at first", "at last", courses);
+    text += changes.empty() ? "\nNothing changed beyond chance.\n" : "\nChanges:\n" + changes;
+  }
   console_.out << text;
 }
 

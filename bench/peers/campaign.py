@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Compares the processor time of `mindahl track` with reading the same file, and with other fits.
+
+    bench/peers/campaign.py [--build build/release] [--cycles 10000] [--rounds 5]
+
+Everything runs in turn on one core; a ratio is that of one round, the table has the median and the
+range. Then time and memory against the number of cycles, and time against threads. docs/performance.md
+has the tables. Needs pandas and lmfit: scripts/install-dependencies.sh --peers
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+PYTHON = "/usr/bin/python3"  # Debian's, which has Debian's pandas and lmfit
+
+# sigma = 5e7 N/m, Tc = 20 N, alpha = 1/3, lambda = 1.2; noise 1 % of Tc; 200 samples a cycle.
+CONTACT = ("simulate --model mindlin --sigma 5e7 --slip-force 20 --lambda 1.2 "
+           "--samples-per-cycle 200 --noise-force 0.2 --seed 1").split()
+
+READ = """
+import sys, time, pandas
+start = time.process_time()
+table = pandas.read_csv(sys.argv[1])
+print(time.process_time() - start, len(table))
+"""
+
+
+def cost_of(command):
+    """(processor seconds, seconds, greatest resident memory [MB]) of a program."""
+    start = time.monotonic()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    elapsed = time.monotonic() - start
+    if status != 0:
+        sys.exit(f"failed: {' '.join(map(str, command))}")
+    return usage.ru_utime + usage.ru_stime, elapsed, usage.ru_maxrss / 1024
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--build", default="build/release", type=pathlib.Path)
+    parser.add_argument("--cycles", default=10_000, type=int)
+    parser.add_argument("--rounds", default=5, type=int)
+    arguments = parser.parse_args()
+    program = arguments.build / "src/mindahl"
+    cores = os.sched_getaffinity(0)
+    os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
+
+    with tempfile.TemporaryDirectory() as directory:
+        def simulated(cycles):
+            path = os.path.join(directory, f"{cycles}.csv")
+            if not os.path.exists(path):
+                subprocess.run([program, *CONTACT, "--cycles", str(cycles), "-o", path], check=True)
+            return path
+
+        def track(path, *more):
+            table = os.path.join(directory, "table.csv")
+            return [program, "track", path, "--output", table, "--overwrite", *more]
+
+        record = simulated(arguments.cycles)
+        one_cycle = simulated(1)
+        os.sched_setaffinity(0, {max(cores)})
+        times = {}
+        for _ in range(arguments.rounds):
+            seconds, rows = subprocess.run([PYTHON, "-c", READ, record], check=True, text=True,
+                                           capture_output=True).stdout.split()
+            lmfit = json.loads(subprocess.run(
+                [PYTHON, HERE / "lmfit_fit.py", one_cycle, "--repeats", "20"], check=True,
+                text=True, capture_output=True).stdout)
+            cycles = int(rows) // 200
+            for name, microseconds in {
+                    "pandas, reading": 1e6 * float(seconds) / cycles,
+                    "mindahl track, reading and fits": 1e6 * cost_of(
+                        track(record, "--threads", "1"))[0] / cycles,
+                    "mindahl track, reading alone": 1e6 * cost_of(
+                        track(record, "--threads", "1", "--every", "1000000000"))[0] / cycles,
+                    "lmfit, bare fit": 1e3 * lmfit["median_ms"]}.items():
+                times.setdefault(name, []).append(microseconds)
+        print(f"{cycles} cycles of 200 samples, {os.path.getsize(record) / cycles / 1e3:.1f} kB "
+              f"each, {arguments.rounds} rounds on one core\n")
+        print("| what | time a cycle over pandas' | range | this run [µs a cycle] |")
+        print("|---|---|---|---|")
+        for name, values in times.items():
+            ratios = [own / peer for own, peer in zip(values, times["pandas, reading"])]
+            print(f"| {name} | {statistics.median(ratios):.3g} | {min(ratios):.3g} … "
+                  f"{max(ratios):.3g} | {statistics.median(values):.3g} |")
+
+        os.sched_setaffinity(0, cores)
+        print("\n| cycles | processor time [s] | µs a cycle | greatest memory [MB] |")
+        print("|---|---|---|---|")
+        for cycles in (100, 1_000, 10_000, 100_000):
+            if cycles > 10 * arguments.cycles:
+                break
+            seconds, _, memory = cost_of(track(simulated(cycles), "--threads", "1"))
+            print(f"| {cycles} | {seconds:.3g} | {1e6 * seconds / cycles:.3g} | {memory:.3g} |")
+        print("\n| threads | time over one thread's |")
+        print("|---|---|")
+        alone = None
+        for threads in range(1, len(cores) + 1):
+            elapsed = min(cost_of(track(record, "--threads", str(threads)))[1] for _ in range(3))
+            alone = alone or elapsed
+            print(f"| {threads} | {elapsed / alone:.3g} |")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
