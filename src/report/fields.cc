@@ -111,6 +111,7 @@ FieldTable MakeTable() {
   AddMeasuredFields(table);
   AddParameterFields(table);
   AddLawFields(table);
+  AddMemoryFields(table);
   AddResidualFields(table);
   AddSelectionFields(table);
   AddSolverFields(table);

@@ -46,7 +46,8 @@ Eigen::MatrixXd CorrelationOf(const ScaledRecords& data, const Noise& noise,
 
 ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
                        const DisplacementEffect& displacement, const Eigen::MatrixXd& law,
-                       const Eigen::MatrixXd& others, const Eigen::VectorXd& residual)
+                       const Eigen::MatrixXd& others, const Eigen::VectorXd& residual,
+                       const ColumnTest* quieter)
     : law_(law.cols()),
       samples_(static_cast<double>(problem.data->counted)),
       sum_of_squares_(residual.squaredNorm()) {
@@ -75,17 +76,23 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   in_columns.tail(others.cols()) = all_ * explained;
   in_columns.head(law_) = -shares_ * in_columns.tail(others.cols());
   const Eigen::VectorXd rest = residual - columns * in_columns;
-  const Autocorrelation autocorrelation =
-      AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
-  correlated_ = CorrelationOf(*problem.data, noise, autocorrelation, displacement, columns, plain_);
+  autocorrelation_ = quieter != nullptr
+                         ? quieter->autocorrelation_
+                         : AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
+  correlated_ =
+      CorrelationOf(*problem.data, noise, autocorrelation_, displacement, columns, plain_);
   free_correlated_ = FreedOfLaw(correlated_);
 
   // Of correlated noise a fit takes up more than its parameters' number.
   const double by_law = (inverse_of_law_ * correlated_.topLeftCorner(law_, law_)).trace();
   const double by_others = (all_.transpose() * free_correlated_ * all_).trace();
   const double absorbed = std::min(by_law + by_others, samples_ / 2);
-  variance_ = noise.is_known ? noise.variance : rest.squaredNorm() / (samples_ - absorbed);
-  effective_samples_ = samples_ / std::max(1.0, autocorrelation.SquaredCorrelations());
+  if (quieter != nullptr) {
+    variance_ = quieter->variance_;
+  } else {
+    variance_ = noise.is_known ? noise.variance : rest.squaredNorm() / (samples_ - absorbed);
+  }
+  effective_samples_ = samples_ / std::max(1.0, autocorrelation_.SquaredCorrelations());
   degrees_of_freedom_ = std::max(
       1.0, effective_samples_ - static_cast<double>(law_) - static_cast<double>(all_.cols()));
 }
@@ -128,21 +135,24 @@ Eigen::MatrixXd ColumnTest::Orthonormal(std::span<const Eigen::Index> places) co
   return result.leftCols(count);
 }
 
-ColumnTest::Part ColumnTest::Ask(const Eigen::MatrixXd& basis) const {
+ColumnTest::Part ColumnTest::AskBasis(const Eigen::MatrixXd& basis) const {
   Part part{.columns = static_cast<std::size_t>(basis.cols())};
   if (part.columns == 0 || !(variance_ > 0)) return part;
-  const double f = WaldF(basis.transpose() * free_residual_,
-                         basis.transpose() * free_correlated_ * basis, variance_);
+  const Eigen::VectorXd explained = basis.transpose() * free_residual_;
+  const Eigen::MatrixXd correlated = basis.transpose() * free_correlated_ * basis;
+  const double f = WaldF(explained, correlated, variance_);
+  const double of_noise = variance_ * correlated.trace();
+  part.rms = std::sqrt(std::max(0.0, explained.squaredNorm() - of_noise) / samples_);
   // Where nothing is explained, by rounding less, noise alone makes it.
   part.p_value = f > 0 ? PValueOfF(f, static_cast<double>(part.columns), degrees_of_freedom_) : 1.0;
   return part;
 }
 
 ColumnTest::Part ColumnTest::Ask(std::span<const Eigen::Index> places) const {
-  return Ask(Orthonormal(places));
+  return AskBasis(Orthonormal(places));
 }
 
-double ColumnTest::p_value() const { return Ask(all_).p_value; }
+double ColumnTest::p_value() const { return AskBasis(all_).p_value; }
 
 double ColumnTest::misfit_over_noise() const {
   const Eigen::VectorXd explained = all_.transpose() * free_residual_;

@@ -29,9 +29,10 @@ class ColumnTest {
   /// @param others        those that are asked for; all weighted, a row a sample
   /// @param residual      weighted
   /// @param displacement  what drawn errors of the displacement do to the residuals: noise too
+  /// @param quieter       of the same samples by another law, whose noise it is; null: its own
   ColumnTest(const Problem& problem, const Noise& noise, const DisplacementEffect& displacement,
              const Eigen::MatrixXd& law, const Eigen::MatrixXd& others,
-             const Eigen::VectorXd& residual);
+             const Eigen::VectorXd& residual, const ColumnTest* quieter = nullptr);
 
   /// Has any column something of its own, and is there noise to hold it against?
   [[nodiscard]] bool can_tell() const { return all_.cols() > 0 && variance_ > 0; }
@@ -48,6 +49,7 @@ class ColumnTest {
   struct Part {
     std::size_t columns = 0;  // with something of their own; 0: the law has them all
     double p_value = 1.0;     // that noise alone makes what these explain
+    double rms = 0.0;         // of that, less what they would of noise; of a weighted residual
   };
   /// Some of the columns by themselves.
   [[nodiscard]] Part Ask(std::span<const Eigen::Index> places) const;
@@ -56,7 +58,7 @@ class ColumnTest {
  private:
   [[nodiscard]] Eigen::MatrixXd FreedOfLaw(const Eigen::MatrixXd& products) const;
   [[nodiscard]] Eigen::MatrixXd Orthonormal(std::span<const Eigen::Index> places) const;
-  [[nodiscard]] Part Ask(const Eigen::MatrixXd& basis) const;
+  [[nodiscard]] Part AskBasis(const Eigen::MatrixXd& basis) const;
 
   // The columns A of the law and of what is asked for, of unit norm, and their products with each
   // other and with the residuals: all that any question asks for, whatever the number of samples.
@@ -73,6 +75,7 @@ class ColumnTest {
   Eigen::MatrixXd free_correlated_;  //
   Eigen::VectorXd free_residual_;    //
   Eigen::MatrixXd all_;              // orthonormal, of all that have something of their own
+  Autocorrelation autocorrelation_;  // of what all columns leave
   double variance_ = 0.0;
   double degrees_of_freedom_ = 1.0;
   double effective_samples_ = 1.0;
