@@ -3,11 +3,13 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "mindahl/report/json.h"
 #include "mindahl/report/text.h"
 #include "report/made_report.h"
+#include "support/contract.h"
 
 // Of which memory a record is, in the JSON and in the text.
 namespace mindahl::report {
@@ -56,8 +58,7 @@ TEST(Memory, ThatIsUndecidedSaysWhatWouldDecide) {
   memory.verdict = MemoryVerdict::kUndecided;
   EXPECT_THAT(ToText(ReportOf(memory)), AllOf(HasSubstr("undecided"), HasSubstr("further")));
   memory.comparisons.pop_back();
-  EXPECT_THAT(ToText(ReportOf(memory)),
-              AllOf(HasSubstr("second"), Not(HasSubstr("further"))));
+  EXPECT_THAT(ToText(ReportOf(memory)), AllOf(HasSubstr("second"), Not(HasSubstr("further"))));
 }
 
 TEST(Memory, ThatIsDecidedNamesTheLawItIsOf) {
@@ -66,6 +67,16 @@ TEST(Memory, ThatIsDecidedNamesTheLawItIsOf) {
   EXPECT_THAT(ToText(ReportOf(memory)), HasSubstr("memory: Masing's (p = 0.0025), not Dahl's"));
   memory.verdict = MemoryVerdict::kDahl;
   EXPECT_THAT(ToText(ReportOf(memory)), HasSubstr("memory: Dahl's (p < 1e-6), not Masing's"));
+}
+
+TEST(Memory, HasEveryComparisonInTheTextAndInTheContract) {
+  const std::string contract = testing::PageText("docs/contract.md");
+  for (const std::string_view code : identification::MemoryComparisonCodes()) {
+    MemoryTest memory = Neither();
+    memory.comparisons = {{code, 0.0005, 0.25, 0.125}};
+    EXPECT_THAT(ToText(ReportOf(memory)), HasSubstr("0.0005")) << code;
+    EXPECT_THAT(contract, HasSubstr("| `" + std::string(code) + "` |"));
+  }
 }
 
 TEST(Memory, ThatWasNotAskedForIsNullWithAReason) {
