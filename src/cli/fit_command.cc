@@ -10,8 +10,11 @@
 #include "cli/fit_request.h"
 #include "cli/output_path.h"
 #include "cli/text_output.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/plot.h"
+#include "mindahl/report/backbone.h"
 #include "mindahl/report/figure.h"
 #include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
@@ -26,8 +29,22 @@ struct FitCommandOptions {
   bool strict = false;
   std::string json_path;
   std::string residuals_path;
+  std::string backbone_path;
   std::string plot_path;
 };
+
+/// What the records carry whatever the law.
+identification::BackboneEstimate BackboneOf(const FitRequest& request,
+                                            const report::Report& report) {
+  if (!identification::HasBackbone(report.fit)) {
+    throw InputError(
+        "--backbone is of a contact of Masing's memory under one load: leave out --model dahl and "
+        "--lag, and fit records of other loads apart");
+  }
+  std::vector<loop::RecordView> records;
+  for (const io::RecordFile& input : report.records) records.emplace_back(input.record);
+  return identification::EstimateBackbone(records, MakeFitOptions(request), report.fit);
+}
 
 void Write(const FitCommandOptions& options, const report::Report& report, const Messages& messages,
            Console& console) {
@@ -50,7 +67,14 @@ void Write(const FitCommandOptions& options, const report::Report& report, const
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
   }
   if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
+  if (report.backbone) {
+    io::WriteFileAtomically(options.backbone_path,
+                            report::BackboneCsv(*report.backbone, report.units));
+  }
   if (options.json_path != "-") console.out << report::ToText(report);
+  if (options.json_path != "-" && report.backbone) {
+    console.out << report::BackboneText(*report.backbone, report.fit, report.units);
+  }
 }
 
 void RunFit(const FitCommandOptions& options, Console& console) {
@@ -61,10 +85,14 @@ void RunFit(const FitCommandOptions& options, Console& console) {
   read.insert(read.end(), request.files.begin(), request.files.end());
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--residuals", options.residuals_path},
+                      {"--backbone", options.backbone_path},
                       {"--plot", options.plot_path}},
                      read);
   const Messages messages{console.err, "fit"};
-  const report::Report report = FitRecords(request, messages);
+  report::Report report = FitRecords(request, messages);
+  if (!options.backbone_path.empty() && !report.failed()) {
+    report.backbone = BackboneOf(request, report);
+  }
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   Write(options, report, messages, console);
 }
@@ -91,6 +119,12 @@ void AddFitCommand(CLI::App& app, Console& console) {
   command
       ->add_option("--residuals", options->residuals_path,
                    "measured and fitted force of every sample as CSV")
+      ->type_name("PATH")
+      ->group(group);
+  command
+      ->add_option("--backbone", options->backbone_path,
+                   "the force over the displacement of first loading, of no law's\n"
+                   "shape, with its 95 % band and the law beside it, as CSV")
       ->type_name("PATH")
       ->group(group);
   command->add_option("--plot", options->plot_path, "loop and residuals as svg or png")

@@ -22,6 +22,7 @@
 #include "identification/inference/irregularities.h"
 #include "identification/inference/lag_trial.h"
 #include "identification/inference/law_choice.h"
+#include "identification/inference/memory_test.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
 #include "identification/inference/reweighting.h"
@@ -343,6 +344,25 @@ std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const 
   return tells;
 }
 
+/// Branches against each other, beside the fitted law and the other one.
+MemoryTest CompareBranches(const Problem& problem, const Solution& solution,
+                           const LawComparison& laws, const Noise& noise,
+                           const DisplacementEffect& displacement, const Estimates& estimates,
+                           const Thresholds& thresholds, Response& response) {
+  const FittedLaw fitted{&problem, &solution, estimates.jacobian(), estimates.residual()};
+  if (!laws.other) return TestMemory(fitted, nullptr, noise, displacement, thresholds, response);
+  const Problem& problem_of_other = laws.other->problem;
+  FittedLaw other{&problem_of_other, &laws.other->solution, {}, {}};
+  const auto& free = problem_of_other.parameters.free();
+  other.jacobian =
+      JacobianAt(problem_of_other, other.solution->theta, response, free, other.residual);
+  const bool is_masing = problem.model->memory == models::Memory::kReturnPoint;
+  const MemoryTest test = TestMemory(is_masing ? fitted : other, is_masing ? &other : &fitted,
+                                     noise, displacement, thresholds, response);
+  response.Bind(problem);
+  return test;
+}
+
 /// What the residuals say of the noise, and of themselves.
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
                   Noise& noise, FitResult& result) {
@@ -460,7 +480,13 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
   if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result);
   if (result.depth == Depth::kFull) {
-    SayLaw(ChooseLaw(problem, solution, result, options, buffers), result);
+    const LawComparison laws = CompareLaws(problem, solution, result, options, buffers);
+    if (laws.is_comparable && CanCompareBranches(problem)) {
+      result.memory = CompareBranches(problem, solution, laws, noise, displacement, estimates,
+                                      options.thresholds, buffers.response);
+      Append(result.findings, FindContradictedLaw(*result.memory, laws.choice, *result.model));
+    }
+    SayLaw(laws.choice, result);
   }
   Judge(result.parameters, result.findings);
 }
@@ -569,6 +595,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   result.mindlin_test.reset();
   result.branch_shapes.clear();
   result.law_choice.reset();
+  result.memory.reset();
   result.correlation.clear();
   result.residuals = {};
   result.starts.clear();

@@ -34,10 +34,12 @@ void AddResidualFields(FieldTable& table);
 void AddSelectionFields(FieldTable& table);
 void AddSolverFields(FieldTable& table);
 void AddLawFields(FieldTable& table);
+void AddMemoryFields(FieldTable& table);
 void AddLoopFields(FieldTable& table);
 void AddContactFields(FieldTable& table);
 void AddMappingFields(FieldTable& table);
 void AddLoadSeriesFields(FieldTable& table);
+void AddBackboneFields(FieldTable& table);
 
 /// Why there is no contact behind a torque.
 inline constexpr const char* kWhyNoContact =

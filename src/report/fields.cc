@@ -111,6 +111,7 @@ FieldTable MakeTable() {
   AddMeasuredFields(table);
   AddParameterFields(table);
   AddLawFields(table);
+  AddMemoryFields(table);
   AddResidualFields(table);
   AddSelectionFields(table);
   AddSolverFields(table);
@@ -118,6 +119,7 @@ FieldTable MakeTable() {
   AddContactFields(table);
   AddMappingFields(table);
   AddLoadSeriesFields(table);
+  AddBackboneFields(table);
   // What a fit that failed has not is null for that reason.
   for (Field<Report>& row : table.rows) {
     const bool is_of_contact = row.path.starts_with("contact.") || row.path.starts_with("mapping.");

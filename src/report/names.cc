@@ -61,4 +61,18 @@ std::string_view Name(identification::AdequacyVerdict verdict) {
   return "";
 }
 
+std::string_view Name(identification::MemoryVerdict verdict) {
+  switch (verdict) {
+    case identification::MemoryVerdict::kMasing:
+      return "masing";
+    case identification::MemoryVerdict::kDahl:
+      return "dahl";
+    case identification::MemoryVerdict::kNeither:
+      return "neither";
+    case identification::MemoryVerdict::kUndecided:
+      return "undecided";
+  }
+  return "";
+}
+
 }  // namespace mindahl::report

@@ -16,5 +16,6 @@ std::string Words(identification::Identifiability identifiability);
 std::string_view Name(models::InitialState state);
 std::string_view Name(SlipRegime regime);
 std::string_view Name(identification::AdequacyVerdict verdict);
+std::string_view Name(identification::MemoryVerdict verdict);
 
 }  // namespace mindahl::report

@@ -230,6 +230,20 @@ std::string OtherLawFitsBetter(const Finding& finding, const FitResult& fit, con
       Needed(finding, "slip_force"), units.force, finding.kind);
 }
 
+std::string MemoryContradictsLaw(const Finding& finding, const FitResult&, const Units&) {
+  const bool fits_masing = finding.kind == "masing";
+  const char* const better = fits_masing ? "Masing's law" : "Dahl's own law";
+  const char* const other = fits_masing ? "Dahl's" : "Masing's";
+  return fmt::format(
+      "{} fits this record better (ΔAICc = {:.3g}), but its branches, compared with each other, "
+      "are "
+      "of {} memory (p = {:.2g}, of the other {:.2g}): the shape of neither law is the record's; "
+      "believe neither's sigma, and look at the plot",
+      better, Needed(finding, "delta_aicc"), other,
+      Needed(finding, fits_masing ? "dahl_p_value" : "p_value"),
+      Needed(finding, fits_masing ? "p_value" : "dahl_p_value"));
+}
+
 // --- what the model misses
 
 struct MisfitKind {
@@ -334,7 +348,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 30> kSentences = {{
+constexpr std::array<Row, 31> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -357,6 +371,7 @@ constexpr std::array<Row, 30> kSentences = {{
     {"initial_state_undecided", InitialStateUndecided},
     {"law_undecided", LawUndecided},
     {"other_law_fits_better", OtherLawFitsBetter},
+    {"memory_contradicts_law", MemoryContradictsLaw},
     {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
     {"rig_not_tried", RigNotTried},

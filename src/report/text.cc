@@ -377,6 +377,73 @@ std::string LawText(const Report& report) {
   return Wrapped(text, 6);
 }
 
+/// The comparisons of branches, in words.
+struct ComparisonWords {
+  std::string_view code;
+  std::string_view words;
+};
+
+constexpr std::array<ComparisonWords, 6> kComparisons = {{
+    {"virgin_branch", "virgin branch"},
+    {"directions", "directions"},
+    {"amplitudes", "amplitudes"},
+    {"slope_at_reversal", "slopes after reversals"},
+    {"return_point", "way on after inner loops"},
+    {"other_law", "what the other law fits"},
+}};
+
+/// Of which memory the record is, whatever the shape of its branches.
+std::string MemoryText(const Report& report) {
+  if (!report.fit.memory || report.fit.memory->comparisons.empty()) return "";
+  const identification::MemoryTest& memory = *report.fit.memory;
+  const auto p = [](double value) {
+    return value < 1e-6 ? std::string("p < 1e-6") : fmt::format("p = {:.2g}", value);
+  };
+  std::string text = "memory: ";
+  using enum identification::MemoryVerdict;
+  switch (memory.verdict) {
+    case kMasing:
+      text +=
+          fmt::format("Masing's ({}), not Dahl's ({})", p(memory.p_value), p(memory.dahl_p_value));
+      break;
+    case kDahl:
+      text +=
+          fmt::format("Dahl's ({}), not Masing's ({})", p(memory.dahl_p_value), p(memory.p_value));
+      break;
+    case kNeither:
+      text += fmt::format("neither Masing's ({}) nor Dahl's ({})", p(memory.p_value),
+                          p(memory.dahl_p_value));
+      break;
+    case kUndecided:
+      text += fmt::format("Masing's ({}) or Dahl's ({}), undecided", p(memory.p_value),
+                          p(memory.dahl_p_value));
+      break;
+  }
+  std::vector<std::string> compared;
+  for (const ComparisonWords& row : kComparisons) {
+    const auto found =
+        std::ranges::find(memory.comparisons, row.code, &identification::MemoryComparison::code);
+    if (found == memory.comparisons.end()) continue;
+    if (memory.verdict == kNeither) {
+      compared.push_back(fmt::format("{} ({}, {:.2g} {})", row.words, p(found->p_value),
+                                     found->size, report.units.force));
+    } else {
+      compared.emplace_back(row.words);
+    }
+  }
+  text += fmt::format("; compared: {}", fmt::join(compared, ", "));
+  if (memory.verdict == kUndecided) {
+    const auto has = [&](std::string_view code) {
+      return std::ranges::find(memory.comparisons, code, &identification::MemoryComparison::code) !=
+             memory.comparisons.end();
+    };
+    text += has("virgin_branch") || has("amplitudes")
+                ? "; amplitudes further apart, or less noise, would decide"
+                : "; a virgin branch, a second amplitude or an inner loop would decide";
+  }
+  return Wrapped(text, 8);
+}
+
 std::string NotesText(const Report& report) {
   std::string text;
   for (const Warning& note : report.notes) text += Wrapped("note: " + note.message, 6);
@@ -401,7 +468,7 @@ std::string ToText(const Report& report) {
     cycles += record.measures.cycles;
     left_out += record.left_out;
   }
-  std::string text = AdequacyText(report) + MeasuredText(report) + "\n";
+  std::string text = AdequacyText(report) + MeasuredText(report) + MemoryText(report) + "\n";
   if (report.selection) text += SelectionText(*report.selection, units);
   text += fmt::format(
       "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} {}), {} cycles; {} "

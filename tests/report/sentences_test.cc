@@ -68,7 +68,9 @@ Finding Complete(std::string_view code, std::string_view kind = "") {
                      {"model", 0.0325},
                      {"r_squared", 0.0625},
                      {"variation", 0.055},
-                     {"bound", 0.99}};
+                     {"bound", 0.99},
+                     {"p_value", 0.0035},
+                     {"dahl_p_value", 0.25}};
   return finding;
 }
 
@@ -119,6 +121,10 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
        "dahl",
        {"sigma, slip_force: Dahl's own law", "Masing's law", "ΔAICc = -31.5", "3.25e+07 N/m",
         "43.5 N", "--model dahl"}},
+      {"memory_contradicts_law",
+       "masing",
+       {"Masing's law", "ΔAICc = -31.5", "of Dahl's memory", "0.25", "0.0035"}},
+      {"memory_contradicts_law", "dahl", {"Dahl's own law", "of Masing's memory"}},
       {"rig_not_tried", "", {"alpha = 0.0625", "--load-window"}},
       {"load_followed", "", {"record 2: ", "±5.5 %", "the law follows it"}},
       {"load_not_followed", "", {"record 2: ", "±5.5 %", "jenkins", "--load-window"}},
@@ -243,7 +249,8 @@ TEST(FindingCodes, HaveAVerdictUnlessTheyAreOfNoParameter) {
   std::set<std::string> of_parameters = EmittedCodes();
   for (const char* of_the_whole_fit :
        {"fit_failed", "weights_not_settled", "reversals_uncertain", "glitches_left_out",
-        "path_too_long", "no_closed_cycle", "load_followed", "load_not_followed"}) {
+        "path_too_long", "no_closed_cycle", "load_followed", "load_not_followed",
+        "memory_contradicts_law"}) {
     EXPECT_EQ(of_parameters.erase(of_the_whole_fit), 1U) << of_the_whole_fit;
   }
   const std::string judge = Content(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src" /

@@ -9,6 +9,7 @@
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/law_choice.h"
+#include "mindahl/identification/memory.h"
 #include "mindahl/identification/residual_statistics.h"
 #include "mindahl/identification/residual_structure.h"
 #include "mindahl/loop/cycles.h"
@@ -141,6 +142,10 @@ struct FitResult {
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
   std::optional<LawChoice> law_choice;
+  /// Whether the record is of Masing's memory, of whatever shape: also where the model is
+  /// inadequate. Empty where the motion does not turn, where σ or Tc is held or bounded, and under
+  /// loads that differ or vary or a lag, where branches are no copies of each other.
+  std::optional<MemoryTest> memory;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/io/record_reader.h"
@@ -24,7 +25,8 @@ struct ReportInput {
   contact::KnownContact known = {};  ///< of the contact, besides the fit
   /// Normal loads [N] of the samples that counted, as the fit was told.
   std::optional<identification::Interval> load_window = {};
-  std::optional<identification::ModelSelection> selection = {};  ///< where the model was chosen
+  std::optional<identification::ModelSelection> selection = {};   ///< where the model was chosen
+  std::optional<identification::BackboneEstimate> backbone = {};  ///< where it was asked for
 };
 
 /// Everything that is said of a fit: what was given, and what follows from it. ToJson(), ToText(),

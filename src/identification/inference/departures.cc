@@ -8,6 +8,8 @@
 #include <numbers>
 #include <ranges>
 
+#include "identification/inference/branch_places.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -31,6 +33,7 @@ struct Place {
   double gain = 1.0;         // and by that at the origin of the branch
   // The branch:
   bool sets_out = false;  // on the virgin curve, the way that it was first run
+  bool virgin = false;    // on the virgin curve
   double reach = 1.0;     // what it has to go from its origin to slip
   double origin = 0.0;
   double origin_response = 0.0;
@@ -428,111 +431,15 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
   return places;
 }
 
-/// Sets what a place has of a branch that starts at `origin`.
-void PutOn(const models::Branch& branch, const Place& origin, const models::FrictionModel& model,
-           Place& at) {
-  const bool virgin = models::IsVirgin(branch.start);
-  at.direction = virgin ? std::copysign(1.0, at.displacement - branch.origin)
-                        : static_cast<double>(branch.direction);
-  at.sets_out = virgin && at.direction * branch.direction > 0;
-  const models::BranchScale scale = model.scale(at.direction * origin.response, 0.0, virgin);
-  at.reach = scale.span * scale.remaining;
-  at.origin = branch.origin;
-  at.origin_response = origin.response;
-}
-
-/// Gives each sample its branch, and returns the place of each branch's origin on its parent.
-std::vector<Place> FollowBranches(const models::FrictionModel& model,
-                                  const models::LoadingPath& path,
-                                  const models::OriginSensitivity& sensitivity,
-                                  std::vector<Place>& places) {
-  const std::size_t count = path.branches.size();
-  std::vector<Place> origins(count);
-  for (std::size_t b = 0; b < count; ++b) {
-    const models::Branch& branch = path.branches[b];
-    Place& origin = origins[b];
-    if (!models::IsVirgin(branch.start)) origin.response = sensitivity.origin_force[b];
-    origin.displacement = branch.origin;
-    origin.slope = sensitivity.slope[b];
-    origin.gain = sensitivity.gain[b];
-    if (branch.parent < 0) continue;
-    const auto parent = static_cast<std::size_t>(branch.parent);
-    PutOn(path.branches[parent], origins[parent], model, origin);
-  }
-  for (const models::BranchRun& run : path.runs) {
-    const auto b = static_cast<std::size_t>(run.branch);
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      PutOn(path.branches[b], origins[b], model, places[i]);
-    }
-  }
-  return origins;
-}
-
-/// What a column is where branches start, from what it is on the first of them.
-std::vector<double> StartsOf(const Column& column, const models::LoadingPath& path,
-                             std::span<const Place> origins, double first) {
-  std::vector<double> start(origins.size(), first);
-  for (std::size_t b = 0; b < origins.size(); ++b) {
-    const std::int32_t parent = path.branches[b].parent;
-    if (parent < 0) continue;
-    start[b] = origins[b].gain * start[static_cast<std::size_t>(parent)] + column.value(origins[b]);
-  }
-  return start;
-}
-
-/// The upper extreme of the steady loop, on the branch from the lower one.
-Place SteadyExtreme(const Problem& problem, const LawPoint& point, const ScaledRecord& record) {
-  const std::span<const double> displacement = record.displacement;
-  const auto [lowest, highest] = std::ranges::minmax(displacement);
-  const std::array<double, 2> stroke = {lowest, highest};
-  const models::LoadingPath path = models::MakeLoadingPath(
-      stroke, {}, problem.model->memory, {.state = models::InitialState::kSteady});
-  const models::NormalizedLaw law = LawUnder(problem, point, record);
-  models::NormalizedResponse response;
-  std::array<double, 2> t{};
-  response.Evaluate(*problem.model, law, path, stroke, t);
-  models::OriginSensitivity sensitivity;
-  response.DifferentiateByOrigins(*problem.model, law, path, stroke, sensitivity);
-  Place at{.displacement = highest,
-           .response = t[1],
-           .slope = sensitivity.sample_slope[1],
-           .gain = sensitivity.sample_gain[1]};
-  PutOn(path.branches[static_cast<std::size_t>(path.runs.back().branch)], {.response = t[0]},
-        *problem.model, at);
-  return at;
-}
-
-/// On the first branch: nothing where the contact was unloaded; a steady loop stays symmetric.
-double FirstStart(const Column& column, const models::LoadingPath& path, const Place& extreme,
-                  std::span<const Place> origins) {
-  switch (path.branches.front().start) {
-    case models::BranchStart::kSteadyCentre: {
-      const std::vector<double> start = StartsOf(column, path, origins, 0.0);
-      return -(start[1] + start[2]) / 2;
-    }
-    case models::BranchStart::kSteadyExtreme:
-      return -path.branches.front().direction * column.value(extreme) / (1 + extreme.gain);
-    default:
-      return 0.0;
-  }
-}
-
-/// @param first  what the column is on the first branch
-void FillColumn(const Column& column, const models::LoadingPath& path, double first,
+void FillColumn(const Column& column, const models::LoadingPath& path, const Place& extreme,
                 std::span<const Place> places, std::span<const Place> origins,
                 const ScaledRecord& record, std::span<double> values) {
   if (column.along == Along::kForce) {
     for (std::size_t i = 0; i < places.size(); ++i) values[i] = column.value(places[i]);
     return;
   }
-  const std::vector<double> start = StartsOf(column, path, origins, first);
-  for (const models::BranchRun& run : path.runs) {
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      values[i] =
-          places[i].gain * start[static_cast<std::size_t>(run.branch)] + column.value(places[i]);
-      values[i] *= record.LoadAt(i);
-    }
-  }
+  FillAlongBranches(column.value, path, extreme, places, origins, values);
+  for (std::size_t i = 0; i < places.size(); ++i) values[i] *= record.LoadAt(i);
 }
 
 /// What a factor of one is, forces being in units of the data and the contact's over Tc.
@@ -673,14 +580,14 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     }
     const models::LoadingPath& path = response.PathOf(r, theta);
     const Place extreme = problem.state == models::InitialState::kSteady
-                              ? SteadyExtreme(problem, point, record)
+                              ? SteadyExtreme<Place>(problem, point, record)
                               : Place{};
-    const std::vector<Place> origins = FollowBranches(*problem.model, path, sensitivity, places);
+    const std::vector<Place> origins =
+        FollowBranches(*problem.model, path, sensitivity, std::span(places));
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       const std::span<double> values(
           result.columns.col(static_cast<Eigen::Index>(c)).data() + begin, record.size());
-      const double first = FirstStart(*wanted[c], path, extreme, origins);
-      FillColumn(*wanted[c], path, first, places, origins, record, values);
+      FillColumn(*wanted[c], path, extreme, places, origins, record, values);
       for (std::size_t i = 0; i < record.size(); ++i) values[i] *= record.root_weight[i];
     }
     for (std::size_t c = 0; c < result.covariates.size(); ++c) {

@@ -27,9 +27,9 @@ const FrictionModel& OtherModel(const FrictionModel& model) {
   return *models::FindFrictionModel(model.memory == Memory::kReturnPoint ? "dahl" : "mindlin-dahl");
 }
 
-/// Have the two laws a σ and a Tc of their own? Not before the motion turns, and not for α = 0; σ
-/// and Tc that the user holds are of one law only.
-bool AreTwoLaws(const Problem& problem, const FitResult& result, const Thresholds& thresholds) {
+/// Can the two laws have a σ and a Tc of their own? Not before the motion turns; σ and Tc that the
+/// user holds are of one law only.
+bool AreComparable(const Problem& problem) {
   // Dahl's own has no account of a load that varies.
   if (problem.data->load_varies) return false;
   if (std::ranges::all_of(problem.data->records,
@@ -39,7 +39,7 @@ bool AreTwoLaws(const Problem& problem, const FitResult& result, const Threshold
   for (const std::size_t p : {kStiffness, kSlipForce}) {
     if (problem.parameters[p].fixed || problem.parameters[p].bounded_by_user) return false;
   }
-  return result.law.shape_exponent > thresholds.jenkins_shape;
+  return true;
 }
 
 /// The law whose steady loop at the record's amplitude is the fitted one.
@@ -50,12 +50,6 @@ models::BranchLaw EquivalentOf(const FitResult& result) {
              ? models::DahlEquivalent(result.law, amplitude)
              : models::MasingEquivalent(result.law, amplitude);
 }
-
-/// A fit of the other law.
-struct OtherFit {
-  Problem problem;
-  Solution solution;
-};
 
 /// A cost to 1e-4 tells 2 ln Λ to 1e-4 of the samples: enough where the other law is far off.
 SolverOptions RoughlyAs(const FitOptions& options) {
@@ -149,13 +143,16 @@ bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds) {
   return std::abs(delta_aicc) < thresholds.rival_law;
 }
 
-std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
-                                   const FitResult& result, const FitOptions& options,
-                                   SearchBuffers& buffers) {
-  if (!AreTwoLaws(problem, result, options.thresholds)) return std::nullopt;
+LawComparison CompareLaws(const Problem& problem, const Solution& best, const FitResult& result,
+                          const FitOptions& options, SearchBuffers& buffers) {
+  LawComparison comparison;
+  comparison.is_comparable = AreComparable(problem);
+  if (!comparison.is_comparable || result.law.shape_exponent <= options.thresholds.jenkins_shape) {
+    return comparison;
+  }
   const FrictionModel& alternative = OtherModel(*problem.model);
   const models::BranchLaw equivalent = EquivalentOf(result);
-  LawChoice choice;
+  LawChoice& choice = comparison.choice.emplace();
   choice.alternative = &alternative;
   choice.law = equivalent;
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
@@ -206,17 +203,18 @@ std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
     choice.likelihood_ratio =
         evidence.LikelihoodRatio(other.solution.sum_of_squares, best.sum_of_squares);
     choice.law = other.problem.parameters.LawAt(other.solution.theta);
+    comparison.other.emplace(std::move(other));
   }
   buffers.response.Bind(problem);
   if (!choice.delta_aicc) {
     // Either one curve, or the other law has no fit at all.
     choice.decided = !same_curve;
     if (choice.decided) choice.preferred = problem.model;
-    return choice;
+    return comparison;
   }
   choice.decided = !LawIsUndecided(*choice.delta_aicc, options.thresholds);
   if (choice.decided) choice.preferred = *choice.delta_aicc > 0 ? problem.model : &alternative;
-  return choice;
+  return comparison;
 }
 
 }  // namespace mindahl::identification

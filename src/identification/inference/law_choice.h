@@ -18,13 +18,27 @@ bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds);
 /// @param delta_aicc  of the two
 bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds);
 
+/// A fit of the other law.
+struct OtherFit {
+  Problem problem;
+  Solution solution;
+};
+
+/// Masing's law beside Dahl's own.
+struct LawComparison {
+  /// Empty where the laws are one (α = 0), and where they are not compared.
+  std::optional<LawChoice> choice;
+  /// Of the past that is the likeliest for it; empty where it was not fitted.
+  std::optional<OtherFit> other;
+  /// σ and Tc are not held or bounded, as those of one law only, the motion turns and the load
+  /// stays.
+  bool is_comparable = false;
+};
+
 /// Masing's law against Dahl's own, whichever of them was fitted. The other is fitted too where the
 /// record may tell them apart, from where its loop at the widest amplitude would be the same; of
 /// one amplitude it follows in closed form.
-/// @returns empty where the laws are one (α = 0), or the options hold or bound σ or Tc, which are
-///   those of one law only
-std::optional<LawChoice> ChooseLaw(const Problem& problem, const Solution& best,
-                                   const FitResult& result, const FitOptions& options,
-                                   SearchBuffers& buffers);
+LawComparison CompareLaws(const Problem& problem, const Solution& best, const FitResult& result,
+                          const FitOptions& options, SearchBuffers& buffers);
 
 }  // namespace mindahl::identification

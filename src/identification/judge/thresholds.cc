@@ -141,6 +141,10 @@ constexpr std::array kTable = {
                  "Masing's law and Dahl's own are not told apart by less",
                  "an evidence of e⁵ = 150 to 1, as of the two pasts: what either misses of a real "
                  "loop can be worth less"},
+    ThresholdRow{"memory_chance", &Thresholds::memory_chance, "p",
+                 "branches whose differences noise makes less often are not of a memory",
+                 "one loop in a hundred is denied the memory that it has, where none but noise "
+                 "makes its branches differ"},
     ThresholdRow{
         "seen_loop", &Thresholds::seen_loop, "R²",
         "a loop that explains less of the force is not seen, and none of it believed",

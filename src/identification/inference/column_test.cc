@@ -1,0 +1,187 @@
+#include "identification/inference/column_test.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "identification/inference/evidence.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// A column of which less is left beside the law's is one of theirs.
+constexpr double kOwnShare = 0.02;
+/// Likewise beside those before it.
+constexpr double kIndependent = 1e-3;
+
+/// Wald's statistic, over their number, of the coefficients of orthonormal columns U in the
+/// residuals. Noise counts at least as white: where the columns took up what is slow of it, the
+/// rest would call what is slow improbable.
+/// @param correlated  UᵀRU
+double WaldF(const Eigen::VectorXd& coefficients, const Eigen::MatrixXd& correlated,
+             double variance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(correlated);
+  const Eigen::ArrayXd along = (axes.eigenvectors().transpose() * coefficients).array();
+  return (along.square() / axes.eigenvalues().array().max(1.0)).mean() / variance;
+}
+
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& symmetric) {
+  if (symmetric.size() == 0) return symmetric;
+  return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(symmetric).pseudoInverse();
+}
+
+/// AᵀRA
+Eigen::MatrixXd CorrelationOf(const ScaledRecords& data, const Noise& noise,
+                              const Autocorrelation& autocorrelation,
+                              const DisplacementEffect& displacement,
+                              const Eigen::MatrixXd& columns, const Eigen::MatrixXd& plain) {
+  if (displacement.residuals.size() > 0) {
+    return CorrelatedProduct(data, autocorrelation, noise, displacement, columns);
+  }
+  return autocorrelation.order == 0 ? plain : CorrelatedProduct(data, autocorrelation, columns);
+}
+
+}  // namespace
+
+ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
+                       const DisplacementEffect& displacement, const Eigen::MatrixXd& law,
+                       const Eigen::MatrixXd& others, const Eigen::VectorXd& residual,
+                       const ColumnTest* quieter)
+    : law_(law.cols()),
+      samples_(static_cast<double>(problem.data->counted)),
+      sum_of_squares_(residual.squaredNorm()) {
+  Eigen::MatrixXd columns(law.rows(), law_ + others.cols());
+  columns << law, others;
+  for (auto column : columns.colwise()) {
+    if (!column.allFinite()) column.setZero();  // overflow: nothing to be told
+  }
+  norms_ = columns.colwise().norm().transpose();
+  for (double& norm : norms_) norm = norm > 0 ? norm : 1.0;
+  columns *= norms_.cwiseInverse().asDiagonal();
+  plain_ = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  plain_.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  plain_.triangularView<Eigen::StrictlyUpper>() = plain_.transpose();
+  residual_ = columns.transpose() * residual;
+  inverse_of_law_ = Inverse(plain_.topLeftCorner(law_, law_));
+  shares_ = inverse_of_law_ * plain_.topRightCorner(law_, others.cols());
+  free_plain_ = FreedOfLaw(plain_);
+  free_residual_ = residual_.tail(others.cols()) - shares_.transpose() * residual_.head(law_);
+
+  std::vector<Eigen::Index> everything(static_cast<std::size_t>(others.cols()));
+  std::iota(everything.begin(), everything.end(), Eigen::Index{0});
+  all_ = Orthonormal(everything);
+  const Eigen::VectorXd explained = all_.transpose() * free_residual_;
+  Eigen::VectorXd in_columns(columns.cols());
+  in_columns.tail(others.cols()) = all_ * explained;
+  in_columns.head(law_) = -shares_ * in_columns.tail(others.cols());
+  const Eigen::VectorXd rest = residual - columns * in_columns;
+  autocorrelation_ = quieter != nullptr
+                         ? quieter->autocorrelation_
+                         : AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
+  correlated_ =
+      CorrelationOf(*problem.data, noise, autocorrelation_, displacement, columns, plain_);
+  free_correlated_ = FreedOfLaw(correlated_);
+
+  // Of correlated noise a fit takes up more than its parameters' number.
+  const double by_law = (inverse_of_law_ * correlated_.topLeftCorner(law_, law_)).trace();
+  const double by_others = (all_.transpose() * free_correlated_ * all_).trace();
+  const double absorbed = std::min(by_law + by_others, samples_ / 2);
+  if (quieter != nullptr) {
+    variance_ = quieter->variance_;
+  } else {
+    variance_ = noise.is_known ? noise.variance : rest.squaredNorm() / (samples_ - absorbed);
+  }
+  effective_samples_ = samples_ / std::max(1.0, autocorrelation_.SquaredCorrelations());
+  degrees_of_freedom_ = std::max(
+      1.0, effective_samples_ - static_cast<double>(law_) - static_cast<double>(all_.cols()));
+}
+
+/// Of the others, each less what the law has of it.
+/// @param products  of A
+Eigen::MatrixXd ColumnTest::FreedOfLaw(const Eigen::MatrixXd& products) const {
+  const Eigen::Index count = products.cols() - law_;
+  const Eigen::MatrixXd mixed = shares_.transpose() * products.topRightCorner(law_, count);
+  return products.bottomRightCorner(count, count) - mixed - mixed.transpose() +
+         shares_.transpose() * products.topLeftCorner(law_, law_) * shares_;
+}
+
+/// Coefficients, in columns freed of the law, of orthonormal ones that span some of them; none
+/// where a column has less than kOwnShare of its own.
+Eigen::MatrixXd ColumnTest::Orthonormal(std::span<const Eigen::Index> places) const {
+  Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(free_plain_.rows(), static_cast<Eigen::Index>(places.size()));
+  Eigen::MatrixXd image = result;  // free_plain·result
+  Eigen::Index count = 0;
+  for (const Eigen::Index place : places) {
+    if (!(free_plain_(place, place) >= kOwnShare * kOwnShare)) continue;
+    Eigen::VectorXd v = Eigen::VectorXd::Unit(free_plain_.rows(), place);
+    Eigen::VectorXd of_v = free_plain_.col(place);
+    const auto take_out = [&] {
+      const Eigen::VectorXd parts = result.leftCols(count).transpose() * of_v;
+      v.noalias() -= result.leftCols(count) * parts;
+      of_v.noalias() -= image.leftCols(count) * parts;
+    };
+    take_out();
+    const double left = v.dot(of_v);
+    if (!(left >= kIndependent * kIndependent)) continue;
+    v /= std::sqrt(left);
+    of_v /= std::sqrt(left);
+    take_out();
+    const double norm = std::sqrt(v.dot(of_v));
+    result.col(count) = v / norm;
+    image.col(count++) = of_v / norm;
+  }
+  return result.leftCols(count);
+}
+
+ColumnTest::Part ColumnTest::AskBasis(const Eigen::MatrixXd& basis) const {
+  Part part{.columns = static_cast<std::size_t>(basis.cols())};
+  if (part.columns == 0 || !(variance_ > 0)) return part;
+  const Eigen::VectorXd explained = basis.transpose() * free_residual_;
+  const Eigen::MatrixXd correlated = basis.transpose() * free_correlated_ * basis;
+  const double f = WaldF(explained, correlated, variance_);
+  const double of_noise = variance_ * correlated.trace();
+  part.rms = std::sqrt(std::max(0.0, explained.squaredNorm() - of_noise) / samples_);
+  // Where nothing is explained, by rounding less, noise alone makes it.
+  part.p_value = f > 0 ? PValueOfF(f, static_cast<double>(part.columns), degrees_of_freedom_) : 1.0;
+  return part;
+}
+
+ColumnTest::Part ColumnTest::Ask(std::span<const Eigen::Index> places) const {
+  return AskBasis(Orthonormal(places));
+}
+
+double ColumnTest::p_value() const { return AskBasis(all_).p_value; }
+
+double ColumnTest::misfit_over_noise() const {
+  const Eigen::VectorXd explained = all_.transpose() * free_residual_;
+  const double of_noise = (all_.transpose() * free_correlated_ * all_).trace();
+  return std::sqrt(std::max(0.0, explained.squaredNorm() / variance_ - of_noise) / samples_);
+}
+
+LinearStep ColumnTest::Step(std::span<const Eigen::Index> places) const {
+  std::vector<Eigen::Index> both;
+  for (Eigen::Index j = 0; j < law_; ++j) both.push_back(j);
+  for (const Eigen::Index place : places) both.push_back(law_ + place);
+  const Eigen::MatrixXd products = plain_(both, both);
+  const Eigen::MatrixXd factor = Inverse(products);
+  const Eigen::VectorXd step = -factor * residual_(both);
+  const Eigen::MatrixXd covariance = variance_ * factor * correlated_(both, both) * factor;
+  const double gain = -step.dot(products * step) - 2 * step.dot(residual_(both));
+  const auto error = [&](Eigen::Index j) {
+    return std::sqrt(std::max(covariance(j, j), variance_ * factor(j, j)));
+  };
+  LinearStep result;
+  result.explains = sum_of_squares_ > 0 ? std::clamp(gain / sum_of_squares_, 0.0, 1.0) : 0.0;
+  const double first = norms_[law_ + places[0]];
+  result.size = step[law_] / first;
+  result.size_error = error(law_) / first;
+  for (Eigen::Index j = 0; j < law_; ++j) {
+    result.step.push_back(step[j] / norms_[j]);
+    result.error.push_back(error(j) / norms_[j]);
+  }
+  return result;
+}
+
+}  // namespace mindahl::identification

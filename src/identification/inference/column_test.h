@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "identification/inference/local.h"
+#include "identification/inference/noise.h"
+#include "identification/problem/problem.h"
+
+namespace mindahl::identification {
+
+/// A linear step from a fit that lets some more columns in.
+struct LinearStep {
+  double explains = 0.0;      // share of the sum of squares
+  double size = 0.0;          // factor of the first of them
+  double size_error = 0.0;    // its standard error
+  std::vector<double> step;   // of the law's columns
+  std::vector<double> error;  // standard errors of these with it
+};
+
+/// Do the residuals of a fit hold more columns than those of its law? Noise is what all columns
+/// together leave, with the autocorrelation that it has: what a law misses is smooth along the loop
+/// and would pass for autocorrelated noise otherwise.
+class ColumnTest {
+ public:
+  /// @param law           columns of what is fitted already
+  /// @param others        those that are asked for; all weighted, a row a sample
+  /// @param residual      weighted
+  /// @param displacement  what drawn errors of the displacement do to the residuals: noise too
+  /// @param quieter       of the same samples by another law, whose noise it is; null: its own
+  ColumnTest(const Problem& problem, const Noise& noise, const DisplacementEffect& displacement,
+             const Eigen::MatrixXd& law, const Eigen::MatrixXd& others,
+             const Eigen::VectorXd& residual, const ColumnTest* quieter = nullptr);
+
+  /// Has any column something of its own, and is there noise to hold it against?
+  [[nodiscard]] bool can_tell() const { return all_.cols() > 0 && variance_ > 0; }
+  /// Of a weighted residual.
+  [[nodiscard]] double variance() const { return variance_; }
+  [[nodiscard]] double degrees_of_freedom() const { return degrees_of_freedom_; }
+  /// That tell of the noise.
+  [[nodiscard]] double effective_samples() const { return effective_samples_; }
+  /// That noise alone makes what all columns explain.
+  [[nodiscard]] double p_value() const;
+  /// rms of what all columns explain, less what they would of noise, over that of the noise.
+  [[nodiscard]] double misfit_over_noise() const;
+
+  struct Part {
+    std::size_t columns = 0;  // with something of their own; 0: the law has them all
+    double p_value = 1.0;     // that noise alone makes what these explain
+    double rms = 0.0;         // of that, less what they would of noise; of a weighted residual
+  };
+  /// Some of the columns by themselves.
+  [[nodiscard]] Part Ask(std::span<const Eigen::Index> places) const;
+  [[nodiscard]] LinearStep Step(std::span<const Eigen::Index> places) const;
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd FreedOfLaw(const Eigen::MatrixXd& products) const;
+  [[nodiscard]] Eigen::MatrixXd Orthonormal(std::span<const Eigen::Index> places) const;
+  [[nodiscard]] Part AskBasis(const Eigen::MatrixXd& basis) const;
+
+  // The columns A of the law and of what is asked for, of unit norm, and their products with each
+  // other and with the residuals: all that any question asks for, whatever the number of samples.
+  Eigen::Index law_;
+  double samples_;
+  double sum_of_squares_;
+  Eigen::VectorXd norms_;
+  Eigen::MatrixXd plain_;       // AᵀA
+  Eigen::MatrixXd correlated_;  // AᵀRA
+  Eigen::VectorXd residual_;    // Aᵀr
+  Eigen::MatrixXd inverse_of_law_;
+  Eigen::MatrixXd shares_;           // of the law's columns in each of the others
+  Eigen::MatrixXd free_plain_;       // the same products of the others freed of the law
+  Eigen::MatrixXd free_correlated_;  //
+  Eigen::VectorXd free_residual_;    //
+  Eigen::MatrixXd all_;              // orthonormal, of all that have something of their own
+  Autocorrelation autocorrelation_;  // of what all columns leave
+  double variance_ = 0.0;
+  double degrees_of_freedom_ = 1.0;
+  double effective_samples_ = 1.0;
+};
+
+}  // namespace mindahl::identification

@@ -1,0 +1,310 @@
+#include "identification/inference/memory_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "identification/inference/branch_places.h"
+#include "identification/solve/turning_points.h"
+#include "mindahl/identification/memory.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// Each column is paid for by so many samples.
+constexpr std::size_t kSamplesAColumn = 8;
+constexpr std::size_t kMostShapes = 10;
+constexpr std::size_t kMostWaves = 4;
+constexpr std::size_t kFewestShapes = 3;
+/// Reversals whose forces lie closer [of the largest] are as good as at one force.
+constexpr double kOneForce = 0.05;
+/// Of the widest stroke: a way on a branch that is shorter after an inner loop shows nothing.
+constexpr double kShortWay = 0.05;
+/// Of the widest virgin branch: less of one shows nothing.
+constexpr double kSeenWay = 0.25;
+/// Of the widest stroke: over it the slope after a reversal is that after a reversal.
+constexpr double kEarly = 0.1;
+
+/// A sample on its branch, or the origin of a branch on the one before (OnBranch).
+struct Place {
+  double displacement = 0.0;
+  double response = 0.0;
+  double slope = 0.0;
+  double gain = 1.0;
+  double direction = 1.0;
+  bool sets_out = false;
+  bool virgin = false;
+  double reach = 1.0;
+  double origin = 0.0;
+  double origin_response = 0.0;
+};
+
+/// What places are measured by, of all records.
+struct Extent {
+  double stroke = 0.0;  // the widest way between reversals
+  double force = 0.0;   // the largest response
+};
+
+double Way(const Place& at) { return std::abs(at.displacement - at.origin); }
+
+/// Way on the branch over that of the widest, whose virgin branch has half the way of a stroke.
+double ShareOfStroke(const Place& at, const Extent& extent) {
+  return Way(at) * (at.virgin ? 2 : 1) / extent.stroke;
+}
+
+/// By how much a branch of Masing's law is larger than the virgin one.
+double ScaleOf(const Place& at) { return at.virgin ? 1.0 : 2.0; }
+
+/// Against the sense of the branch, where it starts, over Tc: T*/Tc of a steady loop.
+double HeightOf(const Place& at) { return at.virgin ? 0.0 : -at.direction * at.origin_response; }
+
+double Wave(std::size_t number, double share) {
+  return std::cos(static_cast<double>(number) * std::numbers::pi * std::min(share, 1.0));
+}
+
+/// A change of the backbone, F + εB, added up along branches: s·m·B(way/m), m = 1 or 2. Densest
+/// where branches begin: B is a cosine of the root of the way.
+double ChangeOfBackbone(std::size_t number, const Place& at, const Extent& extent) {
+  return at.direction * ScaleOf(at) * (Wave(number, std::sqrt(ShareOfStroke(at, extent))) - 1.0);
+}
+
+/// A change of the curve dT/dδ = g(sT) by B(sT), of which a branch has what lies between its
+/// start and here; what it was at the start is carried on by the gain.
+double ChangeOfCurve(std::size_t number, const Place& at, const Extent& extent) {
+  const auto wave = [&](double response) {
+    return Wave(number, std::clamp((1 + at.direction * response / extent.force) / 2, 0.0, 1.0));
+  };
+  return at.direction * (wave(at.response) - at.gain * wave(at.origin_response));
+}
+
+std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> response,
+                            const models::OriginSensitivity& sensitivity) {
+  std::vector<Place> places(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    places[i].displacement = record.displacement[i];
+    places[i].response = response[i];
+    places[i].slope = sensitivity.sample_slope[i];
+    places[i].gain = sensitivity.sample_gain[i];
+  }
+  return places;
+}
+
+/// Way since an inner loop was closed, of the samples that go on as before it; −1 of all others.
+std::vector<double> WaySinceReturn(const ScaledRecord& record, models::InitialState state,
+                                   double stroke) {
+  std::vector<double> way(record.size(), -1.0);
+  const models::LoadingPath path = models::MakeLoadingPath(
+      record.displacement, record.reversals, models::Memory::kReturnPoint,
+      {.state = state, .unloaded_displacement = record.displacement.front()});
+  for (std::size_t k = 1; k < path.runs.size(); ++k) {
+    const models::BranchRun& run = path.runs[k];
+    if (run.branch >= path.runs[k - 1].branch) continue;
+    const double from = record.displacement[run.begin];
+    if (std::abs(record.displacement[run.end - 1] - from) < kShortWay * stroke) continue;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      way[i] = std::abs(record.displacement[i] - from);
+    }
+  }
+  return way;
+}
+
+/// All samples of all records on the branches of a law.
+struct Samples {
+  std::vector<Place> places;
+  std::vector<double> way_since_return;
+  Extent extent;
+};
+
+/// Mean and range of what some places have.
+struct Spread {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  double count = 0.0;
+
+  void Add(double value) {
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+    sum += value;
+    ++count;
+  }
+  [[nodiscard]] double mean() const { return count > 0 ? sum / count : 0.0; }
+  [[nodiscard]] double range() const { return count > 0 ? highest - lowest : 0.0; }
+};
+
+class DifferenceColumns {
+ public:
+  DifferenceColumns(const Samples& samples, MemoryColumns& result)
+      : samples_(samples), result_(result) {
+    result_.differences.resize(static_cast<Eigen::Index>(samples.places.size()), 0);
+  }
+
+  template <typename Value>
+  void Add(std::string_view code, const Value& value) {
+    auto& columns = result_.differences;
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    for (std::size_t i = 0; i < samples_.places.size(); ++i) {
+      columns(static_cast<Eigen::Index>(i), columns.cols() - 1) =
+          value(samples_.places[i], samples_.way_since_return[i]);
+    }
+    result_.of.push_back(code);
+    if (result_.compared.empty() || result_.compared.back() != code) {
+      result_.compared.push_back(code);
+    }
+  }
+
+ private:
+  const Samples& samples_;
+  MemoryColumns& result_;
+};
+
+/// @param rate  σ/Tc in units of the data
+void AddDifferences(const Samples& samples, std::size_t waves, double rate, MemoryColumns& result) {
+  const Extent& extent = samples.extent;
+  DifferenceColumns columns(samples, result);
+  Spread virgin;
+  Spread after_reversal;
+  Spread directions;
+  for (const Place& at : samples.places) {
+    if (at.virgin) virgin.Add(ShareOfStroke(at, extent));
+    directions.Add(at.direction);
+    if (!at.virgin) after_reversal.Add(HeightOf(at));
+  }
+  const bool has_virgin = virgin.range() > kSeenWay;
+  const bool has_heights = after_reversal.range() > kOneForce * extent.force;
+  if (has_virgin) {
+    for (std::size_t k = 0; k < waves; ++k) {
+      columns.Add(kVirginBranch, [&](const Place& at, double) {
+        return at.virgin ? at.direction * Wave(k, ShareOfStroke(at, extent)) : 0.0;
+      });
+    }
+  }
+  if (directions.range() > 0) {
+    for (std::size_t k = 0; k < waves; ++k) {
+      columns.Add(kDirections,
+                  [&](const Place& at, double) { return Wave(k, ShareOfStroke(at, extent)); });
+    }
+  }
+  if (has_heights) {
+    for (std::size_t k = 0; k < waves; ++k) {
+      columns.Add(kAmplitudes, [&](const Place& at, double) {
+        if (at.virgin) return 0.0;
+        return at.direction * (HeightOf(at) - after_reversal.mean()) *
+               Wave(k, ShareOfStroke(at, extent));
+      });
+    }
+  }
+  if (has_virgin || has_heights) {
+    columns.Add(kSlopeAtReversal, [&](const Place& at, double) {
+      const double way = Way(at);
+      return at.direction * HeightOf(at) * rate * way * std::exp(-way / (kEarly * extent.stroke));
+    });
+  }
+  if (std::ranges::any_of(samples.way_since_return, [](double way) { return way >= 0; })) {
+    columns.Add(kReturnPoint,
+                [&](const Place& at, double way) { return way >= 0 ? at.direction : 0.0; });
+    columns.Add(kReturnPoint, [&](const Place& at, double way) {
+      return way >= 0 ? at.direction * std::exp(-way / (kEarly * extent.stroke)) : 0.0;
+    });
+  }
+}
+
+double WidestStroke(const ScaledRecords& data) {
+  double widest = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    const auto [lowest, highest] = std::ranges::minmax(record.displacement);
+    widest = std::max(widest, highest - lowest);
+  }
+  return widest;
+}
+
+}  // namespace
+
+std::vector<std::string_view> MemoryComparisonCodes() {
+  return {kVirginBranch, kDirections, kAmplitudes, kSlopeAtReversal, kReturnPoint, kOtherLaw};
+}
+
+MemoryResolution ResolutionOf(const Problem& problem) {
+  const std::size_t free = problem.parameters.free().size();
+  const std::size_t counted = problem.data->counted;
+  const std::size_t most = counted > free ? (counted - free) / kSamplesAColumn : 0;
+  for (const std::size_t waves : {kMostWaves, kMostWaves / 2}) {
+    // Three comparisons along a branch, one of slopes, two columns after inner loops.
+    const std::size_t differences = 3 * waves + 3;
+    if (most < differences + kFewestShapes) continue;
+    return {.shapes = std::min(most - differences, kMostShapes), .waves = waves};
+  }
+  return {};
+}
+
+MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> theta,
+                              Response& response, const MemoryResolution& resolution,
+                              const Eigen::VectorXd& other) {
+  const LawPoint point = PointAt(problem, theta);
+  const std::pmr::vector<ScaledRecord>& records = problem.data->records;
+  const auto rows = static_cast<Eigen::Index>(problem.size());
+  std::vector<double> force(problem.size());
+  response.Bind(problem);
+  response.Evaluate(point, force);
+  Samples samples;
+  samples.extent.stroke = WidestStroke(*problem.data);
+  for (const double value : force) {
+    samples.extent.force = std::max(samples.extent.force, std::abs(value));
+  }
+  const Extent& extent = samples.extent;
+
+  MemoryColumns result;
+  result.shape.resize(rows, static_cast<Eigen::Index>(resolution.shapes));
+  const auto change =
+      problem.model->memory == models::Memory::kReturnPoint ? ChangeOfBackbone : ChangeOfCurve;
+  std::size_t begin = 0;
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const ScaledRecord& record = records[r];
+    models::OriginSensitivity sensitivity;
+    response.DifferentiateByOrigins(point, r, sensitivity);
+    std::vector<Place> places =
+        PlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity);
+    const models::LoadingPath& path = response.PathOf(r, theta);
+    const Place extreme = problem.state == models::InitialState::kSteady
+                              ? SteadyExtreme<Place>(problem, point, record)
+                              : Place{};
+    const std::vector<Place> origins =
+        FollowBranches(*problem.model, path, sensitivity, std::span(places));
+    for (std::size_t j = 0; j < resolution.shapes; ++j) {
+      const auto value = [&](const Place& at) { return change(j + 1, at, extent); };
+      FillAlongBranches(
+          value, path, extreme, std::span<const Place>(places), std::span<const Place>(origins),
+          {result.shape.col(static_cast<Eigen::Index>(j)).data() + begin, record.size()});
+    }
+    const std::vector<double> since = WaySinceReturn(record, problem.state, extent.stroke);
+    samples.places.insert(samples.places.end(), places.begin(), places.end());
+    samples.way_since_return.insert(samples.way_since_return.end(), since.begin(), since.end());
+    begin += record.size();
+  }
+  AddDifferences(samples, resolution.waves, std::exp(point.log_rate), result);
+
+  Eigen::VectorXd weight(rows);
+  Eigen::Index row = 0;
+  for (const ScaledRecord& record : records) {
+    for (const double root : record.root_weight) weight[row++] = root;
+  }
+  result.shape = weight.asDiagonal() * result.shape;
+  result.differences = weight.asDiagonal() * result.differences;
+  if (other.size() > 0) {
+    result.differences.conservativeResize(Eigen::NoChange, result.differences.cols() + 1);
+    result.differences.rightCols(1) = other;
+    result.of.push_back(kOtherLaw);
+    result.compared.push_back(kOtherLaw);
+  }
+  if (HasTurningPoints(*problem.data)) {
+    const TurningPointColumns turning(problem, theta, response);
+    for (Eigen::MatrixXd* columns : {&result.shape, &result.differences}) {
+      for (Eigen::Index c = 0; c < columns->cols(); ++c) turning.ProjectOut(columns->col(c));
+    }
+  }
+  return result;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,75 @@
+#include "mindahl/report/backbone.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/io/csv_writer.h"
+
+namespace mindahl::report {
+
+using identification::BackboneEstimate;
+using identification::BackbonePoint;
+using identification::BandValue;
+
+namespace {
+
+std::string WithBand(const BandValue& value, std::string_view unit) {
+  return fmt::format("{:.4g} {} ({:.4g} … {:.4g})", value.value, unit, value.lower95,
+                     value.upper95);
+}
+
+bool LeavesBand(const BackbonePoint& point) {
+  return point.law < point.force.lower95 || point.law > point.force.upper95;
+}
+
+}  // namespace
+
+std::string BackboneCsv(const BackboneEstimate& backbone, const Units& units) {
+  const auto column = [&](auto get) {
+    std::vector<double> values;
+    for (const BackbonePoint& point : backbone.points) values.push_back(get(point));
+    return values;
+  };
+  const auto displacement = column([](const BackbonePoint& at) { return at.displacement; });
+  const auto force = column([](const BackbonePoint& at) { return at.force.value; });
+  const auto lower = column([](const BackbonePoint& at) { return at.force.lower95; });
+  const auto upper = column([](const BackbonePoint& at) { return at.force.upper95; });
+  const auto law = column([](const BackbonePoint& at) { return at.law; });
+  const auto named = [](std::string_view name, std::string_view unit) {
+    return fmt::format("{} [{}]", name, unit);
+  };
+  return io::CsvText({{named("displacement", units.displacement), displacement},
+                      {named("force", units.force), force},
+                      {named("lower95", units.force), lower},
+                      {named("upper95", units.force), upper},
+                      {named("law", units.force), law}});
+}
+
+std::string BackboneText(const BackboneEstimate& backbone, const identification::FitResult& fit,
+                         const Units& units) {
+  const BackbonePoint& last = backbone.points.back();
+  std::string text = fmt::format(
+      "\nbackbone without a law (95 % band):\n"
+      "  stiffness over the first hundredth {}\n"
+      "  force at {:.4g} {}: {}\n"
+      "  what does not slip there: {}\n",
+      WithBand(backbone.first_stiffness, units.stiffness), last.displacement, units.displacement,
+      WithBand(last.force, units.force), WithBand(backbone.elastic, units.stiffness));
+  text += fmt::format("  {} beside it: sigma = {:.4g} {}, alpha = {:.3g}, slip_force = {:.4g} {}\n",
+                      fit.model->name, fit.law.tangential_stiffness, units.stiffness,
+                      fit.law.shape_exponent, fit.law.slip_force, units.force);
+  const auto left = std::ranges::count_if(backbone.points, LeavesBand);
+  text += left == 0 ? std::string("  the law keeps to the band\n")
+                    : fmt::format("  the law leaves the band at {} of {} displacements\n", left,
+                                  backbone.points.size());
+  text +=
+      backbone.reaches_plateau
+          ? "  it levels off within the record\n"
+          : "  it does not level off within the record: slip_force is the law's extrapolation\n";
+  return text;
+}
+
+}  // namespace mindahl::report

@@ -1,0 +1,80 @@
+#include "mindahl/report/backbone.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "mindahl/report/json.h"
+#include "report/made_report.h"
+
+// The backbone without a law, as a table and in words.
+namespace mindahl::report {
+namespace {
+
+using identification::BackboneEstimate;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using testing::MadeInput;
+using ::testing::Not;
+
+BackboneEstimate Made() {
+  BackboneEstimate backbone;
+  backbone.points = {{.displacement = 0.0, .force = {}, .law = 0.0},
+                     {.displacement = 5e-7, .force = {10.0, 9.5, 10.5}, .law = 10.25},
+                     {.displacement = 1e-6, .force = {16.0, 15.5, 16.5}, .law = 17.0}};
+  backbone.first_stiffness = {3e7, 2.5e7, 3.5e7};
+  backbone.elastic = {1e6, 0.0, 2e6};
+  return backbone;
+}
+
+std::string TextOf(const BackboneEstimate& backbone) {
+  return BackboneText(backbone, MadeInput().fit, kUnitsOfForce);
+}
+
+TEST(BackboneCsv, HasTheBandAndTheLawBesideIt) {
+  EXPECT_EQ(BackboneCsv(Made(), kUnitsOfForce),
+            "displacement [m],force [N],lower95 [N],upper95 [N],law [N]\n"
+            "0,0,0,0,0\n"
+            "4.9999999999999998e-07,10,9.5,10.5,10.25\n"
+            "9.9999999999999995e-07,16,15.5,16.5,17\n");
+}
+
+TEST(BackboneJson, IsThereWhereItWasAskedFor) {
+  EXPECT_FALSE(nlohmann::json::parse(ToJson(MakeReport(MadeInput()))).contains("backbone"));
+  ReportInput input = MadeInput();
+  input.backbone = Made();
+  const auto backbone = nlohmann::json::parse(ToJson(MakeReport(std::move(input))))["backbone"];
+  EXPECT_EQ(backbone["first_stiffness"]["value"], 3e7);
+  EXPECT_EQ(backbone["elastic"]["ci95"][1], 2e6);
+  EXPECT_EQ(backbone["reaches_plateau"], false);
+  ASSERT_EQ(backbone["points"].size(), 3U);
+  EXPECT_EQ(backbone["points"][2]["ci95"][0], 15.5);
+  EXPECT_EQ(backbone["points"][2]["law"], 17.0);
+}
+
+TEST(BackboneText, HasTheNearestLawBesideIt) {
+  EXPECT_THAT(TextOf(Made()),
+              AllOf(HasSubstr("first hundredth 3e+07 N/m (2.5e+07 … 3.5e+07)"),
+                    HasSubstr("force at 1e-06 m: 16 N (15.5 … 16.5)"),
+                    HasSubstr("sigma = 4e+07 N/m, alpha = 0.333, slip_force = 40 N"),
+                    HasSubstr("leaves the band at 1 of 3 displacements")));
+}
+
+TEST(BackboneText, SaysThatTheSlipForceIsTheLawsUnlessThereIsAPlateau) {
+  BackboneEstimate backbone = Made();
+  EXPECT_THAT(TextOf(backbone), HasSubstr("slip_force is the law's extrapolation"));
+  backbone.reaches_plateau = true;
+  EXPECT_THAT(TextOf(backbone),
+              AllOf(HasSubstr("levels off within the record"), Not(HasSubstr("extrapolation"))));
+}
+
+TEST(BackboneText, OfATorqueIsInItsUnits) {
+  const std::string text = BackboneText(Made(), MadeInput().fit, kUnitsOfTorque);
+  EXPECT_THAT(text, AllOf(HasSubstr("N m/rad"), HasSubstr("force at 1e-06 rad: 16 N m")));
+}
+
+}  // namespace
+}  // namespace mindahl::report
