@@ -108,6 +108,22 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   }
 }
 
+/// A gate is in metres, as every option: one that is wider than the motion leaves no turning point.
+void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+  if (!request.reversal_gate) return;
+  double widest = 0.0;
+  for (const RecordFile& input : inputs) {
+    const auto [least, greatest] = std::ranges::minmax(input.record.displacement);
+    widest = std::max(widest, greatest - least);
+  }
+  if (*request.reversal_gate < widest) return;
+  const char* unit = inputs.front().is_torsional ? "rad" : "m";
+  throw InputError(fmt::format(
+      "--reversal-gate {}: the whole motion is {:.4g} {} wide, so that it would have no turning "
+      "point: give the gate in {}, below that",
+      *request.reversal_gate, widest, unit, unit));
+}
+
 /// A unit of what no file has would be taken without a word; and a joint fit is of one kind.
 void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   const auto require = [&](std::string_view option, const io::ColumnChoice& choice,
@@ -241,6 +257,7 @@ report::Report FitRecords(const FitRequest& request, const Messages& messages) {
         "angle: leave them out");
   }
   RequireLoops(request, inputs);
+  RequireGateWithinTheMotion(request, inputs);
   RequireLoads(request, options.preparation.load_window, inputs);
   std::vector<std::string> names;
   inputs = SplitLoads(request, std::move(inputs), names);
