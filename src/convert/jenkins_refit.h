@@ -18,8 +18,8 @@ namespace mindahl::convert {
 ///
 /// Their virgin curve is a polygon, and the loop at X follows 2p(d/2) − p(X). Corners and forces at
 /// the corners are found together by Levenberg's and Marquardt's method, from the polygon whose
-/// corners are where they are best for many elements; its normal equations are a band and two
-/// columns a loop.
+/// corners are where they are best for many elements and from one of even differences; its normal
+/// equations are a band and two columns a loop.
 ///
 /// Where no amplitude slips grossly the last of two or more elements sticks at all of them, and has
 /// the slip force that the others leave of the contact's.
