@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building, testing and plotting need, from Debian's packages; quick when all is there.
 #   install-dependencies.sh --checks    also what CI checks the source with
-#   install-dependencies.sh --peers     also the programs that bench/peers compares mindahl with
+#   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
 set -euo pipefail
 
 packages=(
@@ -12,7 +12,7 @@ packages=(
 for group in "$@"; do
   case $group in
     --checks) packages+=(clang-format clang-tidy-19) ;;
-    --peers) packages+=(python3-lmfit python3-pandas) ;;
+    --peers) packages+=(python3-lmfit python3-pandas lammps) ;;
     *)
       echo "install-dependencies: there is no group '$group': --checks or --peers" >&2
       exit 2

@@ -17,6 +17,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/too_few_samples.h"
+#include "mindahl/io/load_pieces.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/io/time_window.h"
 #include "mindahl/report/contact.h"
@@ -107,6 +108,22 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   }
 }
 
+/// A gate is in metres, as every option: one that is wider than the motion leaves no turning point.
+void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+  if (!request.reversal_gate) return;
+  double widest = 0.0;
+  for (const RecordFile& input : inputs) {
+    const auto [least, greatest] = std::ranges::minmax(input.record.displacement);
+    widest = std::max(widest, greatest - least);
+  }
+  if (*request.reversal_gate < widest) return;
+  const char* unit = inputs.front().is_torsional ? "rad" : "m";
+  throw InputError(fmt::format(
+      "--reversal-gate {}: the whole motion is {:.4g} {} wide, so that it would have no turning "
+      "point: give the gate in {}, below that",
+      *request.reversal_gate, widest, unit, unit));
+}
+
 /// A unit of what no file has would be taken without a word; and a joint fit is of one kind.
 void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   const auto require = [&](std::string_view option, const io::ColumnChoice& choice,
@@ -128,6 +145,27 @@ void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& in
                                  request.files[inputs[r].is_torsional ? 0 : r],
                                  request.files[inputs[r].is_torsional ? r : 0]));
   }
+}
+
+/// One record for each constant load of a file, unless it is said what the loads are, or which
+/// samples of it count.
+/// @param names  written: those of the records
+std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
+                                   std::vector<std::string>& names) {
+  names = request.files;
+  if (!request.contact.normal_loads.empty() || !request.load_window.empty() ||
+      !request.samples.empty()) {
+    return inputs;
+  }
+  names.clear();
+  std::vector<RecordFile> records;
+  for (std::size_t r = 0; r < inputs.size(); ++r) {
+    for (io::NamedRecord& record : io::SplitAtLoadSteps(inputs[r], request.files[r])) {
+      names.push_back(std::move(record.name));
+      records.push_back(std::move(record.file));
+    }
+  }
+  return records;
 }
 
 /// What needs a load column must have one, and a window some samples, before the fit says so in its
@@ -219,7 +257,10 @@ report::Report FitRecords(const FitRequest& request, const Messages& messages) {
         "angle: leave them out");
   }
   RequireLoops(request, inputs);
+  RequireGateWithinTheMotion(request, inputs);
   RequireLoads(request, options.preparation.load_window, inputs);
+  std::vector<std::string> names;
+  inputs = SplitLoads(request, std::move(inputs), names);
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
@@ -227,7 +268,7 @@ report::Report FitRecords(const FitRequest& request, const Messages& messages) {
   identification::FitResult fit = FitAsked(request, options, records, messages, selection);
   contact::KnownContact known = request.contact.known;
   UseMeasuredNormalLoad(known, fit, records, options.preparation.load_window, messages);
-  return report::MakeReport({.files = request.files,
+  return report::MakeReport({.files = std::move(names),
                              .records = std::move(inputs),
                              .fit = std::move(fit),
                              .known = known,

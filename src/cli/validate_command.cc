@@ -31,20 +31,27 @@ struct ValidateOptions {
 nlohmann::ordered_json RowsToJson(const std::vector<identification::ValidationRow>& rows) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const identification::ValidationRow& row : rows) {
-    nlohmann::ordered_json entry = {
-        {"lambda", row.lambda},
-        {"noise", row.noise},
-        {"cases", row.cases},
-        {"failures", row.failures},
-        {"not_identifiable", row.undetermined},
-        {"tolerance", row.tolerance},
-        {"sigma_error", {{"median", row.median_sigma_error}, {"worst", row.worst_sigma_error}}},
-        {"alpha_error", {{"median", row.median_alpha_error}, {"worst", row.worst_alpha_error}}},
-        {"slip_force_error",
-         {{"median", row.median_slip_force_error}, {"worst", row.worst_slip_force_error}}}};
+    const auto of_cases = [&row](double value) {
+      return row.cases == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+    };
+    nlohmann::ordered_json entry = {{"lambda", row.lambda},
+                                    {"noise", row.noise},
+                                    {"cases", row.cases},
+                                    {"failures", row.failures},
+                                    {"not_identifiable", row.undetermined},
+                                    {"tolerance", row.tolerance},
+                                    {"sigma_error",
+                                     {{"median", of_cases(row.median_sigma_error)},
+                                      {"worst", of_cases(row.worst_sigma_error)}}},
+                                    {"alpha_error",
+                                     {{"median", of_cases(row.median_alpha_error)},
+                                      {"worst", of_cases(row.worst_alpha_error)}}},
+                                    {"slip_force_error",
+                                     {{"median", of_cases(row.median_slip_force_error)},
+                                      {"worst", of_cases(row.worst_slip_force_error)}}}};
     if (row.noise > 0) {
-      entry["worst_standard_errors"] = row.worst_standardized;
-      entry["coverage"] = row.coverage;
+      entry["worst_standard_errors"] = of_cases(row.worst_standardized);
+      entry["coverage"] = of_cases(row.coverage);
     }
     json.push_back(std::move(entry));
   }
@@ -70,19 +77,22 @@ std::string Table(const std::vector<identification::ValidationRow>& rows) {
       "of T*                   median   worst        median   worst        median   worst        "
       "ident.   of 95%   error\n";
   for (const identification::ValidationRow& row : rows) {
-    const std::string worst =
-        row.noise > 0
-            ? fmt::format("{:5.1f} SE", row.worst_standardized)
-            : fmt::format("{:8.1e}", std::max({row.worst_sigma_error, row.worst_alpha_error,
-                                               row.worst_slip_force_error}));
+    const auto error = [&row](double value) {
+      return row.cases == 0 ? std::string("-") : fmt::format("{:.1e}", value);
+    };
+    const std::string worst = row.noise > 0 && row.cases > 0
+                                  ? fmt::format("{:5.1f} SE", row.worst_standardized)
+                                  : error(std::max({row.worst_sigma_error, row.worst_alpha_error,
+                                                    row.worst_slip_force_error}));
     text += fmt::format(
-        "{:<8g} {:<6g} {:6}   {:.1e}  {:.1e}     {:.1e}  {:.1e}     {:.1e}  {:.1e}     {:5}   "
+        "{:<8g} {:<6g} {:6}   {:>7}  {:>7}     {:>7}  {:>7}     {:>7}  {:>7}     {:5}   "
         "{:>7} "
         "{:>9} {:6}\n",
-        row.noise, row.lambda, row.cases, row.median_sigma_error, row.worst_sigma_error,
-        row.median_alpha_error, row.worst_alpha_error, row.median_slip_force_error,
-        row.worst_slip_force_error, row.undetermined,
-        row.noise > 0 ? fmt::format("{:.1f} %", 100 * row.coverage) : "-", worst, row.failures);
+        row.noise, row.lambda, row.cases, error(row.median_sigma_error),
+        error(row.worst_sigma_error), error(row.median_alpha_error), error(row.worst_alpha_error),
+        error(row.median_slip_force_error), error(row.worst_slip_force_error), row.undetermined,
+        row.noise > 0 && row.cases > 0 ? fmt::format("{:.1f} %", 100 * row.coverage) : "-", worst,
+        row.failures);
   }
   return text;
 }

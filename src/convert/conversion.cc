@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "convert/jenkins_refit.h"
 #include "convert/refit.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/equivalent_law.h"
@@ -74,7 +75,7 @@ SteadyLaw LawOf(const ModelLaw& contact, Target target, const ConversionOptions&
       return ModelLaw{&Dahl(), is_masing ? models::DahlEquivalent(contact.law, options.amplitude)
                                          : contact.law};
     case Target::kIwan:
-      return methods::MakeIwanElements(masing(), options.elements, methods::IwanSpacing::kOptimal);
+      return RefitElements(contact, masing(), amplitudes, options.elements);
     case Target::kBoucWen:
       return ReferenceLoops(contact, amplitudes).FitBoucWen(options.beta);
     case Target::kLuGre:

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
+#include <ranges>
 
 #include "convert/bouc_wen_shape.h"
 #include "mindahl/core/error.h"
@@ -28,14 +31,56 @@ void Require(const BoucWenLaw& law) {
   }
 }
 
-/// Force of elements on their virgin curve.
-double VirginForce(const IwanElements& elements, double x) {
-  double force = 0.0;
-  for (std::size_t j = 0; j < elements.size(); ++j) {
-    force += std::min(elements.stiffness[j] * x, elements.slip_force[j]);
+/// The virgin curve of elements: a polygon that bends where one slips.
+class VirginPolygon {
+ public:
+  explicit VirginPolygon(const IwanElements& elements) {
+    for (std::size_t j = 0; j < elements.size(); ++j) {
+      if (elements.slip_force[j] == 0) continue;
+      corners_.push_back({.at = elements.slip_force[j] / elements.stiffness[j],
+                          .stiffness = elements.stiffness[j],
+                          .slip_force = elements.slip_force[j]});
+    }
+    std::ranges::sort(corners_, {}, &Corner::at);
+    double slipped = 0.0;
+    for (Corner& corner : corners_) corner.slip_force = slipped += corner.slip_force;
+    double stiffness = 0.0;
+    for (Corner& corner : std::views::reverse(corners_)) {
+      corner.stiffness = stiffness += corner.stiffness;
+    }
   }
-  return force;
-}
+
+  double operator()(double x) const {
+    const auto next = std::ranges::upper_bound(corners_, x, {}, &Corner::at);
+    return (next == corners_.begin() ? 0.0 : std::prev(next)->slip_force) +
+           (next == corners_.end() ? 0.0 : next->stiffness * x);
+  }
+
+ private:
+  struct Corner {
+    double at;          // [m]
+    double stiffness;   // of all that slip here or later
+    double slip_force;  // of all that slip here or before
+  };
+  std::vector<Corner> corners_;
+};
+
+/// A model's rising branch, T = f(d) − T*.
+struct ModelBranch {
+  double peak;     // T*
+  BranchLaw from;  // f: the law of a virgin curve
+
+  ModelBranch(const ModelLaw& of, double amplitude)
+      : peak(models::SteadyPeakForce(*of.model, of.law, amplitude)) {
+    const double share = peak / of.law.slip_force;
+    const models::BranchScale scale = of.model->scale(-share, share, /*virgin=*/false);
+    // t(x) = t₀ + span·v·φ(k·x): the branch law of the stiffness σ·v^α with the limit span·v·Tc.
+    from = {.tangential_stiffness =
+                of.law.tangential_stiffness * std::pow(scale.remaining, of.law.shape_exponent),
+            .shape_exponent = of.law.shape_exponent,
+            .slip_force = of.law.slip_force * scale.span * scale.remaining};
+  }
+};
 
 struct Rising {
   double amplitude;
@@ -43,16 +88,9 @@ struct Rising {
   std::span<double> force;
 
   void operator()(const ModelLaw& of) const {
-    const double peak = models::SteadyPeakForce(*of.model, of.law, amplitude);
-    const double share = peak / of.law.slip_force;
-    const models::BranchScale scale = of.model->scale(-share, share, /*virgin=*/false);
-    // t(x) = t₀ + span·v·φ(k·x): the branch law of the stiffness σ·v^α with the limit span·v·Tc.
-    const BranchLaw branch{.tangential_stiffness = of.law.tangential_stiffness *
-                                                   std::pow(scale.remaining, of.law.shape_exponent),
-                           .shape_exponent = of.law.shape_exponent,
-                           .slip_force = of.law.slip_force * scale.span * scale.remaining};
+    const ModelBranch branch(of, amplitude);
     for (std::size_t i = 0; i < distance.size(); ++i) {
-      force[i] = models::BackboneForce(branch, distance[i]) - peak;
+      force[i] = models::BackboneForce(branch.from, distance[i]) - branch.peak;
     }
   }
 
@@ -67,12 +105,81 @@ struct Rising {
   }
 
   void operator()(const IwanElements& elements) const {
-    const double peak = VirginForce(elements, amplitude);
+    const VirginPolygon virgin(elements);
+    const double peak = virgin(amplitude);
     for (std::size_t i = 0; i < distance.size(); ++i) {
-      force[i] = 2 * VirginForce(elements, distance[i] / 2) - peak;
+      force[i] = 2 * virgin(distance[i] / 2) - peak;
     }
   }
 };
+
+/// Distances at which a rising branch bends.
+struct Corners {
+  double amplitude;
+  std::vector<double>& distance;
+
+  void operator()(const ModelLaw& of) const {
+    distance.push_back(models::GrossSlipDisplacement(ModelBranch(of, amplitude).from));
+  }
+  void operator()(const BoucWenLaw& /*law*/) const {}
+  void operator()(const IwanElements& elements) const {
+    for (std::size_t j = 0; j < elements.size(); ++j) {
+      distance.push_back(2 * elements.slip_force[j] / elements.stiffness[j]);
+    }
+  }
+};
+
+/// Where two branches are compared: densest after the reversal, at every corner, and in the middle
+/// between any two of these.
+std::vector<double> PlacesToCompare(const SteadyLaw& law, const SteadyLaw& reference,
+                                    double amplitude) {
+  constexpr int kIntervals = 64;
+  constexpr double kGrowth = 8.0;  // of the spacing, as an exponent
+  std::vector<double> corners;
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double share = static_cast<double>(i) / kIntervals;
+    corners.push_back(2 * amplitude * (std::expm1(kGrowth * share) / std::expm1(kGrowth)));
+  }
+  std::visit(Corners{amplitude, corners}, law);
+  std::visit(Corners{amplitude, corners}, reference);
+  std::erase_if(corners, [&](double distance) { return !(distance <= 2 * amplitude); });
+  std::ranges::sort(corners);
+  std::vector<double> places = {corners.front()};
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    places.push_back(std::midpoint(corners[i - 1], corners[i]));
+    places.push_back(corners[i]);
+  }
+  return places;
+}
+
+std::vector<double> Differences(const SteadyLaw& law, const SteadyLaw& reference, double amplitude,
+                                std::span<const double> distance) {
+  std::vector<double> difference(distance.size());
+  std::vector<double> expected(distance.size());
+  EvaluateRisingBranch(law, amplitude, distance, difference);
+  EvaluateRisingBranch(reference, amplitude, distance, expected);
+  for (std::size_t i = 0; i < difference.size(); ++i) {
+    difference[i] = std::abs(difference[i] - expected[i]);
+  }
+  return difference;
+}
+
+/// The largest difference of force [N]: the largest at some places, and what is larger beside it.
+double LargestDifference(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
+  const std::vector<double> places = PlacesToCompare(law, reference, amplitude);
+  const std::vector<double> difference = Differences(law, reference, amplitude, places);
+  const auto largest = static_cast<std::size_t>(
+      std::distance(difference.begin(), std::ranges::max_element(difference)));
+  constexpr std::size_t kFiner = 128;
+  const double from = places[largest == 0 ? 0 : largest - 1];
+  const double to = places[std::min(largest + 1, places.size() - 1)];
+  std::vector<double> beside(kFiner + 1);
+  for (std::size_t i = 0; i <= kFiner; ++i) {
+    beside[i] = std::lerp(from, to, static_cast<double>(i) / kFiner);
+  }
+  return std::max(difference[largest],
+                  std::ranges::max(Differences(law, reference, amplitude, beside)));
+}
 
 struct Energy {
   double amplitude;
@@ -111,22 +218,11 @@ double LoopEnergy(const SteadyLaw& law, double amplitude) {
 }
 
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
-  constexpr std::size_t kPlaces = 129;
-  constexpr double kGrowth = 8.0;  // of the spacing, as an exponent
-  std::array<double, kPlaces> distance{};
-  for (std::size_t i = 0; i < kPlaces; ++i) {
-    const double share = static_cast<double>(i) / (kPlaces - 1);
-    distance[i] = 2 * amplitude * (std::expm1(kGrowth * share) / std::expm1(kGrowth));
-  }
-  std::array<double, kPlaces> force{};
-  std::array<double, kPlaces> expected{};
-  EvaluateRisingBranch(law, amplitude, distance, force);
-  EvaluateRisingBranch(reference, amplitude, distance, expected);
+  RequirePositive("amplitude [m]", amplitude);
+  double peak = 0.0;
+  EvaluateRisingBranch(reference, amplitude, std::array{2 * amplitude}, std::span(&peak, 1));
   LoopError error;
-  for (std::size_t i = 0; i < kPlaces; ++i) {
-    error.force = std::max(error.force, std::abs(force[i] - expected[i]));
-  }
-  error.force /= expected.back();
+  error.force = LargestDifference(law, reference, amplitude) / peak;
   const double energy = LoopEnergy(law, amplitude);
   const double lost = LoopEnergy(reference, amplitude);
   error.energy = lost > 0      ? energy / lost - 1

@@ -46,8 +46,9 @@ constexpr std::array kTimes = {
     Entry{"min", 60, 1},
 };
 
-/// "µ" has two code points, U+00B5 and U+03BC; both become "u".
+/// "µ" has two code points, U+00B5 and U+03BC; both become "u", and a micron is a micrometre.
 std::string WithAsciiMicro(std::string_view symbol) {
+  if (symbol == "micron" || symbol == "microns") return "um";
   for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
     if (symbol.starts_with(micro)) return std::string("u").append(symbol.substr(micro.size()));
   }

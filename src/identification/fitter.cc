@@ -67,8 +67,8 @@ void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
 }
 
 /// How many samples are left out for what: "; of 12 that were read 8 are left out: 2 glitches, …".
-std::string WhatIsLeftOut(const loop::PreparedRecords& prepared,
-                          const loop::PreparationOptions& options) {
+std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOptions& fit) {
+  const loop::PreparationOptions& options = fit.preparation;
   const std::size_t left_out = prepared.samples() - prepared.counted();
   if (left_out == 0) return "";
   std::size_t glitches = 0;
@@ -78,10 +78,14 @@ std::string WhatIsLeftOut(const loop::PreparedRecords& prepared,
   std::vector<std::string> masks;
   if (options.load_window) masks.emplace_back("outside the load window");
   if (options.skip_cycles > 0) masks.emplace_back("in the cycles that are skipped");
+  if (options.cycles) masks.emplace_back("in other cycles than are asked for");
+  if (options.samples) masks.emplace_back("other samples than are asked for");
   if (!options.held_out.empty()) masks.emplace_back("held out");
+  if (HasTerm(fit, "lag")) masks.emplace_back("beyond the motion that a lag needs");
   if (!masks.empty() && left_out > glitches) {
     reasons.push_back(fmt::format("{} {}", left_out - glitches, fmt::join(masks, " or ")));
   }
+  if (reasons.empty()) return "";
   return fmt::format("; of {} that were read {} are left out: {}", prepared.samples(), left_out,
                      fmt::join(reasons, ", "));
 }
@@ -92,7 +96,7 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
   if (problem.data->counted >= free) return;
   throw TooFewSamples(
       fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
-                  problem.data->counted, free, WhatIsLeftOut(prepared, options.preparation)));
+                  problem.data->counted, free, WhatIsLeftOut(prepared, options)));
 }
 
 /// What is known of a fit while it is made.

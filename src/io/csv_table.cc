@@ -138,7 +138,7 @@ std::span<const double> CsvTable::Numbers(std::size_t column) const {
   return values;
 }
 
-void CsvTable::RequireNoThousands(std::size_t column) const {
+std::vector<std::string> CsvTable::Cells(std::size_t column) const {
   CsvTokenizer tokenizer(text_, static_cast<Delimiter>(delimiter_), offsets_.front(),
                          lines_.front());
   std::vector<std::string> texts;
@@ -146,6 +146,21 @@ void CsvTable::RequireNoThousands(std::size_t column) const {
   for (CsvRow row; texts.size() < rows() && tokenizer.Next(row);) {
     texts.emplace_back(Trimmed(row[column]));
   }
+  return texts;
+}
+
+bool CsvTable::MayHaveCommasForThousands(std::size_t column) const {
+  if (static_cast<Delimiter>(delimiter_) == Delimiter::kComma) return false;
+  const std::vector<double>& values = values_.at(column);
+  if (!std::ranges::none_of(values, [](double value) { return std::isnan(value); })) return false;
+  if (!MayHaveThousands(values)) return false;
+  const std::vector<std::string> texts = Cells(column);
+  if (texts.front().find(',') == std::string::npos) return false;
+  return AreAllGrouped(std::vector<std::string_view>(texts.begin(), texts.end()));
+}
+
+void CsvTable::RequireNoThousands(std::size_t column) const {
+  const std::vector<std::string> texts = Cells(column);
   const std::vector<std::string_view> cells(texts.begin(), texts.end());
   const std::optional<std::size_t> found = FindThousands(cells);
   if (!found) return;

@@ -614,6 +614,13 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   file.time = read_optional(kTime, assigned.time, columns.time, record.time);
   file.normal_load =
       read_optional(kNormalLoad, assigned.normal_load, columns.normal_load, record.normal_load);
+  if (table.MayHaveCommasForThousands(assigned.displacement) &&
+      table.MayHaveCommasForThousands(assigned.force)) {
+    file.notes.push_back(fmt::format(
+        "{}: every {} and {} is written like 1,234: the comma is taken for a decimal mark, as in "
+        "1.234; leave it out where it separates thousands",
+        table.file(), kDisplacement.name, kForce.name));
+  }
   CovariateReader covariates(table, finder, assigned, file);
   covariates.ReadChosen(columns.covariates);
   covariates.ReadOthers();

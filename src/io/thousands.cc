@@ -84,4 +84,11 @@ std::optional<std::size_t> FindThousands(std::span<const std::string_view> cells
   return first;
 }
 
+bool AreAllGrouped(std::span<const std::string_view> cells) {
+  return std::ranges::all_of(cells, [](std::string_view cell) {
+    const std::optional<Grouped> grouped = ReadGrouped(cell);
+    return grouped && grouped->has_mark;
+  });
+}
+
 }  // namespace mindahl::io

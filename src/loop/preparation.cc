@@ -112,14 +112,19 @@ std::size_t StartOfCycle(const PreparedRecord& prepared, std::size_t cycle) {
 
 void LeaveOutBeyondRanges(PreparedRecord& prepared, std::size_t number,
                           const PreparationOptions& options) {
-  const auto require = [&](const CountRange& range, std::string_view what, std::size_t has) {
+  const auto require = [&](const CountRange& range, std::string_view what, std::size_t has,
+                           const std::string& of_which = "") {
     if (range.first <= has) return;
-    throw InvalidArgument(fmt::format("{} {}:{} hold nothing of record {}: it has {} {}", what,
+    throw InvalidArgument(fmt::format("{} {}:{} hold nothing of record {}: it has {} {}{}", what,
                                       range.first, range.last, number + 1, has,
-                                      has == 1 ? what.substr(0, what.size() - 1) : what));
+                                      has == 1 ? what.substr(0, what.size() - 1) : what, of_which));
   };
   if (options.cycles) {
-    require(*options.cycles, "cycles", 1 + prepared.reversals.size() / 2);
+    // The way in and the way out are cycles too, which the number of complete ones need not hold.
+    const std::size_t begun = 1 + prepared.reversals.size() / 2;
+    const std::size_t complete = prepared.measures.cycles;
+    require(*options.cycles, "cycles", begun,
+            complete < begun ? fmt::format(" that are begun, {} complete", complete) : "");
     // One beyond the last is none: no number of cycles is so large.
     const std::size_t last = std::min(options.cycles->last, prepared.size());
     KeepOnly(StartOfCycle(prepared, options.cycles->first), StartOfCycle(prepared, last + 1),

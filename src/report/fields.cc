@@ -43,12 +43,54 @@ Value UnitOf(const std::optional<io::ChosenColumn>& column) {
   return column ? Text(column->unit) : Value{};
 }
 
+struct LoadPieceItem {
+  std::string file;
+  io::LoadPiece piece;
+  std::size_t samples;
+};
+
+std::vector<LoadPieceItem> LoadPieces(const Report& report) {
+  std::vector<LoadPieceItem> pieces;
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const io::RecordFile& record = report.records[r];
+    if (!record.piece) continue;
+    pieces.push_back(
+        {.file = report.files[r], .piece = *record.piece, .samples = record.record.size()});
+  }
+  return pieces;
+}
+
+const std::vector<Field<LoadPieceItem>>& LoadPieceFields() {
+  using Item = LoadPieceItem;
+  static const std::vector<Field<Item>> fields = {
+      {"file", "", "name of the record: that of the file with the lines of the piece",
+       [](const Item& item) { return Text(item.file); }},
+      {"normal_load", "N", "median of the load",
+       [](const Item& item) { return Number(item.piece.normal_load); }},
+      {"first_line", "", "of the file, counted from 1",
+       [](const Item& item) { return Count(item.piece.first_line); }},
+      {"last_line", "", "likewise", [](const Item& item) { return Count(item.piece.last_line); }},
+      {"samples", "", "of the piece, those that do not count too",
+       [](const Item& item) { return Count(item.samples); }},
+  };
+  return fields;
+}
+
+std::size_t BetweenLoads(const Report& report) {
+  std::size_t samples = 0;
+  for (const io::RecordFile& record : report.records) {
+    if (record.piece) samples += record.piece->left_out;
+  }
+  return samples;
+}
+
 void AddInputFields(FieldTable& table) {
   table.Add({
       {"schema", "", "name and version of this form",
        [](const Report&) { return Text("mindahl.fit/1"); }},
       {"version", "", "version of mindahl", [](const Report&) { return Text(Version()); }},
-      {"input.files", "", "names of the files, as they were given",
+      {"input.files", "",
+       "names of the files, as they were given; with its lines where a record is a piece of one",
        [](const Report& report) {
          Value::Array files;
          for (const std::string& file : report.files) files.push_back(Text(file));
@@ -56,9 +98,22 @@ void AddInputFields(FieldTable& table) {
        }},
       {"input.samples", "", "samples read, those that do not count too",
        [](const Report& report) {
-         std::size_t samples = 0;
+         std::size_t samples = BetweenLoads(report);
          for (const io::RecordFile& input : report.records) samples += input.record.size();
          return Count(samples);
+       }},
+      {"input.load_pieces", "",
+       "of files whose load goes in steps, what was fitted as a record of its own; absent where "
+       "there is none",
+       [](const Report& report) {
+         const std::vector<LoadPieceItem> pieces = LoadPieces(report);
+         return pieces.empty() ? Value{} : List(LoadPieceFields(), pieces);
+       }},
+      {"input.between_loads", "",
+       "samples in none of the pieces, which do not count: the load changes, or fewer than two "
+       "turning points have passed since; absent likewise",
+       [](const Report& report) {
+         return LoadPieces(report).empty() ? Value{} : Count(BetweenLoads(report));
        }},
       {"input.cycles", "", "complete cycles, of all files",
        Sum([](const RecordFit& record) { return record.measures.cycles; })},
@@ -73,7 +128,11 @@ void AddInputFields(FieldTable& table) {
       {"input.units.normal_load", "", "likewise; absent where there is no such column",
        [](const Report& report) { return UnitOf(report.records.front().normal_load); }},
       {"input.left_out", "", "samples that do not count",
-       Sum([](const RecordFit& record) { return record.left_out; })},
+       [](const Report& report) {
+         std::size_t left_out = BetweenLoads(report);
+         for (const RecordFit& record : report.fit.records) left_out += record.left_out;
+         return Count(left_out);
+       }},
       {"input.reversal_gate", "m", "one a file: excursions up to it are noise",
        OneARecord([](const RecordFit& record) { return record.gate.gate; })},
       {"input.displacement_noise", "m", "one a file: standard deviation, given or estimated",
@@ -107,6 +166,7 @@ void AddInputFields(FieldTable& table) {
 FieldTable MakeTable() {
   FieldTable table;
   AddInputFields(table);
+  table.Describe("input.load_pieces[].", LoadPieceFields());
   AddAdequacyFields(table);
   AddMeasuredFields(table);
   AddParameterFields(table);

@@ -16,6 +16,20 @@ MeasuredLoop MeasuredLoopOf(const identification::RecordFit& record) {
   return {measures.amplitude, measures.peak_force, measures.energy_per_cycle};
 }
 
+namespace {
+
+using identification::Identifiability;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+
+bool HasValue(const ParameterEstimate& estimate) {
+  return estimate.status == ParameterStatus::kFixed ||
+         estimate.identifiability == Identifiability::kIdentifiable ||
+         estimate.identifiability == Identifiability::kExtrapolated;
+}
+
+}  // namespace
+
 LoopDescription DescribeLoop(const identification::FitResult& fit) {
   const identification::RecordFit& widest = fit.WidestRecord();
   const models::BranchLaw law = fit.LawOf(widest);
@@ -29,7 +43,9 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
     loop.energy_ratio = energy / (4 * measured.amplitude * measured.peak_force);
   }
   const double gross_slip = models::SteadyGrossSlipAmplitude(*fit.model, law);
-  if (std::isfinite(gross_slip)) {
+  const auto has_value = [&](const char* name) { return HasValue(*fit.Find(name)); };
+  loop.knows_slip = has_value("sigma") && has_value("alpha") && has_value("slip_force");
+  if (std::isfinite(gross_slip) && loop.knows_slip) {
     loop.gross_slip_displacement = gross_slip;
     loop.gross_slip_energy_ratio = models::GrossSlipEnergyRatio(*fit.model, law, fit.rig);
   }
@@ -37,6 +53,11 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
   loop.slip_force_share = peak / law.slip_force;
   const bool slips = std::isfinite(gross_slip) ? loop.contact_amplitude >= gross_slip
                                                : peak >= kAsGoodAsSlip * law.slip_force;
+  // A lower limit of Tc is beyond what was reached.
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  if (!HasValue(slip_force) && slip_force.identifiability != Identifiability::kBoundedBelow) {
+    return loop;
+  }
   loop.regime = slips ? SlipRegime::kGross : SlipRegime::kPartial;
   loop.stick_radius_ratio =
       slips ? 0.0 : contact::StickRadiusRatio(std::min(peak, law.slip_force), law.slip_force);

@@ -11,7 +11,13 @@ std::function<Value(const Report&)> Measured(double MeasuredLoop::*member) {
   };
 }
 
-constexpr const char* kWhyNoSlip = "with alpha >= 1 the force only approaches slip_force";
+std::string WhyNoSlip(const Report& report) {
+  return report.loop && !report.loop->knows_slip
+             ? "sigma, alpha or slip_force is not identifiable"
+             : "with alpha >= 1 the force only approaches slip_force";
+}
+
+constexpr const char* kWhyNoRegime = "slip_force is not identifiable";
 
 /// Of the loop's description, where there is one.
 template <typename Get>
@@ -40,22 +46,26 @@ void AddLoopFields(FieldTable& table) {
        [](const Report&) {
          return std::string("needs a force that differs between the extremes of the displacement");
        }},
-      {"loop.slip_regime", "", "partial or gross slip",
-       OfLoop([](const LoopDescription& loop) { return Text(Name(loop.regime)); })},
+      {"loop.slip_regime", "", "partial or gross slip", OfLoop([](const LoopDescription& loop) {
+         return loop.regime ? Text(Name(*loop.regime)) : Missing();
+       }),
+       [](const Report&) { return std::string(kWhyNoRegime); }},
       {"loop.gross_slip_displacement", "m",
        "amplitude of the contact from which it slips: δc of the fitted law, 2^−α·δc of Dahl's own",
        OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_displacement); }),
-       [](const Report&) { return std::string(kWhyNoSlip); }},
+       WhyNoSlip},
       {"loop.gross_slip_energy_ratio", "-",
        "W/(4XT*) of the fitted law where it begins to slip, the rig's travel in X",
        OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_energy_ratio); }),
-       [](const Report&) { return std::string(kWhyNoSlip); }},
+       WhyNoSlip},
       {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
        [](const Report& report) {
          return report.loop && !report.is_torsional() ? Number(report.loop->stick_radius_ratio)
                                                       : Missing();
        },
-       [](const Report&) { return std::string(kWhyNoContact); }},
+       [](const Report& report) {
+         return std::string(report.is_torsional() ? kWhyNoContact : kWhyNoRegime);
+       }},
   });
 }
 

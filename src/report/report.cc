@@ -44,6 +44,25 @@ void SayFindings(Report& report) {
   }
 }
 
+/// Of files that were split where their load steps.
+void SayLoadPieces(Report& report) {
+  std::vector<std::string> pieces;
+  std::size_t left_out = 0;
+  for (std::size_t r = 0; r < report.records.size(); ++r) {
+    const std::optional<io::LoadPiece>& piece = report.records[r].piece;
+    if (!piece) continue;
+    pieces.push_back(fmt::format("{:.4g} N ({})", piece->normal_load, report.files[r]));
+    left_out += piece->left_out;
+  }
+  if (pieces.empty()) return;
+  report.notes.push_back(
+      {"load_steps",
+       fmt::format(
+           "the normal load goes in steps: fitted as a record for each constant load, {}; "
+           "{} samples in between are left out, up to the second turning point under the new load",
+           fmt::join(pieces, ", "), left_out)});
+}
+
 /// What was given and contradicts, or could not be used.
 std::vector<Warning> ContactWarnings(const Report& report) {
   std::vector<Warning> warnings;
@@ -83,6 +102,7 @@ Report MakeReport(ReportInput input) {
   AdaptCauses(report.units, !report.records.front().record.time.empty(),
               report.fit.adequacy.causes);
   SayFindings(report);
+  SayLoadPieces(report);
   if (report.failed()) return report;
   report.loop = DescribeLoop(report.fit);
   if (report.is_torsional()) return report;

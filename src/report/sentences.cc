@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -143,11 +144,18 @@ std::string UndeterminedParameter(const Finding& finding, const FitResult&, cons
                      one ? "it" : "them");
 }
 
-std::string UndeterminedCombination(const Finding& finding, const FitResult&, const Units&) {
-  return fmt::format(
-      "the record determines only a combination of {}: fix one of them, or record a larger "
-      "amplitude",
-      fmt::join(finding.parameters, ", "));
+std::string UndeterminedCombination(const Finding& finding, const FitResult& fit, const Units&) {
+  // Where the slip force is seen and the stiffness is not, a larger amplitude shows less of it
+  // still.
+  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
+  const bool slips = slip_force != nullptr &&
+                     slip_force->identifiability == identification::Identifiability::kIdentifiable;
+  const bool lacks_stiffness =
+      std::ranges::find(finding.parameters, "sigma") != finding.parameters.end();
+  return fmt::format("the record determines only a combination of {}: fix one of them, or {}",
+                     fmt::join(finding.parameters, ", "),
+                     slips && lacks_stiffness ? "sample more densely after the reversals"
+                                              : "record a larger amplitude");
 }
 
 std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {

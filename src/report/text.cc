@@ -183,9 +183,13 @@ std::string SelectionText(const identification::ModelSelection& selection, const
 }
 
 std::string SlipText(const LoopDescription& loop, const Units& units) {
+  if (!loop.regime) return "whether it slips is open: slip_force is not identifiable";
   if (loop.gross_slip_displacement) {
-    return fmt::format("{} slip (gross-slip displacement {:.5g} {})", Name(loop.regime),
+    return fmt::format("{} slip (gross-slip displacement {:.5g} {})", Name(*loop.regime),
                        *loop.gross_slip_displacement, units.displacement);
+  }
+  if (!loop.knows_slip) {
+    return fmt::format("{} slip (gross-slip displacement not identified)", Name(*loop.regime));
   }
   return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
                      100 * loop.slip_force_share);

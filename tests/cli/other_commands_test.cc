@@ -279,6 +279,25 @@ TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
   }
 }
 
+TEST(Validate, SaysNothingOfAmplitudesThatNoCaseWasDrawnFor) {
+  // One contact has one of seven amplitudes.
+  const json report = RunCommand({"validate", "--cases", "1", "--json", "-"}).Json();
+  std::size_t empty = 0;
+  for (const json& row : report["rows"]) {
+    const bool none = row["cases"] == 0;
+    if (none) ++empty;
+    EXPECT_EQ(row["sigma_error"]["median"].is_null(), none);
+    EXPECT_EQ(row["slip_force_error"]["worst"].is_null(), none);
+    if (row["noise"] > 0) {
+      EXPECT_EQ(row["coverage"].is_null(), none);
+    }
+  }
+  EXPECT_EQ(empty, 6U * 4) << "four noise levels";
+  const Outcome text = RunCommand({"validate", "--cases", "1"});
+  EXPECT_THAT(text.out,
+              ::testing::ContainsRegex("\n0 +[0-9.]+ +0 +- +- +- +- +- +- +0 +- +- +0\n"));
+}
+
 TEST(Validate, PrintsATableAndTheVerdict) {
   const Outcome outcome = RunCommand({"validate", "--cases", "1", "--seed", "9"});
   EXPECT_EQ(outcome.status, cli::kDone);

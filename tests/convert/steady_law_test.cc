@@ -162,6 +162,35 @@ TEST(SteadyLaw, IsComparedByForceOverThePeakAndByEnergy) {
   EXPECT_EQ(CompareLoops(reference, reference, 0.5e-6).energy, 0.0);
 }
 
+TEST(SteadyLaw, IsComparedWhereTheBranchesDifferMost) {
+  // As stated; the even places miss a smooth maximum by (1/4000)²/2 of its curvature, a corner by
+  // half a place's change of force, 1/4000 of some T*.
+  constexpr double kStated = 1e-3;
+  constexpr double kBetweenPlaces = 1.0 / 4000;
+  const ModelLaw mindlin{&Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0}};
+  const SteadyLaw laws[] = {
+      ModelLaw{&Model("mindlin-dahl"), {3.2126e7, 0.0, 33.598}},
+      ModelLaw{&Model("dahl"), {3.2e7, 1.0, 110.0}},
+      methods::MakeIwanElements(mindlin.law, 3, methods::IwanSpacing::kOptimal),
+      methods::MakeIwanElements(mindlin.law, 200, methods::IwanSpacing::kOptimal),
+  };
+  for (const SteadyLaw& law : laws) {
+    for (const double amplitude : {2e-7, 1.2e-6, 2.6e-6}) {
+      const Branch branch(amplitude, 4001);
+      const std::vector<double> force = branch.Of(law);
+      const std::vector<double> expected = branch.Of(mindlin);
+      double largest = 0.0;
+      for (std::size_t i = 0; i < force.size(); ++i) {
+        largest = std::max(largest, std::abs(force[i] - expected[i]) / expected.back());
+      }
+      const double stated = CompareLoops(law, mindlin, amplitude).force;
+      EXPECT_GE(stated, (1 - kStated) * largest) << law.index() << ' ' << amplitude;
+      EXPECT_LE(stated, (1 + kStated) * largest + kBetweenPlaces)
+          << law.index() << ' ' << amplitude;
+    }
+  }
+}
+
 TEST(SteadyLaw, RefusesWhatIsNoLaw) {
   const Branch branch(1.0);
   EXPECT_THROW(branch.Of(BoucWenLaw{-1.0, 1.0, 1.0, 0.5}), InvalidArgument);

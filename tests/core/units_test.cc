@@ -27,6 +27,14 @@ TEST(Units, CaseTellsMilliFromMega) {
   EXPECT_FALSE(LengthUnit("MM"));
 }
 
+TEST(Units, AMicronIsAMicrometre) {
+  for (const char* name : {"micron", "microns"}) {
+    EXPECT_EQ(LengthUnit(name)->ToSi(2.5), 2.5e-6);
+    EXPECT_EQ(LengthUnit(name)->symbol, "um");
+  }
+  EXPECT_FALSE(ForceUnit("micron"));
+}
+
 TEST(Units, BothMicroSignsAreMicro) {
   EXPECT_EQ(LengthUnit("\u00b5m")->ToSi(1.0), 1e-6);
   EXPECT_EQ(LengthUnit("\u03bcm")->ToSi(1.0), 1e-6);

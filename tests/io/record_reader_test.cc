@@ -50,6 +50,24 @@ Strings Notes(const std::string& text, const RecordColumns& columns = {}) {
   return notes;
 }
 
+TEST(Notes, SayThatACommaIsTakenForADecimalMarkWhereItMayAsWellSeparateThousands) {
+  constexpr const char* kSaid =
+      "loop.csv: every displacement and force is written like 1,234: the comma is taken for a "
+      "decimal mark, as in 1.234; leave it out where it separates thousands";
+  for (const std::string delimiter : {"\t", ";"}) {
+    const auto text = [&](const std::string& first, const std::string& second) {
+      return "x [um]" + delimiter + "F [N]\n1,100" + delimiter + "2,150\n-" + first + delimiter +
+             "1,350\n1,400" + delimiter + second + "\n";
+    };
+    EXPECT_EQ(Notes(text("1,200", "12,450")), Strings{kSaid});
+    // A zero in front, a fourth decimal and a number without a comma are of decimals.
+    EXPECT_EQ(Notes(text("0,200", "12,450")), Strings{});
+    EXPECT_EQ(Notes(text("1,200", "12,4501")), Strings{});
+    EXPECT_EQ(Notes(text("1,200", "12")), Strings{});
+  }
+  EXPECT_EQ(Notes("x [um]\tF [N]\n1.100\t2.150\n1.300\t1.350\n"), Strings{});
+}
+
 // --- Which column is which -----------------------------------------------------------------------
 
 struct Header {

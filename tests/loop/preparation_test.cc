@@ -110,7 +110,8 @@ std::string RefusalOf(const PreparationOptions& options) {
 TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {
   PreparationOptions cycles;
   cycles.cycles = {5, 6};
-  EXPECT_EQ(RefusalOf(cycles), "cycles 5:6 hold nothing of record 1: it has 4 cycles");
+  EXPECT_EQ(RefusalOf(cycles),
+            "cycles 5:6 hold nothing of record 1: it has 4 cycles that are begun, 3 complete");
   cycles.cycles = {0, 2};
   EXPECT_EQ(RefusalOf(cycles),
             "cycles 0:2 are invalid: they are counted from 1, and the first must not be the "

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "mindahl/models/steady_loop.h"
 #include "report/made_report.h"
@@ -88,8 +89,32 @@ TEST(LoopDescription, RigidRigTakesNothing) {
 TEST(LoopDescription, StickRadiusIsThatOfMindlinsContact) {
   // c/a = (1 − T/Tc)^{1/3}, and T/Tc = 1 − (1 − X/δc)^{3/2}: c/a = √(1 − X/δc).
   const double epsilon = std::numeric_limits<double>::epsilon();
-  EXPECT_NEAR(Describe(kMindlin, 0.6e-6).stick_radius_ratio, std::sqrt(1 - 0.6 / 1.5), 8 * epsilon);
+  EXPECT_NEAR(*Describe(kMindlin, 0.6e-6).stick_radius_ratio, std::sqrt(1 - 0.6 / 1.5),
+              8 * epsilon);
   EXPECT_EQ(Describe(kMindlin, 1.6e-6).stick_radius_ratio, 0.0);
+}
+
+TEST(LoopDescription, SaysOfSlipOnlyWhatTheRecordSays) {
+  const auto describe = [](const char* open, Identifiability verdict) {
+    FitResult fit = MadeFit({MadeRecord(1.6e-6)}, 1.6e-6, kMindlin);
+    for (ParameterEstimate& estimate : fit.parameters) {
+      if (estimate.name == open) estimate.identifiability = verdict;
+    }
+    return DescribeLoop(fit);
+  };
+  for (const char* open : {"sigma", "alpha", "slip_force"}) {
+    const LoopDescription loop = describe(open, Identifiability::kNotIdentifiable);
+    EXPECT_FALSE(loop.knows_slip) << open;
+    EXPECT_FALSE(loop.gross_slip_displacement) << open;
+    EXPECT_FALSE(loop.gross_slip_energy_ratio) << open;
+    // A slip force that is known is reached or not, whatever the way there.
+    EXPECT_EQ(loop.regime.has_value(), std::string(open) != "slip_force") << open;
+    EXPECT_EQ(loop.stick_radius_ratio.has_value(), loop.regime.has_value()) << open;
+  }
+  const LoopDescription bounded = describe("slip_force", Identifiability::kBoundedBelow);
+  EXPECT_TRUE(bounded.regime);
+  EXPECT_FALSE(bounded.gross_slip_displacement);
+  EXPECT_TRUE(describe("slip_force", Identifiability::kExtrapolated).gross_slip_displacement);
 }
 
 // A law with α = 1 has T = Tc(1 − e^{−σX/Tc}), so that a share s is reached at X = −ln(1 − s)·Tc/σ.

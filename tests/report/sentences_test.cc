@@ -87,6 +87,17 @@ struct Form {
   std::vector<std::string> words;  // that the numbers and names must turn up in
 };
 
+TEST(Sentence, OfACombinationAsksForNoLargerAmplitudeWhereTheStiffnessIsNotSeen) {
+  Finding finding{.code = "undetermined_combination", .parameters = {"sigma", "alpha"}};
+  FitResult fit;
+  fit.parameters = {testing::MadeParameter("slip_force", "N", 40, 0.1)};
+  EXPECT_THAT(Sentence(finding, fit, kUnitsOfForce),
+              AllOf(HasSubstr("sample more densely"), Not(HasSubstr("amplitude"))));
+  // In partial slip it would tell them apart.
+  fit.parameters[0].identifiability = identification::Identifiability::kBoundedBelow;
+  EXPECT_THAT(Sentence(finding, fit, kUnitsOfForce), HasSubstr("record a larger amplitude"));
+}
+
 TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
   const std::vector<Form> forms = {
       {"turning_points_between_samples", "", {"1.25e-07 m"}},

@@ -16,7 +16,7 @@ struct Unit {
   [[nodiscard]] double ToSi(double value) const { return value * numerator / denominator; }
 };
 
-/// m, mm, um/µm, nm, in; nullopt when the symbol is not a length.
+/// m, mm, um/µm/micron, nm, in; nullopt when the symbol is not a length.
 std::optional<Unit> LengthUnit(std::string_view symbol);
 
 /// rad, mrad, deg/°, rev.

@@ -41,6 +41,10 @@ class CsvTable {
     return values_.at(column);
   }
 
+  /// True when the column was read with decimal commas, and every cell is written like 1,234, so
+  /// that nothing in it tells them from commas that separate thousands.
+  [[nodiscard]] bool MayHaveCommasForThousands(std::size_t column) const;
+
   /// False when not one cell of the column is a number.
   [[nodiscard]] bool HasNumbers(std::size_t column) const;
 
@@ -48,6 +52,8 @@ class CsvTable {
   friend CsvTable ParseCsvTable(std::string text, std::string file);
   [[noreturn]] void ThrowNotANumber(std::size_t row, std::size_t column) const;
   void RequireNoThousands(std::size_t column) const;
+  /// As written, without blanks around them.
+  [[nodiscard]] std::vector<std::string> Cells(std::size_t column) const;
 
   std::string file_;
   std::string text_;

@@ -31,6 +31,14 @@ struct ChosenColumn {
   std::string unit;        ///< symbol the numbers were taken to be in
 };
 
+/// What a record is of a file that holds several constant loads.
+struct LoadPiece {
+  double normal_load = 0.0;    ///< [N], the median
+  std::size_t first_line = 0;  ///< of the file, 1-based
+  std::size_t last_line = 0;   ///< likewise
+  std::size_t left_out = 0;    ///< samples of the file in none of its pieces; with the last piece
+};
+
 /// A record and where it came from.
 struct RecordFile {
   loop::Record record;
@@ -43,7 +51,8 @@ struct RecordFile {
   std::optional<ChosenColumn> normal_load;
   /// Of the record's covariates, in their order: first those chosen, called as they were chosen.
   std::vector<ChosenColumn> covariates;
-  std::vector<std::string> notes;  ///< what was assumed, one sentence each
+  std::vector<std::string> notes;                 ///< what was assumed, one sentence each
+  std::optional<LoadPiece> piece = std::nullopt;  ///< empty for all of a file
 };
 
 /// Columns that nobody asked for, of which a record keeps so many.

@@ -24,13 +24,17 @@ struct LoopDescription {
   /// record closes no cycle; empty where X or T* is 0.
   std::optional<double> energy_ratio;
   /// Amplitude [m] of the contact from which the fitted law's steady loop slips grossly: δc,
-  /// 2^−α·δc of Dahl's own law; empty for α >= 1, which only approaches the slip force.
+  /// 2^−α·δc of Dahl's own law; empty for α >= 1, which only approaches the slip force, and where
+  /// the record leaves σ, α or Tc open.
   std::optional<double> gross_slip_displacement;
   /// Energy ratio [-] at that amplitude, the rig's travel in X; likewise.
   std::optional<double> gross_slip_energy_ratio;
-  double slip_force_share = 0.0;    ///< T*/Tc [-] of the law
-  double stick_radius_ratio = 0.0;  ///< c/a [-] of a Mindlin contact under T*; 0 in gross slip
-  SlipRegime regime = SlipRegime::kPartial;
+  /// Whether the record says when the contact slips: σ, α and Tc are identifiable or held.
+  bool knows_slip = true;
+  double slip_force_share = 0.0;  ///< T*/Tc [-] of the law
+  /// c/a [-] of a Mindlin contact under T*, 0 in gross slip; empty where Tc has no value.
+  std::optional<double> stick_radius_ratio;
+  std::optional<SlipRegime> regime;  ///< likewise: with a lower limit of Tc it is known
 };
 
 /// From this share of Tc on a law with α >= 1 is said to slip as a whole, which it never quite

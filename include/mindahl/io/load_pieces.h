@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/io/record_reader.h"
+
+namespace mindahl::io {
+
+/// One of several records of a file.
+struct NamedRecord {
+  std::string name;  ///< the file's, and of a piece its lines: series.csv:2-501
+  RecordFile file;
+};
+
+/// A record whose normal load goes in steps (loop/load_steps.h) as one record for each load; else
+/// the record itself.
+/// @param file  its name
+std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file);
+
+}  // namespace mindahl::io

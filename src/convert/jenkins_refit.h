@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mindahl/convert/steady_law.h"
+
+namespace mindahl::convert {
+
+/// Jenkins elements whose steady loops at some amplitudes are nearest to those of a contact: the
+/// mean square difference of force over the loops, each over its own T*, is least over all
+/// stiffnesses and slip forces. Neither it nor the largest difference of force is ever more than
+/// that of the tangents (MakeIwanElements), which are returned where nothing better is found.
+///
+/// The root mean square falls as n⁻², for a Masing law to what n straight lines can do at best,
+///   2·(∫|f''|^{2/5}dx)^{5/2}/(√720·√X·T*·n²),  over the virgin curve up to X or to slip,
+/// which is 0.098/n² of T* for Mindlin's contact at the onset of slip.
+///
+/// Their virgin curve is a polygon, and the loop at X follows 2p(d/2) − p(X). Corners and forces at
+/// the corners are found together by Levenberg's and Marquardt's method, from the polygon whose
+/// corners are where they are best for many elements and from one of even differences; its normal
+/// equations are a band and two columns a loop.
+///
+/// Where no amplitude slips grossly the last of two or more elements sticks at all of them, and has
+/// the slip force that the others leave of the contact's.
+/// @param masing      the Masing law of the contact, or of its loop at one of the amplitudes
+/// @param amplitudes  [m], > 0
+/// @param elements    >= 1; fewer are returned for α = 0, which is one
+/// Cost: 0.3 ms an element at one amplitude, 2 ms at ten.
+methods::IwanElements RefitElements(const ModelLaw& contact, const models::BranchLaw& masing,
+                                    const std::vector<double>& amplitudes, std::size_t elements);
+
+}  // namespace mindahl::convert

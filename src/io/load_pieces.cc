@@ -1,0 +1,58 @@
+#include "mindahl/io/load_pieces.h"
+
+#include <fmt/format.h>
+
+#include "mindahl/loop/load_steps.h"
+
+namespace mindahl::io {
+namespace {
+
+std::vector<double> Part(const std::vector<double>& column, const loop::ConstantLoad& piece) {
+  if (column.empty()) return {};
+  return {column.begin() + static_cast<std::ptrdiff_t>(piece.first),
+          column.begin() + static_cast<std::ptrdiff_t>(piece.last)};
+}
+
+RecordFile PieceOf(const RecordFile& input, const loop::ConstantLoad& piece) {
+  RecordFile part = input;
+  loop::Record& record = part.record;
+  record.displacement = Part(input.record.displacement, piece);
+  record.force = Part(input.record.force, piece);
+  record.time = Part(input.record.time, piece);
+  record.normal_load = Part(input.record.normal_load, piece);
+  for (loop::Covariate& covariate : record.covariates) {
+    covariate.values = Part(covariate.values, piece);
+  }
+  part.notes.clear();
+  const auto line = [&](std::size_t sample) {
+    return sample < input.lines.size() ? input.lines[sample] : sample + 1;
+  };
+  part.lines.clear();
+  for (std::size_t i = piece.first; i < piece.last && i < input.lines.size(); ++i) {
+    part.lines.push_back(input.lines[i]);
+  }
+  part.piece = LoadPiece{.normal_load = piece.normal_load,
+                         .first_line = line(piece.first),
+                         .last_line = line(piece.last - 1)};
+  return part;
+}
+
+}  // namespace
+
+std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {
+  const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
+  if (pieces.empty()) return {{.name = file, .file = input}};
+  std::vector<NamedRecord> records;
+  std::size_t kept = 0;
+  for (const loop::ConstantLoad& piece : pieces) {
+    RecordFile part = PieceOf(input, piece);
+    records.push_back(
+        {.name = fmt::format("{}:{}-{}", file, part.piece->first_line, part.piece->last_line),
+         .file = std::move(part)});
+    kept += piece.last - piece.first;
+  }
+  records.back().file.piece->left_out = input.record.size() - kept;
+  return records;
+}
+
+}  // namespace mindahl::io

@@ -1,0 +1,146 @@
+#include "mindahl/loop/load_steps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <span>
+
+#include "loop/load_step_rules.h"
+#include "mindahl/loop/reversals.h"
+
+namespace mindahl::loop {
+namespace {
+
+double MedianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// Standard deviation of white noise, from the median of the steps between readings.
+double NoiseOf(std::span<const double> load) {
+  if (load.size() < 2) return 0.0;
+  std::vector<double> steps(load.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = std::abs(load[i + 1] - load[i]);
+  constexpr double kOfNormal = 1.4826;
+  return kOfNormal / std::sqrt(2.0) * MedianOf(std::move(steps));
+}
+
+/// Medians of five, so that single readings end nothing.
+std::vector<double> WithoutSpikes(std::span<const double> load) {
+  constexpr std::size_t kReach = 2;
+  std::vector<double> medians(load.begin(), load.end());
+  for (std::size_t i = kReach; i + kReach < load.size(); ++i) {
+    std::array<double, 2 * kReach + 1> about{};
+    std::ranges::copy(load.subspan(i - kReach, about.size()), about.begin());
+    std::ranges::nth_element(about, about.begin() + kReach);
+    medians[i] = about[kReach];
+  }
+  return medians;
+}
+
+struct Run {
+  std::size_t first;
+  std::size_t last;  // one past
+  double load = 0.0;
+  double spread = 0.0;
+};
+
+class LoadSteps {
+ public:
+  LoadSteps(const RecordView& record, const LoadStepRules& rules)
+      : rules_(rules),
+        noise_(NoiseOf(record.normal_load)),
+        load_(WithoutSpikes(record.normal_load)) {
+    const ReversalGate gate = ChooseReversalGate(record.displacement);
+    reversals_ = FindReversals(record.displacement, gate.gate);
+  }
+
+  [[nodiscard]] std::vector<ConstantLoad> Find() const {
+    std::vector<Run> runs = ConstantRuns();
+    if (runs.size() < 2 || !AreSteps(runs)) return {};
+    std::vector<ConstantLoad> pieces;
+    for (const Run& run : runs) {
+      const std::size_t first = run.first == 0 ? 0 : *std::next(NextTurn(run.first));
+      pieces.push_back({.first = first, .last = run.last, .normal_load = run.load});
+    }
+    return pieces;
+  }
+
+ private:
+  [[nodiscard]] double Tolerance(double load) const {
+    return std::max(rules_.constant * load, rules_.noise * noise_);
+  }
+  [[nodiscard]] std::vector<std::size_t>::const_iterator NextTurn(std::size_t sample) const {
+    return std::ranges::lower_bound(reversals_, sample);
+  }
+
+  /// From a sample on as far as the load stays within the tolerance.
+  [[nodiscard]] Run RunFrom(std::size_t first) const {
+    double low = load_[first];
+    double high = low;
+    std::size_t last = first + 1;
+    for (; last < load_.size(); ++last) {
+      const double lower = std::min(low, load_[last]);
+      const double upper = std::max(high, load_[last]);
+      if (upper - lower > 2 * Tolerance((upper + lower) / 2)) break;
+      low = lower;
+      high = upper;
+    }
+    return {.first = first, .last = last};
+  }
+
+  /// Without the ends of the ramps beside it.
+  void Settle(Run& run) const {
+    const std::span<const double> load = std::span(load_).subspan(run.first, run.last - run.first);
+    run.load = MedianOf({load.begin(), load.end()});
+    const double settled = Tolerance(run.load) / 2;
+    const auto is_settled = [&](std::size_t i) { return std::abs(load_[i] - run.load) <= settled; };
+    while (run.first > 0 && run.first + 1 < run.last && !is_settled(run.first)) ++run.first;
+    while (run.last < load_.size() && run.first + 1 < run.last && !is_settled(run.last - 1)) {
+      --run.last;
+    }
+    const auto [low, high] =
+        std::ranges::minmax(std::span(load_).subspan(run.first, run.last - run.first));
+    run.spread = std::max(high - low - 2 * rules_.noise * noise_, 0.0);
+  }
+
+  [[nodiscard]] std::vector<Run> ConstantRuns() const {
+    std::vector<Run> runs;
+    for (std::size_t i = 0; i < load_.size();) {
+      Run run = RunFrom(i);
+      i = run.last;
+      Settle(run);
+      const auto turns = static_cast<std::size_t>(NextTurn(run.last) - NextTurn(run.first));
+      if (run.load > 0 && turns >= rules_.turns) runs.push_back(run);
+    }
+    return runs;
+  }
+
+  [[nodiscard]] bool AreSteps(std::span<const Run> runs) const {
+    std::size_t samples = runs.front().last - runs.front().first;
+    for (std::size_t r = 1; r < runs.size(); ++r) {
+      samples += runs[r].last - runs[r].first;
+      const double step = std::abs(runs[r].load - runs[r - 1].load);
+      const double smaller = std::min(runs[r].load, runs[r - 1].load);
+      if (!(step > std::max(rules_.step * smaller, 4 * Tolerance(smaller)))) return false;
+      if (std::max(runs[r].spread, runs[r - 1].spread) > rules_.flat * step) return false;
+    }
+    return static_cast<double>(samples) >= rules_.share * static_cast<double>(load_.size());
+  }
+
+  LoadStepRules rules_;
+  double noise_;
+  std::vector<double> load_;
+  std::vector<std::size_t> reversals_;
+};
+
+}  // namespace
+
+std::vector<ConstantLoad> FindLoadSteps(const RecordView& record) {
+  if (record.normal_load.empty()) return {};
+  return LoadSteps(record, {}).Find();
+}
+
+}  // namespace mindahl::loop

@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+
+// fit: one file under several constant loads.
+namespace mindahl::cli {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using testing::Outcome;
+using testing::RunCommand;
+using Words = std::vector<std::string>;
+
+constexpr double kSigma = 4e7;  // at 50 N
+constexpr double kFriction = 0.4;
+constexpr double kAmplitude = 6e-7;  // slips grossly at 20 N, partly at 50 and 100 N
+constexpr std::size_t kCycle = 100;  // samples
+/// Residuals are rounding errors; pieces that start from an extreme have one offset with their
+/// origin, and σ, α and p are correlated by 0.99, which costs two digits each.
+constexpr double kNoiseFree = 1e-5;
+
+class LoadStepsOfFit : public ::testing::Test {
+ protected:
+  /// The exact response of elements in parallel, so that the contact keeps what it has of each
+  /// load.
+  std::string Simulate(std::size_t cycles, const std::function<double(double)>& load_at) {
+    std::string path = "x [m],load [N]\n";
+    for (std::size_t i = 0; i <= cycles * kCycle; ++i) {
+      const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
+      path += fmt::format("{},{}\n", kAmplitude * std::sin(2 * std::numbers::pi * cycle),
+                          load_at(cycle));
+    }
+    const std::string name = (directory_.path() / "series.csv").string();
+    const Outcome outcome = RunCommand(
+        {"simulate", "--path", directory_.Write("path.csv", path).string(), "--normal-load-column",
+         "load", "--normal-load", "50", "--sigma", "4e7", "--slip-force", "20", "-o", name});
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    return name;
+  }
+
+  static json Fit(Words files, const Words& more = {}) {
+    Words words = {"fit"};
+    words.insert(words.end(), files.begin(), files.end());
+    words.insert(words.end(), more.begin(), more.end());
+    words.insert(words.end(), {"--json", "-"});
+    const Outcome outcome = RunCommand(words);
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    return outcome.Json();
+  }
+
+  TemporaryDirectory directory_;
+};
+
+std::string TextOf(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+double Value(const json& fit, const char* parameter) {
+  return fit.at("parameters").at(parameter).at("value");
+}
+
+double Staircase(double cycle) { return cycle < 5 ? 20.0 : cycle < 10 ? 50.0 : 100.0; }
+
+TEST_F(LoadStepsOfFit, MakeALoadSeriesOfOneFile) {
+  const std::string file = Simulate(15, Staircase);
+  const json fit = Fit({file});
+  EXPECT_NEAR(Value(fit, "load_exponent"), 1.0 / 3, kNoiseFree);
+  EXPECT_NEAR(Value(fit, "alpha"), 1.0 / 3, kNoiseFree);
+  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), kFriction, kNoiseFree);
+  const json& records = fit["load_series"]["records"];
+  ASSERT_EQ(records.size(), 3U);
+  EXPECT_EQ(records[0]["normal_load"], 20.0);
+  EXPECT_EQ(records[2]["normal_load"], 100.0);
+  EXPECT_NEAR(records[1]["sigma"]["value"].get<double>() / kSigma, 1.0, kNoiseFree);
+
+  // Line 1 is the header; a piece begins with the second turn of the sine after the step.
+  const json& pieces = fit["input"]["load_pieces"];
+  ASSERT_EQ(pieces.size(), 3U);
+  EXPECT_EQ(pieces[0]["first_line"], 2);
+  EXPECT_EQ(pieces[0]["last_line"], 5 * kCycle + 1);
+  EXPECT_EQ(pieces[1]["first_line"], 5 * kCycle + 3 * kCycle / 4 + 2);
+  EXPECT_EQ(pieces[1]["file"], file + ":577-1001");
+  EXPECT_EQ(fit["input"]["files"][1], file + ":577-1001");
+  EXPECT_EQ(pieces[2]["samples"], 5 * kCycle - 3 * kCycle / 4 + 1);
+  EXPECT_EQ(fit["input"]["between_loads"], 2 * (3 * kCycle / 4));
+  EXPECT_EQ(fit["input"]["left_out"], 2 * (3 * kCycle / 4));
+  EXPECT_EQ(fit["input"]["samples"], 15 * kCycle + 1);
+
+  const Outcome text = RunCommand({"fit", file});
+  EXPECT_THAT(text.out, HasSubstr("note: the normal load goes in steps"));
+  EXPECT_THAT(text.out, HasSubstr("150 samples in between are"));
+}
+
+TEST_F(LoadStepsOfFit, GiveWhatAFileForEachLoadGives) {
+  const std::string file = Simulate(15, Staircase);
+  const json whole = Fit({file});
+  const json& pieces = whole["input"]["load_pieces"];
+  const Words lines = testing::Lines(TextOf(file));
+  Words files;
+  for (const json& piece : pieces) {
+    std::string text = lines.front() + "\n";
+    for (std::size_t line = piece["first_line"]; line <= piece["last_line"]; ++line) {
+      text += lines[line - 1] + "\n";
+    }
+    files.push_back(directory_.Write(fmt::format("{}.csv", files.size() + 1), text).string());
+  }
+  const json apart = Fit(files);
+  EXPECT_EQ(whole["parameters"], apart["parameters"]);
+  EXPECT_EQ(whole["load_series"], apart["load_series"]);
+  EXPECT_FALSE(apart["input"].contains("load_pieces"));
+  EXPECT_FALSE(apart["input"].contains("between_loads"));
+}
+
+TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWhereItIsSaidWhichLoadsCount) {
+  const std::string file = Simulate(15, Staircase);
+  for (const Words& more : {Words{"--normal-load", "56.6"}, Words{"--samples", "1:1200"},
+                            Words{"--load-window", "15:105"}}) {
+    const json fit = Fit({file}, more);
+    EXPECT_EQ(fit["input"]["files"].size(), 1U) << more[0];
+    EXPECT_FALSE(fit["input"].contains("load_pieces")) << more[0];
+    EXPECT_EQ(fit["notes"][0]["code"], "load_followed") << more[0];
+  }
+}
+
+TEST_F(LoadStepsOfFit, AreNotSeenInALoadThatChangesSlowlyOrSwings) {
+  for (const auto& load_at :
+       {std::function<double(double)>([](double cycle) { return 20 + 80 * cycle / 15; }),
+        std::function<double(double)>([](double cycle) {
+          return 50 * (1 + 0.3 * std::sin(2 * std::numbers::pi * cycle / 7));
+        })}) {
+    const json fit = Fit({Simulate(15, load_at)});
+    EXPECT_EQ(fit["input"]["files"].size(), 1U);
+    EXPECT_EQ(fit["notes"][0]["code"], "load_followed");
+    EXPECT_FALSE(fit.contains("load_series"));
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::cli

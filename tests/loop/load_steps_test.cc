@@ -1,0 +1,144 @@
+#include "mindahl/loop/load_steps.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+namespace mindahl::loop {
+namespace {
+
+constexpr std::size_t kCycle = 200;                  // samples
+constexpr std::size_t kSecondTurn = 3 * kCycle / 4;  // of a sine
+
+/// A sine under a load that goes with the cycles.
+Record Cycled(double cycles, const std::function<double(double)>& load_at) {
+  Record record;
+  const auto samples = static_cast<std::size_t>(cycles * static_cast<double>(kCycle));
+  for (std::size_t i = 0; i <= samples; ++i) {
+    const double cycle = static_cast<double>(i) / static_cast<double>(kCycle);
+    record.displacement.push_back(1e-6 * std::sin(2 * std::numbers::pi * cycle));
+    record.force.push_back(record.displacement.back());
+    record.normal_load.push_back(load_at(cycle));
+  }
+  return record;
+}
+
+double Staircase(double cycle) { return cycle < 5 ? 20.0 : cycle < 10 ? 50.0 : 100.0; }
+
+Record WithNoise(Record record, double share) {
+  boost::random::mt19937_64 generator(1);
+  boost::random::normal_distribution<double> normal;
+  for (double& load : record.normal_load) load *= 1 + share * normal(generator);
+  return record;
+}
+
+void ExpectThreeLoads(const std::vector<ConstantLoad>& pieces, double tolerance) {
+  ASSERT_EQ(pieces.size(), 3U);
+  const double loads[] = {20, 50, 100};
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(pieces[p].normal_load / loads[p], 1.0, tolerance);
+  }
+}
+
+TEST(LoadSteps, MakeARecordForEachConstantLoad) {
+  const std::vector<ConstantLoad> pieces = FindLoadSteps(Cycled(15, Staircase));
+  ExpectThreeLoads(pieces, 0.0);
+  // From the start, and else from where the sine turns for the second time after the step.
+  const std::size_t first[] = {0, 5 * kCycle + kSecondTurn, 10 * kCycle + kSecondTurn};
+  const std::size_t last[] = {5 * kCycle, 10 * kCycle, 15 * kCycle + 1};
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_EQ(pieces[p].first, first[p]);
+    EXPECT_EQ(pieces[p].last, last[p]);
+  }
+}
+
+TEST(LoadSteps, AreFoundUnderNoiseAndSpikes) {
+  Record record = WithNoise(Cycled(15, Staircase), 0.01);
+  for (const std::size_t spike : {300U, 1500U, 2200U}) record.normal_load[spike] = 500;
+  // A median of a thousand readings of 1 %.
+  ExpectThreeLoads(FindLoadSteps(record), 0.003);
+}
+
+TEST(LoadSteps, LeaveTheRampsBetweenThemOut) {
+  const Record record = Cycled(17, [](double cycle) {
+    if (cycle < 5) return 20.0;
+    if (cycle < 6) return 20 + 30 * (cycle - 5);
+    if (cycle < 11) return 50.0;
+    if (cycle < 12) return 50 + 50 * (cycle - 11);
+    return 100.0;
+  });
+  const std::vector<ConstantLoad> pieces = FindLoadSteps(record);
+  ExpectThreeLoads(pieces, 0.0);
+  // Constant to 1 %, half of which is taken for settled: 0.1 of 20 N and 0.25 of 50 N of a ramp.
+  for (const ConstantLoad& piece : pieces) {
+    for (std::size_t i = piece.first; i < piece.last; ++i) {
+      EXPECT_NEAR(record.normal_load[i] / piece.normal_load, 1.0, 0.005);
+    }
+  }
+  EXPECT_EQ(pieces[1].first, 6 * kCycle + kSecondTurn);
+  EXPECT_EQ(pieces[2].first, 12 * kCycle + kSecondTurn);
+}
+
+TEST(LoadSteps, ComeDownAgainToo) {
+  const std::vector<ConstantLoad> pieces =
+      FindLoadSteps(Cycled(12, [](double cycle) { return cycle > 4 && cycle < 8 ? 80.0 : 40.0; }));
+  ASSERT_EQ(pieces.size(), 3U);
+  EXPECT_EQ(pieces[2].normal_load, 40.0);
+}
+
+TEST(LoadSteps, LeaveOutALoadThatHasNoCycle) {
+  const std::vector<ConstantLoad> pieces = FindLoadSteps(Cycled(11, [](double cycle) {
+    return cycle < 5 ? 20.0 : cycle < 6 ? 50.0 : 100.0;
+  }));
+  ASSERT_EQ(pieces.size(), 2U);
+  EXPECT_EQ(pieces[0].normal_load, 20.0);
+  EXPECT_EQ(pieces[1].normal_load, 100.0);
+}
+
+TEST(LoadSteps, AreNotSeenInALoadThatChangesSlowlyOrSwings) {
+  const auto sine = [](double share, double period) {
+    return [=](double cycle) {
+      return 50 * (1 + share * std::sin(2 * std::numbers::pi * cycle / period));
+    };
+  };
+  for (const double share : {0.01, 0.03, 0.035, 0.04, 0.06, 0.1, 0.15, 0.3, 0.8}) {
+    for (const double period : {0.5, 1.0, 7.3, 40.0, 120.0}) {
+      EXPECT_TRUE(FindLoadSteps(Cycled(120, sine(share, period))).empty())
+          << share << ' ' << period;
+    }
+  }
+  for (const double total : {0.02, 0.1, 0.5, 3.0}) {
+    EXPECT_TRUE(
+        FindLoadSteps(Cycled(60, [&](double cycle) { return 50 * (1 + total * cycle / 60); }))
+            .empty())
+        << total;
+  }
+  // A constant one, a square wave as fast as the motion, and none at all.
+  EXPECT_TRUE(FindLoadSteps(WithNoise(Cycled(20, [](double) { return 50.0; }), 0.02)).empty());
+  EXPECT_TRUE(FindLoadSteps(Cycled(20, [](double cycle) {
+                return cycle - std::floor(cycle) < 0.5 ? 40.0 : 60.0;
+              })).empty());
+  Record without = Cycled(3, Staircase);
+  without.normal_load.clear();
+  EXPECT_TRUE(FindLoadSteps(without).empty());
+}
+
+TEST(LoadSteps, AreNotSeenWhereTheyAreSmallOrTheLoadDriftsBetweenThem) {
+  EXPECT_TRUE(
+      FindLoadSteps(Cycled(20, [](double cycle) { return cycle < 10 ? 50.0 : 52.0; })).empty());
+  EXPECT_TRUE(FindLoadSteps(Cycled(20, [](double cycle) {
+                return (cycle < 10 ? 50.0 : 100.0) * (1 + 0.01 * cycle);
+              })).empty());
+  // And not where the contact is unloaded for half of the time.
+  EXPECT_TRUE(
+      FindLoadSteps(Cycled(20, [](double cycle) { return cycle < 10 ? 0.0 : 50.0; })).empty());
+}
+
+}  // namespace
+}  // namespace mindahl::loop
