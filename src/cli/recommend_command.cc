@@ -74,10 +74,11 @@ std::string CommandCall(const RecommendCommandOptions& options, const Approximat
     }
   }
   const models::FrictionModel* model = models::FindFrictionModel(approximation.model);
+  const BranchLaw own = tradeoff::LawOf(approximation, law);
   if (model == nullptr || model->shape_exponent) {
-    call += fmt::format(" --sigma {} --slip-force {}", law.tangential_stiffness, law.slip_force);
+    call += fmt::format(" --sigma {} --slip-force {}", own.tangential_stiffness, own.slip_force);
   } else {
-    call += " " + LawArguments(law);
+    call += " " + LawArguments(own);
   }
   if (!options.drive.path.empty()) {
     call += fmt::format(" --path '{}'", options.drive.path);
@@ -99,7 +100,8 @@ std::string CommandCall(const RecommendCommandOptions& options, const Approximat
   return call;
 }
 
-std::string LibraryCall(const Approximation& approximation, const BranchLaw& law) {
+std::string LibraryCall(const Approximation& approximation, const BranchLaw& contact) {
+  const BranchLaw law = tradeoff::LawOf(approximation, contact);
   const methods::Method* method = methods::FindMethod(approximation.method);
   std::string resolution;
   if (method != nullptr && method->adaptive) {
@@ -214,6 +216,10 @@ void PrintReport(const RecommendCommandOptions& options, const BranchLaw& law,
       out << fmt::format("   {:.1f} times as fast as the exact {}\n",
                          exact.point.cost / choice.point.cost, exact.point.approximation.model);
     }
+    if (choice.point.approximation.law) {
+      out << fmt::format("   with {}, which suit this excitation and belong to no other\n",
+                         RefittedParameters(choice.point.approximation));
+    }
     const auto& energy = choice.point.precision.energy;
     if (asked.criterion != Criterion::kEnergy && energy && *energy > asked.tolerance) {
       out << fmt::format(
@@ -232,9 +238,9 @@ void PrintReport(const RecommendCommandOptions& options, const BranchLaw& law,
     out << indented;
   }
   out << fmt::format(
-      "\nevidence, run one after the other (floor: one square root and division, "
+      "\nevidence, costs by counted operations (floor: one square root and division, "
       "{:.2f} ns/sample):\n  {}\n",
-      recommendation.floor.arithmetic, PrecisionTableHead());
+      recommendation.floor.arithmetic, PrecisionTableHead(/*is_timed=*/false));
   for (std::size_t i = 0; i < recommendation.candidates.size(); ++i) {
     const Candidate& candidate = recommendation.candidates[i];
     std::string remark;
