@@ -15,6 +15,7 @@
 #include "cli/law_options.h"
 #include "cli/output_path.h"
 #include "cli/precision_table.h"
+#include "cli/record_recommendation.h"
 #include "cli/tolerance.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
@@ -40,6 +41,7 @@ struct RecommendCommandOptions {
   std::optional<double> cost;
   std::string criterion = "max";
   std::size_t transient_cycles = 0;
+  std::string record;
   std::string json;
 };
 
@@ -257,6 +259,21 @@ void PrintReport(const RecommendCommandOptions& options, const BranchLaw& law,
   }
 }
 
+/// A record brings its contact, its motion and its tolerance.
+void RunForRecord(const RecommendCommandOptions& options, const CLI::App& command,
+                  Console& console) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string& name = option->get_name();
+    if (option->count() == 0 || name == "--record" || name == "--json") continue;
+    throw InputError(fmt::format(
+        "--record excludes {}: contact, motion and tolerance are those of the record", name));
+  }
+  std::vector<std::string> inputs = console.inputs;
+  inputs.push_back(options.record);
+  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, inputs);
+  RecommendForRecord(options.record, options.json, console);
+}
+
 void RunRecommend(const RecommendCommandOptions& options, Console& console) {
   Validate(options.law);
   RecommendOptions asked{.tolerance = ParseTolerance(options.tolerance),
@@ -322,7 +339,19 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
       ->group(asked);
   command->add_option("--json", options->json, "results for scripts; - is standard output")
       ->type_name("PATH");
-  command->callback([options, &console] { RunRecommend(*options, console); });
+  command
+      ->add_option("--record", options->record,
+                   "measured record: the cheapest law that it does not tell from the best,\n"
+                   "each fitted to it; instead of all of the above")
+      ->type_name("FILE")
+      ->group("What is asked");
+  command->callback([options, command, &console] {
+    if (options->record.empty()) {
+      RunRecommend(*options, console);
+    } else {
+      RunForRecord(*options, *command, console);
+    }
+  });
 }
 
 }  // namespace mindahl::cli

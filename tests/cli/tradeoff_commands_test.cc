@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ using testing::Lines;
 using ::testing::Not;
 using testing::Outcome;
 using testing::RunCommand;
+using testing::SampleRecord;
 using ::testing::SizeIs;
 using Words = std::vector<std::string>;
 
@@ -279,6 +281,60 @@ TEST(Recommend, CommandOfARefittedModelHasItsParameters) {
   EXPECT_THAT(outcome.out, HasSubstr("-> jenkins by exact, refitted"));
   EXPECT_THAT(outcome.out, HasSubstr("which suit this excitation and belong to no other"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--sigma 480000000")));
+}
+
+TEST(Recommend, OfARecordIsTheCheapestLawThatItDoesNotTellFromTheBest) {
+  const std::string record = std::string(MINDAHL_SOURCE_DIR) + "/data/partial_slip.csv";
+  const Outcome text = RunCommand({"recommend", "--record", record});
+  ASSERT_EQ(text.status, cli::kDone) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("-> mindlin: the record does not tell it from mindlin-dahl"));
+  const json result = RunCommand({"recommend", "--record", record, "--json", "-"}).Json();
+  EXPECT_EQ(result["record"]["samples"], 601);
+  double least = std::numeric_limits<double>::infinity();
+  double chosen = 0.0;
+  int best = 0;
+  for (const json& law : result["laws"]) {
+    EXPECT_EQ(law["told_apart"], law["delta_aicc"] >= result["indistinguishable"]) << law;
+    if (!law["told_apart"]) least = std::min(least, law["cost_ns_per_sample"].get<double>());
+    if (law["choice"]) chosen = law["cost_ns_per_sample"];
+    if (law["best"]) ++best;
+  }
+  constexpr double kSameCost = 1.1;
+  EXPECT_LE(chosen, kSameCost * least);
+  EXPECT_EQ(best, 1);
+  EXPECT_THAT(result["law_options"].get<std::string>(), HasSubstr("--model mindlin --sigma 4.8"));
+}
+
+TEST(Recommend, ARecordThatNoLawDescribesEstablishesNothing) {
+  // A force that is the same at either end of the motion.
+  const TemporaryDirectory directory;
+  std::string text = "x [m],F [N]\n";
+  for (int i = 0; i <= 400; ++i) {
+    const double x = std::sin(0.0314159 * i);
+    text += std::to_string(x) + "," +
+            std::to_string(std::copysign(1.0, std::cos(0.0314159 * i)) + 3 * x * x +
+                           0.01 * std::sin(71.0 * i)) +
+            "\n";
+  }
+  const Outcome outcome =
+      RunCommand({"recommend", "--record", directory.Write("odd.csv", text).string()});
+  EXPECT_EQ(outcome.status, cli::kNotEstablished);
+  EXPECT_THAT(outcome.err, HasSubstr("none of these laws describes the record"));
+}
+
+TEST(Recommend, ARecordExcludesWhatItBringsItself) {
+  const std::string record = SampleRecord();
+  for (const Words& words :
+       {Words{"--sigma", "1"}, Words{"--tolerance", "2%"}, Words{"--lambda", "0.8"},
+        Words{"--path", record}, Words{"--cost", "3"}}) {
+    Words all = {"recommend", "--record", record};
+    all.insert(all.end(), words.begin(), words.end());
+    const Outcome outcome = RunCommand(all);
+    EXPECT_EQ(outcome.status, cli::kBadInput);
+    ASSERT_THAT(outcome.Errors(), SizeIs(1)) << outcome.err;
+    EXPECT_THAT(outcome.Errors()[0], HasSubstr("--record excludes " + words[0]));
+  }
+  EXPECT_EQ(RunCommand({"recommend", "--record", "/no/such.csv"}).status, cli::kBadInput);
 }
 
 TEST(Recommend, CostIsTheLimitTheOtherWayRound) {
