@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "cli/contact_options.h"
@@ -13,6 +14,13 @@
 
 namespace mindahl::cli {
 namespace {
+
+/// Time counts rows.
+std::vector<double> CountRows(std::size_t rows) {
+  std::vector<double> time(rows);
+  std::iota(time.begin(), time.end(), 0.0);
+  return time;
+}
 
 ImposedMotion MotionFromFile(const DriveOptions& options) {
   ImposedMotion motion;
@@ -25,9 +33,7 @@ ImposedMotion MotionFromFile(const DriveOptions& options) {
     motion.displacement = std::move(loaded.displacement);
     motion.normal_load = std::move(loaded.normal_load);
   }
-  for (std::size_t i = 0; i < motion.displacement.size(); ++i) {
-    motion.time.push_back(static_cast<double>(i));
-  }
+  motion.time = CountRows(motion.displacement.size());
   return motion;
 }
 
@@ -95,8 +101,8 @@ void AddDriveOptions(CLI::App& command, DriveOptions& options) {
   CLI::Option* path =
       command
           .add_option("--path", options.path,
-                      "CSV file whose first column is the displacement [m], any sequence; one "
-                      "output row for each, time counting rows")
+                      "CSV file whose first column is the displacement [m], any sequence;\n"
+                      "one output row for each, time counting rows")
           ->type_name("FILE")
           ->group(group);
   command.add_option("--path-unit", options.path_unit, "unit of that column, default the header's")
@@ -124,6 +130,40 @@ void AddLoadColumnOptions(CLI::App& command, DriveOptions& options) {
       ->type_name("UNIT")
       ->needs(column)
       ->group("Excitation");
+}
+
+void AddForcePathOptions(CLI::App& command, DriveOptions& options) {
+  const std::string group = "Excitation";
+  CLI::Option* force_path =
+      command
+          .add_option("--force-path", options.force_path,
+                      "CSV file whose first column is the force [N], any sequence within the\n"
+                      "slip force: the displacement follows from it")
+          ->type_name("FILE")
+          ->group(group);
+  command
+      .add_option("--force-path-unit", options.force_path_unit,
+                  "unit of that column, default the header's")
+      ->type_name("UNIT")
+      ->needs(force_path)
+      ->group(group);
+  for (const char* name : {"--waveform", "--lambda", "--amplitude", "--cycles",
+                           "--samples-per-cycle", "--frequency", "--growth", "--path"}) {
+    force_path->excludes(command.get_option(name));
+  }
+}
+
+ImposedForce ReadImposedForce(const DriveOptions& options, const models::BranchLaw& law) {
+  io::ForcePath path =
+      io::ReadForcePath(options.force_path, {.column = "", .unit = options.force_path_unit});
+  for (std::size_t i = 0; i < path.force.size(); ++i) {
+    if (std::abs(path.force[i]) < law.slip_force) continue;
+    throw InputError(fmt::format(
+        "{}:{}: a force of {} N is not within the slip force, {} N, at which the contact slides "
+        "any distance: keep forces below it, or impose the displacement with --path",
+        options.force_path, path.lines[i], path.force[i], law.slip_force));
+  }
+  return {CountRows(path.force.size()), std::move(path.force)};
 }
 
 ImposedMotion MakeMotion(const DriveOptions& options, const models::BranchLaw& law) {

@@ -22,6 +22,8 @@ struct DriveOptions {
   std::string path_unit;
   std::string load_column;  ///< of that file; "" = the load is constant
   std::string load_unit;
+  std::string force_path;  ///< a file that imposes the force instead
+  std::string force_path_unit;
   std::uint64_t seed = 1;
 };
 
@@ -42,6 +44,19 @@ void AddDriveOptions(CLI::App& command, DriveOptions& options);
 
 /// Adds --normal-load-column and --normal-load-unit, of the file that --path names.
 void AddLoadColumnOptions(CLI::App& command, DriveOptions& options);
+
+/// Adds --force-path and --force-path-unit, which exclude all of the above.
+void AddForcePathOptions(CLI::App& command, DriveOptions& options);
+
+/// A force imposed by a file, one entry a row of output.
+struct ImposedForce {
+  std::vector<double> time;   ///< [s], counting rows
+  std::vector<double> force;  ///< [N], within ±Tc
+};
+
+/// @param law  at whose slip force the contact slides
+/// @throws InputError naming the place in the file, also of a force that reaches slip
+ImposedForce ReadImposedForce(const DriveOptions& options, const models::BranchLaw& law);
 
 /// @param law  to which --lambda refers
 /// @throws InputError or InvalidArgument naming the option, or the place in the file

@@ -12,16 +12,28 @@ std::string Error(double error) { return fmt::format("{:.1e}", error); }
 
 }  // namespace
 
-std::string PrecisionTableHead() {
-  return fmt::format("{:<50} {:>10} {:>8}  {:>8} {:>8} {:>8}", "", "ns/sample", "x floor", "max dT",
+std::string PrecisionTableHead(bool is_timed) {
+  return fmt::format("{:<50} {:>10}{} {:>8}  {:>8} {:>8} {:>8}", "", "ns/sample",
+                     is_timed ? fmt::format(" {:>10}", "measured") : "", "x floor", "max dT",
                      "rms dT", "energy");
 }
 
 std::string PrecisionTableRow(const tradeoff::WorkPrecision& point, double floor) {
-  return fmt::format("{:<50} {:>10.2f} {:>8.1f}  {:>8} {:>8} {:>8}",
-                     tradeoff::Describe(point.approximation), point.cost, point.cost / floor,
-                     Error(point.precision.max_force), Error(point.precision.rms_force),
-                     point.precision.energy ? Error(*point.precision.energy) : "-");
+  return fmt::format(
+      "{:<50} {:>10.2f}{} {:>8.1f}  {:>8} {:>8} {:>8}", tradeoff::Describe(point.approximation),
+      point.cost, point.measured_cost ? fmt::format(" {:>10.2f}", *point.measured_cost) : "",
+      point.cost / floor, Error(point.precision.max_force), Error(point.precision.rms_force),
+      point.precision.energy ? Error(*point.precision.energy) : "-");
+}
+
+std::string RefittedParameters(const tradeoff::Approximation& approximation) {
+  const models::BranchLaw& law = *approximation.law;
+  if (approximation.model == "spring") {
+    return fmt::format("sigma = {:.5g} N/m", law.tangential_stiffness);
+  }
+  if (approximation.model == "coulomb") return fmt::format("Tc = {:.5g} N", law.slip_force);
+  return fmt::format("sigma = {:.5g} N/m and Tc = {:.5g} N", law.tangential_stiffness,
+                     law.slip_force);
 }
 
 nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point) {
@@ -36,7 +48,29 @@ nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point) {
     if (!method->steps.empty()) json["steps"] = approximation.resolution.steps;
     if (method->adaptive) json["tolerance"] = approximation.resolution.tolerance;
   }
+  json["refitted"] = nullptr;
+  if (approximation.law) {
+    const models::BranchLaw& law = *approximation.law;
+    json["refitted"] = {{"sigma", law.tangential_stiffness},
+                        {"alpha", tradeoff::LawOf(approximation, law).shape_exponent},
+                        {"slip_force", law.slip_force}};
+    if (approximation.model == "spring") {
+      json["refitted"] = {{"sigma", law.tangential_stiffness}};
+    } else if (approximation.model == "coulomb") {
+      json["refitted"] = {{"slip_force", law.slip_force}};
+    }
+  }
   json["cost_ns_per_sample"] = point.cost;
+  json["measured_ns_per_sample"] = NumberOrNull(point.measured_cost);
+  json["operations_per_sample"] = nlohmann::ordered_json::object();
+  const double samples = point.operations[methods::Operation::kSample];
+  for (std::size_t i = 0; i < methods::kOperations; ++i) {
+    const auto operation = static_cast<methods::Operation>(i);
+    const double count = point.operations[operation];
+    if (count > 0) {
+      json["operations_per_sample"][std::string(methods::NameOf(operation))] = count / samples;
+    }
+  }
   json["max_force_error"] = point.precision.max_force;
   json["rms_force_error"] = point.precision.rms_force;
   json["energy_error"] = NumberOrNull(point.precision.energy);

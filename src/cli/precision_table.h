@@ -8,11 +8,15 @@
 namespace mindahl::cli {
 
 /// Head of a table of approximations with their cost and errors.
-std::string PrecisionTableHead();
+/// @param is_timed  there is a column of what was measured
+std::string PrecisionTableHead(bool is_timed);
 
 /// One row of it, without an end of line.
-/// @param floor  the arithmetic floor [ns/sample] that costs are compared with
+/// @param floor  the arithmetic floor [ns/sample] that modelled costs are compared with
 std::string PrecisionTableRow(const tradeoff::WorkPrecision& point, double floor);
+
+/// Of a refitted model, what it needs of its own: "sigma 3.6e+08, Tc 32.7".
+std::string RefittedParameters(const tradeoff::Approximation& approximation);
 
 /// {"model", "method", "steps", "tolerance", "cost_ns_per_sample", "max_force_error", …}
 nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point);

@@ -15,6 +15,7 @@
 #include "cli/law_options.h"
 #include "cli/output_path.h"
 #include "cli/precision_table.h"
+#include "cli/record_recommendation.h"
 #include "cli/tolerance.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
@@ -40,6 +41,7 @@ struct RecommendCommandOptions {
   std::optional<double> cost;
   std::string criterion = "max";
   std::size_t transient_cycles = 0;
+  std::string record;
   std::string json;
 };
 
@@ -74,10 +76,11 @@ std::string CommandCall(const RecommendCommandOptions& options, const Approximat
     }
   }
   const models::FrictionModel* model = models::FindFrictionModel(approximation.model);
+  const BranchLaw own = tradeoff::LawOf(approximation, law);
   if (model == nullptr || model->shape_exponent) {
-    call += fmt::format(" --sigma {} --slip-force {}", law.tangential_stiffness, law.slip_force);
+    call += fmt::format(" --sigma {} --slip-force {}", own.tangential_stiffness, own.slip_force);
   } else {
-    call += " " + LawArguments(law);
+    call += " " + LawArguments(own);
   }
   if (!options.drive.path.empty()) {
     call += fmt::format(" --path '{}'", options.drive.path);
@@ -99,7 +102,8 @@ std::string CommandCall(const RecommendCommandOptions& options, const Approximat
   return call;
 }
 
-std::string LibraryCall(const Approximation& approximation, const BranchLaw& law) {
+std::string LibraryCall(const Approximation& approximation, const BranchLaw& contact) {
+  const BranchLaw law = tradeoff::LawOf(approximation, contact);
   const methods::Method* method = methods::FindMethod(approximation.method);
   std::string resolution;
   if (method != nullptr && method->adaptive) {
@@ -214,6 +218,10 @@ void PrintReport(const RecommendCommandOptions& options, const BranchLaw& law,
       out << fmt::format("   {:.1f} times as fast as the exact {}\n",
                          exact.point.cost / choice.point.cost, exact.point.approximation.model);
     }
+    if (choice.point.approximation.law) {
+      out << fmt::format("   with {}, which suit this excitation and belong to no other\n",
+                         RefittedParameters(choice.point.approximation));
+    }
     const auto& energy = choice.point.precision.energy;
     if (asked.criterion != Criterion::kEnergy && energy && *energy > asked.tolerance) {
       out << fmt::format(
@@ -232,9 +240,9 @@ void PrintReport(const RecommendCommandOptions& options, const BranchLaw& law,
     out << indented;
   }
   out << fmt::format(
-      "\nevidence, run one after the other (floor: one square root and division, "
+      "\nevidence, costs by counted operations (floor: one square root and division, "
       "{:.2f} ns/sample):\n  {}\n",
-      recommendation.floor.arithmetic, PrecisionTableHead());
+      recommendation.floor.arithmetic, PrecisionTableHead(/*is_timed=*/false));
   for (std::size_t i = 0; i < recommendation.candidates.size(); ++i) {
     const Candidate& candidate = recommendation.candidates[i];
     std::string remark;
@@ -249,6 +257,21 @@ void PrintReport(const RecommendCommandOptions& options, const BranchLaw& law,
     const std::string row = PrecisionTableRow(candidate.point, recommendation.floor.arithmetic);
     out << fmt::format("  {}{}\n", row, remark.empty() ? "" : "  " + remark);
   }
+}
+
+/// A record brings its contact, its motion and its tolerance.
+void RunForRecord(const RecommendCommandOptions& options, const CLI::App& command,
+                  Console& console) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string& name = option->get_name();
+    if (option->count() == 0 || name == "--record" || name == "--json") continue;
+    throw InputError(fmt::format(
+        "--record excludes {}: contact, motion and tolerance are those of the record", name));
+  }
+  std::vector<std::string> inputs = console.inputs;
+  inputs.push_back(options.record);
+  RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, inputs);
+  RecommendForRecord(options.record, options.json, console);
 }
 
 void RunRecommend(const RecommendCommandOptions& options, Console& console) {
@@ -316,7 +339,19 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
       ->group(asked);
   command->add_option("--json", options->json, "results for scripts; - is standard output")
       ->type_name("PATH");
-  command->callback([options, &console] { RunRecommend(*options, console); });
+  command
+      ->add_option("--record", options->record,
+                   "measured record: the cheapest law that it does not tell from the best,\n"
+                   "each fitted to it; instead of all of the above")
+      ->type_name("FILE")
+      ->group("What is asked");
+  command->callback([options, command, &console] {
+    if (options->record.empty()) {
+      RunRecommend(*options, console);
+    } else {
+      RunForRecord(*options, *command, console);
+    }
+  });
 }
 
 }  // namespace mindahl::cli

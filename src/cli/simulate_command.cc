@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.h"
@@ -20,6 +21,7 @@
 #include "mindahl/io/csv_writer.h"
 #include "mindahl/methods/method.h"
 #include "mindahl/models/friction_model.h"
+#include "mindahl/models/imposed_force.h"
 #include "mindahl/models/limit_law.h"
 #include "mindahl/models/variable_load.h"
 #include "mindahl/tradeoff/approximation.h"
@@ -121,6 +123,26 @@ models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
           .shape_exponent = law.shape_exponent};
 }
 
+/// The displacement that a force imposed by a file makes.
+ImposedMotion FollowForce(const SimulateOptions& options, std::vector<double>& force) {
+  const FrictionModel* model = models::FindFrictionModel(options.model);
+  if (model == nullptr || model->scaled_by_peak || options.method != "exact") {
+    throw InputError(
+        fmt::format("--force-path does not serve --model {} --method {}: use --model mindlin, "
+                    "mindlin-dahl, jenkins or dahl and --method exact",
+                    options.model, options.method));
+  }
+  const models::BranchLaw law = ResolveLaw(options.law, options.model, model->shape_exponent);
+  ImposedForce imposed = ReadImposedForce(options.drive, law);
+  ImposedMotion motion{.time = std::move(imposed.time),
+                       .displacement = std::vector<double>(imposed.force.size()),
+                       .envelope = {},
+                       .normal_load = {}};
+  force = std::move(imposed.force);
+  models::EvaluateDisplacement(*model, law, force, motion.displacement);
+  return motion;
+}
+
 void AddNoise(std::vector<double>& values, double standard_deviation,
               boost::random::mt19937_64& engine) {
   if (standard_deviation == 0) return;
@@ -132,13 +154,16 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   Validate(options.law);
   std::vector<std::string> inputs = console.inputs;
   inputs.push_back(options.drive.path);
+  inputs.push_back(options.drive.force_path);
   RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, inputs);
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
   const Approximation approximation = ResolveMethod(options);
   ImposedMotion motion;
   std::vector<double> force;
-  if (options.drive.load_column.empty()) {
+  if (!options.drive.force_path.empty()) {
+    motion = FollowForce(options, force);
+  } else if (options.drive.load_column.empty()) {
     const models::BranchLaw law =
         ResolveLaw(options.law, options.model, PrescribedExponent(options.model));
     motion = MakeMotion(options.drive, law);
@@ -172,7 +197,8 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = app.add_subcommand(
       "simulate",
-      "Tangential force of a model along an imposed displacement, exact for any history.\n"
+      "Tangential force of a model along an imposed displacement, or the displacement under an\n"
+      "imposed force (--force-path), exact for any history.\n"
       "The contact is unloaded at displacement zero; a first row that is not zero is the first\n"
       "loading step. Writes time [s], displacement [m], force [N].");
   command->add_option("--model", options->model, "friction model")
@@ -181,6 +207,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   AddLawOptions(*command, options->law);
   AddDriveOptions(*command, options->drive);
   AddLoadColumnOptions(*command, options->drive);
+  AddForcePathOptions(*command, options->drive);
 
   const std::string noise = "Noise";
   command->add_option("--noise-force", options->force_noise, "standard deviation [N]")

@@ -25,6 +25,7 @@
 #include "mindahl/io/record_reader.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/tradeoff/model_regions.h"
+#include "mindahl/tradeoff/refit.h"
 #include "mindahl/tradeoff/work_precision.h"
 
 namespace mindahl::cli {
@@ -102,13 +103,14 @@ double SlipReach(const BranchLaw& law) {
 
 MeasuredScene Measure(const BranchLaw& law, std::string name, std::string title,
                       const methods::Drive& drive) {
-  MeasuredScene measured{
-      .name = std::move(name),
-      .title = std::move(title),
-      .samples = drive.displacement.size(),
-      .floor = tradeoff::MeasureCostFloor(drive),
-      .points = tradeoff::MeasureWorkPrecision(law, drive, tradeoff::AllApproximations(law)),
-      .front = {}};
+  const std::vector<tradeoff::Approximation> ladder =
+      tradeoff::AllApproximationsAlong(law, drive, tradeoff::MakeReferenceResponse(law, drive));
+  MeasuredScene measured{.name = std::move(name),
+                         .title = std::move(title),
+                         .samples = drive.displacement.size(),
+                         .floor = tradeoff::MeasureCostFloor(drive),
+                         .points = tradeoff::MeasureWorkPrecision(law, drive, ladder),
+                         .front = {}};
   measured.front = tradeoff::ParetoFront(measured.points, Criterion::kMaxForce);
   return measured;
 }
@@ -139,12 +141,14 @@ std::vector<MeasuredScene> MeasureScenes(const TradeoffOptions& options, const B
 
 void PrintScene(const MeasuredScene& scene, std::ostream& out) {
   out << fmt::format(
-      "{}: {} samples; floor {:.2f} ns/sample for memory, {:.2f} with one square root "
+      "{}: {} samples; floor measured {:.2f} ns/sample for memory, {:.2f} with one square root "
       "and division\n  {}\n",
-      scene.title, scene.samples, scene.floor.memory, scene.floor.arithmetic, PrecisionTableHead());
+      scene.title, scene.samples, scene.floor.memory, scene.floor.arithmetic,
+      PrecisionTableHead(/*is_timed=*/true));
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
-    out << fmt::format("{} {}\n", scene.front[i] ? '*' : ' ',
-                       PrecisionTableRow(scene.points[i], scene.floor.arithmetic));
+    out << fmt::format(
+        "{} {}\n", scene.front[i] ? '*' : ' ',
+        PrecisionTableRow(scene.points[i], tradeoff::ModelledCostFloor().arithmetic));
   }
   out << '\n';
 }
@@ -205,9 +209,12 @@ void PrintRegions(const std::vector<ModelRegion>& regions, const ModelRegionOpti
 
 std::string PointsCsv(const std::vector<MeasuredScene>& scenes) {
   std::string text =
-      "excitation,model,method,steps,tolerance,cost [ns/sample],cost over floor [-],max force "
+      "excitation,model,method,steps,tolerance,cost [ns/sample],measured [ns/sample],cost over "
+      "floor [-],max force "
       "error "
-      "[-],rms force error [-],energy error [-],on Pareto front\n";
+      "[-],rms force error [-],energy error [-],on Pareto front,refitted sigma [N/m],refitted "
+      "alpha "
+      "[-],refitted Tc [N]\n";
   for (const MeasuredScene& scene : scenes) {
     for (std::size_t i = 0; i < scene.points.size(); ++i) {
       const WorkPrecision& point = scene.points[i];
@@ -217,10 +224,15 @@ std::string PointsCsv(const std::vector<MeasuredScene>& scenes) {
                : json[key].is_string() ? json[key].get<std::string>()
                                        : json[key].dump();
       };
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", scene.name, cell("model"),
-                          cell("method"), cell("steps"), cell("tolerance"), point.cost,
-                          point.cost / scene.floor.arithmetic, point.precision.max_force,
-                          point.precision.rms_force, cell("energy_error"), scene.front[i] ? 1 : 0);
+      const auto own = [&](const char* key) {
+        return json["refitted"].contains(key) ? json["refitted"][key].dump() : std::string();
+      };
+      text += fmt::format(
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", scene.name, cell("model"),
+          cell("method"), cell("steps"), cell("tolerance"), point.cost,
+          cell("measured_ns_per_sample"), point.cost / tradeoff::ModelledCostFloor().arithmetic,
+          point.precision.max_force, point.precision.rms_force, cell("energy_error"),
+          scene.front[i] ? 1 : 0, own("sigma"), own("alpha"), own("slip_force"));
     }
   }
   return text;
@@ -257,7 +269,9 @@ io::Plot WorkPrecisionPlot(const std::vector<MeasuredScene>& scenes) {
     for (const WorkPrecision& point : scene.points) {
       const tradeoff::Approximation& approximation = point.approximation;
       const bool other_model = approximation.model != scene.points.back().approximation.model;
-      const std::string label = other_model ? approximation.model : approximation.method;
+      const std::string label = !other_model        ? approximation.method
+                                : approximation.law ? approximation.model + " refitted"
+                                                    : approximation.model;
       if (!curves.contains(label)) {
         order.push_back(label);
         curves[label] = {
@@ -363,7 +377,8 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TradeoffOptions>();
   CLI::App* command = app.add_subcommand(
       "tradeoff",
-      "Error against cost of every method and model along five excitations, measured in this run,\n"
+      "Error against cost of every method and model along five excitations, the cost by counted\n"
+      "operations and as measured in this run,\n"
       "and the amplitudes at which each model is good enough. The contact is that of Peyret et "
       "al.\n"
       "(2017) unless another is given.");

@@ -1,41 +1,14 @@
 #include "convert/refit.h"
 
-#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 
 #include "convert/bouc_wen_shape.h"
+#include "core/least_of.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::convert {
-namespace {
-
-constexpr int kBits = 26;  // of the minimum's place: half of a double's, as far as a minimum tells
-
-/// The least of a function on an interval: the best of some places, and the minimum beside it.
-template <typename Function>
-double LeastOf(const Function& function, double low, double high, int places) {
-  const double step = (high - low) / places;
-  int best = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= places; ++i) {
-    const double value = function(low + step * i);
-    if (value < least) {
-      least = value;
-      best = i;
-    }
-  }
-  const double from = std::max(low, low + step * (best - 1));
-  const double to = std::min(high, low + step * (best + 1));
-  const auto [place, value] = boost::math::tools::brent_find_minima(function, from, to, kBits);
-  // It never asks for the ends themselves.
-  if (function(from) <= value) return from;
-  return function(to) <= value ? to : place;
-}
-
-}  // namespace
 
 ReferenceLoops::ReferenceLoops(const ModelLaw& contact, const std::vector<double>& amplitudes)
     : contact_(contact) {

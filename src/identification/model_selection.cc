@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "identification/free_parameters.h"
 #include "identification/inference/evidence.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/scaled_records.h"
@@ -78,15 +79,6 @@ FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
   options.model = score.model;
   if (score.rig) options.terms.emplace_back("rig_stiffness");
   return options;
-}
-
-std::size_t CountFree(const FitResult& fit) {
-  auto count = static_cast<std::size_t>(
-      std::ranges::count_if(fit.parameters, [](const ParameterEstimate& parameter) {
-        return parameter.status != ParameterStatus::kFixed;
-      }));
-  for (const RecordFit& record : fit.records) count += record.overshoot.size();
-  return count;
 }
 
 ScoredSamples CountedSamples(const FitResult& fit, std::span<const RecordView> records) {
@@ -238,7 +230,7 @@ std::vector<double> PredictCycles(std::span<const RecordView> records, const Fit
     partial.preparation.held_out = HeldOut(records, options, cycles, fold, folds);
     auto left = static_cast<double>(samples.count);
     for (std::size_t c = fold; c < cycles.size(); c += folds) left -= cycles[c].samples;
-    if (left < static_cast<double>(CountFree(full))) return {};
+    if (left < static_cast<double>(CountFreeParameters(full))) return {};
     Fitter fitter(partial);
     const FitResult& fit = fitter.Fit(records, Depth::kEstimate);
     if (!fit.converged) return {};
@@ -430,7 +422,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
     Fitter fitter(OptionsOf(score, options));
     const FitResult& fit = fits.emplace_back(fitter.Fit(records, Depth::kIntervals));
     score.converged = fit.converged;
-    score.free_parameters = CountFree(fit);
+    score.free_parameters = CountFreeParameters(fit);
     score.rms = score.aicc = std::numeric_limits<double>::infinity();
     RemarkOnFit(score, fit, options.thresholds);
   }

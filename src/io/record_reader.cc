@@ -644,4 +644,9 @@ LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice&
           ReadPathColumn(table, kNormalLoad, normal_load)};
 }
 
+ForcePath ReadForcePath(const std::filesystem::path& path, const ColumnChoice& force) {
+  const CsvTable table = ReadCsvTable(path);
+  return {ReadPathColumn(table, kForce, force), table.lines()};
+}
+
 }  // namespace mindahl::io

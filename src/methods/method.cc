@@ -6,11 +6,13 @@
 #include <array>
 #include <vector>
 
+#include "methods/path_operations.h"
 #include "methods/tabulated.h"
 #include "methods/time_stepping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/methods/iwan.h"
+#include "mindahl/methods/operations.h"
 #include "mindahl/models/response.h"
 
 namespace mindahl::methods {
@@ -24,6 +26,32 @@ Evaluator PrepareExact(const FrictionModel& model, const BranchLaw& law, const R
   return [&model, law](const Drive& drive, std::span<double> force) {
     models::EvaluateForce(model, law, MakeDrivePath(model, drive), drive.displacement, force);
   };
+}
+
+void CountExact(const FrictionModel& model, const BranchLaw& law, const Resolution&,
+                const Drive& drive, OperationCount& count) {
+  const auto branches = static_cast<double>(CountPath(model, drive, count).branches.size());
+  const Operation branch_law = LawOperation(law.shape_exponent);
+  count.Add(branch_law, static_cast<double>(drive.displacement.size()) + branches);
+  // The steady peak, and the rate of a branch that starts with another stiffness.
+  if (model.scaled_by_peak) count.Add(branch_law, branches);
+  if (model.memory == models::Memory::kNone) count.Add(Operation::kRatePower, branches);
+}
+
+void CountExactFloat(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                     const Drive& drive, OperationCount& count) {
+  CountExact(model, law, resolution, drive, count);
+  count.Add(Operation::kNarrowing, static_cast<double>(drive.displacement.size()));
+}
+
+void CountIwan(const FrictionModel&, const BranchLaw& law, const Resolution& resolution,
+               const Drive& drive, OperationCount& count) {
+  constexpr std::size_t kLanes = 4;  // moved at once, filled or not
+  const std::size_t elements = law.shape_exponent == 0 ? 1 : resolution.steps;
+  const std::size_t moved = (elements + kLanes - 1) / kLanes * kLanes;
+  count.Add(Operation::kElement,
+            static_cast<double>(drive.displacement.size()) * static_cast<double>(moved));
+  count.Add(Operation::kSum, static_cast<double>(drive.displacement.size()));
 }
 
 /// The displacement is in single precision too: what a simulator in float has.
@@ -49,56 +77,65 @@ Evaluator PrepareIwan(const FrictionModel&, const BranchLaw& law, const Resoluti
 }
 
 constexpr std::array kMethods{
-    Method{.name = "exact", .title = "closed form", .prepare = PrepareExact},
+    Method{.name = "exact", .title = "closed form", .prepare = PrepareExact, .count = CountExact},
     Method{.name = "exact-float",
            .title = "closed form in single precision",
-           .prepare = PrepareExactFloat},
+           .prepare = PrepareExactFloat,
+           .count = CountExactFloat},
     Method{.name = "euler",
            .title = "explicit Euler",
            .steps = "substeps a sample",
            .order = 1,
-           .prepare = PrepareEuler},
+           .prepare = PrepareEuler,
+           .count = CountEuler},
     Method{.name = "rk4",
            .title = "Runge-Kutta of order 4",
            .steps = "substeps a sample",
            .order = 4,
-           .prepare = PrepareRk4},
+           .prepare = PrepareRk4,
+           .count = CountRk4},
     Method{.name = "dopri5",
            .title = "Dormand-Prince 5(4), adaptive",
            .steps = "substeps a sample at least",
            .adaptive = true,
            .order = 5,
-           .prepare = PrepareDopri5},
+           .prepare = PrepareDopri5,
+           .count = CountDopri5},
     Method{.name = "backward-euler",
            .title = "implicit Euler",
            .steps = "substeps a sample",
            .order = 1,
-           .prepare = PrepareBackwardEuler},
+           .prepare = PrepareBackwardEuler,
+           .count = CountBackwardEuler},
     Method{.name = "exponential",
            .title = "exponential Rosenbrock-Euler",
            .steps = "substeps a sample",
            .order = 2,
-           .prepare = PrepareExponential},
+           .prepare = PrepareExponential,
+           .count = CountExponential},
     Method{.name = "iwan",
            .title = "Iwan, equal slip forces",
            .steps = "elements",
            .default_steps = 32,
            .masing_only = true,
            .order = 1,
-           .prepare = PrepareIwan<IwanSpacing::kEqualForce>},
+           .prepare = PrepareIwan<IwanSpacing::kEqualForce>,
+           .count = CountIwan},
     Method{.name = "iwan-optimal",
            .title = "Iwan, optimal spacing",
            .steps = "elements",
            .default_steps = 32,
            .masing_only = true,
            .order = 2,
-           .prepare = PrepareIwan<IwanSpacing::kOptimal>},
+           .prepare = PrepareIwan<IwanSpacing::kOptimal>,
+           .count = CountIwan},
     Method{.name = "table",
            .title = "tabulated branch law",
            .steps = "intervals",
            .default_steps = 256,
            .order = 2,
-           .prepare = PrepareTable},
+           .prepare = PrepareTable,
+           .count = CountTable},
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "methods/path_operations.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::methods {
@@ -54,6 +55,12 @@ Evaluator PrepareTable(const models::FrictionModel& model, const models::BranchL
                           force.subspan(run.begin, count));
     }
   };
+}
+
+void CountTable(const models::FrictionModel& model, const models::BranchLaw& /*law*/,
+                const Resolution& /*resolution*/, const Drive& drive, OperationCount& count) {
+  const std::size_t branches = CountPath(model, drive, count).branches.size();
+  count.Add(Operation::kLookUp, static_cast<double>(drive.displacement.size() + branches));
 }
 
 }  // namespace mindahl::methods

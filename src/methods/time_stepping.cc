@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "methods/path_operations.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::methods {
@@ -19,23 +20,36 @@ using models::LoadingPath;
 
 namespace {
 
-/// u₊^α, 0 from slip on also for α = 0 and 1 before the branch: what a trial step asks for.
+/// u₊^α, 0 from slip on also for α = 0 and 1 before the branch: what a trial step asks for. Counts
+/// what is done with it where that is asked for.
 class Rate {
  public:
-  explicit Rate(double shape_exponent) : shape_exponent_(shape_exponent) {}
+  Rate(double shape_exponent, OperationCount* count)
+      : shape_exponent_(shape_exponent), count_(count) {}
 
   double operator()(double remaining) const {
+    Count(Operation::kStage);
     if (remaining <= 0) return 0.0;
     if (remaining >= 1) return 1.0;
-    if (shape_exponent_ == 1.0 / 3.0) return std::cbrt(remaining);
+    if (shape_exponent_ == 1.0 / 3.0) {
+      Count(Operation::kCubicRoot);
+      return std::cbrt(remaining);
+    }
     if (shape_exponent_ == 1) return remaining;
+    if (shape_exponent_ == 0) return 1.0;
+    Count(Operation::kRatePower);
     return std::pow(remaining, shape_exponent_);
+  }
+
+  void Count(Operation operation) const {
+    if (count_ != nullptr) count_->Add(operation);
   }
 
   [[nodiscard]] double shape_exponent() const { return shape_exponent_; }
 
  private:
   double shape_exponent_;
+  OperationCount* count_;
 };
 
 /// A branch as far as it has been followed.
@@ -101,15 +115,20 @@ Evaluator Follow(const FrictionModel& model, const BranchLaw& law, Advance advan
   };
 }
 
-/// Equal steps by `step(u, h)`.
+/// Equal steps by `step(rate, u, h)`.
 template <typename Step>
 Evaluator FollowInSteps(const FrictionModel& model, const BranchLaw& law, std::size_t steps,
-                        Step step) {
-  return Follow(model, law, [steps, step = std::move(step)](double remaining, double distance) {
-    const double h = distance / static_cast<double>(steps);
-    for (std::size_t i = 0; i < steps && remaining > 0; ++i) remaining = step(remaining, h);
-    return remaining;
-  });
+                        OperationCount* count, Step step) {
+  return Follow(model, law,
+                [steps, rate = Rate(law.shape_exponent, count), step = std::move(step)](
+                    double remaining, double distance) {
+                  const double h = distance / static_cast<double>(steps);
+                  for (std::size_t i = 0; i < steps && remaining > 0; ++i) {
+                    rate.Count(Operation::kStep);
+                    remaining = step(rate, remaining, h);
+                  }
+                  return remaining;
+                });
 }
 
 /// u' with u' + h·u'^α = u. In x = u'^α for α < 1, else in u' itself, that is
@@ -125,8 +144,11 @@ double SolveBackwardStep(const Rate& rate, double remaining, double h) {
   const double linear = in_rate ? h : 1.0;
   const double factor = in_rate ? 1.0 : h;
   const double exponent = in_rate ? 1 / alpha : alpha;
+  rate.Count(Operation::kRatePower);
   double x = std::min(remaining / linear, std::pow(remaining / factor, 1 / exponent));
   for (int i = 0; i < kMostSteps; ++i) {
+    rate.Count(Operation::kIteration);
+    if (exponent != 3) rate.Count(Operation::kRatePower);
     const double power = factor * (exponent == 3 ? x * x * x : std::pow(x, exponent));
     const double excess = linear * x + power - remaining;
     const double change = excess / (linear + exponent * power / x);
@@ -136,19 +158,18 @@ double SolveBackwardStep(const Rate& rate, double remaining, double h) {
   return in_rate ? remaining - h * x : x;
 }
 
-}  // namespace
+// Each makes an evaluator that counts, or one that does not.
 
-Evaluator PrepareEuler(const FrictionModel& model, const BranchLaw& law,
-                       const Resolution& resolution) {
-  return FollowInSteps(
-      model, law, resolution.steps,
-      [rate = Rate(law.shape_exponent)](double u, double h) { return u - h * rate(u); });
+Evaluator MakeEuler(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                    OperationCount* count) {
+  return FollowInSteps(model, law, resolution.steps, count,
+                       [](const Rate& rate, double u, double h) { return u - h * rate(u); });
 }
 
-Evaluator PrepareRk4(const FrictionModel& model, const BranchLaw& law,
-                     const Resolution& resolution) {
-  return FollowInSteps(model, law, resolution.steps,
-                       [rate = Rate(law.shape_exponent)](double u, double h) {
+Evaluator MakeRk4(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                  OperationCount* count) {
+  return FollowInSteps(model, law, resolution.steps, count,
+                       [](const Rate& rate, double u, double h) {
                          const double k1 = rate(u);
                          const double k2 = rate(u - h / 2 * k1);
                          const double k3 = rate(u - h / 2 * k2);
@@ -157,30 +178,31 @@ Evaluator PrepareRk4(const FrictionModel& model, const BranchLaw& law,
                        });
 }
 
-Evaluator PrepareBackwardEuler(const FrictionModel& model, const BranchLaw& law,
-                               const Resolution& resolution) {
-  return FollowInSteps(model, law, resolution.steps,
-                       [rate = Rate(law.shape_exponent)](double u, double h) {
-                         return SolveBackwardStep(rate, u, h);
-                       });
+Evaluator MakeBackwardEuler(const FrictionModel& model, const BranchLaw& law,
+                            const Resolution& resolution, OperationCount* count) {
+  return FollowInSteps(
+      model, law, resolution.steps, count,
+      [](const Rate& rate, double u, double h) { return SolveBackwardStep(rate, u, h); });
 }
 
 /// u' = u − h·u^α·φ₁(−αh·u^{α−1}), φ₁(q) = (e^q − 1)/q.
-Evaluator PrepareExponential(const FrictionModel& model, const BranchLaw& law,
-                             const Resolution& resolution) {
-  return FollowInSteps(model, law, resolution.steps,
-                       [rate = Rate(law.shape_exponent)](double u, double h) {
+Evaluator MakeExponential(const FrictionModel& model, const BranchLaw& law,
+                          const Resolution& resolution, OperationCount* count) {
+  return FollowInSteps(model, law, resolution.steps, count,
+                       [](const Rate& rate, double u, double h) {
                          const double slope = rate(u);
                          const double q = rate.shape_exponent() * h * slope / u;
-                         const double mean = q == 0 ? 1.0 : -std::expm1(-q) / q;
+                         if (q == 0) return u - h * slope;
+                         rate.Count(Operation::kExponential);
+                         const double mean = -std::expm1(-q) / q;
                          return u - h * slope * mean;
                        });
 }
 
-Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
-                        const Resolution& resolution) {
+Evaluator MakeDopri5(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                     OperationCount* count) {
   namespace odeint = boost::numeric::odeint;
-  const auto follow = [rate = Rate(law.shape_exponent), steps = resolution.steps,
+  const auto follow = [rate = Rate(law.shape_exponent, count), steps = resolution.steps,
                        tolerance = resolution.tolerance](double remaining, double distance) {
     auto stepper = odeint::make_controlled<odeint::runge_kutta_dopri5<double>>(tolerance, 0.0);
     const auto system = [&rate](double u, double& derivative, double /*y*/) {
@@ -194,11 +216,70 @@ Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
       if (y + h <= y) return remaining;
       // Ends also in the corner at slip: rates are within [0, 1], so that no step h <= tolerance
       // is rejected.
+      rate.Count(Operation::kTrial);
       stepper.try_step(system, remaining, y, h);
     }
     return remaining;
   };
   return Follow(model, law, follow);
+}
+
+using Maker = Evaluator (*)(const FrictionModel&, const BranchLaw&, const Resolution&,
+                            OperationCount*);
+
+/// Steps depend on where the drive slips, and on the error that is found: counted on the way.
+void CountOnTheWay(Maker make, const FrictionModel& model, const BranchLaw& law,
+                   const Resolution& resolution, const Drive& drive, OperationCount& count) {
+  CountPath(model, drive, count);
+  std::vector<double> force(drive.displacement.size());
+  make(model, law, resolution, &count)(drive, force);
+}
+
+}  // namespace
+
+Evaluator PrepareEuler(const FrictionModel& model, const BranchLaw& law,
+                       const Resolution& resolution) {
+  return MakeEuler(model, law, resolution, nullptr);
+}
+void CountEuler(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                const Drive& drive, OperationCount& count) {
+  CountOnTheWay(MakeEuler, model, law, resolution, drive, count);
+}
+
+Evaluator PrepareRk4(const FrictionModel& model, const BranchLaw& law,
+                     const Resolution& resolution) {
+  return MakeRk4(model, law, resolution, nullptr);
+}
+void CountRk4(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+              const Drive& drive, OperationCount& count) {
+  CountOnTheWay(MakeRk4, model, law, resolution, drive, count);
+}
+
+Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
+                        const Resolution& resolution) {
+  return MakeDopri5(model, law, resolution, nullptr);
+}
+void CountDopri5(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                 const Drive& drive, OperationCount& count) {
+  CountOnTheWay(MakeDopri5, model, law, resolution, drive, count);
+}
+
+Evaluator PrepareBackwardEuler(const FrictionModel& model, const BranchLaw& law,
+                               const Resolution& resolution) {
+  return MakeBackwardEuler(model, law, resolution, nullptr);
+}
+void CountBackwardEuler(const FrictionModel& model, const BranchLaw& law,
+                        const Resolution& resolution, const Drive& drive, OperationCount& count) {
+  CountOnTheWay(MakeBackwardEuler, model, law, resolution, drive, count);
+}
+
+Evaluator PrepareExponential(const FrictionModel& model, const BranchLaw& law,
+                             const Resolution& resolution) {
+  return MakeExponential(model, law, resolution, nullptr);
+}
+void CountExponential(const FrictionModel& model, const BranchLaw& law,
+                      const Resolution& resolution, const Drive& drive, OperationCount& count) {
+  CountOnTheWay(MakeExponential, model, law, resolution, drive, count);
 }
 
 }  // namespace mindahl::methods

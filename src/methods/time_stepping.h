@@ -22,4 +22,15 @@ Evaluator PrepareBackwardEuler(const models::FrictionModel& model, const models:
 Evaluator PrepareExponential(const models::FrictionModel& model, const models::BranchLaw& law,
                              const Resolution& resolution);
 
+void CountEuler(const models::FrictionModel& model, const models::BranchLaw& law,
+                const Resolution& resolution, const Drive& drive, OperationCount& count);
+void CountRk4(const models::FrictionModel& model, const models::BranchLaw& law,
+              const Resolution& resolution, const Drive& drive, OperationCount& count);
+void CountDopri5(const models::FrictionModel& model, const models::BranchLaw& law,
+                 const Resolution& resolution, const Drive& drive, OperationCount& count);
+void CountBackwardEuler(const models::FrictionModel& model, const models::BranchLaw& law,
+                        const Resolution& resolution, const Drive& drive, OperationCount& count);
+void CountExponential(const models::FrictionModel& model, const models::BranchLaw& law,
+                      const Resolution& resolution, const Drive& drive, OperationCount& count);
+
 }  // namespace mindahl::methods

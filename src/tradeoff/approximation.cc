@@ -48,6 +48,15 @@ std::vector<Resolution> Resolutions(const Method& method) {
   return resolutions;
 }
 
+/// What `count` steps are called; the noun of a method's plural is its first word, as "elements".
+std::string CountedNoun(const Method& method, std::size_t count) {
+  std::string noun(method.steps);
+  if (count == 1) noun.erase(std::min(noun.find(' '), noun.size()) - 1, 1);
+  return noun;
+}
+
+}  // namespace
+
 const FrictionModel& RequireModel(std::string_view name) {
   const FrictionModel* model = models::FindFrictionModel(name);
   if (model == nullptr) throw InvalidArgument(fmt::format("there is no model '{}'", name));
@@ -60,17 +69,10 @@ const Method& RequireMethod(std::string_view name) {
   return *method;
 }
 
-/// What `count` steps are called; the noun of a method's plural is its first word, as "elements".
-std::string CountedNoun(const Method& method, std::size_t count) {
-  std::string noun(method.steps);
-  if (count == 1) noun.erase(std::min(noun.find(' '), noun.size()) - 1, 1);
-  return noun;
-}
-
-}  // namespace
-
 std::string Describe(const Approximation& approximation) {
-  if (approximation.method.empty()) return approximation.model;
+  if (approximation.method.empty()) {
+    return approximation.model + (approximation.law ? ", refitted" : "");
+  }
   const Method& method = RequireMethod(approximation.method);
   std::string text = fmt::format("{} by {}", approximation.model, approximation.method);
   if (method.adaptive) {
@@ -81,11 +83,17 @@ std::string Describe(const Approximation& approximation) {
     text += fmt::format(", {} {}", approximation.resolution.steps,
                         CountedNoun(method, approximation.resolution.steps));
   }
+  if (approximation.law) {
+    text += ", refitted";
+    if (!RequireModel(approximation.model).shape_exponent) {
+      text += fmt::format(" at alpha {:.3g}", approximation.law->shape_exponent);
+    }
+  }
   return text;
 }
 
 BranchLaw LawOf(const Approximation& approximation, const BranchLaw& law) {
-  BranchLaw result = law;
+  BranchLaw result = approximation.law.value_or(law);
   const FrictionModel* model = models::FindFrictionModel(approximation.model);
   if (model != nullptr && model->shape_exponent) result.shape_exponent = *model->shape_exponent;
   return result;
@@ -93,9 +101,10 @@ BranchLaw LawOf(const Approximation& approximation, const BranchLaw& law) {
 
 methods::Evaluator Prepare(const Approximation& approximation, const BranchLaw& law) {
   if (const models::LimitLaw* limit = models::FindLimitLaw(approximation.model)) {
-    Validate(law);
-    return [limit, law](const methods::Drive& drive, std::span<double> force) {
-      limit->evaluate_force(law, drive.displacement, force);
+    const BranchLaw own = LawOf(approximation, law);
+    Validate(own);
+    return [limit, own](const methods::Drive& drive, std::span<double> force) {
+      limit->evaluate_force(own, drive.displacement, force);
     };
   }
   return Prepare(RequireMethod(approximation.method), RequireModel(approximation.model),

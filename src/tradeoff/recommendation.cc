@@ -5,12 +5,13 @@
 #include <limits>
 
 #include "mindahl/core/error.h"
+#include "mindahl/tradeoff/refit.h"
 #include "tradeoff/cycle_count.h"
 
 namespace mindahl::tradeoff {
 namespace {
 
-/// Costs this near each other are equal to the clock.
+/// Costs this near each other are equal: no machine is known better.
 constexpr double kSameCost = 1.1;
 
 /// Of a cycle, in counting whole ones.
@@ -81,14 +82,13 @@ Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& dri
   }
 
   Recommendation result;
-  result.floor = MeasureCostFloor(drive);
+  result.floor = ModelledCostFloor();
   result.peak_force = reference.peak_force;
   result.cycles = cycles.back();
-  const std::vector<Approximation> ladder = AllApproximations(law);
+  const std::vector<Approximation> ladder = AllApproximationsAlong(law, drive, reference, first);
   std::vector<double> force(drive.displacement.size());
   for (const Approximation& approximation : ladder) {
-    const double cost = MeasureCost(Prepare(approximation, law), drive, force);
-    const WorkPrecision point{approximation, Compare(reference, drive, force, first), cost};
+    const WorkPrecision point = Assess(approximation, law, drive, reference, force, first);
     const double error = ErrorBy(options.criterion, point.precision);
     const bool meets =
         options.largest_cost ? point.cost <= *options.largest_cost : error <= options.tolerance;

@@ -8,6 +8,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/backbone_integrals.h"
+#include "mindahl/tradeoff/cost_model.h"
 
 namespace mindahl::tradeoff {
 
@@ -200,14 +201,30 @@ double MeasureCost(const methods::Evaluator& evaluate, const Drive& drive,
   });
 }
 
+CostFloor ModelledCostFloor() {
+  const double sample = PriceOf(methods::Operation::kSample);
+  return {sample, sample + PriceOf(methods::Operation::kRoot)};
+}
+
+WorkPrecision Assess(const Approximation& approximation, const BranchLaw& law, const Drive& drive,
+                     const ReferenceResponse& reference, std::span<double> force,
+                     std::size_t first) {
+  Prepare(approximation, law)(drive, force);
+  WorkPrecision point{.approximation = approximation,
+                      .precision = Compare(reference, drive, force, first),
+                      .operations = CountOperations(approximation, law, drive)};
+  point.cost = ModelledCost(point.operations, force.size());
+  return point;
+}
+
 std::vector<WorkPrecision> MeasureWorkPrecision(const BranchLaw& law, const Drive& drive,
                                                 std::span<const Approximation> approximations) {
   const ReferenceResponse reference = MakeReferenceResponse(law, drive);
   std::vector<WorkPrecision> points;
   std::vector<double> force(drive.displacement.size());
   for (const Approximation& approximation : approximations) {
-    const double cost = MeasureCost(Prepare(approximation, law), drive, force);
-    points.push_back({approximation, Compare(reference, drive, force), cost});
+    WorkPrecision& point = points.emplace_back(Assess(approximation, law, drive, reference, force));
+    point.measured_cost = MeasureCost(Prepare(approximation, law), drive, force);
   }
   return points;
 }

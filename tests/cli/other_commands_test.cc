@@ -108,6 +108,54 @@ TEST(Simulate, PathMayHaveAHeaderAUnitAndFurtherColumns) {
               ElementsAre(0.004, -0.001));
 }
 
+TEST(Simulate, ForcePathGivesTheDisplacementThatMakesTheForce) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.Write("forces.csv", "F [mN]\n700\n-400\n0\n700\n").string();
+  const Columns columns = Simulate({"--sigma", "2", "--slip-force", "1", "--force-path", path});
+  EXPECT_THAT(columns.time, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(columns.force, ElementsAre(0.7, -0.4, 0, 0.7));
+  // Eqs 6, 8 and 9 with δc = 3Tc/(2σ).
+  const auto virgin = [](double t) { return 0.75 * (1 - std::pow(1 - t, 2.0 / 3)); };
+  const double lowest = virgin(0.7) - 2 * virgin(0.55);
+  EXPECT_NEAR(columns.displacement[0], virgin(0.7), kRounding);
+  EXPECT_NEAR(columns.displacement[1], lowest, kRounding);
+  EXPECT_NEAR(columns.displacement[2], lowest + 2 * virgin(0.2), kRounding);
+  EXPECT_NEAR(columns.displacement[3], virgin(0.7), kRounding) << "return-point memory";
+}
+
+TEST(Simulate, ForcePathAndPathUndoEachOther) {
+  const TemporaryDirectory directory;
+  const std::string forces = directory.Write("f.csv", "0.3\n0.9\n-0.6\n0.2\n-0.1\n0.95\n").string();
+  for (const char* model : {"mindlin", "mindlin-dahl", "jenkins", "dahl"}) {
+    const Words law = {"simulate", "--model", model, "--sigma", "2", "--slip-force", "1"};
+    const auto run = [&](const char* option, const std::string& path) {
+      Words words = law;
+      words.insert(words.end(), {option, path});
+      return RunCommand(words).out;
+    };
+    const std::string driven = run("--force-path", forces);
+    const Columns back = Parse(run("--path", directory.Write("x.csv", driven).string()));
+    const Columns there = Parse(driven);
+    ASSERT_THAT(back.force, SizeIs(6)) << model;
+    for (std::size_t i = 0; i < 6; ++i) {
+      EXPECT_NEAR(back.force[i], there.force[i], kRounding) << model << ", row " << i;
+    }
+  }
+}
+
+TEST(Simulate, AForceThatReachesSlipIsRefusedWithItsLine) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.Write("forces.csv", "F [N]\n0\n2.5\n\n-3\n").string();
+  const Outcome outcome =
+      RunCommand({"simulate", "--sigma", "2", "--slip-force", "3", "--force-path", path});
+  EXPECT_EQ(outcome.status, cli::kBadInput);
+  ASSERT_THAT(outcome.Errors(), SizeIs(1));
+  EXPECT_THAT(outcome.err,
+              HasSubstr(path + ":5: a force of -3 N is not within the slip force, 3 N"));
+  EXPECT_THAT(outcome.err, HasSubstr("--path"));
+  EXPECT_THAT(outcome.out, IsEmpty());
+}
+
 TEST(Simulate, EveryModelFollowsItsOwnVirginCurve) {
   const TemporaryDirectory directory;
   const std::string path = directory.Write("path.csv", "0.5\n").string();

@@ -374,6 +374,21 @@ Numbers ReadPath(const std::string& text, const ColumnChoice& choice = {}) {
   return ReadDisplacementPath(directory.Write("path.csv", text), choice);
 }
 
+TEST(ForcePath, IsTheFirstColumnWithItsUnitAndTheLinesOfTheFile) {
+  const TemporaryDirectory directory;
+  const ForcePath path =
+      ReadForcePath(directory.Write("f.csv", "# a remark\nF [kN],x\n1,2\n\n3,4\n"));
+  EXPECT_EQ(path.force, (Numbers{1000, 3000}));
+  EXPECT_EQ(path.lines, (std::vector<std::size_t>{3, 5}));
+}
+
+TEST(ForcePath, OfARecordWithTimeFirstIsItsForce) {
+  const TemporaryDirectory directory;
+  const auto file = directory.Write("f.csv", "t [s],x [m],F [N]\n0,5,7\n1,6,8\n");
+  EXPECT_EQ(ReadForcePath(file).force, (Numbers{7, 8}));
+  EXPECT_EQ(ReadForcePath(file, {.column = "", .unit = "mN"}).force, (Numbers{0.007, 0.008}));
+}
+
 // --- Columns beside the loop ---------------------------------------------------------------------
 
 TEST(Covariates, ThatAreChosenComeFirstAndAreCalledAsTheyWereChosen) {

@@ -113,4 +113,15 @@ struct LoadedPath {
 LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
                           const ColumnChoice& normal_load);
 
+/// Forces to impose, one for each row, in order.
+struct ForcePath {
+  std::vector<double> force;       ///< [N]; with the unit N the very doubles of the file
+  std::vector<std::size_t> lines;  ///< of the file, 1-based, one a force
+};
+
+/// @param force  column, by default the first, or, where that is a time, the one of a recognised
+///   name; unit as for ReadRecord()
+/// @throws InputError as ReadRecord()
+ForcePath ReadForcePath(const std::filesystem::path& path, const ColumnChoice& force = {});
+
 }  // namespace mindahl::io

@@ -39,6 +39,8 @@ inline constexpr double kLeastTolerance = 4 * std::numeric_limits<double>::epsil
 /// The spans must have one length.
 using Evaluator = std::function<void(const Drive& drive, std::span<double> force)>;
 
+class OperationCount;  // operations.h
+
 /// A way to evaluate a friction model along a drive.
 ///
 /// Each is told of reversals and of the loops that close (the rules are the model's, and so is the
@@ -60,6 +62,9 @@ struct Method {
   double order = 0.0;
   Evaluator (*prepare)(const models::FrictionModel& model, const models::BranchLaw& law,
                        const Resolution& resolution) = nullptr;
+  /// Adds what an evaluation takes, samples read and written aside: CountOperations().
+  void (*count)(const models::FrictionModel& model, const models::BranchLaw& law,
+                const Resolution& resolution, const Drive& drive, OperationCount& count) = nullptr;
 };
 
 /// - exact, exact-float: the closed form (models/response.h), in double and in single precision,

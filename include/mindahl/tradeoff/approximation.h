@@ -1,10 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/methods/method.h"
 #include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
 
 namespace mindahl::tradeoff {
 
@@ -13,12 +16,19 @@ struct Approximation {
   std::string model;   ///< a name of FrictionModels() or LimitLaws()
   std::string method;  ///< a name of Methods(); "" for a limit law, which has but one
   methods::Resolution resolution = {};
+  /// Parameters of its own, where it was fitted to a drive (refit.h); else the contact's.
+  std::optional<models::BranchLaw> law = std::nullopt;
 };
 
-/// In words: "mindlin by rk4, 4 substeps a sample".
+/// @throws InvalidArgument where there is none of that name
+const models::FrictionModel& RequireModel(std::string_view name);
+const methods::Method& RequireMethod(std::string_view name);
+
+/// In words: "mindlin by rk4, 4 substeps a sample", "dahl by exact, refitted at alpha 0.333".
 std::string Describe(const Approximation& approximation);
 
-/// The law as the approximation's model uses it: α is the model's where that prescribes one.
+/// The law as the approximation's model uses it: its own, or the contact's, with the model's α
+/// where that prescribes one.
 models::BranchLaw LawOf(const Approximation& approximation, const models::BranchLaw& law);
 
 /// The approximation made ready for a contact.

@@ -43,9 +43,9 @@ struct Recommendation {
 };
 
 /// The cheapest model and method that meet a tolerance along this drive, found by running every
-/// one and comparing it with the exact response of the Masing law (MakeReferenceResponse). Costs
-/// within a tenth of each other count as equal, and the simpler model is then preferred: clocks are
-/// no finer.
+/// one and comparing it with the exact response of the Masing law (MakeReferenceResponse); costs
+/// are those of the cost model, so that one drive has one answer. Costs within a tenth of each
+/// other count as equal, and the simpler model is then preferred: no machine is known better.
 /// @throws InvalidArgument for options out of range, an invalid law or drive, or a transient that
 ///   leaves no sample
 Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& drive,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mindahl/methods/method.h"
+#include "mindahl/methods/operations.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/tradeoff/approximation.h"
 
@@ -45,15 +46,29 @@ double ErrorBy(Criterion criterion, const Precision& precision);
 struct WorkPrecision {
   Approximation approximation = {};
   Precision precision = {};
-  double cost = 0.0;  ///< [ns/sample], from displacement to force, the least of several runs
+  double cost = 0.0;  ///< [ns/sample], from displacement to force, of the cost model
+  methods::OperationCount operations = {};  ///< that it is the sum of, over the whole drive
+  /// [ns/sample], the least of several runs; empty where nothing was timed
+  std::optional<double> measured_cost = std::nullopt;
 };
 
-/// Cost [ns/sample] that no evaluation along a drive goes below, measured as the others are.
+/// An approximation along a drive, not timed.
+/// @param force  [N], written: the response, one a sample
+/// @param first  sample from which errors count
+/// @throws InvalidArgument as Prepare() and Compare()
+WorkPrecision Assess(const Approximation& approximation, const models::BranchLaw& law,
+                     const methods::Drive& drive, const ReferenceResponse& reference,
+                     std::span<double> force, std::size_t first = 0);
+
+/// Cost [ns/sample] that no evaluation along a drive goes below.
 struct CostFloor {
   double memory = 0.0;      ///< reading a displacement and writing a force
   double arithmetic = 0.0;  ///< the same with one square root and one division between
 };
+/// Measured as the others are.
 CostFloor MeasureCostFloor(const methods::Drive& drive);
+/// By the cost model.
+CostFloor ModelledCostFloor();
 
 /// Cost [ns/sample] of an evaluation, the least of several runs.
 /// @param force  [N], written, one a sample

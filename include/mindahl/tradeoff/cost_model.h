@@ -1,0 +1,23 @@
+#pragma once
+
+#include "mindahl/methods/method.h"
+#include "mindahl/methods/operations.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/tradeoff/approximation.h"
+
+namespace mindahl::tradeoff {
+
+/// What an approximation takes along a drive (methods/operations.h); of a limit law, its samples.
+/// @throws InvalidArgument as Prepare()
+methods::OperationCount CountOperations(const Approximation& approximation,
+                                        const models::BranchLaw& law, const methods::Drive& drive);
+
+/// Price [ns] of an operation on the machine that docs/tradeoff.md names: a regression of measured
+/// times on the counts.
+double PriceOf(methods::Operation operation);
+
+/// Cost [ns/sample] by the counts and their prices: the same on every machine and in every run, and
+/// in proportion to what another machine takes as far as that is built alike.
+double ModelledCost(const methods::OperationCount& count, std::size_t samples);
+
+}  // namespace mindahl::tradeoff

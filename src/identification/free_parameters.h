@@ -1,0 +1,20 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "mindahl/identification/fit_result.h"
+
+namespace mindahl::identification {
+
+/// What a fit found, for criteria that count it: parameters that were not held, and turning points.
+inline std::size_t CountFreeParameters(const FitResult& fit) {
+  auto count = static_cast<std::size_t>(
+      std::ranges::count_if(fit.parameters, [](const ParameterEstimate& parameter) {
+        return parameter.status != ParameterStatus::kFixed;
+      }));
+  for (const RecordFit& record : fit.records) count += record.overshoot.size();
+  return count;
+}
+
+}  // namespace mindahl::identification

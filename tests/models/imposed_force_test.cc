@@ -1,0 +1,300 @@
+#include "mindahl/models/imposed_force.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../../tools/reference/exact_history.h"
+#include "../support/histories.h"
+#include "../support/message_of.h"
+#include "mindahl/contact/cattaneo_mindlin.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl::models {
+namespace {
+
+using testing::Generator;
+using ::testing::HasSubstr;
+using testing::History;
+using testing::LogUniform;
+using testing::Model;
+using testing::Respond;
+using testing::Uniform;
+
+using Real = boost::multiprecision::cpp_bin_float_100;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kExponents[] = {0.0, 1e-9, 0.2, 1.0 / 3, 0.5, 0.9, 1 - 1e-12, 1.0, 1.5, 3.0};
+
+std::vector<double> Displacements(const FrictionModel& model, const BranchLaw& law,
+                                  const History& force, const SeriesSpring& rig = {}) {
+  std::vector<double> displacement(force.size());
+  EvaluateDisplacement(model, law, force, displacement, rig);
+  return displacement;
+}
+
+/// A walk or white sequence of forces within ±reach, with dwells; where reach is near Tc, so are
+/// some of them.
+History RandomForces(Generator& generator, double slip_force) {
+  const double nearest = LogUniform(generator, 1e-13, 1.0);  // to slip, over Tc
+  const double reach = slip_force * (1 - nearest);
+  History force(3 + generator() % 58);
+  double at = 0.0;
+  for (double& value : force) {
+    const double step = Uniform(generator, -reach, reach);
+    if (generator() % 8 != 0) at = generator() % 3 == 0 ? std::copysign(reach, step) : step;
+    value = at;
+  }
+  return force;
+}
+
+/// x with f(x) = F >= 0, as printed.
+Real Stretch(const reference::Law<Real>& law, const Real& force) {
+  const Real remaining = 1 - force / law.slip_force;
+  const Real beta = 1 - law.exponent;
+  const Real elastic_limit = law.slip_force / law.stiffness;
+  if (beta == 0) return -elastic_limit * log(remaining);
+  return elastic_limit * (1 - reference::PositivePower(remaining, beta)) / beta;
+}
+
+/// The displacement at the end of a history of force, and what it is known to.
+struct Expected {
+  Real displacement = 0;
+  double bound = 0.0;
+
+  void Add(const Real& step, double tolerance) {
+    displacement += step;
+    bound += tolerance * static_cast<double>(abs(step));
+  }
+};
+
+/// Of a branch: (6 + |1 − α|·|ln u|) ε, 1 ε for its sum with what is before it, 1 for the sum with
+/// the rounded one.
+double BranchTolerance(const reference::Law<Real>& law, const Real& remaining) {
+  const double beta = std::abs(1 - static_cast<double>(law.exponent));
+  return (8 + beta * std::abs(std::log(static_cast<double>(remaining)))) * kEpsilon;
+}
+
+/// δ = Σ 2·sgn·x(|eₖ₊₁ − eₖ|/2) over the extrema of the force that are remembered.
+Expected MasingDisplacement(const reference::Law<Real>& law, const std::vector<Real>& force) {
+  Expected expected;
+  Real from = 0;
+  double times = 1.0;
+  for (const Real& extremum : reference::DominantExtrema(force)) {
+    const Real half = Real(abs(extremum - from)) / times;
+    const Real size = times * Stretch(law, half);
+    expected.Add(extremum < from ? Real(-size) : size,
+                 BranchTolerance(law, 1 - half / law.slip_force));
+    from = extremum;
+    times = 2.0;
+  }
+  return expected;
+}
+
+/// Sample by sample, (v₀^β − v^β)/(βκ) with v = 1 − sT/Tc.
+Expected DahlDisplacement(const reference::Law<Real>& law, const std::vector<Real>& force) {
+  Expected expected;
+  Real from = 0;
+  for (const Real& to : force) {
+    if (to == from) continue;
+    const int sign = to > from ? 1 : -1;
+    const Real before = 1 - sign * from / law.slip_force;
+    const Real after = 1 - sign * to / law.slip_force;
+    const Real size = pow(before, Real(1 - law.exponent)) *
+                      Stretch(law, Real(law.slip_force * (1 - after / before)));
+    expected.Add(sign * size, BranchTolerance(law, Real(after / before)));
+    // What 2 ε·Tc of the force are at either end.
+    const Real softness = pow(before, Real(-law.exponent)) + pow(after, Real(-law.exponent));
+    expected.bound += static_cast<double>(2 * kEpsilon * law.slip_force / law.stiffness * softness);
+    from = to;
+  }
+  return expected;
+}
+
+TEST(ImposedForce, IsMindlinsVirginUnloadingAndReloadingDisplacement) {
+  const contact::MindlinContact contact{0.0027, 4.42e-11, 30.0};
+  const BranchLaw law{contact::MindlinTangentialStiffness(0.0027, 4.42e-11), 1.0 / 3, 30.0};
+  // 24 ulp by eqs 8 and 9, as many here.
+  constexpr double kRounding = 48 * kEpsilon;  // of δ*
+  for (const double peak : {0.01, 12.0, 29.9, 29.999999}) {
+    History force;
+    for (int i = 0; i <= 20; ++i) force.push_back(peak * (i / 20.0));
+    for (int i = 19; i >= -20; --i) force.push_back(peak * (i / 20.0));
+    for (int i = -19; i <= 20; ++i) force.push_back(peak * (i / 20.0));
+    const std::vector<double> displacement = Displacements(Model("mindlin"), law, force);
+    const double bound = kRounding * contact::MindlinVirginDisplacement(contact, peak);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      const double expected = i <= 20 ? contact::MindlinVirginDisplacement(contact, force[i])
+                              : i <= 60
+                                  ? contact::MindlinUnloadingDisplacement(contact, force[i], peak)
+                                  : contact::MindlinReloadingDisplacement(contact, force[i], peak);
+      EXPECT_NEAR(displacement[i], expected, bound) << "T* = " << peak << ", sample " << i;
+    }
+  }
+}
+
+TEST(ImposedForce, IsExactOnAnyHistoryToTheRoundingOfItsBranches) {
+  Generator generator(2211);
+  for (const double exponent : kExponents) {
+    for (int i = 0; i < 25; ++i) {
+      const BranchLaw law{LogUniform(generator, 1e-3, 1e9), exponent,
+                          LogUniform(generator, 1e-6, 1e6)};
+      const reference::Law<Real> exact{law.tangential_stiffness, exponent, law.slip_force};
+      const History force = RandomForces(generator, law.slip_force);
+      const std::vector<double> masing = Displacements(Model("mindlin-dahl"), law, force);
+      std::vector<Real> past;
+      for (std::size_t k = 0; k < force.size(); ++k) {
+        past.emplace_back(force[k]);
+        const Expected expected = MasingDisplacement(exact, past);
+        ASSERT_LE(std::abs(static_cast<double>(masing[k] - expected.displacement)), expected.bound)
+            << "alpha = " << exponent << ", history " << i << ", sample " << k;
+      }
+    }
+  }
+}
+
+TEST(ImposedForce, IsExactForDahlsOwnLawToWhatTheForcesAreKnownTo) {
+  Generator generator(2212);
+  for (const double exponent : kExponents) {
+    for (int i = 0; i < 25; ++i) {
+      const BranchLaw law{LogUniform(generator, 1e-3, 1e9), exponent,
+                          LogUniform(generator, 1e-6, 1e6)};
+      const reference::Law<Real> exact{law.tangential_stiffness, exponent, law.slip_force};
+      const History force = RandomForces(generator, law.slip_force);
+      const std::vector<double> dahl = Displacements(Model("dahl"), law, force);
+      const std::vector<Real> past(force.begin(), force.end());
+      const Expected expected = DahlDisplacement(exact, past);
+      ASSERT_LE(std::abs(static_cast<double>(dahl.back() - expected.displacement)), expected.bound)
+          << "alpha = " << exponent << ", history " << i;
+    }
+  }
+}
+
+TEST(ImposedForce, KeepsItsDigitsFarFromSlipAndNextToIt) {
+  for (const double exponent : kExponents) {
+    const BranchLaw law{2.0, exponent, 1.0};
+    const reference::Law<Real> exact{2, exponent, 1};
+    for (const double force : {1e-40, 1e-17, 1e-3, 0.4999, 0.5, 0.75, 1 - 1e-9, 1 - kEpsilon}) {
+      const Expected expected = MasingDisplacement(exact, {Real(force)});
+      const std::vector<double> up = Displacements(Model("mindlin-dahl"), law, {force});
+      const std::vector<double> down = Displacements(Model("mindlin-dahl"), law, {-force});
+      EXPECT_LE(std::abs(static_cast<double>(up[0] - expected.displacement)), expected.bound)
+          << "alpha = " << exponent << ", T = " << force;
+      EXPECT_EQ(down[0], -up[0]);
+    }
+  }
+}
+
+/// Largest |T(δ(T)) − T| of a history, over what rounding makes of it.
+double RoundTrip(const FrictionModel& model, const BranchLaw& law, const History& force,
+                 const SeriesSpring& rig = {}) {
+  const std::vector<double> displacement = Displacements(model, law, force, rig);
+  const std::vector<double> back = [&] {
+    std::vector<double> result(force.size());
+    EvaluateForce(model, law, testing::PathOf(model, displacement), displacement, result, rig);
+    return result;
+  }();
+  double farthest = 0.0;
+  for (const double at : displacement) farthest = std::max(farthest, std::abs(at));
+  // Of a branch the way there errs by up to 16 ε of δ and the way back by 6 ε of Tc; the stiffest
+  // branch of Dahl's law has σ·2^α. No more branches follow one another than there are samples.
+  const double stiffest = law.tangential_stiffness * std::exp2(law.shape_exponent);
+  const double bound = 16 * kEpsilon * static_cast<double>(force.size() + 1) *
+                       (law.slip_force + stiffest * farthest);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    worst = std::max(worst, std::abs(back[i] - force[i]) / bound);
+  }
+  return worst;
+}
+
+TEST(ImposedForce, GivesBackTheForceThroughTheDisplacement) {
+  Generator generator(2213);
+  for (const FrictionModel& model : FrictionModels()) {
+    if (model.scaled_by_peak) continue;
+    for (const double exponent : kExponents) {
+      for (int i = 0; i < 200; ++i) {
+        const BranchLaw law{LogUniform(generator, 1e-3, 1e9),
+                            model.shape_exponent.value_or(exponent),
+                            LogUniform(generator, 1e-6, 1e6)};
+        const History force = RandomForces(generator, law.slip_force);
+        ASSERT_LE(RoundTrip(model, law, force), 1.0)
+            << model.name << ", alpha = " << law.shape_exponent << ", history " << i;
+        const SeriesSpring rig{law.tangential_stiffness * LogUniform(generator, 0.1, 100)};
+        ASSERT_LE(RoundTrip(model, law, force, rig), 1.0)
+            << model.name << " in a rig, alpha = " << law.shape_exponent << ", history " << i;
+      }
+    }
+  }
+}
+
+TEST(ImposedForce, LeavesNothingOfAnInnerLoopBehind) {
+  const BranchLaw law{2.0, 1.0 / 3, 1.0};
+  const History without = {0.8, -0.3, 0.6};
+  const History with = {0.8, -0.3, 0.2, 0.0, 0.1, 0.05, 0.6};
+  EXPECT_EQ(Displacements(Model("mindlin"), law, with).back(),
+            Displacements(Model("mindlin"), law, without).back());
+}
+
+TEST(ImposedForce, DoesNotDependOnHowDenselyTheHistoryIsSampled) {
+  for (const char* model : {"mindlin-dahl", "dahl"}) {
+    const BranchLaw law{2.0, 0.6, 1.0};
+    const History turns = {0.9, -0.7, 0.5, -0.95};
+    History dense;
+    double from = 0.0;
+    for (const double to : turns) {
+      for (int i = 1; i < 50; ++i) dense.push_back(from + (to - from) * i / 50);
+      dense.push_back(to);
+      from = to;
+    }
+    EXPECT_EQ(Displacements(Model(model), law, dense).back(),
+              Displacements(Model(model), law, turns).back())
+        << model;
+  }
+}
+
+TEST(ImposedForce, ASpringInSeriesAddsItsOwnTravel) {
+  const BranchLaw law{2.0, 1.0 / 3, 1.0};
+  const History force = {0.5, -0.25, 0.75};
+  const std::vector<double> alone = Displacements(Model("mindlin"), law, force);
+  const std::vector<double> both = Displacements(Model("mindlin"), law, force, {.stiffness = 4.0});
+  for (std::size_t i = 0; i < force.size(); ++i) EXPECT_EQ(both[i], alone[i] + force[i] / 4);
+}
+
+TEST(ImposedForce, RefusesAForceThatReachesSlip) {
+  const BranchLaw law{2.0, 1.0 / 3, 3.0};
+  for (const double at : {3.0, -3.0, 4.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const std::string message = MessageOf([&] {
+      Displacements(Model("mindlin"), law, {0.0, 1.0, at});
+    });
+    EXPECT_THAT(message, HasSubstr("force [N] of sample 2"));
+    EXPECT_THAT(message, HasSubstr("within the slip force, 3 N"));
+  }
+  EXPECT_NO_THROW(Displacements(Model("jenkins"), {2.0, 0.0, 3.0}, {std::nextafter(3.0, 0.0)}));
+}
+
+TEST(ImposedForce, RefusesWhatHasNoInverse) {
+  const BranchLaw law{1.0, 1.0 / 3, 1.0};
+  EXPECT_THAT(MessageOf([&] { Displacements(Model("simplified-dahl"), law, {0.5}); }),
+              HasSubstr("simplified-dahl is scaled by the peak"));
+  EXPECT_THROW(Displacements(Model("mindlin"), law, {}), InvalidArgument);
+  EXPECT_THROW(Displacements(Model("mindlin"), law, {0.5}, {.stiffness = 0.0}), InvalidArgument);
+  // For α = 2000 it is 1/(2000·0.5^1999): 1e598 elastic limits away.
+  EXPECT_THAT(MessageOf([&] {
+                Displacements(Model("mindlin-dahl"), {1.0, 2000.0, 1.0}, {0.0, 0.5});
+              }),
+              HasSubstr("force [N] of sample 1"));
+  std::vector<double> one(1);
+  EXPECT_THROW(EvaluateDisplacement(Model("mindlin"), law, History{0.1, 0.2}, one),
+               InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::models
