@@ -26,8 +26,10 @@ using testing::RunCommand;
 using testing::SampleRecord;
 using Words = std::vector<std::string>;
 
-const Words kCommands = {"fit",     "simulate", "validate",  "contact",
-                         "convert", "tradeoff", "recommend", "plan"};
+const Words kCommands = {"fit",      "simulate",  "validate", "contact", "convert",
+                         "tradeoff", "recommend", "plan",     "batch",   "track"};
+// Columns, units and model are "as for `fit`".
+const Words kLikeFit = {"batch", "track"};
 const char* const kCommonSection = "What is known of the contact";
 const char* const kOption = "(--[a-z][a-z0-9-]*)";
 
@@ -64,6 +66,9 @@ TEST(Contract, NamesEveryOptionOfEveryCommand) {
     ASSERT_FALSE(options.empty()) << command;
     std::set<std::string> named = Matches(sections.at("mindahl " + command), kOption);
     named.insert(common.begin(), common.end());
+    if (std::ranges::find(kLikeFit, command) != kLikeFit.end()) {
+      named.merge(Matches(sections.at("mindahl fit"), kOption));
+    }
     EXPECT_THAT(Difference(options, named), IsEmpty()) << command;
   }
 }
@@ -218,6 +223,7 @@ void CollectKeys(const json& value, std::set<std::string>& keys) {
 }
 
 TEST(Contract, DocumentsEveryKeyOfTheOtherCommands) {
+  const TemporaryDirectory directory;
   const std::vector<Words> runs = {
       {"contact", "--friction", "0.3", "--normal-load", "50", "--youngs-modulus-1", "210e9",
        "--youngs-modulus-2", "210e9", "--poisson-1", "0.3", "--poisson-2", "0.3", "--radius-1",
@@ -227,7 +233,9 @@ TEST(Contract, DocumentsEveryKeyOfTheOtherCommands) {
       {"recommend", "--sigma", "4e7", "--slip-force", "40", "--lambda", "0.5", "--tolerance", "5%"},
       {"tradeoff", "--excitation", "micro"},
       {"plan", "--sigma", "4e7", "--slip-force", "40", "--force-noise", "0.4", "--want",
-       "alpha=0.01"}};
+       "alpha=0.01"},
+      {"batch", SampleRecord(), "--output", (directory.path() / "batch.csv").string()},
+      {"track", SampleRecord(), "--output", (directory.path() / "track.csv").string()}};
   const auto sections = ContractSections();
   for (Words words : runs) {
     const std::string command = words.front();
@@ -239,6 +247,11 @@ TEST(Contract, DocumentsEveryKeyOfTheOtherCommands) {
     // "the keys of a point of `tradeoff`"
     if (command == "recommend")
       named.merge(Matches(sections.at("mindahl tradeoff"), "`([a-z_]+)`"));
+    if (command == "batch") {  // "all that `fit --json` says of it"
+      std::set<std::string> of_fit;
+      CollectKeys(RunCommand({"fit", SampleRecord(), "--json", "-"}).Json(), of_fit);
+      keys = Difference(keys, of_fit);
+    }
     EXPECT_THAT(Difference(keys, named), IsEmpty()) << command;
   }
 }

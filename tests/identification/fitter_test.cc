@@ -208,8 +208,8 @@ TEST(Fitter, HasTheErrorsOfTheParabolaBeforeAnyVerdict) {
 }
 
 // Steps end where the next would lower the cost by 1e-10 of it. Where the residuals bend the cost
-// nearly as much as the law does each step leaves most of what there is: a hundred times as much may
-// be left, in either of two fits. Of χ² = n = 121 that is (Δ/error)² < 2·100·1e-10·n.
+// nearly as much as the law does each step leaves most of what there is: a hundred times as much
+// may be left, in either of two fits. Of χ² = n = 121 that is (Δ/error)² < 2·100·1e-10·n.
 constexpr double kSolverTolerance = 1e-2;  // standard errors: six times the root of that
 constexpr double kSameRms = 1e-7;          // ten times half of 2·100·1e-10
 
