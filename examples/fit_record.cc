@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const mindahl::loop::Record record = mindahl::io::ReadRecord(argv[1]).record;
   Fitter fitter;  // keeps its memory from one fit to the next
-  const FitResult& fit = fitter.Fit(record, Depth::kFull);  // or kIntervals, or kEstimate
+  const FitResult& fit = fitter.Fit(record, Depth::kFull);  // or another depth
   for (const ParameterEstimate& parameter : fit.parameters) {
     std::printf("%-20s %.10g %s\n", parameter.name.c_str(), parameter.value,
                 parameter.unit.c_str());

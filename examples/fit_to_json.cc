@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
     } else if (const auto mean = mindahl::report::MeanNormalLoad(records); mean && *mean > 0) {
       input.known.normal_load = *mean;
     }
-    input.fit = mindahl::identification::Fit(records, {.offsets = true});
+    input.fit = mindahl::identification::Fit(records, {.offsets = true},
+                                             mindahl::identification::Depth::kThorough);
     const mindahl::report::Report report = mindahl::report::MakeReport(std::move(input));
     std::fputs(mindahl::report::ToJson(report).c_str(), stdout);
     return report.fit.converged ? 0 : 3;

@@ -26,8 +26,10 @@ using namespace mindahl::loop;
 using namespace mindahl::models;
 
 /// How much of the answer is asked for, of a fitter that has fitted before.
-const std::vector<std::pair<const char*, Depth>> kDepths = {
-    {"estimate", Depth::kEstimate}, {"intervals", Depth::kIntervals}, {"full", Depth::kFull}};
+const std::vector<std::pair<const char*, Depth>> kDepths = {{"estimate", Depth::kEstimate},
+                                                            {"intervals", Depth::kIntervals},
+                                                            {"full", Depth::kFull},
+                                                            {"thorough", Depth::kThorough}};
 
 /// Of the processor, which other programs on the machine disturb less than the clock.
 double ProcessorMilliseconds() {

@@ -29,6 +29,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/atomic_file.h"
+#include "mindahl/io/csv_writer.h"
 #include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
 
@@ -157,20 +158,9 @@ std::vector<FileFit> FitFiles(const BatchCommandOptions& options, Progress& prog
   return fits;
 }
 
-/// A cell of text (RFC 4180).
-std::string Quoted(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char character : text) {
-    if (character == '"') quoted += '"';
-    quoted += character;
-  }
-  return quoted + '"';
-}
-
 std::string CellOf(const Json& value) {
   if (value.is_null()) return "";
-  if (value.is_string()) return Quoted(value.get<std::string>());
+  if (value.is_string()) return io::CsvCell(value.get<std::string>());
   return value.dump();  // as many digits as read back the same double
 }
 
@@ -186,11 +176,12 @@ std::string TableOf(const std::vector<std::string>& files, const std::vector<Fil
   table += ",warnings,fault\n";
   for (std::size_t k = 0; k < files.size(); ++k) {
     const FileFit& fit = fits[k];
-    table += fmt::format("{},{}", Quoted(files[k]), fit.done ? "yes" : "no");
+    table += fmt::format("{},{}", io::CsvCell(files[k]), fit.done ? "yes" : "no");
     for (const BatchColumn& column : kColumns) {
       table += "," + CellOf(ValueAt(fit.fit, column.pointer));
     }
-    table += fmt::format(",{},{}\n", WarningsOf(fit.fit), Quoted(fit.fault));
+    table += fmt::format(",{},{}\n", WarningsOf(fit.fit),
+                         fit.fault.empty() ? "" : io::CsvCell(fit.fault));
   }
   return table;
 }

@@ -228,7 +228,8 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
   for (const Record& record : records) samples += record.size();
   const Progress progress(messages.stream, fmt::format("fitting {} samples", samples));
   try {
-    if (request.model != kAutomatic) return identification::Fit(records, options);
+    if (request.model != kAutomatic)
+      return identification::Fit(records, options, identification::Depth::kThorough);
     selection = identification::SelectModel(records, options);
     return selection->fit;
   } catch (const identification::TooFewSamples& error) {

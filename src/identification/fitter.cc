@@ -428,7 +428,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
                             buffers.response);
   FillErrors(problem, estimates, result);
-  if (result.depth == Depth::kFull) {
+  if (result.depth >= Depth::kFull) {
     result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
     const double peak_force = result.PeakForce();
     if (NeedsSlipForceProfile(problem, solution, noise, estimates,
@@ -483,9 +483,10 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindMisfit(result, options.thresholds));
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
   if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result);
-  if (result.depth == Depth::kFull) {
+  if (result.depth >= Depth::kFull) {
     const LawComparison laws = CompareLaws(problem, solution, result, options, buffers);
-    if (laws.is_comparable && CanCompareBranches(problem)) {
+    const bool is_asked = result.depth >= Depth::kThorough;
+    if (is_asked && laws.is_comparable && CanCompareBranches(problem)) {
       result.memory = CompareBranches(problem, solution, laws, noise, displacement, estimates,
                                       options.thresholds, buffers.response);
       Append(result.findings, FindContradictedLaw(*result.memory, laws.choice, *result.model));
@@ -709,7 +710,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   } else if (depth == Depth::kErrors) {
     InferErrors(attempt, best->problem, solution, noise, displacement_errors, result);
   }
-  if (depth == Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
+  if (depth >= Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
 }
 
 /// Is the last fit's end a start? Not of a likelihood with several minima, nor at a bound.

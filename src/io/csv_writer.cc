@@ -9,22 +9,18 @@
 #include "mindahl/core/error.h"
 
 namespace mindahl::io {
-namespace {
 
-/// Quoted when it must be: RFC 4180 §2.6, and a '#' or blank that a reader would take for its own.
-std::string HeaderCell(const std::string& name) {
-  const bool plain = name.find_first_of(",;\"\r\n\t") == std::string::npos && !name.empty() &&
-                     !name.starts_with('#') && name.front() != ' ' && name.back() != ' ';
-  if (plain) return name;
+std::string CsvCell(const std::string& text) {
+  const bool plain = text.find_first_of(",;\"\r\n\t") == std::string::npos && !text.empty() &&
+                     !text.starts_with('#') && text.front() != ' ' && text.back() != ' ';
+  if (plain) return text;
   std::string quoted = "\"";
-  for (const char character : name) {
+  for (const char character : text) {
     if (character == '"') quoted += '"';
     quoted += character;
   }
   return quoted + '"';
 }
-
-}  // namespace
 
 std::string CsvText(const std::vector<CsvColumn>& columns) {
   if (columns.empty()) throw InvalidArgument("number of columns = 0 is invalid: must be >= 1");
@@ -33,7 +29,7 @@ std::string CsvText(const std::vector<CsvColumn>& columns) {
   for (const CsvColumn& column : columns) {
     RequireSameSize(columns.front().name, rows, column.name, column.values.size());
     if (!text.empty()) text += ',';
-    text += HeaderCell(column.name);
+    text += CsvCell(column.name);
   }
   text += '\n';
   auto out = std::back_inserter(text);

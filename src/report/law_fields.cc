@@ -38,7 +38,7 @@ const std::vector<Field<Alternative>>& AlternativeFields() {
 }
 
 std::string WhyNoChoice(const Report& report) {
-  if (report.fit.depth != identification::Depth::kFull) return "the fit was not asked for it";
+  if (report.fit.depth < identification::Depth::kFull) return "the fit was not asked for it";
   if (report.fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
     return "the model does not describe the record, nor does the other law better";
   }

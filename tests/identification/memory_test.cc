@@ -22,7 +22,6 @@ using namespace models;
 
 using loop::Record;
 using testing::Cycling;
-using testing::FitOne;
 using testing::From;
 using testing::Generator;
 using testing::History;
@@ -95,8 +94,12 @@ Record Noisy(Record record, double autocorrelation, Generator& generator) {
   return record;
 }
 
+FitResult Thorough(const Record& record, const FitOptions& options = {}) {
+  return Fit({&record, 1}, options, Depth::kThorough);
+}
+
 MemoryTest MemoryOf(const Record& record, const FitOptions& options = {}) {
-  const FitResult fit = FitOne(record, options);
+  const FitResult fit = Thorough(record, options);
   EXPECT_TRUE(fit.memory);
   return fit.memory.value_or(MemoryTest{});
 }
@@ -248,13 +251,13 @@ TEST(Memory, IsNotAskedWhereBranchesAreNoCopiesOfEachOther) {
   const Record record = Of("mindlin-dahl", TwoAmplitudes());
   FitOptions held;
   held.fixed["sigma"] = kMindlin.tangential_stiffness;
-  EXPECT_FALSE(FitOne(record, held).memory);
+  EXPECT_FALSE(Thorough(record, held).memory);
   FitOptions lagging;
   lagging.terms = {"lag"};
-  EXPECT_FALSE(FitOne(record, lagging).memory);
+  EXPECT_FALSE(Thorough(record, lagging).memory);
   History one_way = OneAmplitude();
   one_way.resize(kPerCycle / 4);
-  EXPECT_FALSE(FitOne(Of("mindlin-dahl", one_way)).memory);
+  EXPECT_FALSE(Thorough(Of("mindlin-dahl", one_way)).memory);
 }
 
 TEST(Memory, OfTooFewSamplesIsUndecided) {

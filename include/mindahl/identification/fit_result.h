@@ -31,6 +31,7 @@ enum class Depth {
   kIntervals,  ///< and adequacy, its causes, and verdicts; intervals cover what these would change
   kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α and
                ///< of the law
+  kThorough,   ///< and whether branches are copies of each other, of whatever shape
 };
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
@@ -111,7 +112,7 @@ struct RecordFit {
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
   double load_ratio = 1.0;            ///< of that to the mean of all, in a load series; else 1
   bool load_varies = false;           ///< within the record, as the law was told
-  /// Of a load series, at Depth::kFull; empty where the record by itself is no fit.
+  /// Of a load series, from Depth::kFull on; empty where the record by itself is no fit.
   std::optional<RecordAlone> alone;
   ResidualStructure structure;       ///< of the residuals, in the displacement's sense
   std::vector<double> fitted_force;  ///< [N], in the file's sense, offsets included
@@ -142,9 +143,10 @@ struct FitResult {
   /// Masing's law or Dahl's own; empty where they are one or σ or Tc is held, and under a model
   /// that is inadequate unless the other law is the better one.
   std::optional<LawChoice> law_choice;
-  /// Whether the record is of Masing's memory, of whatever shape: also where the model is
-  /// inadequate. Empty where the motion does not turn, where σ or Tc is held or bounded, and under
-  /// loads that differ or vary or a lag, where branches are no copies of each other.
+  /// At Depth::kThorough, whether the record is of Masing's memory, of whatever shape: also where
+  /// the model is inadequate. Empty where the motion does not turn, where σ or Tc is held or
+  /// bounded, and under loads that differ or vary or a lag, where branches are no copies of each
+  /// other.
   std::optional<MemoryTest> memory;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined

@@ -79,7 +79,7 @@ struct ModelSelection {
 ///                 another
 /// @throws InvalidArgument as Fit does, for folds < 2, or a largest ΔAICc that is negative
 /// Deterministic. Cost: 8 fits at Depth::kIntervals, 8 a fold at Depth::kEstimate from where these
-/// are, and the chosen one at Depth::kFull.
+/// are, and the chosen one at Depth::kThorough.
 ModelSelection SelectModel(std::span<const loop::RecordView> records, const FitOptions& options,
                            const SelectionOptions& selection = {});
 ModelSelection SelectModel(std::span<const loop::Record> records, const FitOptions& options,

@@ -12,6 +12,10 @@ struct CsvColumn {
   std::span<const double> values;
 };
 
+/// A text as one cell, quoted when it must be: RFC 4180 §2.6, and a '#' or a blank at an end, or
+/// nothing at all, which a reader would take for its own.
+std::string CsvCell(const std::string& text);
+
 /// The columns as CSV text (RFC 4180, with LF at line ends): a header, then one row a value, with
 /// 17 significant digits so that every double reads back as itself. NaN, a value that is not known,
 /// is an empty cell.
