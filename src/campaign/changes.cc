@@ -25,20 +25,19 @@ struct Line {
   [[nodiscard]] double At(double x) const { return level + slope * (x - x0); }
 };
 
-/// Least-squares lines through any run of bins from sums up to each, weights the counts over their
-/// mean.
+/// Least-squares lines through any run of bins from sums up to each, weights over their mean.
 class Lines {
  public:
   explicit Lines(std::span<const Course::Bin> bins) : sums_(bins.size() + 1) {
     double total = 0.0;
     for (const Course::Bin& bin : bins) {
-      total += static_cast<double>(bin.count);
+      total += bin.weight;
       x_centre_ += bin.cycle / static_cast<double>(bins.size());
       y_centre_ += bin.value / static_cast<double>(bins.size());
     }
-    const double mean_count = total / static_cast<double>(bins.size());
+    const double mean_weight = total / static_cast<double>(bins.size());
     for (std::size_t i = 0; i < bins.size(); ++i) {
-      const long double w = static_cast<double>(bins[i].count) / mean_count;
+      const long double w = bins[i].weight / mean_weight;
       const long double x = bins[i].cycle - x_centre_;
       const long double y = bins[i].value - y_centre_;
       const Sums& s = sums_[i];
@@ -127,7 +126,7 @@ double ShareOfIndependent(std::span<const Course::Bin> bins, const Lines& lines,
     const Line line = lines.Of(cut.begins[k], end);
     double before = 0.0;
     for (std::size_t i = cut.begins[k]; i < end; ++i) {
-      const double residual = bins[i].value - line.At(bins[i].cycle);
+      const double residual = std::sqrt(bins[i].weight) * (bins[i].value - line.At(bins[i].cycle));
       squares += residual * residual;
       products += before * residual;
       before = residual;
@@ -275,7 +274,7 @@ class Describer {
 
 }  // namespace
 
-void Course::Add(std::size_t cycle, double value) {
+void Course::Add(std::size_t cycle, double value, double weight) {
   if (bins_.empty() || bins_.back().count == width_) {
     if (bins_.size() == kMostBins) {
       for (std::size_t i = 0; i < kMostBins / 2; ++i) {
@@ -284,7 +283,8 @@ void Course::Add(std::size_t cycle, double value) {
         bins_[i] = {.first_cycle = a.first_cycle,
                     .last_cycle = b.last_cycle,
                     .cycle = (a.cycle + b.cycle) / 2,
-                    .value = (a.value + b.value) / 2,
+                    .value = (a.weight * a.value + b.weight * b.value) / (a.weight + b.weight),
+                    .weight = a.weight + b.weight,
                     .count = a.count + b.count};
       }
       bins_.resize(kMostBins / 2);
@@ -297,7 +297,8 @@ void Course::Add(std::size_t cycle, double value) {
   ++bin.count;
   const auto count = static_cast<double>(bin.count);
   bin.cycle += (static_cast<double>(cycle) - bin.cycle) / count;
-  bin.value += (value - bin.value) / count;
+  bin.weight += weight;
+  bin.value += (value - bin.value) * weight / bin.weight;
 }
 
 std::string_view NameOf(ChangeKind kind) {

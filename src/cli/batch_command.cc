@@ -191,24 +191,35 @@ struct Scatter {
   std::size_t files = 0;
   double mean = 0.0;
   double standard_deviation = 0.0;
-  double stated_error = 0.0;  ///< root of the mean square of the standard errors
+  double stated_error = 0.0;  ///< root of their mean square
   /// Of Σ(x − mean)²/e² by chi squared: is the scatter what the errors say? The mean is weighted.
   double p_value = 1.0;
 };
+
+/// One standard error: of an interval that covers more than the noise, a share of that.
+std::optional<double> StatedError(const Json& fit, std::string_view name) {
+  const Json error = ValueOf(fit, std::string(name) + "_error");
+  if (!error.is_number() || !(error.get<double>() > 0)) return std::nullopt;
+  const Json lower = ValueOf(fit, std::string(name) + "_lower95");
+  const Json upper = ValueOf(fit, std::string(name) + "_upper95");
+  if (!lower.is_number() || !upper.is_number()) return error.get<double>();
+  constexpr double kWidth = 2 * 1.959963984540054;  // of 95 %, in standard errors
+  return std::max(error.get<double>(), (upper.get<double>() - lower.get<double>()) / kWidth);
+}
 
 std::optional<Scatter> ScatterOf(const std::vector<FileFit>& fits, const Repeated& quantity) {
   std::vector<double> values;
   std::vector<double> errors;
   for (const FileFit& fit : fits) {
     const Json value = ValueOf(fit.fit, quantity.name);
-    const Json error = ValueOf(fit.fit, std::string(quantity.name) + "_error");
+    const std::optional<double> error = StatedError(fit.fit, quantity.name);
     const Json verdict = ValueOf(fit.fit, quantity.verdict);
+    const Json adequacy = ValueOf(fit.fit, "adequacy");
+    const bool is_judged = adequacy == "adequate" || adequacy == "doubtful";
     const bool is_known = verdict.is_null() || verdict == "identifiable";
-    if (!value.is_number() || !error.is_number() || !(error.get<double>() > 0) || !is_known) {
-      continue;
-    }
+    if (!fit.done || !is_judged || !value.is_number() || !error || !is_known) continue;
     values.push_back(value);
-    errors.push_back(error);
+    errors.push_back(*error);
   }
   if (values.size() < 2) return std::nullopt;
   const auto count = static_cast<double>(values.size());

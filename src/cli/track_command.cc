@@ -60,19 +60,25 @@ struct TrackedQuantity {
   std::string_view unit;  // of a record of forces
   std::string_view open_flag;
   std::optional<double> (*of)(const CycleFit&);
+  std::optional<double> (*error)(const CycleFit&);  // in proportion to its standard error
 };
+
+std::optional<double> Rms(const CycleFit& fit) { return fit.rms; }
 
 constexpr std::array kTracked = {
     TrackedQuantity{"sigma", "N/m", "sigma_open",
-                    [](const CycleFit& fit) { return fit.sigma.value; }},
-    TrackedQuantity{"alpha", "-", "alpha_open",
-                    [](const CycleFit& fit) { return fit.alpha.value; }},
+                    [](const CycleFit& fit) { return fit.sigma.value; },
+                    [](const CycleFit& fit) { return fit.sigma.standard_error; }},
+    TrackedQuantity{"alpha", "-", "alpha_open", [](const CycleFit& fit) { return fit.alpha.value; },
+                    [](const CycleFit& fit) { return fit.alpha.standard_error; }},
     TrackedQuantity{"slip_force", "N", "slip_force_open",
-                    [](const CycleFit& fit) { return fit.slip_force.value; }},
+                    [](const CycleFit& fit) { return fit.slip_force.value; },
+                    [](const CycleFit& fit) { return fit.slip_force.standard_error; }},
     TrackedQuantity{"friction_coefficient", "-", "",
-                    [](const CycleFit& fit) { return fit.friction_coefficient; }},
-    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }},
-    TrackedQuantity{"energy", "J", "", [](const CycleFit& fit) { return fit.energy; }},
+                    [](const CycleFit& fit) { return fit.friction_coefficient; },
+                    [](const CycleFit& fit) { return fit.slip_force.standard_error; }},
+    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }, Rms},
+    TrackedQuantity{"energy", "J", "", [](const CycleFit& fit) { return fit.energy; }, Rms},
 };
 
 bool HasFlag(const CycleFit& fit, std::string_view flag) {
@@ -94,7 +100,9 @@ struct Totals {
     for (std::size_t k = 0; k < kTracked.size(); ++k) {
       const std::optional<double> value = kTracked[k].of(fit);
       if (!value || HasFlag(fit, "not_converged") || HasFlag(fit, kTracked[k].open_flag)) continue;
-      courses[k].Add(fit.number, *value);
+      // What has no error is exact, held or without noise: then all are alike.
+      const std::optional<double> error = kTracked[k].error(fit);
+      courses[k].Add(fit.number, *value, error && *error > 0 ? 1 / (*error * *error) : 1.0);
     }
   }
 };
@@ -347,6 +355,10 @@ void Run::Go() {
   }
   progress_.reset();
   reading_.cycles = tracker_->cycles();
+  if (reading_.cycles == 0 && reading_.gate.count > 2) {
+    throw InputError(fmt::format("--average {}: {} turn only {} times, two a cycle: average fewer",
+                                 options_.average, fmt::join(files, ", "), reading_.gate.count));
+  }
   if (reading_.cycles == 0) {
     throw InputError(fmt::format(
         "{}: no whole cycle: the displacement turns {} times by more than {:.3g} m: choose another "

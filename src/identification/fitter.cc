@@ -399,15 +399,38 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
   Append(result.findings, FindUndetermined(problem, estimates.local()));
 }
 
+/// Where the parabola may be wrong about Tc, or about σ above, the likelihood itself.
+void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solution& solution,
+                     const Noise& noise, const Estimates& estimates, FitResult& result) {
+  const FitOptions& options = attempt.options;
+  SearchBuffers& buffers = attempt.buffers;
+  const double peak_force = result.PeakForce();
+  if (NeedsSlipForceProfile(problem, solution, noise, estimates, peak_force / result.law.slip_force,
+                            options, buffers)) {
+    const SlipForceProfile profile =
+        ProfileSlipForce(problem, solution, noise, estimates, options, buffers);
+    WidenByProfile(problem, profile, estimates.quantile(), peak_force, result);
+    for (Finding& finding : FindOpenSlipForce(result, profile)) {
+      result.findings.push_back(std::move(finding));
+    }
+  }
+  if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
+    ParameterEstimate& sigma = result.parameters[kStiffness];
+    sigma.upper95.reset();
+    sigma.standard_error.reset();
+    result.findings.push_back(FoundOpenStiffness());
+  }
+}
+
 /// What there is at Depth::kErrors.
 void InferErrors(const Attempt& attempt, const Problem& problem, const Solution& solution,
                  Noise& noise, const DisplacementErrors& displacement_errors, FitResult& result) {
   MeasureNoise(attempt, problem, solution, noise, result);
   const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
-  FillErrors(problem,
-             Estimates(problem, solution, noise, displacement, attempt.options.thresholds,
-                       attempt.buffers.response),
-             result);
+  const Estimates estimates(problem, solution, noise, displacement, attempt.options.thresholds,
+                            attempt.buffers.response);
+  FillErrors(problem, estimates, result);
+  WidenByProfiles(attempt, problem, solution, noise, estimates, result);
   Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
   for (Finding& finding : FindWideIntervals(result, attempt.options.thresholds)) {
     result.findings.push_back(std::move(finding));
@@ -430,22 +453,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   FillErrors(problem, estimates, result);
   if (result.depth >= Depth::kFull) {
     result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
-    const double peak_force = result.PeakForce();
-    if (NeedsSlipForceProfile(problem, solution, noise, estimates,
-                              peak_force / result.law.slip_force, options, buffers)) {
-      const SlipForceProfile profile =
-          ProfileSlipForce(problem, solution, noise, estimates, options, buffers);
-      WidenByProfile(problem, profile, estimates.quantile(), peak_force, result);
-      for (Finding& finding : FindOpenSlipForce(result, profile)) {
-        result.findings.push_back(std::move(finding));
-      }
-    }
-    if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
-      ParameterEstimate& sigma = result.parameters[kStiffness];
-      sigma.upper95.reset();
-      sigma.standard_error.reset();
-      result.findings.push_back(FoundOpenStiffness());
-    }
+    WidenByProfiles(attempt, problem, solution, noise, estimates, result);
     result.mindlin_test = TestMindlin(problem, solution, noise, estimates, options, buffers);
     if (result.mindlin_test) {
       const std::optional<RigAlternative> rig =

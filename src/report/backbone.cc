@@ -25,6 +25,12 @@ bool LeavesBand(const BackbonePoint& point) {
   return point.law < point.force.lower95 || point.law > point.force.upper95;
 }
 
+bool IsDenied(const identification::FitResult& fit) {
+  using identification::MemoryVerdict;
+  return fit.memory && (fit.memory->verdict == MemoryVerdict::kDahl ||
+                        fit.memory->verdict == MemoryVerdict::kNeither);
+}
+
 }  // namespace
 
 std::string BackboneCsv(const BackboneEstimate& backbone, const Units& units) {
@@ -65,10 +71,21 @@ std::string BackboneText(const BackboneEstimate& backbone, const identification:
   text += left == 0 ? std::string("  the law keeps to the band\n")
                     : fmt::format("  the law leaves the band at {} of {} displacements\n", left,
                                   backbone.points.size());
-  text +=
-      backbone.reaches_plateau
-          ? "  it levels off within the record\n"
-          : "  it does not level off within the record: slip_force is the law's extrapolation\n";
+  if (backbone.reaches_plateau) {
+    text += "  it levels off within the record\n";
+  } else if (fit.PeakForce() < fit.law.slip_force) {
+    text += "  it does not level off within the record: slip_force is the law's extrapolation\n";
+  } else {
+    text += "  it goes on rising where the law slips\n";
+  }
+  if (IsDenied(fit)) {
+    text +=
+        "  but the record is not of Masing's memory (above): its branches are no copies of one\n"
+        "  backbone, and the band says nothing of that\n";
+  }
+  if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
+    text += "  but the fit, whose past and offsets this takes, is inadequate (above)\n";
+  }
   return text;
 }
 

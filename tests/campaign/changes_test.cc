@@ -134,6 +134,21 @@ TEST(Changes, FindAStepWhereItIs) {
   EXPECT_LE(more, 4);      // one in a hundred by chance
 }
 
+// Where cycles tell more and more, those that tell little say nothing of a change.
+TEST(Changes, AreNotFoundInNoiseThatFalls) {
+  int found = 0;
+  for (int k = 0; k < 100; ++k) {
+    Generator generator(static_cast<std::uint64_t>(k));
+    Course course;
+    for (std::size_t cycle = 1; cycle <= 200; ++cycle) {
+      const double error = kNoise * 100 / static_cast<double>(cycle);
+      course.Add(cycle, kLevel + error * Normal(generator), 1 / (error * error));
+    }
+    found += FindChanges(course).changes.empty() ? 0 : 1;
+  }
+  EXPECT_LE(found, 4);  // one in a hundred by chance
+}
+
 TEST(Changes, FindTheEndOfARunningIn) {
   // Up by 10 in 200 cycles, and level from there.
   const CourseDescription description = FindChanges(CourseOf(1000, 1, [](std::size_t cycle) {

@@ -130,6 +130,25 @@ TEST(CycleFitter, SaysWhatACycleLeavesOpen) {
   EXPECT_FALSE(fit.friction_coefficient);
 }
 
+// Far from slip the parabola of the likelihood is wrong about Tc: no cycle may pass for one that
+// knows it.
+TEST(CycleFitter, KnowsNoSlipForceFarFromSlip) {
+  loop::Record record = TestRecord(40, 1, 0.0);
+  for (double& x : record.displacement) x *= 0.12;
+  record.force = testing::Respond(testing::Model("mindlin-dahl"), kCycleLaw, record.displacement);
+  testing::Generator generator(7);
+  for (double& force : record.force) force += testing::kCycleNoise * testing::Normal(generator);
+  CycleFitter fitter({});
+  for (const Cycle& cycle : CyclesOf(record)) {
+    const CycleFit fit = fitter.Fit(cycle);
+    const bool is_open = HasFlag(fit, "slip_force_open");
+    const bool is_right =
+        fit.slip_force.standard_error &&
+        std::abs(*fit.slip_force.value - kCycleLaw.slip_force) < 5 * *fit.slip_force.standard_error;
+    EXPECT_TRUE(is_open || is_right) << cycle.number << ": " << *fit.slip_force.value;
+  }
+}
+
 TEST(CycleFitter, SaysThatACycleDoesNotClose) {
   Cycle cycle = CyclesOf(TestRecord(2)).front();
   const std::size_t half = cycle.record.size() / 2;

@@ -7,23 +7,25 @@
 
 namespace mindahl::campaign {
 
-/// A quantity over the cycles of a test, in memory that the number of cycles does not change: means
-/// over bins of equally many values, at most kMostBins of them.
+/// A quantity over the cycles of a test, in memory that the number of cycles does not change:
+/// weighted means over bins of equally many values, at most kMostBins of them.
 class Course {
  public:
   struct Bin {
     std::size_t first_cycle = 0;
     std::size_t last_cycle = 0;
     double cycle = 0.0;  ///< mean number
-    double value = 0.0;  ///< mean
+    double value = 0.0;  ///< mean, weighted
+    double weight = 0.0;
     std::size_t count = 0;
   };
 
   static constexpr std::size_t kMostBins = 512;
 
   /// @param cycle  its number, larger than the last
-  /// @param value  finite
-  void Add(std::size_t cycle, double value);
+  /// @param value   finite
+  /// @param weight  > 0: one over its variance, in any unit
+  void Add(std::size_t cycle, double value, double weight = 1.0);
 
   [[nodiscard]] std::span<const Bin> bins() const { return bins_; }
 

@@ -27,7 +27,8 @@ namespace mindahl::identification {
 enum class Depth {
   kEstimate,   ///< values, rms, convergence: for work that is done again and again
   kErrors,     ///< and facts of the record, noise, standard errors, intervals, correlations and
-               ///< residuals from the parabola of the likelihood, as if the model were adequate
+               ///< residuals as if the model were adequate: from the parabola of the likelihood,
+               ///< and from its profile where that is wrong about Tc
   kIntervals,  ///< and adequacy, its causes, and verdicts; intervals cover what these would change
   kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α and
                ///< of the law
