@@ -570,6 +570,17 @@ void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& opti
   }
 }
 
+/// Does a record tell the law, as far as the depth says? Where it does not, the likelihood is a
+/// valley with more minima than one.
+bool TellsTheLaw(const FitResult& result) {
+  if (result.depth < Depth::kErrors) return true;
+  return std::ranges::all_of(result.parameters, [](const ParameterEstimate& estimate) {
+    const bool is_of_law =
+        estimate.name == "sigma" || estimate.name == "alpha" || estimate.name == "slip_force";
+    return !is_of_law || estimate.is_known();
+  });
+}
+
 }  // namespace
 
 struct Fitter::State {
@@ -723,7 +734,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
 
 /// Is the last fit's end a start? Not of a likelihood with several minima, nor at a bound.
 bool Fitter::State::MayContinue() const {
-  return result.converged && options.starts == 1 &&
+  return result.converged && options.starts == 1 && TellsTheLaw(result) &&
          std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {
            return estimate.status == ParameterStatus::kAtLowerBound ||
                   estimate.status == ParameterStatus::kAtUpperBound ||
@@ -744,7 +755,7 @@ void Fitter::State::Continue(const RecordView& record, Depth depth) {
     const double last_rms = result.rms;
     Fit({&record, 1}, depth, continued);
     constexpr double kAsGood = 1.5;  // times the last rms
-    if (result.converged && result.rms <= kAsGood * last_rms) return;
+    if (result.converged && result.rms <= kAsGood * last_rms && TellsTheLaw(result)) return;
   }
   Fit({&record, 1}, depth, options);
 }
