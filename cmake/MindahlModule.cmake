@@ -24,10 +24,11 @@ if(MINDAHL_SANITIZE)
   target_link_options(mindahl_build_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# mindahl_add_module(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...])
+# mindahl_add_module(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [PRECOMPILE headers...])
 # One static library a module, mindahl::NAME, whose public headers are include/mindahl/NAME/*.h.
+# PRECOMPILE: headers of others that take most of the time to compile its sources.
 function(mindahl_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 MODULE "" "" "SOURCES;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 MODULE "" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE")
   add_library(mindahl_${name} STATIC ${MODULE_SOURCES})
   add_library(mindahl::${name} ALIAS mindahl_${name})
   target_compile_features(mindahl_${name} PUBLIC cxx_std_20)
@@ -39,4 +40,7 @@ function(mindahl_add_module name)
   target_link_libraries(mindahl_${name}
     PUBLIC ${MODULE_PUBLIC}
     PRIVATE ${MODULE_PRIVATE} $<BUILD_INTERFACE:mindahl_build_flags>)
+  if(MINDAHL_PRECOMPILE_HEADERS AND MODULE_PRECOMPILE)
+    target_precompile_headers(mindahl_${name} PRIVATE ${MODULE_PRECOMPILE})
+  endif()
 endfunction()
