@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "mindahl/core/error.h"
-#include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
+#include "mindahl/report/loop_description.h"
 
 namespace mindahl::campaign {
 namespace {
@@ -55,6 +54,9 @@ void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
   fit.energy = facts.energy_per_cycle;
   fit.energy_ratio = facts.energy_ratio;
   fit.slope_after_reversal = facts.slope_after_reversal;
+  if (fit.normal_load) {
+    fit.energy_friction_coefficient = loop::EnergyFrictionCoefficient(facts, *fit.normal_load);
+  }
   if (!std::ranges::all_of(facts.cycles, &loop::CycleFacts::returns)) {
     fit.flags.emplace_back("not_closed");
   }
@@ -66,14 +68,6 @@ FittedValue ValueOf(const FitResult& result, std::string_view name, const char* 
   if (estimate == nullptr) return {};
   if (open_flag != nullptr && !estimate->is_known()) fit.flags.emplace_back(open_flag);
   return {estimate->value, estimate->standard_error};
-}
-
-/// Does the law slip as a whole at that amplitude of contact and rig? One with α >= 1 only
-/// approaches it.
-std::optional<bool> SlipsGrossly(const FitResult& result, double amplitude) {
-  const double gross = models::SteadyGrossSlipAmplitude(*result.model, result.law);
-  const double contact = models::ContactAmplitude(*result.model, result.law, result.rig, amplitude);
-  return std::isfinite(gross) && contact >= gross;
 }
 
 }  // namespace
@@ -108,10 +102,6 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   const identification::RecordFit& fitted = result->records.front();
   if (fitted.glitches.total() > 0) fit.flags.emplace_back("glitches");
   FillFacts(FactsOf(record, *result), fit);
-  if (fit.normal_load && *fit.normal_load > 0 && fit.energy && fit.sliding_amplitude &&
-      *fit.sliding_amplitude > 0) {
-    fit.energy_friction_coefficient = *fit.energy / (4 * *fit.normal_load * *fit.sliding_amplitude);
-  }
   if (result->parameters.empty()) return fit;  // no start had the force's sense
   fit.sigma = ValueOf(*result, "sigma", "sigma_open", fit);
   fit.alpha = ValueOf(*result, "alpha", "alpha_open", fit);
@@ -123,7 +113,10 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
     fit.friction_coefficient = *fit.slip_force.value / *fit.normal_load;
   }
   if (result->converged) {
-    fit.slips_grossly = SlipsGrossly(*result, fitted.measures.amplitude);
+    fit.slips_grossly =
+        report::SlipsGrossly(*result->model, result->law,
+                             models::ContactAmplitude(*result->model, result->law, result->rig,
+                                                      fitted.measures.amplitude));
   }
   return fit;
 }

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <future>
@@ -26,6 +24,7 @@
 #include "cli/output_path.h"
 #include "cli/progress.h"
 #include "cli/whole_number.h"
+#include "mindahl/campaign/repeats.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/atomic_file.h"
@@ -186,16 +185,6 @@ std::string TableOf(const std::vector<std::string>& files, const std::vector<Fil
   return table;
 }
 
-/// How far repeats of a test are from each other, beside what each says of its own error.
-struct Scatter {
-  std::size_t files = 0;
-  double mean = 0.0;
-  double standard_deviation = 0.0;
-  double stated_error = 0.0;  ///< root of their mean square
-  /// Of Σ(x − mean)²/e² by chi squared: is the scatter what the errors say? The mean is weighted.
-  double p_value = 1.0;
-};
-
 /// One standard error: of an interval that covers more than the noise, a share of that.
 std::optional<double> StatedError(const Json& fit, std::string_view name) {
   const Json error = ValueOf(fit, std::string(name) + "_error");
@@ -207,7 +196,8 @@ std::optional<double> StatedError(const Json& fit, std::string_view name) {
   return std::max(error.get<double>(), (upper.get<double>() - lower.get<double>()) / kWidth);
 }
 
-std::optional<Scatter> ScatterOf(const std::vector<FileFit>& fits, const Repeated& quantity) {
+std::optional<campaign::Repeats> RepeatsOf(const std::vector<FileFit>& fits,
+                                           const Repeated& quantity) {
   std::vector<double> values;
   std::vector<double> errors;
   for (const FileFit& fit : fits) {
@@ -221,28 +211,7 @@ std::optional<Scatter> ScatterOf(const std::vector<FileFit>& fits, const Repeate
     values.push_back(value);
     errors.push_back(*error);
   }
-  if (values.size() < 2) return std::nullopt;
-  const auto count = static_cast<double>(values.size());
-  Scatter scatter{.files = values.size()};
-  double weights = 0.0;
-  double weighted = 0.0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    scatter.mean += values[k] / count;
-    scatter.stated_error += errors[k] * errors[k] / count;
-    weights += 1 / (errors[k] * errors[k]);
-    weighted += values[k] / (errors[k] * errors[k]);
-  }
-  scatter.stated_error = std::sqrt(scatter.stated_error);
-  double squares = 0.0;
-  double chi_squared = 0.0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    squares += (values[k] - scatter.mean) * (values[k] - scatter.mean);
-    chi_squared += std::pow((values[k] - weighted / weights) / errors[k], 2);
-  }
-  scatter.standard_deviation = std::sqrt(squares / (count - 1));
-  const boost::math::chi_squared distribution(count - 1);
-  scatter.p_value = boost::math::cdf(boost::math::complement(distribution, chi_squared));
-  return scatter;
+  return campaign::DescribeRepeats(values, errors);
 }
 
 std::string TextOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options) {
@@ -251,10 +220,10 @@ std::string TextOf(const std::vector<FileFit>& fits, const BatchCommandOptions& 
       fmt::format("{} of {} files fitted, in {}\n", done, fits.size(), options.output);
   std::string scatter;
   for (const Repeated& quantity : kRepeated) {
-    const std::optional<Scatter> found = ScatterOf(fits, quantity);
+    const std::optional<campaign::Repeats> found = RepeatsOf(fits, quantity);
     if (!found) continue;
     scatter += fmt::format(
-        "  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14.2g}   {}\n", quantity.name, found->files, found->mean,
+        "  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14.2g}   {}\n", quantity.name, found->count, found->mean,
         found->standard_deviation, found->stated_error,
         found->p_value < 0.01 ? fmt::format("more than the errors, p {:.1g}", found->p_value)
                               : fmt::format("as the errors say, p {:.2g}", found->p_value));
@@ -282,9 +251,9 @@ Json JsonOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options
   json["files"] = files;
   Json repeats = Json::object();
   for (const Repeated& quantity : kRepeated) {
-    const std::optional<Scatter> found = ScatterOf(fits, quantity);
+    const std::optional<campaign::Repeats> found = RepeatsOf(fits, quantity);
     if (!found) continue;
-    repeats[std::string(quantity.name)] = {{"files", found->files},
+    repeats[std::string(quantity.name)] = {{"files", found->count},
                                            {"mean", found->mean},
                                            {"standard_deviation", found->standard_deviation},
                                            {"stated_error", found->stated_error},

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
@@ -31,19 +29,6 @@ struct Priced {
   double indistinguishable = 0.0;  // ΔAICc
 };
 
-/// Costs within a tenth are equal, and the simpler law is then preferred, as in recommendation.h.
-std::size_t CheapestNotToldApart(const SimplerLaws& laws, const std::vector<double>& cost) {
-  constexpr double kSameCost = 1.1;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < cost.size(); ++i) {
-    if (!laws.scores[i].told_apart) least = std::min(least, cost[i]);
-  }
-  for (std::size_t i = 0; i < cost.size(); ++i) {
-    if (!laws.scores[i].told_apart && cost[i] <= kSameCost * least) return i;
-  }
-  return laws.best;
-}
-
 Priced PriceLaws(const loop::Record& record) {
   const identification::FitOptions options;
   Priced priced{.laws = identification::CompareSimplerLaws(record, options),
@@ -56,7 +41,8 @@ Priced PriceLaws(const loop::Record& record) {
         tradeoff::CountOperations(approximation, score.law, {.displacement = record.displacement}),
         record.size()));
   }
-  priced.choice = CheapestNotToldApart(priced.laws, priced.cost);
+  const auto is_not_told_apart = [&](std::size_t i) { return !priced.laws.scores[i].told_apart; };
+  priced.choice = tradeoff::CheapestOf(priced.cost, is_not_told_apart).value_or(priced.laws.best);
   return priced;
 }
 

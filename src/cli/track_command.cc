@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/cycle_output.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/json_output.h"
+#include "cli/kept_cycles.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
 #include "cli/whole_number.h"
@@ -31,6 +31,7 @@
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
+#include "mindahl/io/appended_file.h"
 #include "mindahl/io/record_stream.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/report/units.h"
@@ -159,11 +160,12 @@ io::Samples ReadHead(io::RecordStream& stream) {
   constexpr std::size_t kMostSamples = 1'000'000;
   io::Samples head;
   io::Samples piece;
-  while (stream.Next(piece)) {
+  std::size_t next_look = 1;  // at twice as much each time: a look is at all of it
+  while (head.size() < kMostSamples && stream.Next(piece)) {
     Append(piece, head);
-    const bool is_enough = loop::ChooseReversalGate(head.displacement).count >= kReversals ||
-                           head.size() >= kMostSamples;
-    if (is_enough) break;
+    if (head.size() < next_look) continue;
+    if (loop::ChooseReversalGate(head.displacement).count >= kReversals) break;
+    next_look = 2 * head.size();
   }
   return head;
 }
@@ -221,14 +223,15 @@ class Run {
   bool is_torsional_ = false;
   Reading reading_;
   Totals totals_;
-  std::optional<CycleOutput::Kept> kept_;  // until its last batch was made again
-  std::size_t resumed_ = 0;                // fits that were there
-  std::optional<CycleOutput> output_;
+  std::optional<KeptCycles> kept_;  // until its last batch was made again
+  std::size_t resumed_ = 0;         // fits that were there
+  std::optional<io::AppendedFile> output_;
   std::optional<campaign::Tracker> tracker_;
   std::optional<Progress> progress_;
   std::uintmax_t bytes_ = 0;  // of all files
   std::uintmax_t bytes_before_ = 0;
   const io::RecordStream* stream_ = nullptr;
+  std::array<campaign::CourseDescription, kTracked.size()> courses_;  // once all is read
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -240,9 +243,8 @@ void Run::Begin(io::RecordStream& stream, const io::Samples& head) {
   const std::string header = campaign::CycleTableHeader(is_torsional_);
   std::error_code error;
   if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
-    kept_ = CycleOutput::Read(options_.output, header, [&](const campaign::CycleTableEntry& entry) {
-      totals_.Add(entry.fit);
-    });
+    kept_ = ReadKeptCycles(options_.output, header,
+                           [&](const campaign::CycleTableEntry& entry) { totals_.Add(entry.fit); });
     resumed_ = kept_->fits;
     if (kept_->fits == 0) kept_.reset();
   }
@@ -266,12 +268,14 @@ void Run::Take(std::span<const CycleFit> fits) {
   }
   if (kept_) {
     if (rows != kept_->last_batch) ThrowOther();
-    output_.emplace(options_.output, campaign::CycleTableHeader(is_torsional_), &*kept_);
+    output_.emplace(options_.output, kept_->bytes);
     kept_.reset();
     return;
   }
-  if (!output_)
-    output_.emplace(options_.output, campaign::CycleTableHeader(is_torsional_), nullptr);
+  if (!output_) {
+    output_.emplace(options_.output, 0);
+    output_->Append(campaign::CycleTableHeader(is_torsional_));
+  }
   output_->Append(rows);
   for (const CycleFit& fit : fits) totals_.Add(fit);
   SayProgress();
@@ -368,6 +372,9 @@ void Run::Go() {
   const auto failed = totals_.flags.find("not_converged");
   const bool none = failed != totals_.flags.end() && failed->second == totals_.fits;
   console_.exit_status = none ? kNotEstablished : kDone;
+  std::ranges::transform(totals_.courses, courses_.begin(), [](const campaign::Course& course) {
+    return campaign::FindChanges(course);
+  });
   if (!options_.json_path.empty()) WriteJson(Json(), options_.json_path, console_);
   if (options_.json_path != "-") WriteSummary();
 }
@@ -436,7 +443,7 @@ void Run::WriteSummary() {
   std::string courses;
   std::string changes;
   for (std::size_t k = 0; k < kTracked.size(); ++k) {
-    const campaign::CourseDescription course = campaign::FindChanges(totals_.courses[k]);
+    const campaign::CourseDescription& course = courses_[k];
     if (course.stretches.empty()) continue;
     const std::string name =
         fmt::format("{}{}", kTracked[k].name, InBrackets(UnitOf(kTracked[k].unit)));
@@ -477,7 +484,7 @@ nlohmann::ordered_json Run::Json() const {
   json["accumulated_energy"] = totals_.energy;
   nlohmann::ordered_json quantities = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < kTracked.size(); ++k) {
-    const campaign::CourseDescription course = campaign::FindChanges(totals_.courses[k]);
+    const campaign::CourseDescription& course = courses_[k];
     if (course.stretches.empty()) continue;
     nlohmann::ordered_json stretches = nlohmann::ordered_json::array();
     for (const campaign::Stretch& stretch : course.stretches) {

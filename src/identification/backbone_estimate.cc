@@ -237,8 +237,7 @@ double Widening(const Series& series, std::span<const Followed> records, const E
         DescribeStructure(records[r].displacement, records[r].reversals,
                           {residual.data(), records[r].displacement.size()}, records[r].counts,
                           {thresholds.main_stroke, thresholds.repeat_chance});
-    const auto strokes = static_cast<double>(std::max<std::size_t>(structure.strokes, 1));
-    widening = std::max(widening, 1 + structure.repeatable_share * (strokes - 1));
+    widening = std::max(widening, structure.Widening());
   }
   return widening;
 }

@@ -283,8 +283,7 @@ void DescribeFit(const Problem& problem, const Noise& noise, FitResult& result) 
       of_residuals.degrees_of_freedom(problem.parameters.free().size());
 }
 
-/// By how much the variance of estimates exceeds what the noise makes: a misfit that comes back in
-/// every stroke is not averaged away by more of them.
+/// What comes back in every stroke, and by how much it widens a variance.
 double DescribeStructures(const Problem& problem, std::span<const double> residual,
                           const Thresholds& thresholds, FitResult& result) {
   double widening = 1.0;
@@ -298,8 +297,7 @@ double DescribeStructures(const Problem& problem, std::span<const double> residu
     }
     fit.structure = DescribeStructure(record.displacement, record.reversals, newtons, record.counts,
                                       {thresholds.main_stroke, thresholds.repeat_chance});
-    const auto repeats = static_cast<double>(std::max<std::size_t>(fit.structure.strokes, 1));
-    widening = std::max(widening, 1 + fit.structure.repeatable_share * (repeats - 1));
+    widening = std::max(widening, fit.structure.Widening());
     begin += record.size();
   }
   return widening;

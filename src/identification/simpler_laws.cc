@@ -1,8 +1,6 @@
 #include "mindahl/identification/simpler_laws.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/complement.hpp>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -74,11 +72,6 @@ std::vector<double> SenseOfMotion(std::span<const double> displacement,
     begin = std::min(end + 1, displacement.size() - 1);
   }
   return sense;
-}
-
-double ChanceOfChiSquared(double value, double degrees_of_freedom) {
-  const boost::math::chi_squared_distribution<double> chi_squared(degrees_of_freedom);
-  return boost::math::cdf(boost::math::complement(chi_squared, value));
 }
 
 }  // namespace
@@ -156,7 +149,7 @@ SimplerLaws CompareSimplerLaws(const loop::RecordView& record, const FitOptions&
         std::max(evidence.LikelihoodRatio(sum_of_squares(score), sum_of_squares(best)), 0.0);
     if (score.free_parameters < best.free_parameters) {
       score.p_value =
-          ChanceOfChiSquared(score.likelihood_ratio,
+          PValueOfChiSquared(score.likelihood_ratio,
                              static_cast<double>(best.free_parameters - score.free_parameters));
     }
   }

@@ -45,6 +45,7 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
                                 std::span<double> values) {
   const bool by_blanks = delimiter_ == Delimiter::kBlanks;
   const bool comma_may_be_mark = delimiter_ != Delimiter::kComma;
+  const bool may_be_padded = !by_blanks && delimiter_ != Delimiter::kTab;
   const auto delimiter = static_cast<char>(delimiter_);
   const char* at = line.data();
   const char* const end = at + line.size();
@@ -64,7 +65,7 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
       at = next;
       continue;
     }
-    if (!by_blanks && delimiter != '\t') at = SkipBlanks(at, end);
+    if (may_be_padded) at = SkipBlanks(at, end);
     if (!BeginsAsNumber(at, end)) return false;
     double value = 0.0;
     const auto [stop, error] = std::from_chars(at, end, value);
@@ -74,7 +75,7 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
     }
     values[static_cast<std::size_t>(slots_[column])] = value;
     at = stop;
-    if (!by_blanks && delimiter != '\t') at = SkipBlanks(at, end);
+    if (may_be_padded) at = SkipBlanks(at, end);
     if (at != end && (by_blanks ? !IsBlank(*at) : *at != delimiter)) return false;
   }
   if (at != end && SkipBlanks(at + (by_blanks ? 0 : 1), end) != end) return false;

@@ -354,17 +354,20 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   facts.plateau_slope = MedianSlope(record, steady, 2.0 / 3, 1.0);
   facts.asymmetry = Asymmetry(record, steady, facts.peak_force);
   facts.path_ratio = PathRatio(record.displacement, points, facts.cycles.size());
-  if (!record.normal_load.empty() && facts.sliding_amplitude && *facts.sliding_amplitude > 0) {
-    const double load = MeanLoad(record, steady);
-    if (load > 0) {
-      facts.energy_friction_coefficient =
-          facts.energy_per_cycle / (4 * load * *facts.sliding_amplitude);
-    }
+  if (!record.normal_load.empty()) {
+    facts.energy_friction_coefficient = EnergyFrictionCoefficient(facts, MeanLoad(record, steady));
   }
   return facts;
 }
 
 }  // namespace
+
+std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {
+  if (!facts.sliding_amplitude || !(*facts.sliding_amplitude > 0) || !(normal_load > 0)) {
+    return std::nullopt;
+  }
+  return facts.energy_per_cycle / (4 * normal_load * *facts.sliding_amplitude);
+}
 
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
                        int force_sense) {

@@ -20,15 +20,19 @@ namespace {
 
 using identification::Identifiability;
 using identification::ParameterEstimate;
-using identification::ParameterStatus;
 
 bool HasValue(const ParameterEstimate& estimate) {
-  return estimate.status == ParameterStatus::kFixed ||
-         estimate.identifiability == Identifiability::kIdentifiable ||
-         estimate.identifiability == Identifiability::kExtrapolated;
+  return estimate.is_known() || estimate.identifiability == Identifiability::kExtrapolated;
 }
 
 }  // namespace
+
+bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
+                  double contact_amplitude) {
+  const double gross_slip = models::SteadyGrossSlipAmplitude(model, law);
+  if (std::isfinite(gross_slip)) return contact_amplitude >= gross_slip;
+  return models::SteadyPeakForce(model, law, contact_amplitude) >= kAsGoodAsSlip * law.slip_force;
+}
 
 LoopDescription DescribeLoop(const identification::FitResult& fit) {
   const identification::RecordFit& widest = fit.WidestRecord();
@@ -51,8 +55,7 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
   }
   const double peak = models::SteadyPeakForce(*fit.model, law, loop.contact_amplitude);
   loop.slip_force_share = peak / law.slip_force;
-  const bool slips = std::isfinite(gross_slip) ? loop.contact_amplitude >= gross_slip
-                                               : peak >= kAsGoodAsSlip * law.slip_force;
+  const bool slips = SlipsGrossly(*fit.model, law, loop.contact_amplitude);
   // A lower limit of Tc is beyond what was reached.
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   if (!HasValue(slip_force) && slip_force.identifiability != Identifiability::kBoundedBelow) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/limit_law.h"
@@ -55,6 +56,19 @@ double ModelledCost(const OperationCount& count, std::size_t samples) {
   double cost = 0.0;
   for (const Price& price : kPrices) cost += price.nanoseconds * count[price.operation];
   return cost / static_cast<double>(samples);
+}
+
+std::optional<std::size_t> CheapestOf(std::span<const double> costs,
+                                      const std::function<bool(std::size_t)>& allowed) {
+  constexpr double kSameCost = 1.1;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    if (allowed(i)) least = std::min(least, costs[i]);
+  }
+  for (std::size_t i = 0; i < costs.size(); ++i) {
+    if (allowed(i) && costs[i] <= kSameCost * least) return i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace mindahl::tradeoff

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "mindahl/core/error.h"
+#include "mindahl/tradeoff/cost_model.h"
 #include "mindahl/tradeoff/refit.h"
 #include "tradeoff/cycle_count.h"
 
 namespace mindahl::tradeoff {
 namespace {
-
-/// Costs this near each other are equal: no machine is known better.
-constexpr double kSameCost = 1.1;
 
 /// Of a cycle, in counting whole ones.
 constexpr double kRounding = 1e-9;
@@ -35,19 +32,6 @@ std::optional<std::size_t> SettlesAfter(const ReferenceResponse& reference,
   const double after = std::ceil(cycles[settled - 1] - kRounding);
   if (after + 1 > cycles.back() + kRounding) return std::nullopt;
   return static_cast<std::size_t>(after);
-}
-
-/// The cheapest of those for which `allowed`, the first of equals.
-template <typename Allowed>
-std::optional<std::size_t> Cheapest(const std::vector<Candidate>& candidates, Allowed allowed) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (allowed(i)) least = std::min(least, candidates[i].point.cost);
-  }
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (allowed(i) && candidates[i].point.cost <= kSameCost * least) return i;
-  }
-  return std::nullopt;
 }
 
 /// The most precise of those within the limit of cost; of equals the cheaper.
@@ -103,11 +87,12 @@ Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& dri
     result.choice = MostPrecise(result.candidates, options.criterion);
     return result;
   }
-  result.choice =
-      Cheapest(result.candidates, [&](std::size_t i) { return result.candidates[i].meets; });
+  std::vector<double> costs;
+  for (const Candidate& candidate : result.candidates) costs.push_back(candidate.point.cost);
+  result.choice = CheapestOf(costs, [&](std::size_t i) { return result.candidates[i].meets; });
   // Simpler is what stands before it in the ladder.
   const std::size_t simpler = std::min(result.choice.value_or(result.exact), result.exact);
-  result.after_transient = Cheapest(result.candidates, [&](std::size_t i) {
+  result.after_transient = CheapestOf(costs, [&](std::size_t i) {
     const Candidate& candidate = result.candidates[i];
     return i < simpler && !candidate.meets && candidate.settles_after.value_or(0) > 0;
   });

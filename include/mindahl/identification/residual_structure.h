@@ -31,6 +31,12 @@ struct ResidualStructure {
   /// direction has one stroke only.
   double repeatable_share = 0.0;
   std::size_t strokes = 0;  ///< of the direction that has more
+
+  /// By how much the variance of estimates exceeds what the noise makes: what comes back in every
+  /// stroke is not averaged away by more of them.
+  [[nodiscard]] double Widening() const {
+    return strokes > 1 ? 1 + repeatable_share * static_cast<double>(strokes - 1) : 1.0;
+  }
 };
 
 struct ResidualStructureOptions {

@@ -70,6 +70,9 @@ struct LoopFacts {
   std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
 };
 
+/// µ_W = W/(4·N·sliding amplitude) [-]; empty where the contact slides nowhere or N [N] is not > 0.
+std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load);
+
 /// @param record       with the force in any sense
 /// @param reversals    as from FindReversals on the same record; the first and the last sample may
 /// be

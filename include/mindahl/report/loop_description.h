@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "mindahl/identification/fit.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/friction_model.h"
 
 namespace mindahl::report {
 
@@ -40,6 +42,10 @@ struct LoopDescription {
 /// From this share of Tc on a law with α >= 1 is said to slip as a whole, which it never quite
 /// does: no record tells 1 % of the force.
 inline constexpr double kAsGoodAsSlip = 0.99;
+
+/// Does a law's steady loop of that amplitude X [m] of the contact slip as a whole?
+bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
+                  double contact_amplitude);
 
 /// Of the widest steady cycles; where none is closed, of the main swings.
 MeasuredLoop MeasuredLoopOf(const identification::RecordFit& record);

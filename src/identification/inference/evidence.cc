@@ -47,6 +47,11 @@ double PValueOfF(double f, double degrees_of_freedom) {
   return PValueOfF(f, 1.0, degrees_of_freedom);
 }
 
+double PValueOfChiSquared(double x, double degrees_of_freedom) {
+  const boost::math::chi_squared_distribution<double, InDouble> distribution(degrees_of_freedom);
+  return boost::math::cdf(boost::math::complement(distribution, x));
+}
+
 double ChiSquaredQuantile(double degrees_of_freedom, double chance) {
   const boost::math::chi_squared_distribution<double, InDouble> distribution(degrees_of_freedom);
   return boost::math::quantile(boost::math::complement(distribution, chance));

@@ -41,6 +41,9 @@ double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom);
 /// P(F(1, ν) > f)
 double PValueOfF(double f, double degrees_of_freedom);
 
+/// P(χ²(k) > x)
+double PValueOfChiSquared(double x, double degrees_of_freedom);
+
 /// P(χ²(k) > x) = chance at x
 double ChiSquaredQuantile(double degrees_of_freedom, double chance);
 

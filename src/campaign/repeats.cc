@@ -1,0 +1,38 @@
+#include "mindahl/campaign/repeats.h"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <cmath>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::campaign {
+
+std::optional<Repeats> DescribeRepeats(std::span<const double> values,
+                                       std::span<const double> errors) {
+  RequireSameSize("values", values.size(), "errors", errors.size());
+  if (values.size() < 2) return std::nullopt;
+  const auto count = static_cast<double>(values.size());
+  Repeats repeats{.count = values.size()};
+  double weights = 0.0;
+  double weighted = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    repeats.mean += values[k] / count;
+    repeats.stated_error += errors[k] * errors[k] / count;
+    weights += 1 / (errors[k] * errors[k]);
+    weighted += values[k] / (errors[k] * errors[k]);
+  }
+  repeats.stated_error = std::sqrt(repeats.stated_error);
+  double squares = 0.0;
+  double chi_squared = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    squares += (values[k] - repeats.mean) * (values[k] - repeats.mean);
+    const double off = (values[k] - weighted / weights) / errors[k];
+    chi_squared += off * off;
+  }
+  repeats.standard_deviation = std::sqrt(squares / (count - 1));
+  const boost::math::chi_squared distribution(count - 1);
+  repeats.p_value = boost::math::cdf(boost::math::complement(distribution, chi_squared));
+  return repeats;
+}
+
+}  // namespace mindahl::campaign

@@ -1,0 +1,39 @@
+#include "mindahl/campaign/repeats.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::campaign {
+namespace {
+
+using Numbers = std::vector<double>;
+
+constexpr double kRounding = 1e-14;
+
+TEST(Repeats, OfTwoAreDescribedByHand) {
+  // Mean 11, deviations ±1: s² = 2; weights 1 and 1/4: x̄ = 10.4, χ² = 0.16 + 0.64 of one degree.
+  const auto repeats = DescribeRepeats(Numbers{10, 12}, Numbers{1, 2});
+  ASSERT_TRUE(repeats);
+  EXPECT_EQ(repeats->count, 2U);
+  EXPECT_NEAR(repeats->mean, 11, kRounding);
+  EXPECT_NEAR(repeats->standard_deviation, std::sqrt(2.0), kRounding);
+  EXPECT_NEAR(repeats->stated_error, std::sqrt(2.5), kRounding);
+  EXPECT_NEAR(repeats->p_value, std::erfc(std::sqrt(0.8 / 2)), kRounding);
+}
+
+TEST(Repeats, ThatAgreeAreWhatTheirErrorsSay) {
+  EXPECT_EQ(DescribeRepeats(Numbers{3, 3, 3}, Numbers{1, 2, 3})->p_value, 1.0);
+}
+
+TEST(Repeats, AreTwoAtLeast) {
+  EXPECT_FALSE(DescribeRepeats({}, {}));
+  EXPECT_FALSE(DescribeRepeats(Numbers{1}, Numbers{1}));
+  EXPECT_THROW(DescribeRepeats(Numbers{1, 2}, Numbers{1}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::campaign
