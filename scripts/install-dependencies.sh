@@ -2,6 +2,7 @@
 # Installs what building, testing and plotting need, from Debian's packages; quick when all is there.
 #   install-dependencies.sh --checks    also what CI checks the source with
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
+#   install-dependencies.sh --workflow  also the engine that workflow/ is for
 set -euo pipefail
 
 packages=(
@@ -13,8 +14,9 @@ for group in "$@"; do
   case $group in
     --checks) packages+=(clang-format clang-tidy-19) ;;
     --peers) packages+=(python3-lmfit python3-pandas lammps) ;;
+    --workflow) packages+=(snakemake) ;;
     *)
-      echo "install-dependencies: there is no group '$group': --checks or --peers" >&2
+      echo "install-dependencies: there is no group '$group': --checks, --peers or --workflow" >&2
       exit 2
       ;;
   esac

@@ -54,6 +54,7 @@ EXEMPT = {
 OF_OTHERS = {
     "--preset", "--build", "--target", "--peers",
     "--details", "--half", "--jobs", "--kind", "--loops", "--repeats", "--rounds", "--write",
+    "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }
 
 
