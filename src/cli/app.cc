@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/colours.h"
 #include "cli/commands.h"
 #include "cli/toml.h"
 #include "mindahl/core/error.h"
@@ -144,7 +145,7 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
       ->type_name("FILE");
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
-  Console console{results, err};
+  Console console{results, err, kDone, {}, HasColours(out)};
   app.parse_complete_callback([&] { console.inputs = {ConfigFile(app)}; });
   AddFitCommand(app, console);
   AddSimulateCommand(app, console);

@@ -12,6 +12,7 @@ struct Console {
   std::ostream& err;  // messages and progress
   int exit_status = 0;
   std::vector<std::string> inputs = {};  // files that were read already: the configuration
+  bool has_colours = false;              // results are read on a terminal that shows them
 };
 
 inline constexpr int kDone = 0;

@@ -71,7 +71,9 @@ void Write(const FitCommandOptions& options, const report::Report& report, const
     io::WriteFileAtomically(options.backbone_path,
                             report::BackboneCsv(*report.backbone, report.units));
   }
-  if (options.json_path != "-") console.out << report::ToText(report);
+  if (options.json_path != "-") {
+    console.out << report::ToText(report, {.has_colours = console.has_colours});
+  }
   if (options.json_path != "-" && report.backbone) {
     console.out << report::BackboneText(*report.backbone, report.fit, report.units);
   }

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mindahl/report/quantity.h"
+
 namespace mindahl::report {
 
 using identification::Adequacy;
@@ -90,7 +92,7 @@ const CauseRow& RowOf(const Cause& cause) {
 
 std::string SizeText(const Cause& cause, double size) {
   if (cause.unit == "-") return fmt::format("{:.3g} %", 100 * size);
-  return fmt::format("{:.3g} {}", size, cause.unit);
+  return Quantity(size, cause.unit, 3);
 }
 
 /// What the residuals look like.

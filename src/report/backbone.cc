@@ -1,12 +1,14 @@
 #include "mindahl/report/backbone.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string_view>
 #include <vector>
 
 #include "mindahl/io/csv_writer.h"
+#include "mindahl/report/quantity.h"
 
 namespace mindahl::report {
 
@@ -17,8 +19,22 @@ using identification::BandValue;
 namespace {
 
 std::string WithBand(const BandValue& value, std::string_view unit) {
-  return fmt::format("{:.4g} {} ({:.4g} … {:.4g})", value.value, unit, value.lower95,
-                     value.upper95);
+  const ScaledUnit scaled = UnitFor(unit, value.value);
+  return fmt::format("{} ({:.4g} … {:.4g})", Quantity(value.value, unit, 4),
+                     value.lower95 / scaled.factor, value.upper95 / scaled.factor);
+}
+
+/// "sigma = 40 N/µm, alpha = 0.333" of what the fit knows.
+std::string LawText(const identification::FitResult& fit, const Units& units) {
+  std::vector<std::string> known;
+  const auto add = [&](std::string_view name, double value, std::string_view unit, int digits) {
+    if (!fit.Find(name)->is_known()) return;
+    known.push_back(fmt::format("{} = {}", name, Quantity(value, unit, digits)));
+  };
+  add("sigma", fit.law.tangential_stiffness, units.stiffness, 4);
+  add("alpha", fit.law.shape_exponent, "-", 3);
+  add("slip_force", fit.law.slip_force, units.force, 4);
+  return known.empty() ? "nothing of it is identified" : fmt::format("{}", fmt::join(known, ", "));
 }
 
 bool LeavesBand(const BackbonePoint& point) {
@@ -60,13 +76,12 @@ std::string BackboneText(const BackboneEstimate& backbone, const identification:
   std::string text = fmt::format(
       "\nbackbone without a law (95 % band):\n"
       "  stiffness over the first hundredth {}\n"
-      "  force at {:.4g} {}: {}\n"
-      "  what does not slip there: {}\n",
-      WithBand(backbone.first_stiffness, units.stiffness), last.displacement, units.displacement,
-      WithBand(last.force, units.force), WithBand(backbone.elastic, units.stiffness));
-  text += fmt::format("  {} beside it: sigma = {:.4g} {}, alpha = {:.3g}, slip_force = {:.4g} {}\n",
-                      fit.model->name, fit.law.tangential_stiffness, units.stiffness,
-                      fit.law.shape_exponent, fit.law.slip_force, units.force);
+      "  force at {}: {}\n"
+      "  what does not slip there: {}\n"
+      "  {} beside it: {}\n",
+      WithBand(backbone.first_stiffness, units.stiffness),
+      Quantity(last.displacement, units.displacement, 4), WithBand(last.force, units.force),
+      WithBand(backbone.elastic, units.stiffness), fit.model->name, LawText(fit, units));
   const auto left = std::ranges::count_if(backbone.points, LeavesBand);
   text += left == 0 ? std::string("  the law keeps to the band\n")
                     : fmt::format("  the law leaves the band at {} of {} displacements\n", left,

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "mindahl/report/quantity.h"
+
 namespace mindahl::report {
 
 using identification::Finding;
@@ -39,12 +41,11 @@ std::string WhichRecord(const Finding& finding) {
 
 std::string ReversalsUncertain(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "{}the reversals are not certain: {:.0f} where excursions up to {:.3g} {} are noise, which "
-      "is "
-      "taken, and {:.0f} where those up to {:.3g} {} are; look at the plot and give "
-      "--reversal-gate",
-      WhichRecord(finding), Needed(finding, "count"), Needed(finding, "gate"), units.displacement,
-      Needed(finding, "other_count"), Needed(finding, "other_gate"), units.displacement);
+      "{}the reversals are not certain: {:.0f} where excursions up to {} are noise, which is "
+      "taken, and {:.0f} where those up to {} are; look at the plot and give --reversal-gate",
+      WhichRecord(finding), Needed(finding, "count"),
+      Quantity(Needed(finding, "gate"), units.displacement, 3), Needed(finding, "other_count"),
+      Quantity(Needed(finding, "other_gate"), units.displacement, 3));
 }
 
 std::string GlitchesLeftOut(const Finding& finding, const FitResult&, const Units&) {
@@ -85,51 +86,52 @@ std::string NoClosedCycle(const Finding& finding, const FitResult&, const Units&
 
 std::string TurningPoints(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "the motion turns between samples, up to {:.3g} {} beyond the outermost: the turning points "
-      "were fitted too; sample more densely",
-      Needed(finding, "overshoot"), units.displacement);
+      "the motion turns between samples, up to {} beyond the outermost: the turning points were "
+      "fitted too; sample more densely",
+      Quantity(Needed(finding, "overshoot"), units.displacement, 3));
 }
 
 std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "alpha: a rig of {:.4g} {} in series and Mindlin's alpha = 1/3 fit as well as alpha = "
-      "{:.3g} "
-      "on a rigid rig: they are indistinguishable in this record, and sigma is that of contact and "
-      "rig together; measure the rig's stiffness and give --rig-stiffness",
-      Needed(finding, "rig_stiffness"), units.stiffness, Needed(finding, "alpha"));
+      "alpha: a rig of {} in series and Mindlin's alpha = 1/3 fit as well as alpha = {:.3g} on a "
+      "rigid rig: they are indistinguishable in this record, and sigma is that of contact and rig "
+      "together; measure the rig's stiffness and give --rig-stiffness",
+      Quantity(Needed(finding, "rig_stiffness"), units.stiffness, 4), Needed(finding, "alpha"));
 }
 
 std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "slip_force: the loop (T* = {:.4g} {} at X = {:.4g} {}) does not approach gross slip and "
-      "fits any larger slip force as well; raise the amplitude until the force levels off (mindahl "
-      "plan --record says how far)",
-      Needed(finding, "peak_force"), units.force, Needed(finding, "amplitude"), units.displacement);
+      "slip_force: the loop (T* = {} at X = {}) does not approach gross slip and fits any larger "
+      "slip force as well; raise the amplitude until the force levels off (mindahl plan --record "
+      "says how far)",
+      Quantity(Needed(finding, "peak_force"), units.force, 4),
+      Quantity(Needed(finding, "amplitude"), units.displacement, 4));
 }
 
-std::string TooWide(const char* parameter, const Finding& finding) {
+std::string TooWide(const char* parameter, const Finding& finding, std::string_view unit) {
   return fmt::format(
-      "{}: the 95 % interval {:.3g} … {:.3g} is too wide to call it known; record more samples, "
-      "less noise or a larger amplitude (mindahl plan --record says which)",
-      parameter, Needed(finding, "lower"), Needed(finding, "upper"));
+      "{}: the 95 % interval {} … {} is too wide to call it known; record more samples, less noise "
+      "or a larger amplitude (mindahl plan --record says which)",
+      parameter, Quantity(Needed(finding, "lower"), unit, 3),
+      Quantity(Needed(finding, "upper"), unit, 3));
 }
 
 std::string AlphaNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
-  if (finding.kind == "wide") return TooWide("alpha", finding);
+  if (finding.kind == "wide") return TooWide("alpha", finding, "-");
   if (finding.kind != "with_slip_force") ThrowKind(finding);
   return "alpha: known only together with slip_force (the ratio alpha/slip_force enters the loop); "
          "raise the amplitude until the force levels off (mindahl plan --record says how far), or "
          "fix one of them";
 }
 
-std::string SigmaNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
+std::string SigmaNotIdentifiable(const Finding& finding, const FitResult&, const Units& units) {
   if (finding.kind != "wide") ThrowKind(finding);
-  return TooWide("sigma", finding);
+  return TooWide("sigma", finding, units.stiffness);
 }
 
-std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
+std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult&, const Units& units) {
   if (finding.kind != "wide") ThrowKind(finding);
-  return TooWide("slip_force", finding);
+  return TooWide("slip_force", finding, units.force);
 }
 
 std::string SigmaBoundedBelow(const Finding&, const FitResult&, const Units&) {
@@ -218,24 +220,41 @@ std::string NameOfLaw(std::string_view model) {
   return model == "dahl" ? "Dahl's own law" : "Masing's law";
 }
 
+/// "sigma = 46 N/µm and slip_force = 15 N" of those that the fit knows; may be empty.
+std::string KnownOf(const Finding& finding, const FitResult& fit, const Units& units) {
+  const auto is_known = [&](std::string_view name) {
+    const identification::ParameterEstimate* estimate = fit.Find(name);
+    return estimate == nullptr || estimate->is_known();
+  };
+  std::vector<std::string> known;
+  if (is_known("sigma")) {
+    known.push_back("sigma = " + Quantity(Needed(finding, "sigma"), units.stiffness, 5));
+  }
+  if (is_known("slip_force")) {
+    known.push_back("slip_force = " + Quantity(Needed(finding, "slip_force"), units.force, 5));
+  }
+  return fmt::format("{}", fmt::join(known, " and "));
+}
+
 std::string LawUndecided(const Finding& finding, const FitResult& fit, const Units& units) {
   const std::optional<double> delta_aicc = finding.Number("delta_aicc");
+  const std::string known = KnownOf(finding, fit, units);
   return fmt::format(
-      "sigma, slip_force: by {} sigma = {:.6g} {} and slip_force = {:.6g} {}, and the record does "
-      "not tell it from {} ({}); start from an unloaded contact, or record a second amplitude",
-      NameOfLaw(finding.kind), Needed(finding, "sigma"), units.stiffness,
-      Needed(finding, "slip_force"), units.force, NameOfLaw(fit.model->name),
+      "sigma, slip_force: the record does not tell {} from {} ({}){}; start from an unloaded "
+      "contact, or record a second amplitude",
+      NameOfLaw(fit.model->name), NameOfLaw(finding.kind),
       delta_aicc ? fmt::format("ΔAICc = {:.3g}", *delta_aicc)
-                 : std::string("on a steady loop of one amplitude they are one curve"));
+                 : std::string("on a steady loop of one amplitude they are one curve"),
+      known.empty() ? "" : fmt::format(", by which {}", known));
 }
 
 std::string OtherLawFitsBetter(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
-      "sigma, slip_force: {} fits this record better than {} (ΔAICc = {:.3g}), with sigma = {:.6g} "
-      "{}, alpha = {:.4g} and slip_force = {:.6g} {}; try --model {}",
+      "sigma, slip_force: {} fits this record better than {} (ΔAICc = {:.3g}), with sigma = {}, "
+      "alpha = {:.4g} and slip_force = {}; try --model {}",
       NameOfLaw(finding.kind), NameOfLaw(fit.model->name), Needed(finding, "delta_aicc"),
-      Needed(finding, "sigma"), units.stiffness, Needed(finding, "alpha"),
-      Needed(finding, "slip_force"), units.force, finding.kind);
+      Quantity(Needed(finding, "sigma"), units.stiffness, 5), Needed(finding, "alpha"),
+      Quantity(Needed(finding, "slip_force"), units.force, 5), finding.kind);
 }
 
 std::string MemoryContradictsLaw(const Finding& finding, const FitResult&, const Units&) {
@@ -276,10 +295,11 @@ std::string WhereItRepeats(const Finding& finding, const Units& units) {
     if (kind.kind != finding.kind) continue;
     return fmt::format(
         "{:.0f} % of the residuals' variance is repeatable: it comes back in every stroke, up to "
-        "{:.3g} {} {:.0f} % of the way {}; {}",
-        100 * Needed(finding, "repeatable_share"), std::abs(Needed(finding, "largest")),
-        units.force, 100 * Needed(finding, "position"),
-        Needed(finding, "direction") > 0 ? "up" : "down", kind.words);
+        "{} {:.0f} % of the way {}; {}",
+        100 * Needed(finding, "repeatable_share"),
+        Quantity(std::abs(Needed(finding, "largest")), units.force, 3),
+        100 * Needed(finding, "position"), Needed(finding, "direction") > 0 ? "up" : "down",
+        kind.words);
   }
   ThrowKind(finding);
 }
@@ -299,11 +319,12 @@ std::string SystematicResidual(const Finding& finding, const FitResult& fit, con
 
 std::string EnergyContradiction(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
-      "the steady cycles lose {:.4g} J each and {} as fitted {:.4g} J at their amplitude of {:.4g} "
-      "{}: the two are not the same contact; look at the plot for reversals, glitches or a force "
-      "that the model does not have",
-      Needed(finding, "measured"), fit.model->name, Needed(finding, "model"),
-      Needed(finding, "amplitude"), units.displacement);
+      "the steady cycles lose {} each and {} as fitted {} at their amplitude of {}: the two are "
+      "not the same contact; look at the plot for reversals, glitches or a force that the model "
+      "does not have",
+      Quantity(Needed(finding, "measured"), "J", 4), fit.model->name,
+      Quantity(Needed(finding, "model"), "J", 4),
+      Quantity(Needed(finding, "amplitude"), units.displacement, 4));
 }
 
 // --- the normal load

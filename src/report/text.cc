@@ -10,146 +10,74 @@
 #include <string_view>
 
 #include "mindahl/identification/trend.h"
+#include "mindahl/report/quantity.h"
 #include "report/adequacy.h"
+#include "report/contact_text.h"
 #include "report/field_table.h"
-#include "report/fields.h"
 #include "report/names.h"
 #include "report/requirements.h"
+#include "report/style.h"
+#include "report/wrapped.h"
 
 namespace mindahl::report {
 
 using contact::PropagatedValue;
 using identification::FitResult;
+using identification::Identifiability;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
 using identification::RecordFit;
 
 namespace {
 
-std::string Significant(double value) { return fmt::format("{:.6g}", value); }
+/// A parameter with its error, in the unit that suits both, and its limits in the same unit.
+struct ParameterWords {
+  std::string value;
+  std::string interval;
+};
 
-std::string Bound(const std::optional<double>& value) {
-  return value ? fmt::format("{:.5g}", *value) : "open";
+ParameterWords InWords(const ParameterEstimate& estimate) {
+  // A number beside "not identifiable" would be read as one all the same.
+  if (estimate.identifiability == Identifiability::kNotIdentifiable) return {"-", "-"};
+  if (estimate.identifiability == Identifiability::kBoundedBelow) {
+    return {"> " + (estimate.lower95 ? Quantity(*estimate.lower95, estimate.unit, 5) : "open"),
+            "-"};
+  }
+  const double error = estimate.standard_error.value_or(0.0);
+  const ScaledUnit unit = UnitFor(estimate.unit, std::max(std::abs(estimate.value), error));
+  const auto limit = [&](const std::optional<double>& value) {
+    if (!value) return std::string("open");
+    return RoundedTo(error / unit.factor, *value / unit.factor);
+  };
+  return {QuantityWithError(estimate.value, error, estimate.unit),
+          fmt::format("{} … {}", limit(estimate.lower95), limit(estimate.upper95))};
 }
 
-/// Breaks a sentence between words at 100 columns; lines after the first are indented.
-std::string Wrapped(std::string_view text, std::size_t indent) {
-  constexpr std::size_t kColumns = 100;
-  const auto width = [](std::string_view part) {
-    return static_cast<std::size_t>(std::ranges::count_if(part, [](char byte) {
-      return (static_cast<unsigned char>(byte) & 0xC0) != 0x80;  // of UTF-8: not a continuation
-    }));
-  };
-  std::string wrapped;
-  std::size_t column = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    // A word takes the blanks before it along, and a number its per cent.
-    const std::size_t letter = std::min(text.find_first_not_of(' ', begin), text.size());
-    std::size_t end = std::min(text.find(' ', letter), text.size());
-    if (text.substr(end).starts_with(" %")) end = std::min(text.find(' ', end + 1), text.size());
-    const std::string_view word = text.substr(begin, end - begin);
-    if (column > indent && column + width(word) > kColumns) {
-      wrapped += '\n' + std::string(indent, ' ') + std::string(text.substr(letter, end - letter));
-      column = indent + width(text.substr(letter, end - letter));
-    } else {
-      wrapped += word;
-      column += width(word);
-    }
-    begin = end;
-  }
-  return wrapped + '\n';
+std::string VerdictText(const ParameterEstimate& estimate, const Style& style) {
+  std::string verdict = Words(estimate.identifiability);
+  if (estimate.status != ParameterStatus::kFree) verdict += ", at bound";
+  if (estimate.identifiability == Identifiability::kIdentifiable) return style.Good(verdict);
+  return estimate.identifiability == Identifiability::kNotIdentifiable ? style.Bad(verdict)
+                                                                       : style.Caution(verdict);
 }
 
-std::string ParameterTable(const FitResult& fit) {
-  std::string text;
-  std::size_t width = 4;
-  for (const identification::ParameterEstimate& estimate : fit.parameters) {
-    width = std::max(width, estimate.unit.starts_with("N m") ? estimate.unit.size() : 0);
-  }
-  const auto row = [&](std::string_view name, std::string_view unit, std::string_view value,
-                       std::string_view error, std::string_view interval,
-                       std::string_view verdict) {
-    text += fmt::format("{:<19} {:<{}} {:>12} {:>9}  {:<24} {}\n", name, unit, width, value, error,
-                        interval, verdict);
-  };
-  row("parameter", "unit", "value", "std error", "95 % interval", "verdict");
-  for (const identification::ParameterEstimate& estimate : fit.parameters) {
-    if (estimate.status == identification::ParameterStatus::kFixed) {
-      row(estimate.name, estimate.unit, Significant(estimate.value), "-", "-", "fixed");
+std::string ParameterTable(const FitResult& fit, const Style& style) {
+  std::string text = style.Strong(fmt::format("{:<22} {:<27} {:<24} {}", "parameter",
+                                              "value ± std error", "95 % interval", "verdict")) +
+                     "\n";
+  std::vector<std::string> held;
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.status == ParameterStatus::kFixed) {
+      held.push_back(
+          fmt::format("{} = {}", estimate.name, Quantity(estimate.value, estimate.unit, 6)));
       continue;
     }
-    std::string verdict = Words(estimate.identifiability);
-    if (estimate.status != identification::ParameterStatus::kFree) verdict += ", at bound";
-    // A number beside "not identifiable" would be read as one all the same.
-    using identification::Identifiability;
-    if (estimate.identifiability == Identifiability::kNotIdentifiable) {
-      row(estimate.name, estimate.unit, "-", "-", "-", verdict);
-      continue;
-    }
-    if (estimate.identifiability == Identifiability::kBoundedBelow) {
-      row(estimate.name, estimate.unit, "> " + Bound(estimate.lower95), "-", "-", verdict);
-      continue;
-    }
-    row(estimate.name, estimate.unit, Significant(estimate.value),
-        estimate.standard_error ? fmt::format("{:.2g}", *estimate.standard_error) : "-",
-        fmt::format("{} … {}", Bound(estimate.lower95), Bound(estimate.upper95)), verdict);
+    const ParameterWords words = InWords(estimate);
+    text += fmt::format("{:<22} {:<27} {:<24} {}\n", estimate.name, words.value, words.interval,
+                        VerdictText(estimate, style));
   }
-  return text;
-}
-
-std::string ErrorText(const contact::UncertainValue& value) {
-  return std::isfinite(value.standard_error) ? fmt::format("± {:.2g}", value.standard_error)
-                                             : "± open";
-}
-
-/// What to measure better; nothing where the inputs are exact and the fit alone is uncertain.
-std::string SharesText(const PropagatedValue& value) {
-  if (value.largest_input.empty()) return "";
-  return fmt::format("  {:<22} variance: fit {:.0f} %, inputs {:.0f} %, mostly the {}\n", "",
-                     100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
-}
-
-std::string HertzText(const contact::HertzPrediction& hertz) {
-  std::string text = "  Hertz and Mindlin predict from materials, radii and load:\n";
-  const auto line = [&](const char* name, const PropagatedValue& value, const char* unit,
-                        const PropagatedValue& ratio) {
-    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} measured/predicted {} {}\n", name,
-                        Significant(value.value), ErrorText(value), unit, Significant(ratio.value),
-                        ErrorText(ratio));
-  };
-  line("contact radius", hertz.contact_radius, "m", hertz.sigma_over_hertz_mindlin);
-  line("tangential stiffness", hertz.tangential_stiffness, "N/m", hertz.sigma_over_hertz_mindlin);
-  line("gross slip (α = 1/3)", hertz.gross_slip_displacement, "m",
-       hertz.gross_slip_displacement_ratio);
-  return text;
-}
-
-std::string ContactText(const Report& report) {
-  const contact::IdentifiedContact& contact = report.contact;
-  std::string text =
-      "  G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a compliance: many texts write G* for its inverse\n";
-  for (const ContactField& field : ContactFields()) {
-    const std::optional<PropagatedValue> value = field.get(report);
-    if (!value) continue;
-    text += fmt::format("  {:<22} {:>14} {:<10} {:<5} {}\n", field.label, Significant(value->value),
-                        ErrorText(*value), field.unit == "-" ? "" : field.unit, field.formula);
-    text += SharesText(*value);
-  }
-  if (contact.hertz) text += HertzText(*contact.hertz);
-  for (const std::string& sentence : contact.redundant) {
-    text += Wrapped(fmt::format("  {}", sentence), 4);
-  }
-  for (const std::string& sentence : contact.unidentified) {
-    text += Wrapped(fmt::format("  not identified: {}", sentence), 18);
-  }
-  return text;
-}
-
-std::string BranchShapesText(const FitResult& fit) {
-  std::string text;
-  for (const identification::BranchShape& shape : fit.branch_shapes) {
-    text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "  α branch by branch: " : ", ",
-                        shape.branch, shape.shape_exponent, shape.standard_error);
-  }
-  return text.empty() ? text : Wrapped(text, 4);
+  if (held.empty()) return text;
+  return text + Wrapped(fmt::format("held, not fitted: {}", fmt::join(held, ", ")), 2);
 }
 
 std::string SelectionText(const identification::ModelSelection& selection, const Units& units) {
@@ -185,109 +113,15 @@ std::string SelectionText(const identification::ModelSelection& selection, const
 std::string SlipText(const LoopDescription& loop, const Units& units) {
   if (!loop.regime) return "whether it slips is open: slip_force is not identifiable";
   if (loop.gross_slip_displacement) {
-    return fmt::format("{} slip (gross-slip displacement {:.5g} {})", Name(*loop.regime),
-                       *loop.gross_slip_displacement, units.displacement);
+    return fmt::format("{}, the contact slips as a whole from an amplitude of {}",
+                       Name(*loop.regime),
+                       Quantity(*loop.gross_slip_displacement, units.displacement, 5));
   }
   if (!loop.knows_slip) {
-    return fmt::format("{} slip (gross-slip displacement not identified)", Name(*loop.regime));
+    return fmt::format("{} (gross-slip displacement not identified)", Name(*loop.regime));
   }
   return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
                      100 * loop.slip_force_share);
-}
-
-std::string MappingText(const Report& report) {
-  std::string text;
-  const auto verdict = [](double p_value) {
-    return p_value < kSignificance ? "rejected" : "tenable";
-  };
-  const auto& mindlin = report.fit.mindlin_test;
-  // Of the two tests the likelihood ratio has the say: it needs no parabola.
-  if (report.alpha.z) {
-    text += fmt::format(
-        "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}{}\n", *report.alpha.minus_third,
-        *report.alpha.z, *report.alpha.p_value,
-        mindlin ? "" : fmt::format(": Mindlin's exponent is {}", verdict(*report.alpha.p_value)));
-  }
-  if (mindlin) {
-    const std::string rig = mindlin->rig_stiffness
-                                ? fmt::format(
-                                      " for a rigid rig, but tenable with a rig of {:.4g} "
-                                      "N/m in series: the record does not tell which",
-                                      *mindlin->rig_stiffness)
-                                : "";
-    text += Wrapped(
-        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}{}",
-                    mindlin->likelihood_ratio, mindlin->p_value, verdict(mindlin->p_value), rig),
-        6);
-  }
-  text += BranchShapesText(report.fit);
-  for (const StiffnessTest& test : report.stiffness) {
-    text += fmt::format("  σ/(8a/G*) = {:.6g} {}: 1 where Hertz and Mindlin hold\n",
-                        test.ratio.value, ErrorText(test.ratio));
-    if (test.z) {
-      text += fmt::format(
-          "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, p = {:.3g}: "
-          "{}\n",
-          test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
-          test.interval95->upper, *test.z, *test.p_value, verdict(*test.p_value));
-    }
-    text += SharesText(test.ratio);
-  }
-  return text.empty() ? "  not tested: alpha is held, and no radius is known besides the fit\n"
-                      : text;
-}
-
-/// A theory of the load's exponent in words.
-std::string Words(const LoadHypothesis& hypothesis) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
-      {"sphere", "smooth sphere, Hertz (1/3)"},
-      {"elements", "elements in parallel (α)"},
-      {"cone", "cone (1/2)"},
-      {"flat_punch", "flat punch (0)"},
-      {"rough", "rough contact (1)"},
-  }};
-  const auto row = std::ranges::find(kWords, hypothesis.name,
-                                     &std::pair<std::string_view, std::string_view>::first);
-  return std::string(row == kWords.end() ? hypothesis.name : row->second);
-}
-
-/// No number of what is not known.
-std::string ValueAndError(const contact::UncertainValue& value, const FitResult& fit,
-                          std::string_view parameter) {
-  const identification::ParameterEstimate& estimate = *fit.Find(parameter);
-  return estimate.is_known() ? fmt::format("{} {}", Significant(value.value), ErrorText(value))
-                             : "-";
-}
-
-std::string LoadSeriesText(const LoadSeries& series, const FitResult& fit) {
-  std::string text = fmt::format(
-      "\nunder several loads (σ ∝ N^p, Tc = μN; the parameters above are at the mean, {:.6g} N):\n",
-      *fit.normal_load);
-  const bool has_radius = series.contacts.front().contact_radius.has_value();
-  const bool has_hertz = series.contacts.front().hertz_radius.has_value();
-  text += fmt::format("  {:>9} {:>23} {:>20}{}{}\n", "N [N]", "σ [N/m]", "Tc [N]",
-                      has_radius ? fmt::format(" {:>22}", "a = σG*/8 [m]") : "",
-                      has_hertz ? fmt::format(" {:>14}", "a of Hertz [m]") : "");
-  for (const ContactUnderLoad& contact : series.contacts) {
-    text += fmt::format("  {:>9.5g} {:>23} {:>20}", contact.normal_load,
-                        ValueAndError(contact.stiffness, fit, "sigma"),
-                        ValueAndError(contact.slip_force, fit, "slip_force"));
-    if (has_radius)
-      text += fmt::format(" {:>22}", ValueAndError(*contact.contact_radius, fit, "sigma"));
-    if (has_hertz) text += fmt::format(" {:>14}", Significant(*contact.hertz_radius));
-    text += "\n";
-  }
-  constexpr double kLeastChance = 1e-12;
-  for (const LoadHypothesis& hypothesis : series.hypotheses) {
-    if (!hypothesis.p_value) continue;
-    const double p_value = *hypothesis.p_value;
-    text +=
-        fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, p-value {}{}\n",
-                    Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
-                    p_value < kLeastChance ? "< 1e-12" : fmt::format("{:.3g}", p_value),
-                    p_value < kSignificance ? ": rejected" : "");
-  }
-  return text;
 }
 
 /// A trend over the cycles in words, where it is worth any.
@@ -305,32 +139,30 @@ std::string MeasuredText(const Report& report) {
   const loop::LoopFacts& facts = widest.facts;
   const MeasuredLoop& loop = report.loop->measured;
   const Units& units = report.units;
-  std::vector<std::string> parts = {
-      fmt::format("X = {:.5g} {}", loop.amplitude, units.displacement),
-      fmt::format("T* = {:.5g} {}", loop.peak_force, units.force)};
+  std::vector<std::string> parts = {"X = " + Quantity(loop.amplitude, units.displacement, 5),
+                                    "T* = " + Quantity(loop.peak_force, units.force, 5)};
   const auto add = [&](const char* what, const std::optional<double>& value,
                        std::string_view unit) {
-    if (value) {
-      parts.push_back(fmt::format("{} {:.4g}{}{}", what, *value, unit.empty() ? "" : " ", unit));
-    }
+    if (value) parts.push_back(fmt::format("{} {}", what, Quantity(*value, unit, 4)));
   };
   if (!facts.closed) {
     parts.emplace_back("no closed cycle");
     return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
   }
   if (facts.half_gap && facts.half_gap_standard_deviation) {
-    parts.push_back(fmt::format("half gap {:.4g} ± {:.2g} {} between cycles", *facts.half_gap,
-                                *facts.half_gap_standard_deviation, units.force));
+    parts.push_back(fmt::format(
+        "half gap {} between cycles",
+        QuantityWithError(*facts.half_gap, *facts.half_gap_standard_deviation, units.force)));
   } else {
     add("half gap", facts.half_gap, units.force);
   }
   add("sliding amplitude", facts.sliding_amplitude, units.displacement);
-  parts.push_back(fmt::format("energy {:.5g} J a cycle", facts.energy_per_cycle));
-  parts.push_back(fmt::format("energy ratio {:.4g}", facts.energy_ratio));
-  add("energy friction coefficient", facts.energy_friction_coefficient, "");
+  parts.push_back(fmt::format("energy {} a cycle", Quantity(facts.energy_per_cycle, "J", 5)));
+  add("energy ratio", facts.energy_ratio, "-");
+  add("energy friction coefficient", facts.energy_friction_coefficient, "-");
   add("slope after reversals", facts.slope_after_reversal, units.stiffness);
   add("plateau slope", facts.plateau_slope, units.stiffness);
-  add("asymmetry", facts.asymmetry, "");
+  add("asymmetry", facts.asymmetry, "-");
   for (const std::string& trend :
        {TrendText("half gap", facts.half_gap_trend, facts.half_gap),
         TrendText("energy", facts.energy_trend, facts.energy_per_cycle)}) {
@@ -339,9 +171,26 @@ std::string MeasuredText(const Report& report) {
   return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
 }
 
+/// The verdict's own word at the start of its sentence.
+std::string Coloured(const std::string& sentence, const Report& report, const Style& style) {
+  if (!IsJudged(report)) return sentence;
+  const std::size_t end = sentence.find(':');
+  const std::string word = sentence.substr(0, end);
+  const std::string rest = sentence.substr(end);
+  switch (report.fit.adequacy.verdict) {
+    case identification::AdequacyVerdict::kAdequate:
+      return style.Good(word) + rest;
+    case identification::AdequacyVerdict::kDoubtful:
+      return style.Caution(word) + rest;
+    case identification::AdequacyVerdict::kInadequate:
+      break;
+  }
+  return style.Bad(word) + rest;
+}
+
 /// The verdict, and causes besides the best.
-std::string AdequacyText(const Report& report) {
-  std::string text = Wrapped(VerdictSentence(report), 2);
+std::string AdequacyText(const Report& report, const Style& style) {
+  std::string text = Coloured(Wrapped(VerdictSentence(report), 2), report, style);
   const identification::Adequacy& adequacy = report.fit.adequacy;
   if (!IsJudged(report) || adequacy.verdict == identification::AdequacyVerdict::kAdequate) {
     return text;
@@ -366,15 +215,29 @@ std::string LawText(const Report& report) {
                : fmt::format("law:  {}\n", name(*report.fit.model));
   }
   const Units& units = report.units;
+  if (!report.fit.Find("sigma")->is_known()) {
+    return Wrapped(
+        fmt::format("law:  {}{}", name(*choice.alternative),
+                    choice.decided
+                        ? fmt::format(" fits better (ΔAICc = {:.3g}, --model {})",
+                                      choice.delta_aicc.value_or(0.0), choice.alternative->name)
+                        : fmt::format(" or {}, which the record does not tell apart",
+                                      name(*report.fit.model))),
+        6);
+  }
+  const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
   std::string text = fmt::format(
-      "law:  sigma and slip_force are of {}; by {}, which {}, they are {:.6g} {} and {:.6g} {}",
-      name(*report.fit.model), name(*choice.alternative),
+      "law:  sigma{} of {}; by {}, which {}, {} {}",
+      knows_slip_force ? " and slip_force are" : " is", name(*report.fit.model),
+      name(*choice.alternative),
       choice.decided ? fmt::format("fits better (ΔAICc = {:.3g}, --model {})",
                                    choice.delta_aicc.value_or(0.0), choice.alternative->name)
                      : std::string("the record does not tell from it"),
-      choice.law.tangential_stiffness, units.stiffness, choice.law.slip_force, units.force);
+      knows_slip_force ? "they are" : "it is",
+      Quantity(choice.law.tangential_stiffness, units.stiffness, 5));
+  if (knows_slip_force) text += " and " + Quantity(choice.law.slip_force, units.force, 5);
   const auto add = [&](const char* what, const std::optional<PropagatedValue>& quantity) {
-    if (quantity) text += fmt::format(", {} {:.6g} m", what, quantity->value);
+    if (quantity) text += fmt::format(", {} {}", what, Quantity(quantity->value, "m", 5));
   };
   add("contact radius", report.contact_by_other_law.contact_radius);
   add("equivalent radius", report.contact_by_other_law.equivalent_radius);
@@ -429,8 +292,8 @@ std::string MemoryText(const Report& report) {
         std::ranges::find(memory.comparisons, row.code, &identification::MemoryComparison::code);
     if (found == memory.comparisons.end()) continue;
     if (memory.verdict == kNeither) {
-      compared.push_back(fmt::format("{} ({}, {:.2g} {})", row.words, p(found->p_value),
-                                     found->size, report.units.force));
+      compared.push_back(fmt::format("{} ({}, {})", row.words, p(found->p_value),
+                                     Quantity(found->size, report.units.force, 2)));
     } else {
       compared.emplace_back(row.words);
     }
@@ -454,17 +317,12 @@ std::string NotesText(const Report& report) {
   return text.empty() ? text : "\n" + text;
 }
 
-}  // namespace
-
-std::string ToText(const Report& report) {
-  RequireFitted(report, "a text");
+/// What was fitted to what.
+std::string FitText(const Report& report) {
   const FitResult& fit = report.fit;
-  const LoopDescription& loop = *report.loop;
-  const RecordFit& widest = fit.WidestRecord();
-  const Units& units = report.units;
-  std::size_t samples = 0;
   std::size_t reversals = 0;
   std::size_t cycles = 0;
+  std::size_t samples = 0;
   std::size_t left_out = 0;
   for (const RecordFit& record : fit.records) {
     samples += record.residual.size();
@@ -472,70 +330,94 @@ std::string ToText(const Report& report) {
     cycles += record.measures.cycles;
     left_out += record.left_out;
   }
-  std::string text = AdequacyText(report) + MeasuredText(report) + MemoryText(report) + "\n";
-  if (report.selection) text += SelectionText(*report.selection, units);
-  text += fmt::format(
-      "{}, {} initial state: {}\n{} samples, {} reversals (gate {:.3g} {}), {} cycles; {} "
-      "of force and displacement\n",
-      fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
-      samples, reversals, widest.gate.gate, units.displacement, cycles,
-      fit.force_sense > 0 ? "same sign" : "opposite signs");
+  std::string text = Wrapped(
+      fmt::format(
+          "{}, {} initial state: {}; {} samples{}, {} reversals (gate {}), {} cycles, {} of "
+          "force and displacement",
+          fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
+          samples, left_out > 0 ? fmt::format(", {} of them left out", left_out) : "", reversals,
+          Quantity(fit.WidestRecord().gate.gate, report.units.displacement, 3), cycles,
+          fit.force_sense > 0 ? "same sign" : "opposite signs"),
+      2);
   if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
-  if (left_out > 0) text += fmt::format("{} samples left out of the fit\n", left_out);
-  text += "\n" + ParameterTable(fit);
-  for (const Warning& warning : report.fit_warnings) {
-    if (warning.code == "no_model_fits") text += "\n" + Wrapped(warning.message, 2);
-  }
+  return text;
+}
+
+std::string ResidualText(const Report& report) {
+  const FitResult& fit = report.fit;
+  const Units& units = report.units;
   const identification::ResidualStatistics& residuals = fit.residuals;
   // A share of what is not known would say it all the same.
-  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  const bool is_known =
-      slip_force != nullptr &&
-      slip_force->identifiability != identification::Identifiability::kNotIdentifiable;
-  const std::string share =
-      is_known ? fmt::format(" ({:.3g} % of Tc)", 100 * residuals.normalized_rms) : "";
-  text += fmt::format(
-      "\nresiduals: rms {:.4g} {}{}, largest {:.4g} {}, R² {:.6f}, Durbin-Watson {:.2f},\n"
-      "           {:.0f} effective samples of {}\n",
-      residuals.rms, units.force, share, residuals.max_abs, units.force, residuals.r_squared,
-      residuals.durbin_watson, residuals.effective_samples, samples - left_out);
+  const ParameterEstimate* slip_force = fit.Find("slip_force");
+  const std::string share = slip_force != nullptr && slip_force->is_known()
+                                ? fmt::format(" ({:.3g} % of Tc)", 100 * residuals.normalized_rms)
+                                : "";
+  std::size_t samples = 0;
   double repeatable = 0.0;
   for (const RecordFit& record : fit.records) {
+    samples += record.residual.size() - record.left_out;
     repeatable = std::max(repeatable, record.structure.repeatable_share);
   }
+  std::string text = fmt::format(
+      "residuals: rms {}{}, largest {}, R² {:.6f}, Durbin-Watson {:.2f}, {:.0f} effective samples "
+      "of {}",
+      Quantity(residuals.rms, units.force, 4), share, Quantity(residuals.max_abs, units.force, 4),
+      residuals.r_squared, residuals.durbin_watson, residuals.effective_samples, samples);
   if (repeatable > 0) {
-    text += fmt::format(
-        "           repeatable residual: {:.0f} % of their variance is the same in every stroke\n",
-        100 * repeatable);
+    text += fmt::format("; {:.0f} % of their variance is repeatable, the same in every stroke",
+                        100 * repeatable);
   }
-  if (widest.displacement_noise > 0) {
-    text += fmt::format("           noise of the displacement {:.3g} {}, weighed in\n",
-                        widest.displacement_noise, units.displacement);
+  if (const double noise = fit.WidestRecord().displacement_noise; noise > 0) {
+    text += fmt::format("; noise of the displacement {}, weighed in",
+                        Quantity(noise, units.displacement, 3));
   }
-  if (fit.outliers > 0) {
-    text += fmt::format("           {} outliers count less than half\n", fit.outliers);
+  if (fit.outliers > 0) text += fmt::format("; {} outliers count less than half", fit.outliers);
+  return Wrapped(text, 11);
+}
+
+std::string LoopText(const Report& report) {
+  const LoopDescription& loop = *report.loop;
+  std::string text = fmt::format("slip: {}; energy {} a cycle of the model",
+                                 SlipText(loop, report.units), Quantity(loop.model_energy, "J", 5));
+  if (loop.gross_slip_energy_ratio) {
+    text +=
+        fmt::format(", gross slip from an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);
   }
+  return Wrapped(text, 6);
+}
+
+}  // namespace
+
+std::string ToText(const Report& report, const TextOptions& options) {
+  RequireFitted(report, "a text");
+  const FitResult& fit = report.fit;
+  const Style style(options.has_colours);
+  std::string text = AdequacyText(report, style) + "\n" + ParameterTable(fit, style);
+  for (const Warning& warning : report.fit_warnings) {
+    if (warning.code == "no_model_fits") text += Wrapped(warning.message, 2);
+  }
+  std::string rest;
+  if (report.selection) rest += "\n" + SelectionText(*report.selection, report.units);
+  rest += "\n" + FitText(report) + MeasuredText(report) + MemoryText(report) + ResidualText(report);
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
-    return text + "\n" +
+    return text +
            Wrapped("no loop of the model, and no contact: the model does not describe this record",
                    2) +
-           NotesText(report);
+           rest + NotesText(report);
   }
-  text += fmt::format("\nloop: {}\n      energy per cycle {:.5g} J of the model",
-                      SlipText(loop, units), loop.model_energy);
-  text += loop.gross_slip_energy_ratio
-              ? fmt::format(", gross slip from an energy ratio of {:.4g}\n",
-                            *loop.gross_slip_energy_ratio)
-              : "\n";
-  text += LawText(report);
+  text += "\n" + LoopText(report) + LawText(report);
   if (report.is_torsional()) {
-    return text + "\n" + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) +
+    return text + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) + rest +
            NotesText(report);
   }
-  if (report.load_series) text += LoadSeriesText(*report.load_series, fit);
-  text += "\ncontact (Mindlin-Dahl mapping σ = 8a/G*, Tc = μN):\n" + ContactText(report);
-  text += "\nis it Mindlin's contact?\n" + MappingText(report);
-  return text + NotesText(report);
+  text += "\n" + style.Strong("contact (Mindlin-Dahl mapping)") + "\n" + ContactText(report);
+  const auto section = [&](const std::string& lines) {
+    if (!lines.empty()) rest += "\n" + lines;
+  };
+  section(LoadSeriesText(report));
+  section(HertzText(report));
+  rest += "\n" + style.Strong("is it Mindlin's contact?") + "\n" + MappingText(report);
+  return text + rest + NotesText(report);
 }
 
 }  // namespace mindahl::report

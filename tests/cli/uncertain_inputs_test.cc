@@ -275,7 +275,9 @@ TEST(Fit, TellsPeopleTheErrorAndWhatToMeasureBetter) {
 
 TEST(Compliance, IsDefinedInEveryReportThatUsesIt) {
   const std::string definition = "G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a compliance";
-  EXPECT_THAT(RunCommand({"fit", SampleRecord()}).out, HasSubstr(definition));
+  EXPECT_THAT(RunCommand({"fit", SampleRecord(), "--compliance", "4.2e-11"}).out,
+              HasSubstr(definition));
+  EXPECT_THAT(RunCommand({"fit", SampleRecord()}).out, Not(HasSubstr("a compliance")));
   const json fit = FitJson({});
   EXPECT_EQ(fit["contact"]["compliance_definition"], "G* = (2-nu1)/G1 + (2-nu2)/G2");
   EXPECT_EQ(fit["contact"]["compliance_unit"], "1/Pa");

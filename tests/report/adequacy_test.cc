@@ -86,11 +86,11 @@ TEST(CauseSentence, HasALineInTheContractForEveryCode) {
 
 TEST(CauseSentence, HasSizeUnitShareAndRemedy) {
   EXPECT_EQ(Sentence(Lag()),
-            "a force that is read 0.0025 s after the displacement, which explains 93 % of the "
+            "a force that is read 2.5 ms after the displacement, which explains 93 % of the "
             "residuals' variance: compare the delays and filters of the two channels");
   Cause early = Lag();
   early.size = -0.0025;
-  EXPECT_THAT(Sentence(early), StartsWith("a displacement that is read 0.0025 s after the force"));
+  EXPECT_THAT(Sentence(early), StartsWith("a displacement that is read 2.5 ms after the force"));
   EXPECT_EQ(Sentence(Viscous()),
             "a viscous force of -12 N s/m beside the contact's, which explains 93 % of the "
             "residuals' variance: give --viscous fit");
@@ -150,7 +150,7 @@ TEST(AdequacyText, IsTheFirstLineOfTheReport) {
   const std::string doubtful =
       VerdictSentence(ReportWith(AdequacyVerdict::kDoubtful, {Lag(), Viscous()}));
   EXPECT_THAT(doubtful, StartsWith("doubtful: what the model misses is 1.8 times the noise"));
-  EXPECT_THAT(doubtful, HasSubstr("It looks like a force that is read 0.0025 s after"));
+  EXPECT_THAT(doubtful, HasSubstr("It looks like a force that is read 2.5 ms after"));
   EXPECT_THAT(doubtful, Not(HasSubstr("viscous")));
   const std::string text = ToText(ReportWith(AdequacyVerdict::kDoubtful, {Lag(), Viscous()}));
   EXPECT_THAT(text, HasSubstr("\n  or a viscous force of -12 N s/m"));

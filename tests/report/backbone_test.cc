@@ -56,11 +56,10 @@ TEST(BackboneJson, IsThereWhereItWasAskedFor) {
 }
 
 TEST(BackboneText, HasTheNearestLawBesideIt) {
-  EXPECT_THAT(TextOf(Made()),
-              AllOf(HasSubstr("first hundredth 3e+07 N/m (2.5e+07 … 3.5e+07)"),
-                    HasSubstr("force at 1e-06 m: 16 N (15.5 … 16.5)"),
-                    HasSubstr("sigma = 4e+07 N/m, alpha = 0.333, slip_force = 40 N"),
-                    HasSubstr("leaves the band at 1 of 3 displacements")));
+  EXPECT_THAT(TextOf(Made()), AllOf(HasSubstr("first hundredth 30 N/µm (25 … 35)"),
+                                    HasSubstr("force at 1 µm: 16 N (15.5 … 16.5)"),
+                                    HasSubstr("sigma = 40 N/µm, alpha = 0.333, slip_force = 40 N"),
+                                    HasSubstr("leaves the band at 1 of 3 displacements")));
 }
 
 TEST(BackboneText, SaysThatTheSlipForceIsTheLawsUnlessThereIsAPlateau) {
@@ -73,7 +72,7 @@ TEST(BackboneText, SaysThatTheSlipForceIsTheLawsUnlessThereIsAPlateau) {
 
 TEST(BackboneText, OfATorqueIsInItsUnits) {
   const std::string text = BackboneText(Made(), MadeInput().fit, kUnitsOfTorque);
-  EXPECT_THAT(text, AllOf(HasSubstr("N m/rad"), HasSubstr("force at 1e-06 rad: 16 N m")));
+  EXPECT_THAT(text, AllOf(HasSubstr("N m/rad"), HasSubstr("force at 1 µrad: 16 N m")));
 }
 
 }  // namespace

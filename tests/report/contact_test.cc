@@ -76,7 +76,7 @@ TEST(FittedContact, IsWithheldInEveryFormOfTheReport) {
   EXPECT_FALSE(report.contact.friction_coefficient);
   EXPECT_THAT(report::ToJson(report), HasSubstr("\"friction_coefficient\": null"));
   EXPECT_THAT(report::ToText(report), Not(HasSubstr("μ = Tc/N")));
-  EXPECT_THAT(report::ToText(report), HasSubstr("least 0.04"));
+  EXPECT_THAT(report::ToText(report), HasSubstr("at least"));
 }
 
 TEST(FittedContact, TakesTheCorrelationOfTheErrorsAlong) {

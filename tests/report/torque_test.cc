@@ -79,7 +79,7 @@ TEST(Torque, IsNowhereANewtonOrAMetreInTheText) {
 
 TEST(Torque, HasItsUnitsInWarningsTableAndFigure) {
   const Report report = TorqueReport();
-  EXPECT_THAT(report.fit_warnings.at(0).message, HasSubstr("T* = 3 N m at X = 0.5 rad"));
+  EXPECT_THAT(report.fit_warnings.at(0).message, HasSubstr("T* = 3 N m at X = 500 mrad"));
   EXPECT_THAT(ResidualsCsv(report), HasSubstr("displacement [rad],force [N m],fitted_force [N m]"));
   const io::Plot plot = ToPlot(report);
   EXPECT_THAT(plot.title, HasSubstr("N m/rad"));

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace mindahl::report {
+
+/// A unit for reading: with the prefix that makes a number of 1 to 1000 of a magnitude.
+struct ScaledUnit {
+  double factor = 1.0;  ///< a number of these times it is one of the unit without prefix
+  std::string name;     ///< empty of "-"
+};
+
+/// @param unit  one that the reports use, as "m", "N/m" or "N m"; of another the factor is 1
+ScaledUnit UnitFor(std::string_view unit, double magnitude);
+
+/// "48.1 N/µm" of 4.814e7 N/m: significant digits, in the unit that suits it.
+std::string Quantity(double value, std::string_view unit, int digits);
+
+/// The number with as many decimals as leave the error two digits: "48.142" of 0.0391.
+/// @param error  > 0; where it is not, or not finite, the number has six digits
+std::string RoundedTo(double error, double value);
+
+/// "48.142 ± 0.039 N/µm"; "± open" of an error that is not finite, no error where it is zero.
+std::string QuantityWithError(double value, double error, std::string_view unit);
+
+}  // namespace mindahl::report

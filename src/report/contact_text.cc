@@ -1,0 +1,216 @@
+#include "report/contact_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "mindahl/report/contact.h"
+#include "mindahl/report/quantity.h"
+#include "report/fields.h"
+#include "report/wrapped.h"
+
+namespace mindahl::report {
+
+using contact::PropagatedValue;
+using contact::UncertainValue;
+using identification::FitResult;
+
+namespace {
+
+std::string ValueAndError(const UncertainValue& value, std::string_view unit) {
+  return QuantityWithError(value.value, value.standard_error, unit);
+}
+
+/// What to measure better; nothing where the inputs are exact and the fit alone is uncertain.
+std::string SharesText(const PropagatedValue& value) {
+  if (value.largest_input.empty()) return "";
+  return fmt::format("{:<23}variance: fit {:.0f} %, inputs {:.0f} %, mostly the {}\n", "",
+                     100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
+}
+
+/// What would have to be known for more of the contact.
+std::string MissingText(const Report& report) {
+  const std::vector<std::string> inputs =
+      contact::MissingInputs(report.known, contact::ContactQuantity::kEquivalentRadius);
+  std::string text;
+  if (const auto why = WhyFrictionIsWithheld(report.fit, report.known)) {
+    text += Wrapped("not identified: friction coefficient " + *why, 16);
+  }
+  if (!report.fit.Find("sigma")->is_known()) {
+    return text + Wrapped("not identified: all that follows from sigma", 16);
+  }
+  if (inputs.empty()) {
+    if (report.contact.hertz) return text;
+    return text + Wrapped("to be compared with Hertz it takes the radii of both bodies", 2);
+  }
+  std::vector<std::string> more;
+  for (const ContactField& field : ContactFields()) {
+    const bool is_friction = field.key == "friction_coefficient";
+    if (is_friction && report.known.normal_load) continue;  // withheld, as said
+    // Of radius and compliance each gives the other.
+    if (field.key == "compliance" && !report.known.contact_radius) continue;
+    if (!field.get(report)) more.emplace_back(field.label);
+  }
+  if (!report.contact.hertz) more.emplace_back("Hertz's prediction");
+  return text + Wrapped(fmt::format("with {} given, more would be known: {}",
+                                    fmt::join(inputs, ", "), fmt::join(more, ", ")),
+                        2);
+}
+
+std::string BranchShapesText(const FitResult& fit) {
+  std::string text;
+  for (const identification::BranchShape& shape : fit.branch_shapes) {
+    text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "  α branch by branch: " : ", ",
+                        shape.branch, shape.shape_exponent, shape.standard_error);
+  }
+  return text.empty() ? text : Wrapped(text, 4);
+}
+
+/// A theory of the load's exponent in words.
+std::string Words(const LoadHypothesis& hypothesis) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
+      {"sphere", "smooth sphere, Hertz (1/3)"},
+      {"elements", "elements in parallel (α)"},
+      {"cone", "cone (1/2)"},
+      {"flat_punch", "flat punch (0)"},
+      {"rough", "rough contact (1)"},
+  }};
+  const auto row = std::ranges::find(kWords, hypothesis.name,
+                                     &std::pair<std::string_view, std::string_view>::first);
+  return std::string(row == kWords.end() ? hypothesis.name : row->second);
+}
+
+/// No number of what is not known.
+std::string IfKnown(const UncertainValue& value, std::string_view unit, const FitResult& fit,
+                    std::string_view parameter) {
+  return fit.Find(parameter)->is_known() ? ValueAndError(value, unit) : "-";
+}
+
+const char* Verdict(double p_value) { return p_value < kSignificance ? "rejected" : "tenable"; }
+
+}  // namespace
+
+std::string ContactText(const Report& report) {
+  // Of what the loop leaves open nothing follows for the contact, whatever its error is.
+  const bool knows_stiffness = report.fit.Find("sigma")->is_known();
+  const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
+  std::string text;
+  bool has_compliance = false;
+  for (const ContactField& field : ContactFields()) {
+    const std::optional<PropagatedValue> value = field.get(report);
+    if (!value || !std::isfinite(value->standard_error)) continue;
+    const bool is_of_radius_alone =
+        field.key == "maximum_pressure" && report.known.contact_radius.has_value();
+    if (!knows_stiffness && field.key != "friction_coefficient" && !is_of_radius_alone) continue;
+    if (!knows_slip_force && field.key == "mindlin_gross_slip_displacement") continue;
+    text += fmt::format("{:<22} {:<27} {}\n", field.label, ValueAndError(*value, field.unit),
+                        field.formula);
+    text += SharesText(*value);
+    has_compliance = has_compliance || field.formula.find("G*") != std::string_view::npos;
+  }
+  if (has_compliance) {
+    text +=
+        "G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a compliance: many texts write G* for its inverse\n";
+  }
+  for (const std::string& sentence : report.contact.redundant) text += Wrapped(sentence, 2);
+  return text + MissingText(report);
+}
+
+std::string HertzText(const Report& report) {
+  if (!report.contact.hertz || !report.fit.Find("sigma")->is_known()) return "";
+  const contact::HertzPrediction& hertz = *report.contact.hertz;
+  std::string text = "Hertz and Mindlin predict from materials, radii and load:\n";
+  const auto line = [&](const char* name, const PropagatedValue& value, const char* unit,
+                        const PropagatedValue& ratio) {
+    if (!std::isfinite(ratio.standard_error)) return;
+    text += fmt::format("  {:<21} {:<22} measured/predicted {}\n", name, ValueAndError(value, unit),
+                        ValueAndError(ratio, "-"));
+  };
+  line("contact radius", hertz.contact_radius, "m", hertz.sigma_over_hertz_mindlin);
+  line("tangential stiffness", hertz.tangential_stiffness, "N/m", hertz.sigma_over_hertz_mindlin);
+  line("gross slip (α = 1/3)", hertz.gross_slip_displacement, "m",
+       hertz.gross_slip_displacement_ratio);
+  return text;
+}
+
+std::string LoadSeriesText(const Report& report) {
+  if (!report.load_series) return "";
+  const LoadSeries& series = *report.load_series;
+  const FitResult& fit = report.fit;
+  std::string text = fmt::format(
+      "under several loads (σ ∝ N^p, Tc = μN; the parameters above are at the mean, {}):\n",
+      Quantity(*fit.normal_load, "N", 6));
+  const bool has_radius = series.contacts.front().contact_radius.has_value();
+  const bool has_hertz = series.contacts.front().hertz_radius.has_value();
+  text += fmt::format("  {:<10} {:<23} {:<20}{}{}\n", "N", "σ", "Tc",
+                      has_radius ? fmt::format(" {:<19}", "a = σG*/8") : "",
+                      has_hertz ? " a of Hertz" : "");
+  for (const ContactUnderLoad& contact : series.contacts) {
+    text += fmt::format("  {:<10} {:<23} {:<20}", Quantity(contact.normal_load, "N", 5),
+                        IfKnown(contact.stiffness, "N/m", fit, "sigma"),
+                        IfKnown(contact.slip_force, "N", fit, "slip_force"));
+    if (has_radius)
+      text += fmt::format(" {:<19}", IfKnown(*contact.contact_radius, "m", fit, "sigma"));
+    if (has_hertz) text += " " + Quantity(*contact.hertz_radius, "m", 5);
+    text += "\n";
+  }
+  constexpr double kLeastChance = 1e-12;
+  for (const LoadHypothesis& hypothesis : series.hypotheses) {
+    if (!hypothesis.p_value) continue;
+    const double p_value = *hypothesis.p_value;
+    text +=
+        fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, p-value {}{}\n",
+                    Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
+                    p_value < kLeastChance ? "< 1e-12" : fmt::format("{:.3g}", p_value),
+                    p_value < kSignificance ? ": rejected" : "");
+  }
+  return text;
+}
+
+std::string MappingText(const Report& report) {
+  std::string text;
+  const auto& mindlin = report.fit.mindlin_test;
+  // Of the two tests the likelihood ratio has the say: it needs no parabola.
+  if (report.alpha.z) {
+    text += fmt::format(
+        "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}{}\n", *report.alpha.minus_third,
+        *report.alpha.z, *report.alpha.p_value,
+        mindlin ? "" : fmt::format(": Mindlin's exponent is {}", Verdict(*report.alpha.p_value)));
+  }
+  if (mindlin) {
+    const std::string rig = mindlin->rig_stiffness
+                                ? fmt::format(
+                                      " for a rigid rig, but tenable with a rig of {} in series: "
+                                      "the record does not tell which",
+                                      Quantity(*mindlin->rig_stiffness, "N/m", 4))
+                                : "";
+    text += Wrapped(
+        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}{}",
+                    mindlin->likelihood_ratio, mindlin->p_value, Verdict(mindlin->p_value), rig),
+        6);
+  }
+  text += BranchShapesText(report.fit);
+  for (const StiffnessTest& test : report.stiffness) {
+    text += fmt::format("  σ/(8a/G*) = {}: 1 where Hertz and Mindlin hold\n",
+                        ValueAndError(test.ratio, "-"));
+    if (test.z) {
+      text += fmt::format(
+          "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, p = {:.3g}: "
+          "{}\n",
+          test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
+          test.interval95->upper, *test.z, *test.p_value, Verdict(*test.p_value));
+    }
+    text += SharesText(test.ratio);
+  }
+  return text.empty() ? "  not tested: alpha is held, and no radius is known besides the fit\n"
+                      : text;
+}
+
+}  // namespace mindahl::report

@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Colours are for terminals that have them: asked of the program on a pseudo-terminal and in a pipe.
+
+usage: colours.py --program PATH --record FILE
+"""
+import argparse
+import os
+import pty
+import subprocess
+
+ESCAPE = b"\x1b["
+
+
+def on_terminal(command, **changed):
+    """What the program writes to a terminal."""
+    environment = {key: value for key, value in os.environ.items() if key != "NO_COLOR"}
+    environment.update(TERM="xterm")
+    environment.update(changed)
+    ours, its = pty.openpty()
+    process = subprocess.Popen(command, stdout=its, stderr=subprocess.DEVNULL, env=environment)
+    os.close(its)
+    written = b""
+    try:
+        while piece := os.read(ours, 65536):
+            written += piece
+    except OSError:  # the program has ended
+        pass
+    os.close(ours)
+    assert process.wait() == 0
+    return written
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--record", required=True)
+    arguments = parser.parse_args()
+    command = [arguments.program, "fit", arguments.record]
+    plain = subprocess.run(command, check=True, stdout=subprocess.PIPE,
+                           stderr=subprocess.DEVNULL).stdout
+    assert ESCAPE not in plain, "colours in a pipe"
+    assert ESCAPE in on_terminal(command), "no colours on a terminal"
+    for changed in ({"NO_COLOR": "1"}, {"TERM": "dumb"}):
+        written = on_terminal(command, **changed)
+        assert ESCAPE not in written, f"colours in spite of {changed}"
+        assert written.replace(b"\r\n", b"\n") == plain, f"another text with {changed}"
+
+
+if __name__ == "__main__":
+    main()

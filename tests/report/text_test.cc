@@ -1,0 +1,81 @@
+#include "mindahl/report/text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "report/made_report.h"
+#include "report/wrapped.h"
+
+namespace mindahl::report {
+namespace {
+
+using identification::Identifiability;
+using mindahl::testing::MadeInput;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Text, SaysFirstWhatIsReadInTenSecondsAndThenWhatItRestsOn) {
+  const std::string text = ToText(MakeReport(MadeInput()));
+  const std::size_t parameters = text.find("\nparameter ");
+  const std::size_t contact = text.find("\ncontact (Mindlin-Dahl mapping)");
+  const std::size_t measured = text.find("\nmeasured: ");
+  const std::size_t mapping = text.find("\nis it Mindlin's contact?");
+  EXPECT_LT(parameters, contact);
+  EXPECT_LT(contact, measured);
+  EXPECT_LT(measured, mapping);
+  EXPECT_LT(mapping, text.size());
+}
+
+TEST(Text, HasParametersInUnitsThatSuitThem) {
+  ReportInput input = MadeInput();  // 4e7 ± 4e5 N/m, 40 ± 0.4 N
+  EXPECT_THAT(ToText(MakeReport(std::move(input))),
+              ::testing::AllOf(HasSubstr("40.00 ± 0.40 N/µm"), HasSubstr("40.00 ± 0.40 N ")));
+}
+
+TEST(Text, HasNoNumberOfWhatIsNotIdentified) {
+  ReportInput input = MadeInput();
+  input.fit.parameters[2].identifiability = Identifiability::kNotIdentifiable;
+  input.fit.parameters[2].standard_error.reset();
+  const std::string text = ToText(MakeReport(std::move(input)));
+  EXPECT_THAT(text, Not(HasSubstr("40.00 ± 0.40 N ")));
+  EXPECT_THAT(text, Not(HasSubstr("3Tc/(2σ)")));  // a length that Tc is in
+}
+
+TEST(Text, OfAnOpenStiffnessSaysNothingOfTheContactThatFollowsFromIt) {
+  ReportInput input = MadeInput();
+  input.known.tangential_compliance = 4.2e-11;
+  input.known.normal_load = 100.0;
+  const std::string known = ToText(MakeReport(input));
+  EXPECT_THAT(known, HasSubstr("\ncontact radius"));
+  input.fit.parameters[0].identifiability = Identifiability::kNotIdentifiable;
+  const std::string open = ToText(MakeReport(std::move(input)));
+  for (const char* of_sigma : {"\ncontact radius", "\nmaximum pressure", "3Tc/(2σ)"}) {
+    EXPECT_THAT(open, Not(HasSubstr(of_sigma)));
+  }
+  EXPECT_THAT(open, HasSubstr("\nfriction coefficient"));
+  EXPECT_THAT(open, HasSubstr("not identified: all that follows from sigma"));
+}
+
+TEST(Text, SaysInOneLineWhatWouldTellMoreOfTheContact) {
+  const std::string text = ToText(MakeReport(MadeInput()));
+  EXPECT_THAT(text, HasSubstr("with the normal load, E and ν of both bodies given, more would be "
+                              "known: friction coefficient"));
+}
+
+TEST(Text, HasColoursOnlyWhereAskedFor) {
+  const Report report = MakeReport(MadeInput());
+  EXPECT_THAT(ToText(report), Not(HasSubstr("\x1b[")));
+  EXPECT_THAT(ToText(report, {.has_colours = true}), HasSubstr("\x1b["));
+}
+
+TEST(Wrapped, KeepsANumberWithItsErrorAndItsUnit) {
+  const std::string words(94, 'x');
+  EXPECT_EQ(Wrapped(words + " 1.5 ± 0.2 mm", 2), words + "\n  1.5 ± 0.2 mm\n");
+  EXPECT_EQ(Wrapped(words + " 0.15 %", 2), words + "\n  0.15 %\n");
+  EXPECT_EQ(Wrapped(words + " of mms", 2), words + " of\n  mms\n");
+}
+
+}  // namespace
+}  // namespace mindahl::report
