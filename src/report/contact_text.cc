@@ -93,6 +93,12 @@ std::string IfKnown(const UncertainValue& value, std::string_view unit, const Fi
   return fit.Find(parameter)->is_known() ? ValueAndError(value, unit) : "-";
 }
 
+/// No p-value is 0.
+std::string Chance(double p_value) {
+  constexpr double kLeast = 1e-12;
+  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.3g}", p_value);
+}
+
 const char* Verdict(double p_value) { return p_value < kSignificance ? "rejected" : "tenable"; }
 
 }  // namespace
@@ -161,14 +167,13 @@ std::string LoadSeriesText(const Report& report) {
     if (has_hertz) text += " " + Quantity(*contact.hertz_radius, "m", 5);
     text += "\n";
   }
-  constexpr double kLeastChance = 1e-12;
   for (const LoadHypothesis& hypothesis : series.hypotheses) {
     if (!hypothesis.p_value) continue;
     const double p_value = *hypothesis.p_value;
     text +=
-        fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, p-value {}{}\n",
+        fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, {}{}\n",
                     Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
-                    p_value < kLeastChance ? "< 1e-12" : fmt::format("{:.3g}", p_value),
+                    Chance(p_value),
                     p_value < kSignificance ? ": rejected" : "");
   }
   return text;
@@ -180,8 +185,8 @@ std::string MappingText(const Report& report) {
   // Of the two tests the likelihood ratio has the say: it needs no parabola.
   if (report.alpha.z) {
     text += fmt::format(
-        "  α − 1/3 = {:.3g}, {:.2f} standard errors, p = {:.3g}{}\n", *report.alpha.minus_third,
-        *report.alpha.z, *report.alpha.p_value,
+        "  α − 1/3 = {:.3g}, {:.2f} standard errors, {}{}\n", *report.alpha.minus_third,
+        *report.alpha.z, Chance(*report.alpha.p_value),
         mindlin ? "" : fmt::format(": Mindlin's exponent is {}", Verdict(*report.alpha.p_value)));
   }
   if (mindlin) {
@@ -192,8 +197,8 @@ std::string MappingText(const Report& report) {
                                       Quantity(*mindlin->rig_stiffness, "N/m", 4))
                                 : "";
     text += Wrapped(
-        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}{}",
-                    mindlin->likelihood_ratio, mindlin->p_value, Verdict(mindlin->p_value), rig),
+        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, {}: Mindlin's exponent is {}{}",
+                    mindlin->likelihood_ratio, Chance(mindlin->p_value), Verdict(mindlin->p_value), rig),
         6);
   }
   text += BranchShapesText(report.fit);
@@ -202,10 +207,10 @@ std::string MappingText(const Report& report) {
                         ValueAndError(test.ratio, "-"));
     if (test.z) {
       text += fmt::format(
-          "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, p = {:.3g}: "
+          "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: "
           "{}\n",
           test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
-          test.interval95->upper, *test.z, *test.p_value, Verdict(*test.p_value));
+          test.interval95->upper, *test.z, Chance(*test.p_value), Verdict(*test.p_value));
     }
     text += SharesText(test.ratio);
   }

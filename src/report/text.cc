@@ -188,15 +188,20 @@ std::string Coloured(const std::string& sentence, const Report& report, const St
   return style.Bad(word) + rest;
 }
 
-/// The verdict, and causes besides the best.
+/// The verdict, and the causes that explain most besides the best.
 std::string AdequacyText(const Report& report, const Style& style) {
   std::string text = Coloured(Wrapped(VerdictSentence(report), 2), report, style);
   const identification::Adequacy& adequacy = report.fit.adequacy;
   if (!IsJudged(report) || adequacy.verdict == identification::AdequacyVerdict::kAdequate) {
     return text;
   }
-  for (std::size_t i = 1; i < adequacy.causes.size(); ++i) {
+  constexpr std::size_t kMost = 3;
+  for (std::size_t i = 1; i < std::min(kMost, adequacy.causes.size()); ++i) {
     text += Wrapped("  or " + Sentence(adequacy.causes[i]), 5);
+  }
+  if (adequacy.causes.size() > kMost) {
+    text += fmt::format("  or like {} others that explain less, which --json lists\n",
+                        adequacy.causes.size() - kMost);
   }
   return text;
 }

@@ -52,7 +52,7 @@ EXEMPT = {
 
 # Options of other programs in the documentation.
 OF_OTHERS = {
-    "--preset", "--build", "--target", "--peers",
+    "--preset", "--build", "--install", "--target", "--peers",
     "--details", "--half", "--jobs", "--kind", "--loops", "--repeats", "--rounds", "--write",
     "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }

@@ -1,0 +1,49 @@
+#!/bin/sh
+# Makes the loops of data/ that a measurement would give: what mindahl simulates, put into a rig, a
+# logger or a file of another laboratory.
+#   data/make.sh PROGRAM FOLDER
+set -eu
+mindahl=$1
+folder=$2
+
+contact="--model mindlin --normal-load 50 --friction 0.3
+  --youngs-modulus-1 210e9 --poisson-1 0.3 --radius-1 0.05
+  --youngs-modulus-2 210e9 --poisson-2 0.3 --radius-2 inf"
+
+# shellcheck disable=SC2086  # the contact is several words
+loop() { "$mindahl" simulate $contact --samples-per-cycle 200 --noise-force 0.075 "$@"; }
+
+# The first cycle and a fifth of the second are left out.
+loop --lambda 1.2 --cycles 4 --seed 11 | awk 'NR == 1 || NR > 242' >"$folder/steady.csv"
+
+# A load cell on the other body.
+loop --lambda 1.2 --cycles 3 --seed 12 | awk -F, -v OFS=, '
+  NR == 1 { print; next }
+  { print $1, $2, ($3 ~ /^-/ ? substr($3, 2) : "-" $3) }' >"$folder/opposite_sign.csv"
+
+# The displacement is that of the drive: a rig of 1e8 N/m gives way between it and the contact.
+loop --lambda 1.2 --cycles 3 --seed 13 | awk -F, -v OFS=, '
+  NR == 1 { print; next }
+  { print $1, sprintf("%.9e", $2 + $3 / 1e8), $3 }' >"$folder/behind_a_rig.csv"
+
+# The force is read three samples of 200, 15 ms, after the displacement.
+loop --lambda 1.2 --cycles 3 --seed 14 | awk -F, -v OFS=, '
+  NR == 1 { print; next }
+  { force[NR] = $3; print $1, $2, (NR > 4 ? force[NR - 3] : force[2]) }' >"$folder/lag.csv"
+
+# As a logger would write it: a preamble, semicolons and decimal commas, micrometres, the force of
+# the other body with an offset, the drive's displacement behind a rig of 80 N/um, no virgin branch.
+loop --lambda 2 --cycles 6 --seed 15 --noise-displacement 1e-9 --frequency 5 | awk -F, '
+  NR == 1 {
+    print "Fretting rig 2, run 17"
+    print "ball 100Cr6 d = 100 mm on plate, N = 50 N"
+    print ""
+    print "Time;Actuator;Load cell"
+    print "ms;um;N"
+    next
+  }
+  NR > 242 {
+    line = sprintf("%.1f;%.4f;%.3f", 1e3 * ($1 - 0.24), 1e6 * $2 + $3 / 80, 1.2 - $3)
+    gsub(/[.]/, ",", line)
+    print line
+  }' >"$folder/raw_rig_record.csv"
