@@ -20,7 +20,8 @@ struct GlitchRules {
   double end_dropout = 4.0;
   /// [samples] Fewer equal readings are common where a file has few digits.
   std::size_t shortest_held = 5;
-  /// [steps about it and of the record] Least jump from a held value to the next.
+  /// [steps about it and of the record] Least jump from a held value to the next, and there and
+  /// back of a dropout of one channel.
   double held_jump = 3.0;
   /// [of the samples] What is more common is no glitch but the record.
   double most = 0.25;

@@ -245,20 +245,56 @@ bool GoesOn(Column values, std::size_t begin, std::size_t end) {
          0;
 }
 
+/// The next run of at least so many equal values from a sample on: [begin, end), empty at the end.
+struct Run {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+Run NextRun(Column values, std::size_t from, std::size_t shortest) {
+  for (std::size_t begin = from; begin < values.size();) {
+    std::size_t end = begin + 1;
+    while (end < values.size() && values[end] == values[begin]) ++end;
+    if (end - begin >= shortest) return {begin, end};
+    begin = end;
+  }
+  return {values.size(), values.size()};
+}
+
+/// One channel reads one value, away from what it read before and reads again after.
+void FindFlatDropouts(Channel& channel, const Channel& other, const GlitchRules& rules) {
+  const std::size_t size = channel.size();
+  Column values = channel.values();
+  for (Run run = NextRun(values, 1, rules.shortest_held); run.end < size;
+       run = NextRun(values, run.end, rules.shortest_held)) {
+    const auto& [begin, end] = run;
+    const std::size_t length = end - begin;
+    const double in = values[begin] - values[begin - 1];
+    const double out = values[end] - values[end - 1];
+    // The steps into it and out of it are what is looked at, not what is compared with.
+    const double about =
+        std::max({LargestStep(channel, begin - std::min(begin, length), begin),
+                  LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
+    if (in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about &&
+        Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end, rules)) {
+      channel.LeaveOut(begin, end, Glitch::kDropout);
+      values = channel.values();
+    }
+  }
+}
+
 void FindHeld(Channel& channel, const Channel& other, const GlitchRules& rules) {
   const std::size_t size = channel.size();
   Column values = channel.values();
-  for (std::size_t begin = 0; begin + rules.shortest_held < size;) {
-    std::size_t end = begin + 1;
-    while (end < size && values[end] == values[begin]) ++end;
-    if (end < size && end - begin >= rules.shortest_held && Moves(other, begin + 1, end) &&
-        JumpsAtTheEnd(channel, begin, end, rules) && !JumpsAtTheEnd(other, begin, end, rules) &&
-        GoesOn(other.values(), begin, end) &&
+  for (Run run = NextRun(values, 0, rules.shortest_held); run.end < size;
+       run = NextRun(values, run.end, rules.shortest_held)) {
+    const auto& [begin, end] = run;
+    if (Moves(other, begin + 1, end) && JumpsAtTheEnd(channel, begin, end, rules) &&
+        !JumpsAtTheEnd(other, begin, end, rules) && GoesOn(other.values(), begin, end) &&
         channel.Step(end) > rules.held_jump * channel.usual_step()) {
       channel.LeaveOut(begin + 1, end, Glitch::kHeld);
       values = channel.values();
     }
-    begin = end;
   }
 }
 
@@ -275,10 +311,13 @@ Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
     for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
     channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
   }
+  FindFlatDropouts(displacement, force, rules);
+  FindFlatDropouts(force, displacement, rules);
   FindHeld(displacement, force, rules);
   FindHeld(force, displacement, rules);
   Mended mended(memory);
   for (Channel* channel : {&displacement, &force}) {
+    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
     if (channel->IsWhole()) continue;
     if (mended.glitches.empty()) mended.glitches.assign(record.size(), Glitch::kNone);

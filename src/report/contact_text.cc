@@ -173,8 +173,7 @@ std::string LoadSeriesText(const Report& report) {
     text +=
         fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, {}{}\n",
                     Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
-                    Chance(p_value),
-                    p_value < kSignificance ? ": rejected" : "");
+                    Chance(p_value), p_value < kSignificance ? ": rejected" : "");
   }
   return text;
 }
@@ -196,21 +195,23 @@ std::string MappingText(const Report& report) {
                                       "the record does not tell which",
                                       Quantity(*mindlin->rig_stiffness, "N/m", 4))
                                 : "";
-    text += Wrapped(
-        fmt::format("  likelihood ratio of α = 1/3: {:.3g}, {}: Mindlin's exponent is {}{}",
-                    mindlin->likelihood_ratio, Chance(mindlin->p_value), Verdict(mindlin->p_value), rig),
-        6);
+    text +=
+        Wrapped(fmt::format("  likelihood ratio of α = 1/3: {:.3g}, {}: Mindlin's exponent is {}{}",
+                            mindlin->likelihood_ratio, Chance(mindlin->p_value),
+                            Verdict(mindlin->p_value), rig),
+                6);
   }
   text += BranchShapesText(report.fit);
   for (const StiffnessTest& test : report.stiffness) {
     text += fmt::format("  σ/(8a/G*) = {}: 1 where Hertz and Mindlin hold\n",
                         ValueAndError(test.ratio, "-"));
     if (test.z) {
-      text += fmt::format(
-          "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: "
-          "{}\n",
-          test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
-          test.interval95->upper, *test.z, Chance(*test.p_value), Verdict(*test.p_value));
+      text += Wrapped(
+          fmt::format(
+              "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: {}",
+              test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
+              test.interval95->upper, *test.z, Chance(*test.p_value), Verdict(*test.p_value)),
+          10);
     }
     text += SharesText(test.ratio);
   }

@@ -51,7 +51,7 @@ std::string ReversalsUncertain(const Finding& finding, const FitResult&, const U
 std::string GlitchesLeftOut(const Finding& finding, const FitResult&, const Units&) {
   std::vector<std::string> kinds;
   for (const auto& [name, words] :
-       {std::pair("spikes", "spikes"), std::pair("dropouts", "readings of 0 in both channels"),
+       {std::pair("spikes", "spikes"), std::pair("dropouts", "dropouts"),
         std::pair("held", "held values")}) {
     const double count = Needed(finding, name);
     if (count > 0) kinds.push_back(fmt::format("{:.0f} {}", count, words));

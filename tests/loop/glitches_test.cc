@@ -272,6 +272,39 @@ TEST(FindGlitches, FindsAChannelThatIsHeldOnItsWay) {
   }
 }
 
+TEST(FindGlitches, FindsAChannelThatReadsOneValueAwayFromItsCourse) {
+  // A plug that is loose: 0, or what an amplifier reads without a sensor.
+  for (History Record::*channel : {&Record::displacement, &Record::force}) {
+    for (const double reading : {0.0, -7.5}) {
+      for (const std::size_t length : {5, 8, 12}) {
+        Record record = Noisy();
+        const std::size_t at = 60;  // on the upper plateau, and away from the centre
+        ASSERT_GT(std::abs((record.*channel)[at]), 0.5);
+        for (std::size_t k = 0; k < length; ++k) (record.*channel)[at + k] = reading;
+        const std::vector<Glitch> glitches = FindGlitches(record);
+        const GlitchCount count = CountGlitches(glitches);
+        EXPECT_EQ(count.dropouts, length) << reading;
+        EXPECT_EQ(count.total(), length) << reading;
+        EXPECT_EQ(count.examples[0], at);
+      }
+    }
+  }
+}
+
+TEST(FindGlitches, ADropoutOfOneChannelComesBackToWhereItWas) {
+  // A step that stays is the record's, a rest of both channels the drive's.
+  Record step = Noisy();
+  for (std::size_t i = 60; i < 68; ++i) step.force[i] = 5.0;
+  for (std::size_t i = 68; i < step.size(); ++i) step.force[i] += 10.0;
+  EXPECT_EQ(CountIn(step).dropouts, 0U);
+  Record rest = Noisy();
+  for (std::size_t i = 60; i < 68; ++i) {
+    rest.force[i] = 5.0;
+    rest.displacement[i] = rest.displacement[60];
+  }
+  EXPECT_EQ(CountIn(rest).dropouts, 0U);
+}
+
 TEST(FindGlitches, TakesNothingForAGlitchThatMakesUpAQuarterOfTheRecord) {
   const auto with_zeros = [](std::size_t every) {
     Record record = Noisy();

@@ -159,7 +159,7 @@ TEST(Sentence, OfAGlitchSaysItsRowAndOfOneRecordNotWhich) {
   const Finding one{.code = "glitches_left_out",
                     .numbers = {{"spikes", 0}, {"dropouts", 1}, {"held", 0}, {"row", 8}}};
   EXPECT_EQ(Say(one),
-            "left out as faults of the measurement: 1 readings of 0 in both channels, in row 8 of "
+            "left out as faults of the measurement: 1 dropouts, in row 8 of "
             "those read");
 }
 
