@@ -17,6 +17,9 @@ from ._records import read_csv
 from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Section
 from ._track import CycleTable, track
 
+for _public in (ContactState, InputError, Record):
+    _public.__module__ = __name__
+
 __all__ = [
     "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning", "FittedRecord",
     "InputError", "Message", "Parameter", "Record", "Report", "Section", "__version__", "contact",

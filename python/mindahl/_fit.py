@@ -111,7 +111,7 @@ def fit(
     Returns a FitResult; one that failed or did not converge is a result too (result.converged).
     What a person should act on is also a FitWarning.
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
-    Other threads run while it fits. Cost: the library's fit and about a millisecond.
+    Other threads run while it fits. Cost: the library's fit and a millisecond.
     """
     request = request_of(
         model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,

@@ -114,8 +114,10 @@ class FitResult:
             return self.parameters[name]
         if name in self._report:
             return _wrapped(self._report[name], f"result.{name}")
+        if not parameters:
+            raise AttributeError(f"the fit failed and has no '{name}': {self.text().strip()}")
         raise AttributeError(f"the fit has no '{name}': it has the parameters "
-                             f"{', '.join(parameters) or '(none)'} and {', '.join(self._report)}")
+                             f"{', '.join(parameters)} and {', '.join(self._report)}")
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self._report, *(self._report.get("parameters") or {})})
@@ -144,10 +146,9 @@ class FitResult:
         return self._parameter("slip_force")
 
     def _parameter(self, name: str) -> Parameter:
-        parameters = self.parameters
-        if name not in parameters:
-            raise AttributeError(f"the fit failed and has no {name}: see result.text()")
-        return parameters[name]
+        if name not in self.parameters:
+            raise AttributeError(name)  # __getattr__() says why
+        return self.parameters[name]
 
     @property
     def converged(self) -> bool:
@@ -208,7 +209,8 @@ class FitResult:
         values = ", ".join(f"{name} = {parameter.value:.6g}"
                            + ("" if parameter.unit == "-" else f" {parameter.unit}")
                            for name, parameter in list(self.parameters.items())[:3])
-        return f"<mindahl.FitResult: {values}; {self.adequacy.verdict}>"
+        verdict = self.adequacy.verdict or "adequacy not decided"
+        return f"<mindahl.FitResult: {values}; {verdict}>"
 
     def _repr_html_(self) -> str:
         return summary(self._report)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
@@ -12,6 +13,7 @@ from . import _mindahl
 from ._arguments import count, optional_number, path_text, several
 from ._fit import Asked, Range, request_of
 from ._records import RecordArguments, is_path, records_of
+from ._result import FitWarning
 
 
 class CycleTable(Mapping[str, Any]):
@@ -67,6 +69,7 @@ def track(
     broken_rows: of files, "refuse" or "skip". threads: that fit; by default one a core.
     The others: as of fit(), but that model="auto" and covariates are not for single cycles.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
+    Warns with FitWarning of uncertain reversals and of rows that were skipped.
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
     Other threads run while it fits.
     """
@@ -92,12 +95,17 @@ def track(
     if files is None:
         if broken_rows == "skip":
             raise ValueError("broken_rows has no effect on what is no file: leave it out")
-        return CycleTable(*_mindahl.track_records(request, records_of(source, force, arguments)))
-    arguments.roles["force"] = force
-    fit = request.fit
-    fit.columns = arguments.columns()
-    request.fit = fit
-    return CycleTable(*_mindahl.track_files(request, files, broken_rows == "skip"))
+        found = _mindahl.track_records(request, records_of(source, force, arguments))
+    else:
+        arguments.roles["force"] = force
+        fit = request.fit
+        fit.columns = arguments.columns()
+        request.fit = fit
+        found = _mindahl.track_files(request, files, broken_rows == "skip")
+    columns, units, doubts = found
+    for doubt in doubts:
+        warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
+    return CycleTable(columns, units)
 
 
 def _files_of(source: Any) -> Optional[Sequence[str]]:

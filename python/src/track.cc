@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Tracked {
   std::vector<CycleFit> fits;
   bool is_torsional = false;
   double energy_per_row = 1.0;  // cycles that a row stands for
+  std::vector<std::string> warnings;
 };
 
 /// Fits of one test, whose samples come as the function gives them.
@@ -55,9 +57,10 @@ class Run {
   [[nodiscard]] bool has_begun() const { return tracker_.has_value(); }
   [[nodiscard]] bool is_torsional() const { return tracked_.is_torsional; }
 
-  void Begin(const loop::RecordView& head, bool is_torsional) {
+  void Begin(const loop::RecordView& head, bool is_torsional, std::string_view source) {
     tracked_.is_torsional = is_torsional;
     reading_ = campaign::ChooseReading(head, fit_);
+    if (auto doubt = campaign::DoubtAbout(reading_, source)) Warn(std::move(*doubt));
     tracker_.emplace(campaign::TrackOptions{.fit = fit_,
                                             .together = request_.together,
                                             .every = request_.every,
@@ -72,6 +75,8 @@ class Run {
   }
 
   void NextFile() { tracker_->NextFile(); }
+
+  void Warn(std::string message) { tracked_.warnings.push_back(std::move(message)); }
 
   Tracked Finish(std::string_view source) {
     tracker_->Finish();
@@ -108,13 +113,17 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
       stream.Next(piece);
     } else {
       piece = campaign::ReadHead(stream);
-      run.Begin(campaign::ViewOf(piece), stream.layout().is_torsional);
+      run.Begin(campaign::ViewOf(piece), stream.layout().is_torsional, file);
     }
     while (piece.size() > 0) {
       run.Add(campaign::ViewOf(piece), piece.lines);
       if (!stream.Next(piece)) break;
     }
     run.NextFile();
+    if (stream.broken_rows() > 0) {
+      run.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}", stream.broken_rows(),
+                           file, stream.first_broken_row()));
+    }
   }
   return run.Finish(fmt::format("{}", fmt::join(files, ", ")));
 }
@@ -133,7 +142,7 @@ Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>
       };
       run.Begin({first(samples.displacement), first(samples.force), first(samples.time),
                  first(samples.normal_load)},
-                is_torsional);
+                is_torsional, record.name);
     }
     run.Add({samples.displacement, samples.force, samples.time, samples.normal_load},
             record.file.lines);
@@ -150,8 +159,9 @@ py::array_t<Value> ColumnOf(const std::vector<CycleFit>& fits, Of of) {
   return column;
 }
 
-/// The columns of the command line's table, with NaN for what is not known; and their units.
-std::pair<py::dict, py::dict> ColumnsOf(Tracked tracked) {
+/// The columns of the command line's table, with NaN for what is not known; their units; and what
+/// is to be warned of.
+std::tuple<py::dict, py::dict, std::vector<std::string>> ColumnsOf(Tracked tracked) {
   py::dict columns;
   py::dict units;
   const report::Units& names =
@@ -189,7 +199,7 @@ std::pair<py::dict, py::dict> ColumnsOf(Tracked tracked) {
   }
   columns["slip_regime"] = regimes;
   columns["flags"] = flags;
-  return {columns, units};
+  return {columns, units, tracked.warnings};
 }
 
 }  // namespace

@@ -57,6 +57,15 @@ Reading ChooseReading(const loop::RecordView& head, FitOptions& fit) {
   return reading;
 }
 
+std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source) {
+  if (reading.gate.certain) return std::nullopt;
+  return fmt::format(
+      "{}: the reversals are uncertain: of its first {} samples {} by a gate of {:.3g} m, {} by "
+      "{:.3g} m: set --reversal-gate",
+      source, reading.samples, reading.gate.count, reading.gate.gate, reading.gate.other_count,
+      reading.gate.other_gate);
+}
+
 void RequireCycles(std::size_t cycles, std::size_t together, const Reading& reading, double gate,
                    std::string_view source) {
   if (cycles > 0) return;

@@ -202,13 +202,8 @@ void Run::SayReading() const {
                     "says another",
                     gate, reading.samples));
   }
-  if (!reading.gate.certain) {
-    messages_.Warn(fmt::format(
-        "{}: the reversals are uncertain: of its first {} samples {} by a gate of {:.3g} m, {} by "
-        "{:.3g} m: set --reversal-gate",
-        options_.request.files.front(), reading.samples, reading.gate.count, reading.gate.gate,
-        reading.gate.other_count, reading.gate.other_gate));
-  }
+  const auto doubt = campaign::DoubtAbout(reading, options_.request.files.front());
+  if (doubt) messages_.Warn(*doubt);
 }
 
 /// The rows of a batch: appended; or, of the last that is kept, compared with what is there.

@@ -73,6 +73,18 @@ def test_track_refuses_what_the_program_refuses(long_record, keywords, message):
         mindahl.track(long_record, **keywords)
 
 
+def test_track_warns_of_rows_that_it_skipped(long_record, tmp_path):
+    broken = tmp_path / "broken.csv"
+    lines = long_record.read_text().splitlines()
+    lines[700] = "7,oops,3"
+    broken.write_text("\n".join(lines) + "\n")
+    with pytest.raises(mindahl.InputError, match=r"broken\.csv:701:2: 'oops'"):
+        mindahl.track(broken)
+    with pytest.warns(mindahl.FitWarning, match=r"1 broken rows of .*broken\.csv:701:2"):
+        tracked = mindahl.track(broken, broken_rows="skip")
+    assert len(tracked["cycle"]) == 29
+
+
 def test_track_says_why_there_is_no_cycle():
     with pytest.raises(mindahl.InputError, match="record: no whole cycle"):
         mindahl.track([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 1.5, 1.6, 1.7])

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "mindahl/identification/fit_options.h"
@@ -28,6 +30,10 @@ io::Samples ReadHead(io::RecordStream& stream);
 /// @param fit  written: both
 /// @throws InputError where the head shows no turning points
 Reading ChooseReading(const loop::RecordView& head, identification::FitOptions& fit);
+
+/// A sentence where the reversals are uncertain; empty where they are not.
+/// @param source  what was read
+std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source);
 
 /// @param cycles    whole ones that were found
 /// @param together  that were to be fitted as one
