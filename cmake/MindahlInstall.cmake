@@ -2,7 +2,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(library_modules mindahl_core mindahl_contact mindahl_loop mindahl_models
-    mindahl_methods mindahl_tradeoff mindahl_convert mindahl_identification mindahl_io mindahl_report)
+    mindahl_methods mindahl_tradeoff mindahl_convert mindahl_identification mindahl_io mindahl_report mindahl_request)
 install(TARGETS ${library_modules} EXPORT mindahlTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS mindahl RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY include/mindahl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")

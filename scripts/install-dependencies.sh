@@ -9,6 +9,8 @@ packages=(
   g++ cmake ninja-build
   libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev
   libgtest-dev libgmock-dev libbenchmark-dev gnuplot-nox jq python3
+  pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
+  python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
 )
 for group in "$@"; do
   case $group in

@@ -17,43 +17,36 @@ namespace {
 
 using Number = std::optional<double>;
 
-/// A column of numbers, and where a fit has them.
-struct NumberColumn {
-  std::string_view name;
-  std::string_view unit;  // of a record of forces; "" of a pure number
-  Number& (*of)(CycleFit&);
-};
-
 constexpr std::array kNumbers = {
-    NumberColumn{"start_time", "s", [](CycleFit& fit) -> Number& { return fit.start_time; }},
-    NumberColumn{"amplitude", "m", [](CycleFit& fit) -> Number& { return fit.amplitude; }},
-    NumberColumn{"peak_force", "N", [](CycleFit& fit) -> Number& { return fit.peak_force; }},
-    NumberColumn{"sliding_amplitude", "m",
-                 [](CycleFit& fit) -> Number& { return fit.sliding_amplitude; }},
-    NumberColumn{"half_gap", "N", [](CycleFit& fit) -> Number& { return fit.half_gap; }},
-    NumberColumn{"energy", "J", [](CycleFit& fit) -> Number& { return fit.energy; }},
-    NumberColumn{"energy_ratio", "", [](CycleFit& fit) -> Number& { return fit.energy_ratio; }},
-    NumberColumn{"energy_friction_coefficient", "",
-                 [](CycleFit& fit) -> Number& { return fit.energy_friction_coefficient; }},
-    NumberColumn{"slope_after_reversal", "N/m",
-                 [](CycleFit& fit) -> Number& { return fit.slope_after_reversal; }},
-    NumberColumn{"normal_load", "N", [](CycleFit& fit) -> Number& { return fit.normal_load; }},
-    NumberColumn{"sigma", "N/m", [](CycleFit& fit) -> Number& { return fit.sigma.value; }},
-    NumberColumn{"sigma_error", "N/m",
-                 [](CycleFit& fit) -> Number& { return fit.sigma.standard_error; }},
-    NumberColumn{"alpha", "", [](CycleFit& fit) -> Number& { return fit.alpha.value; }},
-    NumberColumn{"alpha_error", "",
-                 [](CycleFit& fit) -> Number& { return fit.alpha.standard_error; }},
-    NumberColumn{"slip_force", "N", [](CycleFit& fit) -> Number& { return fit.slip_force.value; }},
-    NumberColumn{"slip_force_error", "N",
-                 [](CycleFit& fit) -> Number& { return fit.slip_force.standard_error; }},
-    NumberColumn{"force_offset", "N",
-                 [](CycleFit& fit) -> Number& { return fit.force_offset.value; }},
-    NumberColumn{"force_offset_error", "N",
-                 [](CycleFit& fit) -> Number& { return fit.force_offset.standard_error; }},
-    NumberColumn{"rms", "N", [](CycleFit& fit) -> Number& { return fit.rms; }},
-    NumberColumn{"friction_coefficient", "",
-                 [](CycleFit& fit) -> Number& { return fit.friction_coefficient; }},
+    CycleNumber{"start_time", "s", [](CycleFit& fit) -> Number& { return fit.start_time; }},
+    CycleNumber{"amplitude", "m", [](CycleFit& fit) -> Number& { return fit.amplitude; }},
+    CycleNumber{"peak_force", "N", [](CycleFit& fit) -> Number& { return fit.peak_force; }},
+    CycleNumber{"sliding_amplitude", "m",
+                [](CycleFit& fit) -> Number& { return fit.sliding_amplitude; }},
+    CycleNumber{"half_gap", "N", [](CycleFit& fit) -> Number& { return fit.half_gap; }},
+    CycleNumber{"energy", "J", [](CycleFit& fit) -> Number& { return fit.energy; }},
+    CycleNumber{"energy_ratio", "", [](CycleFit& fit) -> Number& { return fit.energy_ratio; }},
+    CycleNumber{"energy_friction_coefficient", "",
+                [](CycleFit& fit) -> Number& { return fit.energy_friction_coefficient; }},
+    CycleNumber{"slope_after_reversal", "N/m",
+                [](CycleFit& fit) -> Number& { return fit.slope_after_reversal; }},
+    CycleNumber{"normal_load", "N", [](CycleFit& fit) -> Number& { return fit.normal_load; }},
+    CycleNumber{"sigma", "N/m", [](CycleFit& fit) -> Number& { return fit.sigma.value; }},
+    CycleNumber{"sigma_error", "N/m",
+                [](CycleFit& fit) -> Number& { return fit.sigma.standard_error; }},
+    CycleNumber{"alpha", "", [](CycleFit& fit) -> Number& { return fit.alpha.value; }},
+    CycleNumber{"alpha_error", "",
+                [](CycleFit& fit) -> Number& { return fit.alpha.standard_error; }},
+    CycleNumber{"slip_force", "N", [](CycleFit& fit) -> Number& { return fit.slip_force.value; }},
+    CycleNumber{"slip_force_error", "N",
+                [](CycleFit& fit) -> Number& { return fit.slip_force.standard_error; }},
+    CycleNumber{"force_offset", "N",
+                [](CycleFit& fit) -> Number& { return fit.force_offset.value; }},
+    CycleNumber{"force_offset_error", "N",
+                [](CycleFit& fit) -> Number& { return fit.force_offset.standard_error; }},
+    CycleNumber{"rms", "N", [](CycleFit& fit) -> Number& { return fit.rms; }},
+    CycleNumber{"friction_coefficient", "",
+                [](CycleFit& fit) -> Number& { return fit.friction_coefficient; }},
 };
 
 constexpr std::string_view kPartial = "partial";
@@ -84,10 +77,12 @@ Value ValueOf(std::string_view cell) {
 
 }  // namespace
 
+std::span<const CycleNumber> CycleNumbers() { return kNumbers; }
+
 std::string CycleTableHeader(bool is_torsional) {
   const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
   std::string header = "cycle,first_line,samples";
-  for (const NumberColumn& column : kNumbers) {
+  for (const CycleNumber& column : kNumbers) {
     header += fmt::format(",{}", column.name);
     if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
   }
@@ -97,7 +92,7 @@ std::string CycleTableHeader(bool is_torsional) {
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
   CycleFit values = fit;
   std::string row = fmt::format("{},{},{}", fit.number, fit.first_line, fit.samples);
-  for (const NumberColumn& column : kNumbers) {
+  for (const CycleNumber& column : kNumbers) {
     row += ',';
     if (const Number& number = column.of(values)) row += fmt::format("{}", *number);
   }

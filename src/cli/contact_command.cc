@@ -8,14 +8,17 @@
 
 #include "cli/commands.h"
 #include "cli/contact_options.h"
-#include "cli/contact_parameters.h"
 #include "cli/json_output.h"
 #include "cli/output_path.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
+#include "mindahl/request/contact_parameters.h"
 
 namespace mindahl::cli {
+using request::ContactParameters;
+using request::ContactQuantity;
+
 namespace {
 
 struct ContactCommandOptions {
@@ -31,8 +34,8 @@ void RunContact(const ContactCommandOptions& options, Console& console) {
   if (!options.json_path.empty()) {
     nlohmann::ordered_json json = {{"schema", "mindahl.contact/1"},
                                    {"version", Version()},
-                                   {"compliance_definition", kComplianceDefinition},
-                                   {"compliance_unit", kComplianceUnit}};
+                                   {"compliance_definition", request::kComplianceDefinition},
+                                   {"compliance_unit", request::kComplianceUnit}};
     for (const ContactQuantity& quantity : contact.quantities) {
       json[quantity.section][quantity.name] = {
           {"value", NumberOrNull(quantity.value.value)},

@@ -58,23 +58,15 @@ void AddKnown(CLI::App& command, const std::string& name, std::optional<Uncertai
       ->group(kGroup);
 }
 
-/// "25,50±1%,100": their mean is what is known of the contact, their uncertainties independent.
+/// "25,50±1%,100".
 void ReadNormalLoads(const std::string& text, ContactOptions& options) {
-  options.normal_loads.clear();
-  double sum = 0.0;
-  double variance = 0.0;
+  std::vector<UncertainValue> loads;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    const UncertainValue load =
-        ParseUncertainValue(text.substr(begin, end - begin), "--normal-load");
-    RequirePositive("--normal-load [N]", load.value);
-    options.normal_loads.push_back(load);
-    sum += load.value;
-    variance += load.standard_error * load.standard_error;
+    loads.push_back(ParseUncertainValue(text.substr(begin, end - begin), "--normal-load"));
     begin = end + 1;
   }
-  const auto count = static_cast<double>(options.normal_loads.size());
-  options.known.normal_load = UncertainValue{sum / count, std::sqrt(variance) / count};
+  SetNormalLoads(options, loads);
 }
 
 void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
@@ -85,28 +77,6 @@ void AddBodyOptions(CLI::App& command, KnownBody& body, int number) {
   AddKnown(command, fmt::format("--radius-{}", number), body.radius,
            fmt::format("radius of body {} [m]; inf is a plane, negative a concave seat", number),
            "M");
-}
-
-void RequireBody(const KnownBody& body, int number) {
-  if (body.youngs_modulus) {
-    RequirePositive(fmt::format("--youngs-modulus-{} [Pa]", number), body.youngs_modulus->value);
-  }
-  if (body.poisson_ratio && !(body.poisson_ratio->value > -1 && body.poisson_ratio->value <= 0.5)) {
-    ThrowInvalid(fmt::format("--poisson-{} [-]", number), body.poisson_ratio->value,
-                 "must be > -1 and <= 0.5");
-  }
-  if (!body.radius) return;
-  const auto [radius, uncertainty] = std::pair{body.radius->value, body.radius->standard_error};
-  if (std::isnan(radius) || radius == 0) {
-    ThrowInvalid(fmt::format("--radius-{} [m]", number), radius,
-                 "must be a number other than 0; inf is a plane");
-  }
-  if (std::isinf(radius) && uncertainty > 0) {
-    throw InputError(fmt::format(
-        "--radius-{}: the standard uncertainty {} of a plane is invalid: a plane is exact, write "
-        "{}",
-        number, uncertainty, radius));
-  }
 }
 
 }  // namespace
@@ -172,27 +142,6 @@ void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads l
 void AddFrictionOption(CLI::App& command, ContactOptions& options) {
   AddKnown(command, "--friction", options.friction_coefficient, "friction coefficient mu [-]",
            "MU");
-}
-
-bool IsAnythingGiven(const ContactOptions& options) {
-  const contact::KnownContact& known = options.known;
-  const auto body_given = [](const KnownBody& body) {
-    return body.youngs_modulus || body.poisson_ratio || body.radius;
-  };
-  return options.friction_coefficient || known.normal_load || known.contact_radius ||
-         known.tangential_compliance || body_given(known.body_1) || body_given(known.body_2);
-}
-
-void Validate(const ContactOptions& options) {
-  const auto require_positive = [](const char* option, const std::optional<UncertainValue>& known) {
-    if (known) RequirePositive(option, known->value);
-  };
-  require_positive("--normal-load [N]", options.known.normal_load);
-  require_positive("--contact-radius [m]", options.known.contact_radius);
-  require_positive("--compliance [1/Pa]", options.known.tangential_compliance);
-  require_positive("--friction [-]", options.friction_coefficient);
-  RequireBody(options.known.body_1, 1);
-  RequireBody(options.known.body_2, 2);
 }
 
 void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console) {

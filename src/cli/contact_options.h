@@ -8,20 +8,11 @@
 
 #include "cli/app.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/request/contact_request.h"
 
 namespace mindahl::cli {
 
-/// G*, said in every report that uses it: many texts write it for the inverse.
-inline constexpr const char* kComplianceDefinition = "G* = (2-nu1)/G1 + (2-nu2)/G2";
-inline constexpr const char* kComplianceUnit = "1/Pa";
-
-/// What the user knows of the contact: the same options in every command.
-struct ContactOptions {
-  contact::KnownContact known;
-  /// As given, one or one a file; known.normal_load is their mean.
-  std::vector<contact::UncertainValue> normal_loads;
-  std::optional<contact::UncertainValue> friction_coefficient;
-};
+using request::ContactOptions;
 
 /// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
 /// other option and, unless it is exact, one standard uncertainty, in percent of the number's
@@ -40,13 +31,6 @@ void AddContactOptions(CLI::App& command, ContactOptions& options,
 
 /// Adds --friction. As above it takes a standard uncertainty.
 void AddFrictionOption(CLI::App& command, ContactOptions& options);
-
-/// Was any of the options given?
-bool IsAnythingGiven(const ContactOptions& options);
-
-/// @throws InvalidArgument naming the option, its value and the rule; InputError for a plane with
-/// an uncertain radius
-void Validate(const ContactOptions& options);
 
 /// A value that may be missing, read from one option.
 CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::optional<double>& target,

@@ -20,16 +20,17 @@
 #include "cli/tolerance.h"
 #include "cli/whole_number.h"
 #include "mindahl/convert/conversion.h"
+#include "mindahl/convert/parameters.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 
 namespace mindahl::cli {
 
 using convert::AmplitudeRange;
-using convert::BoucWenLaw;
 using convert::Conversion;
 using convert::LoopError;
 using convert::ModelLaw;
+using convert::Parameter;
 using convert::Target;
 using convert::TargetRow;
 using methods::IwanElements;
@@ -46,123 +47,13 @@ struct ConvertCommandOptions {
   convert::ConversionOptions conversion;
   std::optional<double> least_amplitude;
   std::optional<double> largest_amplitude;
-  std::optional<double> normal_load;
-  std::optional<double> contact_radius;
+  convert::LammpsContact lammps;
   std::string json_path;
   std::string input_lines_path;
 };
 
-/// A parameter of the other law, as it calls it.
-struct Parameter {
-  std::string name;
-  double value;
-  std::string unit;
-  std::string meaning;
-};
-
 const TargetRow& FindTarget(std::string_view name) {
   return *std::ranges::find(convert::Targets(), name, &TargetRow::name);
-}
-
-/// γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
-double PerTravel(const BoucWenLaw& law, double share) {
-  return share * std::pow(law.stiffness / law.slip_force, law.exponent);
-}
-
-std::vector<Parameter> ParametersOf(const ConvertCommandOptions& options, Target target,
-                                    const Conversion& conversion) {
-  if (const auto* law = std::get_if<BoucWenLaw>(&conversion.law)) {
-    return {{"k", law->stiffness, "N/m", "stiffness, of force = k z"},
-            {"A", 1.0, "-", "dz/dx at z = 0"},
-            {"n", law->exponent, "-", "exponent"},
-            {"beta", PerTravel(*law, law->beta), "1/m^n", "of |z|^n sgn(z dx)"},
-            {"gamma", PerTravel(*law, 1 - law->beta), "1/m^n", "of |z|^n"},
-            {"slip_force", law->slip_force, "N", "k (beta + gamma)^(-1/n)"}};
-  }
-  if (const auto* elements = std::get_if<IwanElements>(&conversion.law)) {
-    double stiffness = 0.0;
-    double slip_force = 0.0;
-    for (std::size_t j = 0; j < elements->size(); ++j) {
-      stiffness += elements->stiffness[j];
-      slip_force += elements->slip_force[j];
-    }
-    return {{"sigma", stiffness, "N/m", "sum of the stiffnesses"},
-            {"slip_force", slip_force, "N", "sum of the slip forces"}};
-  }
-  const models::BranchLaw& law = std::get<ModelLaw>(conversion.law).law;
-  if (target == Target::kLuGre) {
-    return {{"sigma0", law.tangential_stiffness, "N/m", "bristles' stiffness"},
-            {"sigma1", 0.0, "N s/m", "bristles' damping"},
-            {"sigma2", 0.0, "N s/m", "viscous friction"},
-            {"Fc", law.slip_force, "N", "Coulomb's force"},
-            {"Fs", law.slip_force, "N", "static force: no Stribeck effect"}};
-  }
-  if (target == Target::kLammps) {
-    std::vector<Parameter> parameters = {
-        {"kt", law.tangential_stiffness, "N/m", "of tangential linear_history"},
-        {"slip_force", law.slip_force, "N", "Coulomb's limit"}};
-    if (options.contact_radius) {
-      parameters.push_back({"kt_mindlin", law.tangential_stiffness / *options.contact_radius, "Pa",
-                            "of tangential mindlin, whose stiffness is kt a"});
-    }
-    if (options.normal_load) {
-      parameters.push_back({"mu", law.slip_force / *options.normal_load, "-", "friction, Tc/N"});
-    }
-    return parameters;
-  }
-  return {{"sigma", law.tangential_stiffness, "N/m",
-           target == Target::kDahl ? "dT/dx at T = 0" : "at the start of a branch"},
-          {"alpha", law.shape_exponent, "-", "shape exponent"},
-          {"slip_force", law.slip_force, "N", "slip force"}};
-}
-
-/// What the other program reads.
-std::vector<std::string> InputLines(const ConvertCommandOptions& options, Target target,
-                                    const Conversion& conversion) {
-  if (const auto* law = std::get_if<BoucWenLaw>(&conversion.law)) {
-    return {
-        "# OpenSees, force in N and displacement in m: tag alpha ko n gamma beta Ao deltaA "
-        "deltaNu deltaEta",
-        fmt::format("uniaxialMaterial BoucWen 1 0.0 {} {} {} {} 1.0 0.0 0.0 0.0", law->stiffness,
-                    law->exponent, PerTravel(*law, 1 - law->beta), PerTravel(*law, law->beta))};
-  }
-  if (const auto* elements = std::get_if<IwanElements>(&conversion.law)) {
-    std::vector<std::string> lines = {
-        "# OpenSees, force in N and displacement in m: tag, stiffness, displacement at slip"};
-    std::string tags;
-    for (std::size_t j = 0; j < elements->size(); ++j) {
-      lines.push_back(fmt::format("uniaxialMaterial ElasticPP {} {} {}", j + 1,
-                                  elements->stiffness[j],
-                                  elements->slip_force[j] / elements->stiffness[j]));
-      tags += fmt::format(" {}", j + 1);
-    }
-    lines.push_back(fmt::format("uniaxialMaterial Parallel {}{}", elements->size() + 1, tags));
-    return lines;
-  }
-  const models::BranchLaw& law = std::get<ModelLaw>(conversion.law).law;
-  if (target == Target::kLammps) {
-    if (!options.normal_load) {
-      throw InputError(
-          "--input-lines of lammps needs --normal-load: its friction coefficient is Tc/N");
-    }
-    const double friction = law.slip_force / *options.normal_load;
-    std::vector<std::string> lines = {
-        "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff",
-        fmt::format("tangential linear_history {} 0.0 {}", law.tangential_stiffness, friction)};
-    if (options.contact_radius) {
-      lines.emplace_back("# or, where the contact's radius changes with the load");
-      lines.push_back(fmt::format("tangential mindlin {} 0.0 {}",
-                                  law.tangential_stiffness / *options.contact_radius, friction));
-    }
-    return lines;
-  }
-  if (target == Target::kLuGre) {
-    return {fmt::format("sigma0 = {}", law.tangential_stiffness), "sigma1 = 0", "sigma2 = 0",
-            fmt::format("Fc = {}", law.slip_force), fmt::format("Fs = {}", law.slip_force)};
-  }
-  return {fmt::format("--model {} --sigma {} --alpha {} --slip-force {}",
-                      std::get<ModelLaw>(conversion.law).model->name, law.tangential_stiffness,
-                      law.shape_exponent, law.slip_force)};
 }
 
 nlohmann::ordered_json ToJson(const LoopError& error) {
@@ -244,11 +135,7 @@ std::string ToText(const ConvertCommandOptions& options, const TargetRow& target
 
 /// @throws InputError for options that belong to another target or contradict
 void RequireOptions(const ConvertCommandOptions& options, Target target) {
-  if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
-  if (options.contact_radius) RequirePositive("--contact-radius [m]", *options.contact_radius);
-  if ((options.normal_load || options.contact_radius) && target != Target::kLammps) {
-    throw InputError("--normal-load and --contact-radius are of --to lammps alone");
-  }
+  Validate(options.lammps, target);
   if (options.json_path == "-" && options.input_lines_path == "-") {
     throw InputError("--json - and --input-lines - both write to standard output: give a file");
   }
@@ -269,10 +156,10 @@ void RunConvert(ConvertCommandOptions options, Console& console) {
   const ModelLaw contact{
       models::FindFrictionModel(options.from == "dahl" ? "dahl" : "mindlin-dahl"), options.law};
   const Conversion conversion = convert::Convert(contact, target.target, asked);
-  const std::vector<Parameter> parameters = ParametersOf(options, target.target, conversion);
+  const std::vector<Parameter> parameters = ParametersOf(conversion, target.target, options.lammps);
   if (!options.input_lines_path.empty()) {
     std::string lines;
-    for (const std::string& line : InputLines(options, target.target, conversion)) {
+    for (const std::string& line : InputLines(conversion, target.target, options.lammps)) {
       lines += line + '\n';
     }
     WriteText(lines, options.input_lines_path, console);
@@ -354,10 +241,10 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->capture_default_str()
       ->type_name("BETA")
       ->group(result);
-  AddOptional(*command, "--normal-load", options->normal_load,
+  AddOptional(*command, "--normal-load", options->lammps.normal_load,
               "of --to lammps [N]: friction coefficient is Tc/N", "N")
       ->group(result);
-  AddOptional(*command, "--contact-radius", options->contact_radius,
+  AddOptional(*command, "--contact-radius", options->lammps.contact_radius,
               "of --to lammps [m]: for a stiffness that follows the radius", "M")
       ->group(result);
   const std::string outputs = "Output";

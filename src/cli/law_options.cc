@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "cli/contact_parameters.h"
 #include "mindahl/core/error.h"
+#include "mindahl/request/contact_parameters.h"
 
 namespace mindahl::cli {
 

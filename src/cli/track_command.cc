@@ -9,7 +9,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <memory_resource>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -28,12 +27,12 @@
 #include "cli/whole_number.h"
 #include "mindahl/campaign/changes.h"
 #include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/reading.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/appended_file.h"
 #include "mindahl/io/record_stream.h"
-#include "mindahl/loop/preparation.h"
 #include "mindahl/report/units.h"
 
 namespace mindahl::cli {
@@ -109,24 +108,16 @@ struct Totals {
 };
 
 /// What was read.
-struct Reading {
+struct WhatWasRead {
   std::size_t samples = 0;
   std::size_t cycles = 0;
   std::size_t unused_samples = 0;
   std::size_t broken_rows = 0;
-  loop::ReversalGate gate;
+  campaign::Reading of_head;
 };
 
 void RequireOptions(const TrackCommandOptions& options) {
-  const FitRequest& request = options.request;
-  if (request.model == kAutomatic) {
-    throw InputError(
-        "--model auto: a model is chosen for a test, not for each cycle: choose one by fit "
-        "--cycles and name it here");
-  }
-  if (!request.covariates.empty()) {
-    throw InputError("--covariate is not read by track: fit a part of the record with fit");
-  }
+  request::MakeCycleFitOptions(options.request);
   if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
   if (options.resume && options.overwrite) {
     throw InputError("--resume and --overwrite contradict each other: give one of the two");
@@ -136,64 +127,6 @@ void RequireOptions(const TrackCommandOptions& options) {
   if (is_there && !options.resume && !options.overwrite) {
     throw InputError(fmt::format(
         "--output: {} exists: add --resume to go on with it, or --overwrite", options.output));
-  }
-}
-
-loop::RecordView ViewOf(const io::Samples& samples) {
-  return {samples.displacement, samples.force, samples.time, samples.normal_load};
-}
-
-void Append(const io::Samples& from, io::Samples& to) {
-  const auto append = [](const auto& source, auto& target) {
-    target.insert(target.end(), source.begin(), source.end());
-  };
-  append(from.displacement, to.displacement);
-  append(from.force, to.force);
-  append(from.time, to.time);
-  append(from.normal_load, to.normal_load);
-  append(from.lines, to.lines);
-}
-
-/// The first samples, as many as tell how the record is to be read: some cycles.
-io::Samples ReadHead(io::RecordStream& stream) {
-  constexpr std::size_t kReversals = 8;
-  constexpr std::size_t kMostSamples = 1'000'000;
-  io::Samples head;
-  io::Samples piece;
-  std::size_t next_look = 1;  // at twice as much each time: a look is at all of it
-  while (head.size() < kMostSamples && stream.Next(piece)) {
-    Append(piece, head);
-    if (head.size() < next_look) continue;
-    if (loop::ChooseReversalGate(head.displacement).count >= kReversals) break;
-    next_look = 2 * head.size();
-  }
-  return head;
-}
-
-/// Gate and sense of the force, one for all cycles.
-/// @throws InputError where the head shows no turning points
-void ChooseReading(const io::Samples& head, const std::string& file, FitOptions& fit,
-                   Reading& reading, const Messages& messages) {
-  std::pmr::monotonic_buffer_resource memory;
-  const loop::RecordView view = ViewOf(head);
-  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, fit.preparation, &memory);
-  const loop::PreparedRecord& record = prepared.records.front();
-  reading.gate = record.gate_choice;
-  const bool is_given = fit.preparation.reversal_gate.has_value();
-  fit.preparation.reversal_gate = record.reversal_gate;
-  fit.preparation.force_sense = prepared.force_sense;
-  if (!is_given && record.reversal_gate > 0) {
-    messages.Note(
-        fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
-                    "says another",
-                    record.reversal_gate, head.size()));
-  }
-  if (!record.gate_choice.certain) {
-    messages.Warn(fmt::format(
-        "{}: the reversals are uncertain: of its first {} samples {} by a gate of {:.3g} m, {} by "
-        "{:.3g} m: set --reversal-gate",
-        file, head.size(), record.gate_choice.count, record.gate_choice.gate,
-        record.gate_choice.other_count, record.gate_choice.other_gate));
   }
 }
 
@@ -207,6 +140,7 @@ class Run {
  private:
   void Begin(io::RecordStream& stream, const io::Samples& head);
   void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
+  void SayReading() const;
   void Take(std::span<const CycleFit> fits);
   [[noreturn]] void ThrowOther() const;
   void SayProgress();
@@ -221,7 +155,7 @@ class Run {
   Messages messages_;
   FitOptions fit_;
   bool is_torsional_ = false;
-  Reading reading_;
+  WhatWasRead reading_;
   Totals totals_;
   std::optional<KeptCycles> kept_;  // until its last batch was made again
   std::size_t resumed_ = 0;         // fits that were there
@@ -237,9 +171,10 @@ class Run {
 
 void Run::Begin(io::RecordStream& stream, const io::Samples& head) {
   is_torsional_ = stream.layout().is_torsional;
-  fit_ = MakeFitOptions(options_.request);
+  fit_ = request::MakeCycleFitOptions(options_.request);
   if (options_.normal_load) fit_.normal_loads = {*options_.normal_load};
-  ChooseReading(head, options_.request.files.front(), fit_, reading_, messages_);
+  reading_.of_head = campaign::ChooseReading(campaign::ViewOf(head), fit_);
+  SayReading();
   const std::string header = campaign::CycleTableHeader(is_torsional_);
   std::error_code error;
   if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
@@ -256,6 +191,19 @@ void Run::Begin(io::RecordStream& stream, const io::Samples& head) {
                                           .skipped = kept_ ? kept_->fits - campaign::kBatch : 0},
                    [this](std::span<const CycleFit> fits) { Take(fits); });
   progress_.emplace(console_.err, "tracking cycles");
+}
+
+void Run::SayReading() const {
+  const campaign::Reading& reading = reading_.of_head;
+  const double gate = *fit_.preparation.reversal_gate;
+  if (!reading.gate_is_given && gate > 0) {
+    messages_.Note(
+        fmt::format("excursions up to {:.4g} m are noise, by the first {} samples: --reversal-gate "
+                    "says another",
+                    gate, reading.samples));
+  }
+  const auto doubt = campaign::DoubtAbout(reading, options_.request.files.front());
+  if (doubt) messages_.Warn(*doubt);
 }
 
 /// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
@@ -304,7 +252,7 @@ void Run::ReadFile(const std::string& file, io::Samples piece, io::RecordStream&
   stream_ = &stream;
   while (piece.size() > 0) {
     reading_.samples += piece.size();
-    tracker_->Add(ViewOf(piece), piece.lines);
+    tracker_->Add(campaign::ViewOf(piece), piece.lines);
     if (!stream.Next(piece)) break;
   }
   reading_.unused_samples += tracker_->NextFile();
@@ -337,7 +285,7 @@ void Run::Go() {
       }
       io::Samples first;
       if (!tracker_) {
-        first = ReadHead(stream);
+        first = campaign::ReadHead(stream);
         Begin(stream, first);
       } else {
         stream.Next(first);
@@ -359,16 +307,9 @@ void Run::Go() {
   }
   progress_.reset();
   reading_.cycles = tracker_->cycles();
-  if (reading_.cycles == 0 && reading_.gate.count > 2) {
-    throw InputError(fmt::format("--average {}: {} turn only {} times, two a cycle: average fewer",
-                                 options_.average, fmt::join(files, ", "), reading_.gate.count));
-  }
-  if (reading_.cycles == 0) {
-    throw InputError(fmt::format(
-        "{}: no whole cycle: the displacement turns {} times by more than {:.3g} m: choose another "
-        "column with --displacement, or a smaller --reversal-gate",
-        fmt::join(files, ", "), reading_.gate.count, *fit_.preparation.reversal_gate));
-  }
+  campaign::RequireCycles(reading_.cycles, options_.average, reading_.of_head,
+                          *fit_.preparation.reversal_gate,
+                          fmt::format("{}", fmt::join(files, ", ")));
   const auto failed = totals_.flags.find("not_converged");
   const bool none = failed != totals_.flags.end() && failed->second == totals_.fits;
   console_.exit_status = none ? kNotEstablished : kDone;
@@ -471,7 +412,7 @@ nlohmann::ordered_json Run::Json() const {
                    {"unused_samples", reading_.unused_samples},
                    {"broken_rows", reading_.broken_rows}};
   json["reversals"] = {{"gate", *fit_.preparation.reversal_gate},
-                       {"certain", reading_.gate.certain}};
+                       {"certain", reading_.of_head.gate.certain}};
   json["output"] = options_.output;
   json["fits"] = totals_.fits;
   json["flagged"] = totals_.flagged;

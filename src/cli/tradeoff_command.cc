@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/contact_parameters.h"
 #include "cli/drive_options.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
@@ -24,6 +23,7 @@
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/models/excitation.h"
+#include "mindahl/request/contact_parameters.h"
 #include "mindahl/tradeoff/model_regions.h"
 #include "mindahl/tradeoff/refit.h"
 #include "mindahl/tradeoff/work_precision.h"

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -128,13 +129,35 @@ CsvTable ReadCsvTable(const std::filesystem::path& path) {
   return ParseCsvTable(ReadFile(path), path.string());
 }
 
+CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source) {
+  CsvTable table;
+  table.file_ = std::move(source);
+  if (columns.empty() || columns.front().values.empty()) {
+    throw InputError(
+        fmt::format("{}: there is no {}", table.file_, columns.empty() ? "column" : "row"));
+  }
+  const std::size_t rows = columns.front().values.size();
+  for (NamedColumn& column : columns) {
+    if (column.values.size() != rows) {
+      throw InputError(fmt::format("{}: '{}' has {} rows and '{}' {}: give as many of both",
+                                   table.file_, columns.front().name, rows, column.name,
+                                   column.values.size()));
+    }
+    table.names_.push_back(column.name);
+    table.values_.push_back(std::move(column.values));
+  }
+  table.lines_.resize(rows);
+  std::iota(table.lines_.begin(), table.lines_.end(), std::size_t{1});
+  return table;
+}
+
 std::span<const double> CsvTable::Numbers(std::size_t column) const {
   const std::vector<double>& values = values_.at(column);
   const auto fault = std::ranges::find_if(values, [](double value) { return std::isnan(value); });
   if (fault != values.end()) {
     ThrowNotANumber(static_cast<std::size_t>(fault - values.begin()), column);
   }
-  if (MayHaveThousands(values)) RequireNoThousands(column);
+  if (!text_.empty() && MayHaveThousands(values)) RequireNoThousands(column);
   return values;
 }
 
@@ -181,6 +204,10 @@ bool CsvTable::HasNumbers(std::size_t column) const {
 
 // Only the row at fault is cut into cells again: no text need be kept for the others.
 void CsvTable::ThrowNotANumber(std::size_t row_index, std::size_t column) const {
+  if (text_.empty()) {
+    throw InputError(
+        fmt::format("{}:{}:{}: holds no number", file_, lines_[row_index], column + 1));
+  }
   const auto delimiter = static_cast<Delimiter>(delimiter_);
   CsvTokenizer tokenizer(text_, delimiter, offsets_[row_index], lines_[row_index]);
   CsvRow row;

@@ -15,7 +15,6 @@
 
 #include "io/column_name.h"
 #include "io/message_text.h"
-#include "io/record_of_table.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"

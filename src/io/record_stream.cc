@@ -14,7 +14,6 @@
 
 #include "io/csv_layout.h"
 #include "io/number_row.h"
-#include "io/record_of_table.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"

@@ -52,7 +52,8 @@ EXEMPT = {
 
 # Options of other programs in the documentation.
 OF_OTHERS = {
-    "--preset", "--build", "--install", "--target", "--peers",
+    "--preset", "--build", "--install", "--component", "--target", "--peers",
+    "--no-index", "--no-deps", "--no-build-isolation",
     "--details", "--half", "--jobs", "--kind", "--loops", "--repeats", "--rounds", "--write",
     "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }

@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 # Each file of a module declares only its module's namespace, mindahl::MODULE or deeper, and core's
 # alone declare mindahl itself; no file opens another's namespace wide.
 set(errors "")
-foreach(module core contact loop models methods tradeoff convert identification io campaign cli)
+foreach(module core contact loop models methods tradeoff convert identification io campaign request cli)
   if(module STREQUAL "core")
     set(own "mindahl")
   else()

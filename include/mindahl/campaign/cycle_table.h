@@ -1,11 +1,23 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "mindahl/campaign/cycle_fit.h"
 
 namespace mindahl::campaign {
+
+/// A column of numbers of the table, and where a fit has them.
+struct CycleNumber {
+  std::string_view name;
+  std::string_view unit;  ///< of a record of forces; "" of a pure number
+  std::optional<double>& (*of)(CycleFit&) = nullptr;
+};
+
+/// All of them, in the order of the table.
+std::span<const CycleNumber> CycleNumbers();
 
 /// The first line of a table of cycles: the columns with their units.
 /// @param is_torsional  of torques against angles

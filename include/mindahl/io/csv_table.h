@@ -8,6 +8,12 @@
 
 namespace mindahl::io {
 
+/// A column that is in memory already.
+struct NamedColumn {
+  std::string name;            ///< as a header cell would have it, with its unit: "x [um]"
+  std::vector<double> values;  ///< NaN where there is no number
+};
+
 /// A delimited text file of columns, read whole: the numbers as doubles, and the text itself, to
 /// which messages go back. Positions in messages are `file:line:column`, with the 1-based physical
 /// line on which the row begins and the 1-based number of the cell in it.
@@ -50,13 +56,14 @@ class CsvTable {
 
  private:
   friend CsvTable ParseCsvTable(std::string text, std::string file);
+  friend CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source);
   [[noreturn]] void ThrowNotANumber(std::size_t row, std::size_t column) const;
   void RequireNoThousands(std::size_t column) const;
   /// As written, without blanks around them.
   [[nodiscard]] std::vector<std::string> Cells(std::size_t column) const;
 
   std::string file_;
-  std::string text_;
+  std::string text_;  ///< empty for columns that were in memory
   char delimiter_ = ',';
   std::vector<std::string> names_;
   std::vector<std::string> units_;
@@ -102,5 +109,12 @@ CsvTable ParseCsvTable(std::string text, std::string file);
 /// ParseCsvTable() of a file.
 /// @throws InputError also when the file cannot be read
 CsvTable ReadCsvTable(const std::filesystem::path& path);
+
+/// A table of columns that are in memory, to be read as a file with these names in its first line
+/// is; its lines are the rows, counted from 1.
+/// @param columns  of one length, at least one
+/// @param source   where they are from, for messages
+/// @throws InputError where lengths differ, and where there is no column or no row
+CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source);
 
 }  // namespace mindahl::io

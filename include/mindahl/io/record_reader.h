@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "mindahl/io/csv_table.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::io {
@@ -92,6 +93,10 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
 ///   number
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
+
+/// ReadRecord() of a table that is in memory.
+/// @throws InputError as ReadRecord()
+RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns = {});
 
 /// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
 /// file.

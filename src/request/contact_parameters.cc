@@ -1,4 +1,4 @@
-#include "cli/contact_parameters.h"
+#include "mindahl/request/contact_parameters.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::cli {
+namespace mindahl::request {
 namespace {
 
 void CollectMissing(const contact::KnownBody& body, int number, std::vector<std::string>& missing) {
@@ -77,4 +77,4 @@ ContactParameters ResolveContact(const ContactOptions& options) {
   return result;
 }
 
-}  // namespace mindahl::cli
+}  // namespace mindahl::request

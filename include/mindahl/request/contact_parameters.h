@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/contact_options.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/models/branch_law.h"
+#include "mindahl/request/contact_request.h"
 
-namespace mindahl::cli {
+namespace mindahl::request {
 
 /// A line of the report on a contact.
 struct ContactQuantity {
@@ -29,4 +29,4 @@ struct ContactParameters {
 /// @throws InputError naming the options that are missing
 ContactParameters ResolveContact(const ContactOptions& options);
 
-}  // namespace mindahl::cli
+}  // namespace mindahl::request

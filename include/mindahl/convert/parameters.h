@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/convert/conversion.h"
+
+namespace mindahl::convert {
+
+/// A parameter of the other law, as it calls it.
+struct Parameter {
+  std::string name;
+  double value;
+  std::string unit;
+  std::string meaning;
+};
+
+/// What else LAMMPS wants to know of a contact.
+struct LammpsContact {
+  std::optional<double> normal_load = {};     ///< N [N], > 0: its friction coefficient is Tc/N
+  std::optional<double> contact_radius = {};  ///< a [m], > 0: its Mindlin stiffness is kt·a
+};
+
+/// @throws InputError for what belongs to another target, InvalidArgument for values out of range
+void Validate(const LammpsContact& contact, Target target);
+
+/// The parameters of a conversion, in the target's own names and units.
+std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
+                                    const LammpsContact& contact = {});
+
+/// The lines that the target reads.
+/// @throws InputError for LAMMPS without a normal load
+std::vector<std::string> InputLines(const Conversion& conversion, Target target,
+                                    const LammpsContact& contact = {});
+
+}  // namespace mindahl::convert

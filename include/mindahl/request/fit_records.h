@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/io/record_reader.h"
+#include "mindahl/report/report.h"
+#include "mindahl/request/fit_request.h"
+
+namespace mindahl::request {
+
+/// Told what is assumed, one sentence each.
+using Tell = std::function<void(std::string_view)>;
+
+/// @throws InvalidArgument or InputError for options that break a rule whatever the records are
+void Validate(const FitRequest& request);
+
+/// Keeps the samples in the request's time window, where it has one, with a note in the record.
+/// @param name  the record's, for messages
+/// @throws InputError as io::KeepTimeWindow()
+void KeepTimeWindow(const FitRequest& request, const std::string& name, io::RecordFile& record);
+
+/// Fits records together as one contact at Depth::kThorough, and reports.
+/// @param records  within the time window, called as request.files; one whose normal load goes in
+///   steps becomes a record for each load
+/// @throws InvalidArgument or InputError naming record, line and column, or the option
+report::Report FitRecords(const FitRequest& request, std::vector<io::RecordFile> records,
+                          const Tell& note);
+
+}  // namespace mindahl::request

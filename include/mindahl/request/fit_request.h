@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/request/contact_request.h"
+
+/// What a user asks of records in words and numbers, and the report that answers: the same rules
+/// and the same messages for the command line and for Python. Messages name the command line's
+/// options.
+namespace mindahl::request {
+
+/// --model auto
+inline constexpr std::string_view kAutomatic = "auto";
+/// --rig-stiffness fit
+inline constexpr std::string_view kFitIt = "fit";
+
+// What these options may say, the default first.
+inline constexpr std::array<std::string_view, 3> kInitialStates = {"auto", "virgin", "steady"};
+inline constexpr std::array<std::string_view, 3> kForceSigns = {"auto", "same", "opposite"};
+inline constexpr std::array<std::string_view, 2> kOnOff = {"on", "off"};
+inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "cauchy", "tukey"};
+
+/// Models that can be fitted, and kAutomatic.
+std::vector<std::string_view> ModelNames();
+
+/// What the options of `fit` say of records, model and contact, as it was typed; docs/contract.md
+/// says what each may be.
+struct FitRequest {
+  std::vector<std::string> files;
+  io::RecordColumns columns;
+  std::string time_window;
+  std::string model = "mindlin-dahl";
+  std::string initial_state = "auto";
+  std::string force_sign = "auto";
+  std::string offsets = "on";
+  std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
+  std::vector<std::string> covariates;
+  std::string load_window;
+  std::string cycles;
+  std::string samples;
+  std::size_t skip_cycles = 0;
+  std::string loss = "none";
+  std::size_t starts = identification::FitOptions{}.starts;
+  std::uint64_t seed = identification::FitOptions{}.seed;
+  std::vector<std::string> fix;
+  std::vector<std::string> start;
+  std::vector<std::string> bound;
+  std::optional<double> force_noise;
+  std::optional<double> displacement_noise;
+  std::optional<double> reversal_gate;
+  ContactOptions contact;
+};
+
+/// @throws InvalidArgument or InputError naming the option that breaks a rule, or two that
+/// contradict each other
+identification::FitOptions MakeFitOptions(const FitRequest& request);
+
+/// Of fits of one cycle after the other, for which no model is chosen and no covariate is read.
+/// @throws InvalidArgument or InputError likewise
+identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
+
+/// The columns that are covariates, as the reader takes them.
+std::vector<std::string> CovariateColumns(const FitRequest& request);
+
+/// [s]; empty where every time counts
+std::optional<identification::Interval> TimeWindow(const FitRequest& request);
+
+}  // namespace mindahl::request

@@ -1,0 +1,27 @@
+"""Friction parameters of a contact from its measured hysteresis loop.
+
+    import mindahl
+    result = mindahl.fit(displacement, force, normal_load=50)   # arrays, [m] and [N]
+    result.sigma.value, result.slip_force.interval, result.adequacy.verdict
+    print(result)
+
+fit() fits a record or several, track() every cycle of a long one; simulate() and ContactState
+compute the force of a contact; contact() predicts it from materials, convert() writes it as another
+law; read_csv() reads a record as the program does. docs/python.md has them with examples.
+"""
+
+from ._contact import Conversion, Report, contact, convert, simulate
+from ._fit import fit
+from ._mindahl import ContactState, InputError, Record, __version__
+from ._records import read_csv
+from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Section
+from ._track import CycleTable, track
+
+for _public in (ContactState, InputError, Record):
+    _public.__module__ = __name__
+
+__all__ = [
+    "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning", "FittedRecord",
+    "InputError", "Message", "Parameter", "Record", "Report", "Section", "__version__", "contact",
+    "convert", "fit", "read_csv", "simulate", "track",
+]

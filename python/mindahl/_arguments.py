@@ -1,0 +1,187 @@
+"""What a user gives, as the library takes it: numbers, names, ranges and arrays."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from numbers import Number
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _mindahl
+
+Floats = NDArray[np.float64]
+
+Uncertain = Union[float, tuple[float, float]]
+"""A number, or a pair of it and one standard uncertainty, both in its unit."""
+
+
+def number(name: str, value: Any) -> float:
+    """A real number."""
+    if isinstance(value, (bool, np.bool_, str, bytes)):
+        raise ValueError(f"{name} = {value!r} is invalid: must be a number")
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r} is invalid: must be a number") from None
+
+
+def optional_number(name: str, value: Any) -> Optional[float]:
+    return None if value is None else number(name, value)
+
+
+def count(name: str, value: Any, least: int) -> int:
+    """A whole number that is not below `least`."""
+    if isinstance(value, (bool, np.bool_)) or not hasattr(value, "__index__"):
+        raise ValueError(f"{name} = {value!r} is invalid: must be a whole number")
+    whole = int(value.__index__())
+    if whole < least:
+        raise ValueError(f"{name} = {whole} is invalid: must be >= {least}")
+    return whole
+
+
+def uncertain(name: str, value: Any) -> _mindahl.UncertainValue:
+    """A number, or (number, standard uncertainty)."""
+    if not isinstance(value, tuple):
+        return _mindahl.UncertainValue(number(name, value))
+    if len(value) != 2:
+        raise ValueError(f"{name} = {value!r} is invalid: must be a number or (number, uncertainty)")
+    error = number(name, value[1])
+    if not (np.isfinite(error) and error >= 0):
+        raise ValueError(f"{name}: the standard uncertainty {error!r} is invalid: must be finite and >= 0")
+    return _mindahl.UncertainValue(number(name, value[0]), error)
+
+
+def pair(name: str, value: Any) -> str:
+    """(low, high) as the library writes ranges."""
+    if not isinstance(value, Sequence) or isinstance(value, (str, bytes)) or len(value) != 2:
+        raise ValueError(f"{name} = {value!r} is invalid: must be a pair (low, high)")
+    texts = []
+    for end in value:
+        whole = hasattr(end, "__index__") and not isinstance(end, (bool, np.bool_))
+        texts.append(str(int(end)) if whole else repr(number(name, end)))
+    return ":".join(texts)
+
+
+def number_text(name: str, value: Any) -> str:
+    """A number with as many digits as read back the same, or "fit"."""
+    return "fit" if value == "fit" else repr(number(name, value))
+
+
+def on_off(name: str, value: Union[bool, str]) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "on" if value else "off"
+    if isinstance(value, str):
+        return value
+    raise ValueError(f"{name} = {value!r} is invalid: must be True or False")
+
+
+def assignments(name: str, values: Optional[Mapping[str, Any]]) -> list[str]:
+    if values is None:
+        return []
+    if not isinstance(values, Mapping):
+        raise ValueError(f"{name} = {values!r} is invalid: must be a dict of parameters and numbers")
+    return [f"{parameter}={number(f'{name}[{parameter!r}]', value)!r}"
+            for parameter, value in values.items()]
+
+
+def bounds(values: Optional[Mapping[str, Any]]) -> list[str]:
+    if values is None:
+        return []
+    if not isinstance(values, Mapping):
+        raise ValueError(f"bound = {values!r} is invalid: must be a dict of parameters and (low, high)")
+    return [f"{parameter}={pair(f'bound[{parameter!r}]', value)}"
+            for parameter, value in values.items()]
+
+
+def column_name(name: str, value: Any) -> str:
+    """A column by its name, or by its number counted from 1."""
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return value
+    return str(count(name, value, 1))
+
+
+def path_text(path: Union[str, os.PathLike[str]]) -> str:
+    return os.fspath(path)
+
+
+def array(name: str, values: Any, *, keep_missing: bool = False) -> Floats:
+    """A contiguous array of float64, the one given where it is one.
+
+    keep_missing: NaN and what is no number at all stay, as NaN, for the reader to judge.
+    """
+    given = np.asarray(values)
+    if keep_missing and (given.dtype == object or given.dtype.kind not in "fiu"):
+        return np.full(given.shape, np.nan)
+    if given.dtype.kind not in "fiu":
+        raise ValueError(f"{name} has the dtype {given.dtype}: must be an array of real numbers")
+    if given.ndim != 1:
+        raise ValueError(f"{name} has the shape {given.shape}: must be an array of one dimension")
+    converted = np.ascontiguousarray(given, dtype=np.float64)
+    if keep_missing:
+        return converted
+    if converted.size == 0:
+        raise ValueError(f"{name} is empty: must hold a number a sample")
+    finite = np.isfinite(converted)
+    if not finite.all():
+        at = int(np.argmin(finite))
+        raise ValueError(f"{name}[{at}] = {converted[at]} is invalid: must be finite")
+    return converted
+
+
+def is_array(value: Any) -> bool:
+    """Numbers, and neither a path nor several arrays."""
+    if isinstance(value, np.ndarray):
+        return bool(value.dtype != object)
+    if hasattr(value, "to_numpy"):
+        return getattr(value, "ndim", 1) == 1
+    return isinstance(value, Sequence) and not isinstance(value, (str, bytes)) and all(
+        isinstance(element, (Number, np.generic)) for element in value)
+
+
+def is_frame(value: Any) -> bool:
+    """A table of named columns, as pandas has it."""
+    return hasattr(value, "columns") and hasattr(value, "__getitem__") and hasattr(value, "iloc")
+
+
+def several(value: Any) -> Optional[list[Any]]:
+    """The elements of a list or tuple of sources; None of one source."""
+    if isinstance(value, (list, tuple)) and not is_array(value):
+        return list(value)
+    return None
+
+
+def known_contact(
+    *,
+    youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
+    radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
+    poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
+    contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
+    normal_load: Optional[Uncertain] = None,
+) -> _mindahl.KnownContact:
+    def known(name: str, value: Any) -> Optional[_mindahl.UncertainValue]:
+        return None if value is None else uncertain(name, value)
+
+    contact = _mindahl.ContactOptions().known
+    body_1, body_2 = contact.body_1, contact.body_2
+    body_1.youngs_modulus = known("youngs_modulus_1", youngs_modulus_1)
+    body_1.poisson = known("poisson_1", poisson_1)
+    body_1.radius = known("radius_1", radius_1)
+    body_2.youngs_modulus = known("youngs_modulus_2", youngs_modulus_2)
+    body_2.poisson = known("poisson_2", poisson_2)
+    body_2.radius = known("radius_2", radius_2)
+    contact.contact_radius = known("contact_radius", contact_radius)
+    contact.compliance = known("compliance", compliance)
+    contact.normal_load = known("normal_load", normal_load)
+    return contact
+
+
+def names_of(values: Union[None, str, Iterable[str]]) -> list[str]:
+    """One name, or several."""
+    if values is None:
+        return []
+    return [values] if isinstance(values, str) else list(values)

@@ -1,0 +1,110 @@
+"""mindahl.contact(), convert() and simulate()."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, Optional
+
+from . import _mindahl
+from ._arguments import (Floats, Uncertain, array, count, known_contact, number, optional_number, uncertain)
+from ._result import FitWarning, Section
+
+
+class Report(Section):
+    """A result by item or by attribute; to_dict() is what the program writes as JSON."""
+
+    def to_dict(self) -> dict[str, Any]:
+        import copy
+
+        return copy.deepcopy(dict(self._values))
+
+
+class Conversion(Report):
+    """A conversion: sections of the program's JSON, and the lines that the target reads."""
+
+    def __init__(self, values: dict[str, Any], input_lines: Optional[list[str]]) -> None:
+        super().__init__(values, "conversion")
+        self.__dict__["input_lines"] = input_lines
+
+
+def contact(
+    *, friction: Optional[Uncertain] = None, normal_load: Optional[Uncertain] = None,
+    youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
+    radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
+    poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
+    contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
+) -> Report:
+    """Hertz, Mindlin and the Mindlin-Dahl mapping: sigma = 8a/G*, alpha = 1/3, Tc = mu N.
+
+    Each a number or (number, standard uncertainty):
+    friction: mu [-]. normal_load: N [N].
+    youngs_modulus_1 [Pa], poisson_1 [-], radius_1 [m] (inf a plane, negative a seat) and the same
+        of body 2; or contact_radius a [m] and compliance G* = (2-nu1)/G1 + (2-nu2)/G2 [1/Pa].
+    Returns the sections contact and parameters: result.parameters.sigma.value [N/m],
+        .standard_error, .unit.
+    Raises InputError naming what is missing, ValueError for a value out of range.
+    """
+    options = _mindahl.ContactOptions()
+    options.known = known_contact(
+        youngs_modulus_1=youngs_modulus_1, poisson_1=poisson_1, radius_1=radius_1,
+        youngs_modulus_2=youngs_modulus_2, poisson_2=poisson_2, radius_2=radius_2,
+        contact_radius=contact_radius, compliance=compliance, normal_load=normal_load)
+    options.friction = None if friction is None else uncertain("friction", friction)
+    result = Report(_mindahl.contact(options), "contact")
+    for doubt in _mindahl.doubts_about(options):
+        warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
+    return result
+
+
+def convert(
+    *, sigma: float, slip_force: float, amplitude: float, to: str, alpha: float = 1 / 3,
+    from_: str = "masing", least_amplitude: Optional[float] = None,
+    largest_amplitude: Optional[float] = None, tolerance: float = 0.01, elements: int = 8,
+    beta: float = 0.5, normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
+) -> Conversion:
+    """A contact's steady loop by another law or another program.
+
+    sigma [N/m], alpha [-], slip_force Tc [N]: of the law from_, "masing" or "dahl".
+    amplitude: X [m] of the steady loop, the contact's.
+    to: "masing", "dahl", "lugre", "bouc-wen", "iwan" or "lammps".
+    least_amplitude, largest_amplitude [m]: what cannot be exact is fitted between; default X.
+    tolerance: of force and energy [-]. elements: of "iwan". beta: of "bouc-wen".
+    normal_load [N], contact_radius [m]: of "lammps".
+    Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
+        None for "lammps" without a normal load.
+    Raises ValueError naming the quantity, its value and the rule.
+    """
+    amplitude = number("amplitude", amplitude)
+    least = optional_number("least_amplitude", least_amplitude)
+    largest = optional_number("largest_amplitude", largest_amplitude)
+    span = None
+    if least is not None or largest is not None:
+        span = (amplitude if least is None else least, amplitude if largest is None else largest)
+    return Conversion(*_mindahl.convert(
+        sigma=number("sigma", sigma), alpha=number("alpha", alpha),
+        slip_force=number("slip_force", slip_force), amplitude=amplitude, from_law=from_, to=to,
+        range=span, tolerance=number("tolerance", tolerance),
+        elements=count("elements", elements, 1), beta=number("beta", beta),
+        normal_load=optional_number("normal_load", normal_load),
+        contact_radius=optional_number("contact_radius", contact_radius)))
+
+
+def simulate(
+    displacement: Any, *, sigma: float, slip_force: float, alpha: Optional[float] = None,
+    model: str = "mindlin-dahl", rig_stiffness: Optional[float] = None,
+) -> Floats:
+    """Tangential force [N] of a contact along a displacement, exact for any history.
+
+    displacement: array [m]; the contact is unloaded at 0, and a first sample that is not 0 is the
+        first loading step. Used where it is when it is contiguous float64.
+    sigma: tangential stiffness [N/m], > 0. slip_force: Tc [N], > 0.
+    alpha: shape exponent [-], >= 0; by default the model's own, or 1/3.
+    model: "mindlin-dahl", "mindlin", "dahl", "jenkins", "simplified-dahl".
+    rig_stiffness: of a spring [N/m] in series, by default rigid.
+    Returns an array of the same length.
+    Raises ValueError naming the quantity, its value and the rule.
+    """
+    return _mindahl.simulate(
+        array("displacement", displacement), sigma=number("sigma", sigma),
+        slip_force=number("slip_force", slip_force), alpha=optional_number("alpha", alpha),
+        model=model, rig_stiffness=optional_number("rig_stiffness", rig_stiffness))

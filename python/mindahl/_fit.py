@@ -1,0 +1,148 @@
+"""mindahl.fit()."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+from . import _mindahl
+from ._arguments import (Uncertain, assignments, bounds, count, known_contact, names_of,
+                         number_text, on_off, optional_number, pair, uncertain)
+from ._records import Column, RecordArguments, records_of
+from ._result import FitResult, FitWarning
+
+Range = tuple[float, float]
+Asked = Union[float, str]
+
+
+def covariate_texts(covariate: Any) -> list[str]:
+    if isinstance(covariate, Mapping):
+        return [f"{name}={number_text(f'covariate[{name!r}]', value)}"
+                for name, value in covariate.items()]
+    return names_of(covariate)
+
+
+def request_of(
+    *, model: str, initial_state: str, force_sign: str, offsets: Union[bool, str],
+    terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
+    starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
+) -> _mindahl.FitRequest:
+    request = _mindahl.FitRequest()
+    request.model = model
+    request.initial_state = initial_state
+    request.force_sign = force_sign
+    request.offsets = on_off("offsets", offsets)
+    request.covariates = covariate_texts(covariate)
+    request.fix = assignments("fix", fix)
+    request.start = assignments("start", start)
+    request.bound = bounds(bound)
+    request.loss = loss
+    request.starts = count("starts", starts, 1)
+    request.seed = count("seed", seed, 0)
+    request.force_noise = optional_number("force_noise", force_noise)
+    request.displacement_noise = optional_number("displacement_noise", displacement_noise)
+    request.reversal_gate = optional_number("reversal_gate", reversal_gate)
+    for name, option in _mindahl.terms():
+        asked = terms[option.removeprefix("--").replace("-", "_")]
+        if asked is None or asked is False:
+            continue
+        request.set_term(name, "fit" if asked is True else number_text(option, asked))
+    return request
+
+
+def fit(
+    source: Any = None, force: Any = None, *, displacement: Any = None, time: Any = None,
+    normal_load: Union[None, Uncertain, Sequence[Uncertain]] = None,
+    normal_load_column: Any = None, columns: Optional[Mapping[str, Any]] = None,
+    displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
+    time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
+    model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
+    offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
+    plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
+    drift: bool = False, covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
+    fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
+    bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
+    samples: Optional[tuple[int, int]] = None, skip_cycles: int = 0,
+    time_window: Optional[Range] = None, load_window: Optional[Range] = None, loss: str = "none",
+    starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
+    displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
+    youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
+    radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
+    poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
+    contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
+) -> FitResult:
+    """Fits sigma [N/m], alpha [-] and Tc [N] of a contact to its hysteresis loop.
+
+    Keywords are the options of `mindahl fit`, with underscores.
+
+    The record, one of
+        fit(displacement, force): arrays, [m] and [N] or displacement_unit and force_unit; of a
+            torsional record an angle [rad] and a torque [N m] by displacement_unit="rad".
+        fit(frame): a data frame with named columns, "x [um]", recognised as in a file;
+            displacement, force, time and normal_load_column choose others by name or number.
+        fit("loop.csv"), fit(read_csv(...)): a file, or a record that was read.
+        A list of any of these: one joint fit of the same contact, arrays in lists of one length.
+    time: array [s], or column. normal_load_column: array [N], one a sample, or column.
+    columns: further arrays by name beside displacement and force, for covariate.
+
+    The model
+        model: "mindlin-dahl", "mindlin" (alpha = 1/3), "dahl", "jenkins" (alpha = 0), "auto".
+        initial_state: "auto", "virgin", "steady". force_sign: "auto", "same", "opposite".
+        offsets: of force [N] and displacement [m], fitted unless False.
+        rig_stiffness [N/m], viscous [N s/m], lag [s]: a known value, or "fit".
+        plateau_slope [N/m], drift [N/s]: fitted where True.
+        covariate: column or columns in proportion to which a force is added, or a dict of them
+            with "fit" or the known factor [N/unit].
+        fix, start: parameter to value; bound: parameter to (low, high); SI units.
+
+    What counts
+        cycles, samples: (first, last), counted from 1. skip_cycles: so many at the start.
+        time_window: (low, high) [s]. load_window: (low, high) [N].
+        loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
+            standard deviations. reversal_gate [m]: smaller excursions are noise.
+        starts: starting points refined. seed: of those drawn at random.
+
+    What is known of the contact, each a number or (number, standard uncertainty)
+        normal_load [N], also a list, one a record; youngs_modulus_1 [Pa], poisson_1 [-], radius_1
+        [m] (inf a plane, negative a seat) and the same of body 2; contact_radius [m]; compliance
+        G* [1/Pa] = (2-nu1)/G1 + (2-nu2)/G2.
+
+    Returns a FitResult; one that failed or did not converge is a result too (result.converged).
+    What a person should act on is also a FitWarning.
+    Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
+    Other threads run while it fits. Cost: the library's fit and a millisecond.
+    """
+    request = request_of(
+        model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,
+        terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
+               "lag": lag, "drift": drift},
+        covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
+        force_noise=force_noise, displacement_noise=displacement_noise,
+        reversal_gate=reversal_gate)
+    request.cycles = "" if cycles is None else pair("cycles", cycles)
+    request.samples = "" if samples is None else pair("samples", samples)
+    request.skip_cycles = count("skip_cycles", skip_cycles, 0)
+    request.time_window = "" if time_window is None else pair("time_window", time_window)
+    request.load_window = "" if load_window is None else pair("load_window", load_window)
+    options = _mindahl.ContactOptions()
+    options.known = known_contact(
+        youngs_modulus_1=youngs_modulus_1, poisson_1=poisson_1, radius_1=radius_1,
+        youngs_modulus_2=youngs_modulus_2, poisson_2=poisson_2, radius_2=radius_2,
+        contact_radius=contact_radius, compliance=compliance)
+    request.contact = options
+    if normal_load is not None:
+        loads = list(normal_load) if isinstance(normal_load, list) else [normal_load]
+        request.set_normal_loads([uncertain("normal_load", load) for load in loads])
+    arguments = RecordArguments(
+        displacement=displacement, force=None, time=time, normal_load_column=normal_load_column,
+        displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
+        normal_load_unit=normal_load_unit, covariates=request.covariate_columns())
+    request.columns = _mindahl.RecordColumns(
+        _mindahl.ColumnChoice(), _mindahl.ColumnChoice(),
+        _mindahl.ColumnChoice(unit=time_unit or ""), _mindahl.ColumnChoice(unit=normal_load_unit or ""),
+        [])
+    result = FitResult(_mindahl.fit(records_of(source, force, arguments, columns), request))
+    for warning in result.warnings:
+        warnings.warn(_mindahl.with_keywords(warning.message), FitWarning, stacklevel=2)
+    return result

@@ -1,0 +1,44 @@
+"""The figure of a fit, by matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+
+def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
+    if any(record.fitted_force is None for record in records):
+        raise ValueError("the fit failed: there is no curve to draw")
+    axes = _axes(ax)
+    for k, record in enumerate(records):
+        name = "" if len(records) == 1 else f" {record.name}"
+        points = axes[0].plot(record.displacement, record.force, ".", markersize=3,
+                              label=f"measured{name}")[0]
+        axes[0].plot(record.displacement, record.fitted_force, "-", linewidth=1.2,
+                     color="black" if len(records) == 1 else points.get_color(),
+                     label=f"fitted{name}")
+        if len(axes) > 1:
+            axes[1].plot(record.displacement, record.residual, ".", markersize=3,
+                         color=points.get_color())
+    axes[0].set_ylabel(f"force [{units[1]}]")
+    axes[-1].set_xlabel(f"displacement [{units[0]}]")
+    axes[0].legend()
+    if len(axes) > 1:
+        axes[1].axhline(0.0, linewidth=0.8, color="black")
+        axes[1].set_ylabel(f"residual [{units[1]}]")
+    return ax if ax is not None else axes
+
+
+def _axes(ax: Any) -> Any:
+    if ax is None:
+        from matplotlib import pyplot
+
+        _, axes = pyplot.subplots(2, 1, sharex=True, layout="constrained",
+                                  gridspec_kw={"height_ratios": [3, 1]})
+        return [*axes]
+    if hasattr(ax, "plot"):
+        return [ax]
+    axes = list(ax)
+    if len(axes) != 2 or not all(hasattr(axis, "plot") for axis in axes):
+        raise ValueError("ax must be one of matplotlib's Axes, or two")
+    return axes

@@ -1,0 +1,183 @@
+"""Records from arrays, data frames and files, all by the rules of the program's reader."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from . import _mindahl
+from ._arguments import array, column_name, is_array, is_frame, path_text, several
+from ._mindahl import Record
+
+Column = Union[str, int]
+
+
+def columns_of(
+    displacement: Optional[Column], force: Optional[Column], time: Optional[Column],
+    normal_load_column: Optional[Column], displacement_unit: Optional[str],
+    force_unit: Optional[str], time_unit: Optional[str], normal_load_unit: Optional[str],
+    covariates: Sequence[str] = (),
+) -> _mindahl.RecordColumns:
+    def choice(name: str, column: Optional[Column], unit: Optional[str]) -> _mindahl.ColumnChoice:
+        return _mindahl.ColumnChoice(column_name(name, column), unit or "")
+
+    return _mindahl.RecordColumns(
+        choice("displacement", displacement, displacement_unit),
+        choice("force", force, force_unit), choice("time", time, time_unit),
+        choice("normal_load_column", normal_load_column, normal_load_unit), list(covariates))
+
+
+def read_csv(
+    path: Union[str, os.PathLike[str]], *, displacement: Optional[Column] = None,
+    force: Optional[Column] = None, time: Optional[Column] = None,
+    normal_load_column: Optional[Column] = None, displacement_unit: Optional[str] = None,
+    force_unit: Optional[str] = None, time_unit: Optional[str] = None,
+    normal_load_unit: Optional[str] = None, covariates: Sequence[str] = (),
+) -> Record:
+    """Reads a hysteresis record from a CSV file as the program does.
+
+    path: the file; delimiter, decimal mark, header and units are found by themselves.
+    displacement, force, time, normal_load_column: column by header name or number counted from 1;
+        by default recognised names, else columns 1 and 2.
+    displacement_unit, force_unit, time_unit, normal_load_unit: symbols such as "um" and "kN"; by
+        default the header's, else m, N and s with a note.
+    covariates: further columns, by name or number, kept in units of their own.
+    Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
+    Raises InputError naming file, line and column.
+    """
+    return _mindahl.read_csv(path_text(path), columns_of(
+        displacement, force, time, normal_load_column, displacement_unit, force_unit, time_unit,
+        normal_load_unit, covariates))
+
+
+class RecordArguments:
+    """How the arguments of fit() and track() that say what a record is are to be read."""
+
+    def __init__(
+        self, *, displacement: Any, force: Any, time: Any, normal_load_column: Any,
+        displacement_unit: Optional[str], force_unit: Optional[str], time_unit: Optional[str],
+        normal_load_unit: Optional[str], covariates: Sequence[str] = (),
+        covariate_values: Optional[Mapping[str, Any]] = None,
+    ) -> None:
+        self.roles = {"displacement": displacement, "force": force, "time": time,
+                      "normal_load_column": normal_load_column}
+        self.units = {"displacement_unit": displacement_unit, "force_unit": force_unit,
+                      "time_unit": time_unit, "normal_load_unit": normal_load_unit}
+        self.covariates = list(covariates)
+
+    def columns(self) -> _mindahl.RecordColumns:
+        for role, value in self.roles.items():
+            if value is not None and not isinstance(value, (str, int, np.integer)):
+                raise ValueError(f"{role}: must be the name or the number of a column here, where "
+                                 "the columns are in a file or a frame")
+        return columns_of(**self.roles, **self.units, covariates=self.covariates)
+
+    def refuse_choices(self, what: str) -> None:
+        given = [name for name, value in {**self.roles, **self.units}.items() if value is not None]
+        if given:
+            raise ValueError(f"{given[0]} has no effect on {what}: leave it out")
+
+    def of_frame(self, frame: Any, name: str) -> Record:
+        names = [str(column) for column in frame.columns]
+        arrays = [array(name, frame.iloc[:, k].to_numpy(), keep_missing=True)
+                  for k, name in enumerate(names)]
+        return _mindahl.record_of_columns(name, names, arrays, self.columns())
+
+    def of_arrays(self, columns: Mapping[str, Any], name: str,
+                  covariates: Mapping[str, Any]) -> Record:
+        names, arrays = [], []
+        choices: dict[str, Any] = {}
+        headers = {"displacement": "displacement", "force": "force", "time": "time",
+                   "normal_load_column": "normal load"}
+        torsional = any(self.units[f"{role}_unit"] is not None for role in ("displacement", "force"))
+        for role, header in headers.items():
+            choices[role] = None
+            if columns.get(role) is None:
+                continue
+            unit = {"time": " [s]", "normal_load_column": " [N]"}.get(
+                role, "" if torsional else {"displacement": " [m]", "force": " [N]"}.get(role, ""))
+            names.append(header + unit)
+            arrays.append(array(role, columns[role]))
+            choices[role] = len(names)
+        for covariate, values in covariates.items():
+            names.append(covariate)
+            arrays.append(array(covariate, values))
+        for header, values in zip(names, arrays):
+            if len(values) != len(arrays[0]):
+                raise ValueError(f"{header} has {len(values)} samples and {names[0]} "
+                                 f"{len(arrays[0])}: give as many of both")
+        return _mindahl.record_of_columns(
+            name, names, arrays, columns_of(**choices, **self.units, covariates=self.covariates))
+
+
+def is_path(value: Any) -> bool:
+    return isinstance(value, (str, os.PathLike))
+
+
+def records_of(source: Any, force: Any, arguments: RecordArguments,
+               covariates: Optional[Mapping[str, Any]] = None) -> list[Record]:
+    """The records that the arguments of fit() and track() say."""
+    roles = arguments.roles
+    if source is None:
+        source, roles["displacement"] = roles["displacement"], None
+        if source is None:
+            raise ValueError("a record is missing: give displacement and force, a data frame, a "
+                             "record or a file")
+    if force is not None:
+        roles["force"] = force
+    elements = several(source)
+    if elements is None and is_array(source):
+        return [_record_of_arrays(source, roles, arguments, "record", covariates or {})]
+    if elements is None:
+        return [_record_of(source, arguments, "record")]
+    if not elements:
+        raise ValueError("a record is missing: the list is empty")
+    if not all(is_array(element) for element in elements):
+        return [_record_of(element, arguments, f"record {k + 1}")
+                for k, element in enumerate(elements)]
+    records = []
+    for k, element in enumerate(elements):
+        own = {role: _element(role, value, k, len(elements)) for role, value in roles.items()
+               if role != "displacement"}
+        records.append(_record_of_arrays(
+            element, {"displacement": None, **own}, arguments, f"record {k + 1}",
+            {name: _element(name, values, k, len(elements))
+             for name, values in (covariates or {}).items()}))
+    return records
+
+
+def _element(name: str, values: Any, k: int, count: int) -> Any:
+    if values is None:
+        return None
+    elements = several(values)
+    if elements is None or len(elements) != count:
+        raise ValueError(f"{name}: must be a list of {count} arrays, one a record")
+    return elements[k]
+
+
+def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: RecordArguments,
+                      name: str, covariates: Mapping[str, Any]) -> Record:
+    if roles.get("displacement") is not None:
+        raise ValueError("displacement is given twice: give it once")
+    if roles.get("force") is None:
+        raise ValueError("force is missing: give an array of the force [N], one a displacement")
+    for role, value in roles.items():
+        if isinstance(value, (str, int)):
+            raise ValueError(f"{role} = {value!r} names a column, but the displacement is an array: "
+                             "give an array")
+    return arguments.of_arrays({**roles, "displacement": displacement}, name, covariates)
+
+
+def _record_of(source: Any, arguments: RecordArguments, name: str) -> Record:
+    if isinstance(source, Record):
+        arguments.refuse_choices("a record that is read already")
+        return source
+    if is_path(source):
+        return _mindahl.read_csv(path_text(source), arguments.columns())
+    if is_frame(source):
+        return arguments.of_frame(source, name)
+    array(name, source)  # says why it is no array
+    raise ValueError(f"{name}: a {type(source).__name__} is no array, data frame, record or file")

@@ -1,0 +1,228 @@
+"""What a fit says: the program's report, with attributes."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from . import _mindahl
+from ._arguments import Floats
+from ._html import summary
+
+
+class FitWarning(UserWarning):
+    """What a fit found and a person should act on; result.warnings has all of it, with codes."""
+
+
+class Section(Mapping[str, Any]):
+    """A part of the report, by item or by attribute: what docs/contract.md lists. Read-only."""
+
+    def __init__(self, values: Mapping[str, Any], path: str) -> None:
+        self._values = values
+        self._path = path
+
+    def __getitem__(self, name: str) -> Any:
+        return _wrapped(self._values[name], f"{self._path}.{name}")
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self._values:
+            raise AttributeError(f"{self._path} has no '{name}': it has {', '.join(self._values)}")
+        return self[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self._values})
+
+    def __repr__(self) -> str:
+        return f"{self._path}: {dict(self._values)!r}"
+
+
+def _wrapped(value: Any, path: str) -> Any:
+    if isinstance(value, dict):
+        return Section(value, path)
+    if isinstance(value, list):
+        return tuple(_wrapped(element, f"{path}[{k}]") for k, element in enumerate(value))
+    return value
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A fitted or held parameter, in SI units.
+
+    interval: ends of the 95 % interval; None where it is open.
+    status: "free", "fixed", "at_lower_bound" or "at_upper_bound".
+    identifiability: "identifiable", "extrapolated", "bounded_below" or "not_identifiable".
+    """
+
+    name: str
+    value: Optional[float]
+    unit: str
+    standard_error: Optional[float]
+    interval: tuple[Optional[float], Optional[float]]
+    status: str
+    identifiability: str
+
+
+@dataclass(frozen=True)
+class Message:
+    """What was found, in words, and its code, which is stable: docs/contract.md."""
+
+    code: str
+    message: str
+
+
+@dataclass(frozen=True)
+class FittedRecord:
+    """A record that was fitted, [m], [N], [s] or [rad], [N m], [s]; arrays are read-only.
+
+    fitted_force and residual = fitted - measured are None where the fit failed.
+    """
+
+    name: str
+    displacement: Floats
+    force: Floats
+    time: Optional[Floats]
+    fitted_force: Optional[Floats]
+    residual: Optional[Floats]
+
+
+class FitResult:
+    """A fit: sigma, alpha, slip_force and every section of the report as attributes.
+
+    parameters: all, by name. records: the arrays of each record. warnings, notes: in words.
+    adequacy, measured, contact, mapping, loop, residuals, solver, ...: sections of the report, as
+        docs/contract.md lists them; result.to_dict() is the same as the program's JSON.
+    """
+
+    def __init__(self, fitted: _mindahl.Fitted) -> None:
+        self._fitted = fitted
+        self._report: dict[str, Any] = json.loads(fitted.json())
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        parameters = self._report.get("parameters") or {}
+        if name in parameters:
+            return self.parameters[name]
+        if name in self._report:
+            return _wrapped(self._report[name], f"result.{name}")
+        if not parameters:
+            raise AttributeError(f"the fit failed and has no '{name}': {self.text().strip()}")
+        raise AttributeError(f"the fit has no '{name}': it has the parameters "
+                             f"{', '.join(parameters)} and {', '.join(self._report)}")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self._report, *(self._report.get("parameters") or {})})
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """All parameters by name, as the program reports them; empty where the fit failed."""
+        return {name: Parameter(name, values["value"], values["unit"], values["standard_error"],
+                                (values["ci95"][0], values["ci95"][1]), values["status"],
+                                values["identifiability"])
+                for name, values in (self._report.get("parameters") or {}).items()}
+
+    @property
+    def sigma(self) -> Parameter:
+        """Tangential stiffness [N/m] at the start of every branch."""
+        return self._parameter("sigma")
+
+    @property
+    def alpha(self) -> Parameter:
+        """Shape exponent [-]."""
+        return self._parameter("alpha")
+
+    @property
+    def slip_force(self) -> Parameter:
+        """Tc [N]."""
+        return self._parameter("slip_force")
+
+    def _parameter(self, name: str) -> Parameter:
+        if name not in self.parameters:
+            raise AttributeError(name)  # __getattr__() says why
+        return self.parameters[name]
+
+    @property
+    def converged(self) -> bool:
+        """Did the solver converge?"""
+        return bool(self._report["solver"]["converged"])
+
+    @property
+    def warnings(self) -> tuple[Message, ...]:
+        """What a person should act on."""
+        return tuple(Message(item["code"], item["message"]) for item in self._report["warnings"])
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was assumed of the record, such as a unit that it does not name."""
+        return tuple(self._fitted.notes)
+
+    @property
+    def records(self) -> tuple[FittedRecord, ...]:
+        """Each record with its fit; a record whose load goes in steps is one for each load."""
+        return tuple(FittedRecord(**arrays) for arrays in self._fitted.records)
+
+    @property
+    def fitted_force(self) -> Any:
+        """Fitted force [N] of every sample; of several records a list of arrays."""
+        return self._one_or_all("fitted_force")
+
+    @property
+    def residual(self) -> Any:
+        """Fitted less measured force [N] of every sample; of several records a list of arrays."""
+        return self._one_or_all("residual")
+
+    def _one_or_all(self, name: str) -> Any:
+        arrays = [getattr(record, name) for record in self.records]
+        return arrays[0] if len(arrays) == 1 else arrays
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `mindahl fit --json` writes (schema mindahl.fit/1), as a dict of one's own."""
+        return copy.deepcopy(self._report)
+
+    def to_json(self) -> str:
+        """The same as text, byte for byte as the program writes it."""
+        return self._fitted.json()
+
+    def residuals_csv(self) -> str:
+        """What `mindahl fit --residuals` writes."""
+        return self._fitted.residuals_csv()
+
+    def text(self) -> str:
+        """What `mindahl fit` prints."""
+        return self._fitted.text()
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __repr__(self) -> str:
+        if self._fitted.failed:
+            return f"<mindahl.FitResult: {self.text().strip()}>"
+        values = ", ".join(f"{name} = {parameter.value:.6g}"
+                           + ("" if parameter.unit == "-" else f" {parameter.unit}")
+                           for name, parameter in list(self.parameters.items())[:3])
+        verdict = self.adequacy.verdict or "adequacy not decided"
+        return f"<mindahl.FitResult: {values}; {verdict}>"
+
+    def _repr_html_(self) -> str:
+        return summary(self._report)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the measured and the fitted loop, and the residual below where ax is None.
+
+        ax: two of matplotlib's Axes, for loop and residual, or one for the loop alone; by default
+            a new figure.
+        Returns the Axes that were drawn on.
+        Raises ValueError for a fit that failed, which has no curve.
+        """
+        from ._plot import draw
+
+        return draw(self.records, self._fitted.units, ax)

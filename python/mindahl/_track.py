@@ -1,0 +1,118 @@
+"""mindahl.track()."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from . import _mindahl
+from ._arguments import count, optional_number, path_text, several
+from ._fit import Asked, Range, request_of
+from ._records import RecordArguments, is_path, records_of
+from ._result import FitWarning
+
+
+class CycleTable(Mapping[str, Any]):
+    """What track() found: one row a cycle, a NumPy array a column; NaN for what is not known.
+
+    units: of the columns that have one. to_pandas(): the same as a data frame.
+    """
+
+    def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str]) -> None:
+        self._columns = {name: np.asarray(values) for name, values in columns.items()}
+        self.units = dict(units)
+
+    def __getitem__(self, name: str) -> Any:
+        return self._columns[name]
+
+    def __iter__(self) -> Any:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        return f"<mindahl.CycleTable: {len(self['cycle'])} rows of {', '.join(self._columns)}>"
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame of the columns. Raises ImportError without pandas."""
+        import pandas
+
+        return pandas.DataFrame(self._columns)
+
+
+def track(
+    source: Any = None, force: Any = None, *, displacement: Any = None, time: Any = None,
+    normal_load: Optional[float] = None, normal_load_column: Any = None,
+    displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
+    time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
+    model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
+    offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
+    plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
+    drift: bool = False, fix: Optional[Mapping[str, float]] = None,
+    start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
+    loss: str = "none", starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
+    displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
+    average: int = 1, every: int = 1, broken_rows: str = "refuse", threads: Optional[int] = None,
+) -> CycleTable:
+    """Fits every cycle of a long record on its own: one row a cycle.
+
+    source, force, displacement, time, normal_load_column and the units: as of fit(). A file is read
+        piece by piece, in memory that its length does not change; a list of sources is one test in
+        this order, and a cycle ends with its source.
+    normal_load: [N] of all cycles; by default the column's mean over each.
+    average: so many cycles in a row are one fit. every: one fit of so many that there could be.
+    broken_rows: of files, "refuse" or "skip". threads: that fit; by default one a core.
+    The others: as of fit(), but that model="auto" and covariates are not for single cycles.
+    Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
+    Warns with FitWarning of uncertain reversals and of rows that were skipped.
+    Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
+    Other threads run while it fits.
+    """
+    request = _mindahl.TrackRequest()
+    request.fit = request_of(
+        model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,
+        terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
+               "lag": lag, "drift": drift},
+        covariate=None, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
+        force_noise=force_noise, displacement_noise=displacement_noise,
+        reversal_gate=reversal_gate)
+    request.normal_load = optional_number("normal_load", normal_load)
+    request.average = count("average", average, 1)
+    request.every = count("every", every, 1)
+    request.threads = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
+    if broken_rows not in ("refuse", "skip"):
+        raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
+    arguments = RecordArguments(
+        displacement=displacement, force=None, time=time, normal_load_column=normal_load_column,
+        displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
+        normal_load_unit=normal_load_unit)
+    files = _files_of(source)
+    if files is None:
+        if broken_rows == "skip":
+            raise ValueError("broken_rows has no effect on what is no file: leave it out")
+        found = _mindahl.track_records(request, records_of(source, force, arguments))
+    else:
+        arguments.roles["force"] = force
+        fit = request.fit
+        fit.columns = arguments.columns()
+        request.fit = fit
+        found = _mindahl.track_files(request, files, broken_rows == "skip")
+    columns, units, doubts = found
+    for doubt in doubts:
+        warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
+    return CycleTable(columns, units)
+
+
+def _files_of(source: Any) -> Optional[Sequence[str]]:
+    """The paths, where all sources are files."""
+    if is_path(source):
+        return [path_text(source)]
+    elements = several(source)
+    if elements and all(is_path(element) for element in elements):
+        return [path_text(element) for element in elements]
+    return None

@@ -1,0 +1,56 @@
+"""The wheel of mindahl.
+
+The extension is built by CMake from the tree around this folder; where MINDAHL_PYTHON_BUILD_DIR
+names a package that is built already, build/ci/python/package, it is taken from there. Nothing is
+downloaded: pip install --no-index --no-deps --no-build-isolation ./python
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+ROOT = Path(__file__).resolve().parent.parent
+VERSION = re.search(r"project\(mindahl VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())
+
+
+class BuildByCMake(build_ext):
+    def build_extension(self, extension):
+        target = Path(self.get_ext_fullpath(extension.name)).resolve()
+        target.parent.mkdir(parents=True, exist_ok=True)
+        built = os.environ.get("MINDAHL_PYTHON_BUILD_DIR")
+        package = Path(built) if built else self.build_package()
+        libraries = sorted((package / "mindahl").glob("_mindahl*.so"))
+        if len(libraries) != 1:
+            raise RuntimeError(f"{package}/mindahl holds {len(libraries)} extensions: build it anew")
+        shutil.copy2(libraries[0], target)
+
+    def build_package(self):
+        build = Path(self.build_temp).resolve()
+        subprocess.run(
+            ["cmake", "-S", str(ROOT), "-B", str(build), "-DCMAKE_BUILD_TYPE=Release",
+             "-DMINDAHL_BUILD_PYTHON=ON", "-DMINDAHL_BUILD_TESTS=OFF", "-DMINDAHL_BUILD_EXAMPLES=OFF",
+             f"-DMINDAHL_PYTHON={sys.executable}"], check=True)
+        subprocess.run(["cmake", "--build", str(build), "--target", "mindahl_python", "--parallel"],
+                       check=True)
+        return build / "python" / "package"
+
+
+setup(
+    name="mindahl",
+    version=VERSION.group(1),
+    description="Friction parameters of a contact from its measured hysteresis loop",
+    packages=["mindahl"],
+    package_data={"mindahl": ["py.typed", "*.pyi"]},
+    ext_modules=[Extension("mindahl._mindahl", sources=[])],
+    cmdclass={"build_ext": BuildByCMake},
+    python_requires=">=3.9",
+    install_requires=["numpy"],
+    extras_require={"plot": ["matplotlib"], "frames": ["pandas"]},
+    zip_safe=False,
+)

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+/// The extension module _mindahl: the library's own functions with NumPy arrays for spans. What is
+/// Pythonic - keywords, frames, results with attributes - is python/mindahl/*.py.
+namespace mindahl::python {
+
+/// float64, contiguous; what is not is converted before it comes here.
+using Array = pybind11::array_t<double, pybind11::array::c_style>;
+
+/// The numbers of an array where they are.
+/// @throws InvalidArgument unless it has one dimension
+std::span<const double> SpanOf(const Array& array, const char* what);
+
+/// A read-only array of numbers where they are, which keeps their owner alive.
+pybind11::array ViewOf(const std::vector<double>& values, const pybind11::handle& owner);
+
+/// The command line's option names as Python has them: "--rig-stiffness" is "rig_stiffness".
+std::string WithKeywords(const std::string& message);
+
+void AddErrors(pybind11::module_& module);
+void AddRecords(pybind11::module_& module);
+void AddFit(pybind11::module_& module);
+void AddTrack(pybind11::module_& module);
+void AddContact(pybind11::module_& module);
+void AddModels(pybind11::module_& module);
+
+}  // namespace mindahl::python

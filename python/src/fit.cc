@@ -1,0 +1,144 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/terms.h"
+#include "mindahl/report/json.h"
+#include "mindahl/report/report.h"
+#include "mindahl/report/residual_table.h"
+#include "mindahl/report/text.h"
+#include "mindahl/request/fit_records.h"
+#include "mindahl/request/fit_request.h"
+#include "record.h"
+#include "request.h"
+
+namespace mindahl::python {
+
+namespace py = pybind11;
+using contact::UncertainValue;
+using report::Report;
+using request::FitRequest;
+
+namespace {
+
+/// A report and what was assumed on the way to it.
+struct Fitted {
+  Report report;
+  std::vector<std::string> notes;
+};
+
+std::shared_ptr<Fitted> Fit(const std::vector<NamedRecord>& records, FitRequest request) {
+  const py::gil_scoped_release others_may_run;
+  request.files.clear();
+  std::vector<io::RecordFile> files;
+  std::vector<std::string> notes;
+  for (const NamedRecord& record : records) request.files.push_back(record.name);
+  request::Validate(request);
+  for (const NamedRecord& record : records) {
+    io::RecordFile& file = files.emplace_back(record.file);
+    request::KeepTimeWindow(request, record.name, file);
+    notes.insert(notes.end(), file.notes.begin(), file.notes.end());
+  }
+  Report report = request::FitRecords(request, std::move(files),
+                                      [&](std::string_view note) { notes.emplace_back(note); });
+  return std::make_shared<Fitted>(Fitted{std::move(report), std::move(notes)});
+}
+
+std::string TextOf(const Fitted& fitted) {
+  if (fitted.report.failed()) return "the fit failed: " + fitted.report.fit.termination + '\n';
+  return report::ToText(fitted.report);
+}
+
+/// One dict a record: its arrays, and those of the fit where it did not fail.
+py::list RecordsOf(const py::object& self) {
+  const Fitted& fitted = self.cast<const Fitted&>();
+  py::list records;
+  for (std::size_t r = 0; r < fitted.report.records.size(); ++r) {
+    const loop::Record& record = fitted.report.records[r].record;
+    py::dict arrays;
+    arrays["name"] = fitted.report.files[r];
+    arrays["displacement"] = ViewOf(record.displacement, self);
+    arrays["force"] = ViewOf(record.force, self);
+    arrays["time"] = record.time.empty() ? py::object(py::none()) : ViewOf(record.time, self);
+    arrays["fitted_force"] = py::none();
+    arrays["residual"] = py::none();
+    if (!fitted.report.failed()) {
+      arrays["fitted_force"] = ViewOf(fitted.report.fit.records[r].fitted_force, self);
+      arrays["residual"] = ViewOf(fitted.report.fit.records[r].residual, self);
+    }
+    records.append(arrays);
+  }
+  return records;
+}
+
+void SetTerm(FitRequest& request, const std::string& name, const std::string& asked) {
+  const identification::Term* term = identification::FindTerm(name);
+  if (term == nullptr) throw InputError("there is no term '" + name + "'");
+  request.terms[term->name] = asked;
+}
+
+void SetNormalLoads(FitRequest& request, const std::vector<UncertainValue>& loads) {
+  request::SetNormalLoads(request.contact, loads);
+}
+
+}  // namespace
+
+void AddFit(py::module_& module) {
+  AddRequest(module)
+      .def_readwrite("time_window", &FitRequest::time_window)
+      .def_readwrite("model", &FitRequest::model)
+      .def_readwrite("initial_state", &FitRequest::initial_state)
+      .def_readwrite("force_sign", &FitRequest::force_sign)
+      .def_readwrite("offsets", &FitRequest::offsets)
+      .def_readwrite("covariates", &FitRequest::covariates)
+      .def_readwrite("load_window", &FitRequest::load_window)
+      .def_readwrite("cycles", &FitRequest::cycles)
+      .def_readwrite("samples", &FitRequest::samples)
+      .def_readwrite("skip_cycles", &FitRequest::skip_cycles)
+      .def_readwrite("loss", &FitRequest::loss)
+      .def_readwrite("starts", &FitRequest::starts)
+      .def_readwrite("seed", &FitRequest::seed)
+      .def_readwrite("fix", &FitRequest::fix)
+      .def_readwrite("start", &FitRequest::start)
+      .def_readwrite("bound", &FitRequest::bound)
+      .def_readwrite("force_noise", &FitRequest::force_noise)
+      .def_readwrite("displacement_noise", &FitRequest::displacement_noise)
+      .def_readwrite("reversal_gate", &FitRequest::reversal_gate)
+      .def_readwrite("columns", &FitRequest::columns)
+      .def_readwrite("contact", &FitRequest::contact)
+      .def("set_term", &SetTerm, py::arg("name"), py::arg("asked"))
+      .def("set_normal_loads", &SetNormalLoads, py::arg("loads"))
+      .def("covariate_columns", &request::CovariateColumns);
+  py::class_<Fitted, std::shared_ptr<Fitted>>(module, "Fitted")
+      .def("json",
+           [](const Fitted& fitted) {
+             const py::gil_scoped_release others_may_run;
+             return report::ToJson(fitted.report);
+           })
+      .def("text", &TextOf)
+      .def("residuals_csv",
+           [](const Fitted& fitted) { return report::ResidualsCsv(fitted.report); })
+      .def_property_readonly("records", &RecordsOf)
+      .def_property_readonly("failed", [](const Fitted& fitted) { return fitted.report.failed(); })
+      .def_property_readonly("units",
+                             [](const Fitted& fitted) {
+                               return std::pair(std::string(fitted.report.units.displacement),
+                                                std::string(fitted.report.units.force));
+                             })
+      .def_readonly("notes", &Fitted::notes);
+  module.def("fit", &Fit, py::arg("records"), py::arg("request"));
+  module.def("terms", [] {
+    std::vector<std::pair<std::string, std::string>> terms;
+    for (const identification::Term& term : identification::Terms()) {
+      if (!term.option.empty() && !term.of_column) terms.emplace_back(term.name, term.option);
+    }
+    return terms;
+  });
+}
+
+}  // namespace mindahl::python

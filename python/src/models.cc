@@ -1,0 +1,114 @@
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+
+#include "bindings.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+#include "mindahl/models/contact_state.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::python {
+
+namespace py = pybind11;
+using models::BranchLaw;
+using models::ContactState;
+using models::FrictionModel;
+
+namespace {
+
+const FrictionModel& RequireModel(const std::string& name) {
+  std::string names;
+  for (const FrictionModel& model : models::FrictionModels()) {
+    if (model.name == name) return model;
+    names += (names.empty() ? "" : ", ") + std::string(model.name);
+  }
+  throw InputError("--model: '" + name + "' is not one of " + names);
+}
+
+/// The law as the model uses it.
+/// @param alpha  empty: the model's own, or 1/3 where it leaves α free
+BranchLaw LawOf(const FrictionModel& model, double sigma, std::optional<double> alpha,
+                double slip_force) {
+  if (alpha && model.shape_exponent && *alpha != *model.shape_exponent) {
+    throw InputError("--alpha contradicts --model " + std::string(model.name) +
+                     ", which prescribes it: use --model mindlin-dahl");
+  }
+  BranchLaw law{.tangential_stiffness = sigma, .slip_force = slip_force};
+  if (model.shape_exponent) law.shape_exponent = *model.shape_exponent;
+  if (alpha) law.shape_exponent = *alpha;
+  Validate(law);
+  return law;
+}
+
+models::SeriesSpring RigOf(std::optional<double> stiffness) {
+  if (!stiffness) return {};
+  return {.stiffness = *stiffness};
+}
+
+py::array_t<double> Simulate(const Array& displacement, double sigma, double slip_force,
+                             std::optional<double> alpha, const std::string& model_name,
+                             std::optional<double> rig_stiffness) {
+  const FrictionModel& model = RequireModel(model_name);
+  const BranchLaw law = LawOf(model, sigma, alpha, slip_force);
+  const std::span<const double> samples = SpanOf(displacement, "displacement");
+  py::array_t<double> force(displacement.size());
+  const std::span<double> written(force.mutable_data(), samples.size());
+  const py::gil_scoped_release others_may_run;
+  const models::LoadingPath path = models::MakeLoadingPath(
+      samples, loop::FindReversals(samples, 0.0), model.memory, models::InitialContact{});
+  models::EvaluateForce(model, law, path, samples, written, RigOf(rig_stiffness));
+  return force;
+}
+
+ContactState MakeState(double sigma, double slip_force, std::optional<double> alpha,
+                       const std::string& model_name, double unloaded_displacement,
+                       std::optional<double> rig_stiffness) {
+  const FrictionModel& model = RequireModel(model_name);
+  return ContactState(
+      model, LawOf(model, sigma, alpha, slip_force),
+      {.unloaded_displacement = unloaded_displacement, .rig = RigOf(rig_stiffness)});
+}
+
+}  // namespace
+
+void AddModels(py::module_& module) {
+  module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
+             py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"));
+  py::class_<ContactState>(module, "ContactState", R"(A contact that is moved step by step.
+
+Exact for a motion that does not turn within a step, however long the step; no time enters.
+
+sigma: tangential stiffness [N/m] at the start of a branch, > 0.
+slip_force: Tc [N], > 0.
+alpha: shape exponent [-]; by default the model's own, or 1/3.
+model: "mindlin-dahl", "mindlin", "dahl" or "jenkins".
+unloaded_displacement: [m], where the force is 0 before any motion.
+rig_stiffness: of a spring [N/m] in series, by default rigid.
+Raises ValueError naming the quantity, its value and the rule.)")
+      .def(py::init(&MakeState), py::kw_only(), py::arg("sigma"), py::arg("slip_force"),
+           py::arg("alpha") = py::none(), py::arg("model") = "mindlin-dahl",
+           py::arg("unloaded_displacement") = 0.0, py::arg("rig_stiffness") = py::none())
+      .def("move", &ContactState::Move, py::arg("displacement"),
+           "Moves on to a displacement [m] and returns the force [N] there.")
+      .def("peek", &ContactState::Peek, py::arg("displacement"),
+           "The force [N] that move() would return, without moving.")
+      .def("reset", &ContactState::Reset, "Back to the virgin contact.")
+      .def_property_readonly("force", py::overload_cast<>(&ContactState::Force, py::const_),
+                             "[N] at the present displacement")
+      .def_property_readonly("displacement", &ContactState::Displacement, "[m]")
+      .def_property_readonly("tangent_stiffness", &ContactState::TangentStiffness,
+                             "dT/dδ [N/m] onward in the direction of the last motion")
+      .def_property_readonly("remembered_extremes", &ContactState::RememberedExtremes,
+                             "the depth of nesting")
+      .def("__copy__", [](const ContactState& state) { return ContactState(state); })
+      .def(
+          "__deepcopy__",
+          [](const ContactState& state, const py::dict& /*memo*/) { return ContactState(state); },
+          py::arg("memo"));
+}
+
+}  // namespace mindahl::python

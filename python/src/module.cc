@@ -1,0 +1,13 @@
+#include "bindings.h"
+#include "mindahl/core/version.h"
+
+PYBIND11_MODULE(_mindahl, module) {
+  module.doc() = "mindahl's library; import mindahl is the interface to it";
+  module.attr("__version__") = std::string(mindahl::Version());
+  mindahl::python::AddErrors(module);
+  mindahl::python::AddRecords(module);
+  mindahl::python::AddFit(module);
+  mindahl::python::AddTrack(module);
+  mindahl::python::AddContact(module);
+  mindahl::python::AddModels(module);
+}

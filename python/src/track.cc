@@ -1,0 +1,239 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/reading.h"
+#include "mindahl/campaign/tracker.h"
+#include "mindahl/core/error.h"
+#include "mindahl/io/record_stream.h"
+#include "mindahl/report/units.h"
+#include "mindahl/request/fit_request.h"
+#include "record.h"
+
+namespace mindahl::python {
+
+namespace py = pybind11;
+using campaign::CycleFit;
+using request::FitRequest;
+
+namespace {
+
+struct TrackRequest {
+  FitRequest fit;
+  std::optional<double> normal_load;
+  std::size_t together = 1;
+  std::size_t every = 1;
+  std::size_t threads = 1;
+};
+
+struct Tracked {
+  std::vector<CycleFit> fits;
+  bool is_torsional = false;
+  double energy_per_row = 1.0;  // cycles that a row stands for
+  std::vector<std::string> warnings;
+};
+
+/// Fits of one test, whose samples come as the function gives them.
+class Run {
+ public:
+  explicit Run(const TrackRequest& request)
+      : request_(request), fit_(request::MakeCycleFitOptions(request.fit)) {
+    if (request.normal_load) RequirePositive("--normal-load [N]", *request.normal_load);
+    if (request.normal_load) fit_.normal_loads = {*request.normal_load};
+    tracked_.energy_per_row = static_cast<double>(request.together * request.every);
+  }
+
+  [[nodiscard]] bool has_begun() const { return tracker_.has_value(); }
+  [[nodiscard]] bool is_torsional() const { return tracked_.is_torsional; }
+
+  void Begin(const loop::RecordView& head, bool is_torsional, std::string_view source) {
+    tracked_.is_torsional = is_torsional;
+    reading_ = campaign::ChooseReading(head, fit_);
+    if (auto doubt = campaign::DoubtAbout(reading_, source)) Warn(std::move(*doubt));
+    tracker_.emplace(campaign::TrackOptions{.fit = fit_,
+                                            .together = request_.together,
+                                            .every = request_.every,
+                                            .threads = request_.threads},
+                     [this](std::span<const CycleFit> fits) {
+                       tracked_.fits.insert(tracked_.fits.end(), fits.begin(), fits.end());
+                     });
+  }
+
+  void Add(const loop::RecordView& samples, std::span<const std::size_t> lines) {
+    tracker_->Add(samples, lines);
+  }
+
+  void NextFile() { tracker_->NextFile(); }
+
+  void Warn(std::string message) { tracked_.warnings.push_back(std::move(message)); }
+
+  Tracked Finish(std::string_view source) {
+    tracker_->Finish();
+    campaign::RequireCycles(tracker_->cycles(), request_.together, reading_,
+                            *fit_.preparation.reversal_gate, source);
+    return std::move(tracked_);
+  }
+
+ private:
+  const TrackRequest& request_;
+  identification::FitOptions fit_;
+  campaign::Reading reading_;
+  std::optional<campaign::Tracker> tracker_;
+  Tracked tracked_;
+};
+
+void RequireOneKind(const Run& run, bool is_torsional, const std::string& first,
+                    const std::string& other) {
+  if (!run.has_begun() || run.is_torsional() == is_torsional) return;
+  throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", first,
+                               run.is_torsional() ? "torque" : "force", other,
+                               is_torsional ? "torque" : "force"));
+}
+
+Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& files,
+                   bool skip_broken_rows) {
+  Run run(request);
+  const io::BrokenRows broken = skip_broken_rows ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
+  for (const std::string& file : files) {
+    io::RecordStream stream(file, request.fit.columns, broken);
+    RequireOneKind(run, stream.layout().is_torsional, files.front(), file);
+    io::Samples piece;
+    if (run.has_begun()) {
+      stream.Next(piece);
+    } else {
+      piece = campaign::ReadHead(stream);
+      run.Begin(campaign::ViewOf(piece), stream.layout().is_torsional, file);
+    }
+    while (piece.size() > 0) {
+      run.Add(campaign::ViewOf(piece), piece.lines);
+      if (!stream.Next(piece)) break;
+    }
+    run.NextFile();
+    if (stream.broken_rows() > 0) {
+      run.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}", stream.broken_rows(),
+                           file, stream.first_broken_row()));
+    }
+  }
+  return run.Finish(fmt::format("{}", fmt::join(files, ", ")));
+}
+
+Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>& records) {
+  constexpr std::size_t kMostOfHead = 1'000'000;
+  Run run(request);
+  for (const NamedRecord& record : records) {
+    const bool is_torsional = record.file.is_torsional;
+    RequireOneKind(run, is_torsional, records.front().name, record.name);
+    const loop::Record& samples = record.file.record;
+    if (!run.has_begun()) {
+      const std::size_t head = std::min(samples.size(), kMostOfHead);
+      const auto first = [head](const std::vector<double>& column) {
+        return std::span(column).first(std::min(head, column.size()));
+      };
+      run.Begin({first(samples.displacement), first(samples.force), first(samples.time),
+                 first(samples.normal_load)},
+                is_torsional, record.name);
+    }
+    run.Add({samples.displacement, samples.force, samples.time, samples.normal_load},
+            record.file.lines);
+    run.NextFile();
+  }
+  return run.Finish(records.front().name);
+}
+
+template <typename Value, typename Of>
+py::array_t<Value> ColumnOf(const std::vector<CycleFit>& fits, Of of) {
+  py::array_t<Value> column(static_cast<py::ssize_t>(fits.size()));
+  Value* const values = column.mutable_data();
+  for (std::size_t k = 0; k < fits.size(); ++k) values[k] = of(fits[k]);
+  return column;
+}
+
+/// The columns of the command line's table, with NaN for what is not known; their units; and what
+/// is to be warned of.
+std::tuple<py::dict, py::dict, std::vector<std::string>> ColumnsOf(Tracked tracked) {
+  py::dict columns;
+  py::dict units;
+  const report::Units& names =
+      tracked.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+  const auto number = [&](const char* name, std::size_t CycleFit::*member) {
+    columns[name] = ColumnOf<std::int64_t>(tracked.fits, [member](const CycleFit& fit) {
+      return static_cast<std::int64_t>(fit.*member);
+    });
+  };
+  number("cycle", &CycleFit::number);
+  number("first_line", &CycleFit::first_line);
+  number("samples", &CycleFit::samples);
+  for (const campaign::CycleNumber& column : campaign::CycleNumbers()) {
+    py::array_t<double> values(static_cast<py::ssize_t>(tracked.fits.size()));
+    double* const written = values.mutable_data();
+    for (std::size_t k = 0; k < tracked.fits.size(); ++k) {
+      written[k] = column.of(tracked.fits[k]).value_or(std::numeric_limits<double>::quiet_NaN());
+    }
+    const std::string name(column.name);
+    columns[py::str(name)] = values;
+    if (!column.unit.empty()) {
+      units[py::str(name)] = std::string(report::UnitIn(names, column.unit));
+    }
+  }
+  py::list regimes;
+  py::list flags;
+  double sum = 0.0;
+  columns["accumulated_energy"] = ColumnOf<double>(tracked.fits, [&](const CycleFit& fit) {
+    return sum += fit.energy.value_or(0.0) * tracked.energy_per_row;
+  });
+  units["accumulated_energy"] = "J";
+  for (const CycleFit& fit : tracked.fits) {
+    regimes.append(!fit.slips_grossly ? "" : *fit.slips_grossly ? "gross" : "partial");
+    flags.append(fmt::format("{}", fmt::join(fit.flags, " ")));
+  }
+  columns["slip_regime"] = regimes;
+  columns["flags"] = flags;
+  return {columns, units, tracked.warnings};
+}
+
+}  // namespace
+
+void AddTrack(py::module_& module) {
+  py::class_<TrackRequest>(module, "TrackRequest")
+      .def(py::init<>())
+      .def_readwrite("fit", &TrackRequest::fit)
+      .def_readwrite("normal_load", &TrackRequest::normal_load)
+      .def_readwrite("average", &TrackRequest::together)
+      .def_readwrite("every", &TrackRequest::every)
+      .def_readwrite("threads", &TrackRequest::threads);
+  module.def(
+      "track_files",
+      [](const TrackRequest& request, const std::vector<std::string>& files, bool skip) {
+        Tracked tracked;
+        {
+          const py::gil_scoped_release others_may_run;
+          tracked = TrackFiles(request, files, skip);
+        }
+        return ColumnsOf(std::move(tracked));
+      },
+      py::arg("request"), py::arg("files"), py::arg("skip_broken_rows"));
+  module.def(
+      "track_records",
+      [](const TrackRequest& request, const std::vector<NamedRecord>& records) {
+        Tracked tracked;
+        {
+          const py::gil_scoped_release others_may_run;
+          tracked = TrackRecords(request, records);
+        }
+        return ColumnsOf(std::move(tracked));
+      },
+      py::arg("request"), py::arg("records"));
+}
+
+}  // namespace mindahl::python

@@ -1,0 +1,267 @@
+#include "mindahl/request/fit_records.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/too_few_samples.h"
+#include "mindahl/io/load_pieces.h"
+#include "mindahl/io/time_window.h"
+#include "mindahl/report/contact.h"
+
+namespace mindahl::request {
+
+using identification::FitOptions;
+using identification::Interval;
+using io::RecordFile;
+using loop::Record;
+
+namespace {
+
+/// "file:line:column" of a sample, and of the whole file where the record does not know its lines.
+std::string PlaceOf(const std::string& file, const RecordFile& input,
+                    const io::ChosenColumn& column, std::size_t sample) {
+  if (sample >= input.lines.size()) return fmt::format("{}:{}", file, column.number);
+  return fmt::format("{}:{}:{}", file, input.lines[sample], column.number);
+}
+
+/// Half the range of a column in SI units; refuses what is beyond any unit that is meant.
+double RequireHalfRange(const std::string& file, const RecordFile& input,
+                        const io::ChosenColumn& column, const std::vector<double>& values,
+                        std::string_view what, std::string_view unit) {
+  constexpr double kSmallest = 1e-100;
+  constexpr double kLargest = 1e100;
+  const auto [least, greatest] = std::ranges::minmax_element(values);
+  const double half_range = *greatest / 2 - *least / 2;
+  if (half_range == 0 || (half_range >= kSmallest && half_range <= kLargest)) return half_range;
+  const auto widest = std::abs(*least) > std::abs(*greatest) ? least : greatest;
+  throw InputError(
+      fmt::format("{}: half the range of the {} is {} {}: must lie between 1e-100 and 1e100: "
+                  "choose other units",
+                  PlaceOf(file, input, column, static_cast<std::size_t>(widest - values.begin())),
+                  what, half_range, unit));
+}
+
+/// Where a whole file is at fault, it is named too, with a line and a column to look at.
+void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+  bool is_loaded = false;
+  std::size_t samples = 0;
+  for (std::size_t r = 0; r < inputs.size(); ++r) {
+    const RecordFile& input = inputs[r];
+    const Record& record = input.record;
+    const std::string& file = request.files[r];
+    const bool torsional = input.is_torsional;
+    samples += record.size();
+    if (!(RequireHalfRange(file, input, input.displacement, record.displacement, "displacement",
+                           torsional ? "rad" : "m") > 0)) {
+      throw InputError(fmt::format(
+          "{}: the displacement never changes, it is {} {} in every row: a fit needs a moving "
+          "contact; choose another column with --displacement",
+          PlaceOf(file, input, input.displacement, 0), record.displacement.front(),
+          torsional ? "rad" : "m"));
+    }
+    is_loaded = RequireHalfRange(file, input, input.force, record.force, "force",
+                                 torsional ? "N m" : "N") > 0 ||
+                is_loaded;
+  }
+  const RecordFile& first = inputs.front();
+  if (!is_loaded) {
+    throw InputError(fmt::format(
+        "{}: the force never changes, it is {} {} in every row: a fit needs a loaded contact; "
+        "choose another column with --force",
+        PlaceOf(request.files.front(), first, first.force, 0), first.record.force.front(),
+        first.is_torsional ? "N m" : "N"));
+  }
+  constexpr std::size_t kLeast = 3;  // as many as the law has parameters
+  if (samples < kLeast && request.fix.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} samples are too few: a fit needs more than it has free parameters; record more",
+        PlaceOf(request.files.back(), inputs.back(), inputs.back().force,
+                inputs.back().record.size() - 1),
+        samples));
+  }
+}
+
+/// A gate is in metres, as every option: one that is wider than the motion leaves no turning point.
+void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+  if (!request.reversal_gate) return;
+  double widest = 0.0;
+  for (const RecordFile& input : inputs) {
+    const auto [least, greatest] = std::ranges::minmax(input.record.displacement);
+    widest = std::max(widest, greatest - least);
+  }
+  if (*request.reversal_gate < widest) return;
+  const char* unit = inputs.front().is_torsional ? "rad" : "m";
+  throw InputError(fmt::format(
+      "--reversal-gate {}: the whole motion is {:.4g} {} wide, so that it would have no turning "
+      "point: give the gate in {}, below that",
+      *request.reversal_gate, widest, unit, unit));
+}
+
+/// A unit of what no file has would be taken without a word; and a joint fit is of one kind.
+void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& inputs) {
+  const auto require = [&](std::string_view option, const io::ColumnChoice& choice,
+                           std::string_view column_option, std::string_view what,
+                           std::optional<io::ChosenColumn> RecordFile::*column) {
+    const bool is_there = std::ranges::any_of(
+        inputs, [column](const RecordFile& input) { return (input.*column).has_value(); });
+    if (choice.unit.empty() || is_there) return;
+    throw InputError(
+        fmt::format("{} {}: {} has no column of the {}, so this has no effect: name it with {}",
+                    option, choice.unit, request.files.front(), what, column_option));
+  };
+  require("--time-unit", request.columns.time, "--time", "time", &RecordFile::time);
+  require("--normal-load-unit", request.columns.normal_load, "--normal-load-column", "normal load",
+          &RecordFile::normal_load);
+  for (std::size_t r = 1; r < inputs.size(); ++r) {
+    if (inputs[r].is_torsional == inputs.front().is_torsional) continue;
+    throw InputError(fmt::format("{} holds a force and {} a torque: fit them apart",
+                                 request.files[inputs[r].is_torsional ? 0 : r],
+                                 request.files[inputs[r].is_torsional ? r : 0]));
+  }
+}
+
+/// One record for each constant load of a file, unless it is said what the loads are, or which
+/// samples of it count.
+/// @param names  written: those of the records
+std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
+                                   std::vector<std::string>& names) {
+  names = request.files;
+  if (!request.contact.normal_loads.empty() || !request.load_window.empty() ||
+      !request.samples.empty()) {
+    return inputs;
+  }
+  names.clear();
+  std::vector<RecordFile> records;
+  for (std::size_t r = 0; r < inputs.size(); ++r) {
+    for (io::NamedRecord& record : io::SplitAtLoadSteps(inputs[r], request.files[r])) {
+      names.push_back(std::move(record.name));
+      records.push_back(std::move(record.file));
+    }
+  }
+  return records;
+}
+
+/// What needs a load column must have one, and a window some samples, before the fit says so in its
+/// own words.
+void RequireLoads(const FitRequest& request, const std::optional<Interval>& window,
+                  const std::vector<RecordFile>& inputs) {
+  if (!window) return;
+  for (std::size_t r = 0; r < inputs.size(); ++r) {
+    const std::vector<double>& load = inputs[r].record.normal_load;
+    if (load.empty()) {
+      throw InputError(
+          fmt::format("{}: --load-window needs a normal load: name its column with "
+                      "--normal-load-column",
+                      request.files[r]));
+    }
+    const auto lies_outside = [&](double value) {
+      return value < window->lower || value > window->upper;
+    };
+    if (!std::ranges::all_of(load, lies_outside)) continue;
+    const auto [least, greatest] = std::ranges::minmax(load);
+    throw InputError(
+        fmt::format("{}: --load-window {}:{} holds no sample: the normal load runs from {:.6g} to "
+                    "{:.6g} N",
+                    request.files[r], window->lower, window->upper, least, greatest));
+  }
+}
+
+/// One normal load for all files, or one a file.
+void RequireLoadsOfRecords(const FitRequest& request) {
+  const std::size_t loads = request.contact.normal_loads.size();
+  if (loads <= 1 || loads == request.files.size()) return;
+  throw InputError(
+      fmt::format("--normal-load: {} loads for {} file{}: give one for all or one a "
+                  "file",
+                  loads, request.files.size(), request.files.size() > 1 ? "s" : ""));
+}
+
+/// The measured normal load where it was not given: its mean.
+void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::FitResult& fit,
+                           std::span<const Record> records, const std::optional<Interval>& window,
+                           const Tell& note) {
+  if (known.normal_load) return;
+  if (fit.normal_load) {
+    known.normal_load = *fit.normal_load;
+    note(fmt::format("normal load: the mean of its column, {:.6g} N", *fit.normal_load));
+    return;
+  }
+  const std::optional<double> mean = report::MeanNormalLoad(records, window);
+  if (!mean) return;
+  note(fmt::format("the mean normal load is {:.4g} N, not positive in every file: it is not used",
+                   *mean));
+}
+
+/// The fit that the request asks for, of the model that it names or leaves to be chosen.
+/// @param selection  written where the model is chosen
+identification::FitResult FitAsked(const FitRequest& request, const FitOptions& options,
+                                   std::span<const Record> records,
+                                   std::optional<identification::ModelSelection>& selection) {
+  try {
+    if (request.model != kAutomatic)
+      return identification::Fit(records, options, identification::Depth::kThorough);
+    selection = identification::SelectModel(records, options);
+    return selection->fit;
+  } catch (const identification::TooFewSamples& error) {
+    throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));
+  }
+}
+
+}  // namespace
+
+void Validate(const FitRequest& request) {
+  Validate(request.contact);
+  RequireLoadsOfRecords(request);
+  MakeFitOptions(request);
+  CovariateColumns(request);
+  TimeWindow(request);
+}
+
+void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFile& record) {
+  const std::optional<Interval> window = TimeWindow(request);
+  if (window) io::KeepTimeWindow(record, name, window->lower, window->upper);
+}
+
+report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs,
+                          const Tell& note) {
+  if (inputs.empty()) throw InputError("a fit needs a record: give one");
+  RequireSameSize("names", request.files.size(), "records", inputs.size());
+  RequireLoadsOfRecords(request);
+  const FitOptions options = MakeFitOptions(request);
+  RequireColumns(request, inputs);
+  if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
+    throw InputError(
+        "--normal-load and whatever else describes a contact say nothing of a torque against an "
+        "angle: leave them out");
+  }
+  RequireLoops(request, inputs);
+  RequireGateWithinTheMotion(request, inputs);
+  RequireLoads(request, options.preparation.load_window, inputs);
+  std::vector<std::string> names;
+  inputs = SplitLoads(request, std::move(inputs), names);
+  std::vector<Record> records;
+  for (const RecordFile& input : inputs) records.push_back(input.record);
+
+  std::optional<identification::ModelSelection> selection;
+  identification::FitResult fit = FitAsked(request, options, records, selection);
+  contact::KnownContact known = request.contact.known;
+  UseMeasuredNormalLoad(known, fit, records, options.preparation.load_window, note);
+  return report::MakeReport({.files = std::move(names),
+                             .records = std::move(inputs),
+                             .fit = std::move(fit),
+                             .known = known,
+                             .load_window = options.preparation.load_window,
+                             .selection = std::move(selection)});
+}
+
+}  // namespace mindahl::request

@@ -1,0 +1,70 @@
+#include "mindahl/campaign/reading.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+
+namespace mindahl::campaign {
+namespace {
+
+/// Three cycles of a loop that dissipates, one hundred samples each.
+loop::Record Loop() {
+  loop::Record record;
+  for (int i = 0; i <= 300; ++i) {
+    const double phase = 2 * std::numbers::pi * i / 100;
+    record.displacement.push_back(1e-6 * std::sin(phase));
+    record.force.push_back(std::sin(phase + 0.3));
+  }
+  return record;
+}
+
+TEST(Reading, ChoosesGateAndSenseForAllCycles) {
+  const loop::Record record = Loop();
+  identification::FitOptions fit;
+  const Reading reading = ChooseReading(record, fit);
+  EXPECT_TRUE(fit.preparation.reversal_gate.has_value());
+  EXPECT_EQ(fit.preparation.force_sense, 1);
+  EXPECT_EQ(reading.gate.count, 6U);
+  EXPECT_EQ(reading.samples, record.size());
+  EXPECT_FALSE(reading.gate_is_given);
+  EXPECT_FALSE(DoubtAbout(reading, "loop").has_value());
+}
+
+TEST(Reading, KeepsAGateThatIsGiven) {
+  identification::FitOptions fit;
+  fit.preparation.reversal_gate = 1e-7;
+  const Reading reading = ChooseReading(Loop(), fit);
+  EXPECT_TRUE(reading.gate_is_given);
+  EXPECT_EQ(*fit.preparation.reversal_gate, 1e-7);
+}
+
+TEST(Reading, SaysWhatIsUncertain) {
+  Reading reading;
+  reading.gate.certain = false;
+  EXPECT_NE(DoubtAbout(reading, "loop.csv")->find("loop.csv: the reversals are uncertain"),
+            std::string::npos);
+}
+
+TEST(Reading, AsksForFewerCyclesToAverageOnlyWhereThereAreSome) {
+  EXPECT_NO_THROW(RequireCycles(1, 1, {}, 0.0, "loop"));
+  const auto message = [](std::size_t turns) -> std::string {
+    Reading reading;
+    reading.gate.count = turns;
+    try {
+      RequireCycles(0, 5, reading, 0.0, "loop");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(message(4), "--average 5: loop turn only 4 times, two a cycle: average fewer");
+  EXPECT_NE(message(1).find("loop: no whole cycle"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace mindahl::campaign

@@ -1,0 +1,50 @@
+#include "mindahl/convert/parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/models/friction_model.h"
+
+namespace mindahl::convert {
+namespace {
+
+Conversion To(Target target) {
+  return Convert({models::FindFrictionModel("mindlin-dahl"),
+                  {.tangential_stiffness = 4e7, .slip_force = 40.0}},
+                 target, {.amplitude = 1.2e-6});
+}
+
+TEST(Parameters, OfMasingsLawAreItsOwn) {
+  const std::vector<Parameter> parameters = ParametersOf(To(Target::kMasing), Target::kMasing);
+  ASSERT_EQ(parameters.size(), 3U);
+  EXPECT_EQ(parameters[0].name, "sigma");
+  EXPECT_EQ(parameters[0].value, 4e7);
+  EXPECT_EQ(parameters[2].value, 40.0);
+}
+
+TEST(Parameters, HaveAFrictionCoefficientWhereTheLoadIsKnown) {
+  const Conversion conversion = To(Target::kLammps);
+  EXPECT_EQ(ParametersOf(conversion, Target::kLammps).size(), 2U);
+  const std::vector<Parameter> parameters =
+      ParametersOf(conversion, Target::kLammps, {.normal_load = 100.0});
+  ASSERT_EQ(parameters.size(), 3U);
+  EXPECT_EQ(parameters[2].name, "mu");
+  EXPECT_EQ(parameters[2].value, parameters[1].value / 100.0);
+}
+
+TEST(InputLines, OfLammpsNeedANormalLoad) {
+  const Conversion conversion = To(Target::kLammps);
+  EXPECT_THROW(InputLines(conversion, Target::kLammps), InputError);
+  EXPECT_EQ(InputLines(conversion, Target::kLammps, {.normal_load = 100.0}).size(), 2U);
+}
+
+TEST(LammpsContact, IsOfLammpsAlone) {
+  EXPECT_THROW(Validate({.normal_load = 100.0}, Target::kDahl), InputError);
+  EXPECT_THROW(Validate({.normal_load = -1.0}, Target::kLammps), InvalidArgument);
+  EXPECT_NO_THROW(Validate({.normal_load = 100.0, .contact_radius = 1e-4}, Target::kLammps));
+}
+
+}  // namespace
+}  // namespace mindahl::convert

@@ -1,0 +1,59 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/io/csv_table.h"
+#include "mindahl/io/record_reader.h"
+
+namespace mindahl::io {
+namespace {
+
+using Numbers = std::vector<double>;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+std::string MessageOf(std::vector<NamedColumn> columns) {
+  try {
+    RecordOf(TableOfColumns(std::move(columns), "frame"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ColumnTable, IsReadByNamesAndUnitsAsAFileIs) {
+  const RecordFile file = RecordOf(TableOfColumns(
+      {{"F (kN)", {1, 2, 3}}, {"temp", {20, 21, 22}}, {"x [um]", {0, 1, 0}}}, "frame"));
+  EXPECT_EQ(file.record.force, (Numbers{1000, 2000, 3000}));
+  EXPECT_EQ(file.record.displacement, (Numbers{0, 1e-6, 0}));
+  EXPECT_EQ(file.displacement.number, 3U);
+  ASSERT_EQ(file.record.covariates.size(), 1U);
+  EXPECT_EQ(file.record.covariates.front().name, "temp");
+  EXPECT_EQ(file.lines, (std::vector<std::size_t>{1, 2, 3}));
+}
+
+TEST(ColumnTable, NamesRowAndColumnOfAMissingNumber) {
+  EXPECT_EQ(MessageOf({{"x [m]", {0, 1, 2}}, {"F [N]", {0, kMissing, 2}}}),
+            "frame:2:2: holds no number");
+}
+
+// 1.000 in a file may be a thousand; a double is what it is.
+TEST(ColumnTable, TakesNoNumberForAThousand) {
+  const RecordFile file = RecordOf(TableOfColumns(
+      {{"x [m]", {998, 999, 1.0, 1.001}}, {"F [N]", {997, 998, 999, 1.0}}}, "frame"));
+  EXPECT_EQ(file.record.displacement, (Numbers{998, 999, 1.0, 1.001}));
+}
+
+TEST(ColumnTable, RefusesColumnsOfTwoLengthsAndNone) {
+  EXPECT_EQ(MessageOf({{"x", {0, 1}}, {"F", {0}}}),
+            "frame: 'x' has 2 rows and 'F' 1: give as many of both");
+  EXPECT_EQ(MessageOf({}), "frame: there is no column");
+  EXPECT_EQ(MessageOf({{"x", {}}}), "frame: there is no row");
+}
+
+}  // namespace
+}  // namespace mindahl::io

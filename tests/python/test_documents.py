@@ -1,0 +1,67 @@
+"""The examples of docs/python.md and examples/python print what the page shows.
+
+Blocks of ```python run one after the other, in one namespace, beside a copy of data/; what follows
+in ```text is all that they print. A ```console block is a command after "$ " and all its output.
+To write what is printed today into the page: MINDAHL_UPDATE_DOCS=1, and review the diff.
+"""
+
+import contextlib
+import io
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+import matplotlib
+
+from conftest import SOURCE
+
+matplotlib.use("Agg")
+PAGE = SOURCE / "docs" / "python.md"
+BLOCK = re.compile(r"```(python|text|console)\n(.*?)```\n", re.S)
+
+
+def output_of(command):
+    words = shlex.split(command)
+    words[0] = {"python3": sys.executable}[words[0]]
+    run = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    return run.stdout
+
+
+def run_page(text):
+    """The page with what its examples print, and how many examples it has."""
+    namespace = {}
+    printed = ""
+    count = 0
+
+    def run(block):
+        nonlocal printed, count
+        kind, body = block.groups()
+        if kind == "text":
+            return f"```text\n{printed}```\n"
+        count += 1
+        if kind == "console":
+            command = body.splitlines()[0].removeprefix("$ ")
+            return f"```console\n$ {command}\n{output_of(command)}```\n"
+        with contextlib.redirect_stdout(io.StringIO()) as stream:
+            exec(compile(body, f"{PAGE.name}, example {count}", "exec"), namespace)
+        printed = stream.getvalue()
+        return block.group(0)
+
+    return BLOCK.sub(run, text), count
+
+
+def test_examples_print_what_the_page_shows(tmp_path, monkeypatch):
+    shutil.copytree(SOURCE / "data", tmp_path / "data")
+    shutil.copytree(SOURCE / "examples" / "python", tmp_path / "examples" / "python")
+    monkeypatch.chdir(tmp_path)
+    shown = PAGE.read_text(encoding="utf-8")
+    page, count = run_page(shown)
+    if os.environ.get("MINDAHL_UPDATE_DOCS"):
+        PAGE.write_text(page, encoding="utf-8")
+    assert count >= 8
+    assert page == shown
+    assert "<table>" in (tmp_path / "summary.html").read_text(encoding="utf-8")

@@ -1,0 +1,331 @@
+"""mindahl.fit(): what it takes, what it gives, what it refuses."""
+
+import inspect
+import re
+import sys
+import threading
+import time
+import warnings
+
+import matplotlib
+import numpy as np
+import pandas
+import pytest
+
+import mindahl
+from conftest import DATA, program, program_json
+from mindahl import _mindahl
+from mindahl._records import columns_of
+
+matplotlib.use("Agg")
+SPHERE = DATA / "mindlin_sphere_on_plane.csv"
+LOADS = [20, 50, 120]
+SERIES = [DATA / f"load_series_{load}N.csv" for load in LOADS]
+
+
+def without_files(report):
+    report["input"].pop("files")
+    return report
+
+
+def arrays_of(path):
+    record = mindahl.read_csv(path)
+    return record.displacement, record.force, record.time
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+@pytest.mark.parametrize("keywords, options", [
+    ({}, []),
+    ({"normal_load": 50}, ["--normal-load", "50"]),
+    ({"normal_load": (50, 0.5), "radius_1": 0.01, "radius_2": np.inf,
+      "youngs_modulus_1": 2.1e11, "poisson_1": (0.3, 0.01), "youngs_modulus_2": 7e10,
+      "poisson_2": 0.34},
+     ["--normal-load", "50±0.5", "--radius-1", "0.01", "--radius-2", "inf", "--youngs-modulus-1",
+      "2.1e11", "--poisson-1", "0.3±0.01", "--youngs-modulus-2", "7e10", "--poisson-2", "0.34"]),
+    ({"model": "mindlin", "offsets": False, "force_noise": 0.07},
+     ["--model", "mindlin", "--offsets", "off", "--force-noise", "0.07"]),
+    ({"model": "dahl", "initial_state": "virgin"}, ["--model", "dahl", "--initial-state", "virgin"]),
+    ({"fix": {"alpha": 1 / 3}, "bound": {"slip_force": (5, 50)}, "start": {"sigma": 3e7}},
+     ["--fix", f"alpha={1 / 3!r}", "--bound", "slip_force=5:50", "--start", "sigma=3e7"]),
+    ({"rig_stiffness": 1e9, "drift": True, "cycles": (1, 2)},
+     ["--rig-stiffness", "1e9", "--drift", "--cycles", "1:2"]),
+    ({"time_window": (0.2, 2.5), "loss": "huber", "samples": (1, 400)},
+     ["--time-window", "0.2:2.5", "--loss", "huber", "--samples", "1:400"]),
+])
+def test_a_fit_of_arrays_is_the_program_s_key_by_key(keywords, options):
+    displacement, force, seconds = arrays_of(SPHERE)
+    result = mindahl.fit(displacement, force, time=seconds, **keywords)
+    expected = program_json("fit", SPHERE, *options)
+    assert without_files(result.to_dict()) == without_files(expected)
+
+
+def test_a_fit_of_a_file_prints_the_program_s_text():
+    result = mindahl.fit(SPHERE, normal_load=50)
+    assert str(result) == program("fit", SPHERE, "--normal-load", 50)
+    assert result.to_json() == program("fit", SPHERE, "--normal-load", 50, "--json", "-")
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_a_load_series_is_one_joint_fit_of_lists_of_arrays():
+    displacement, force, seconds = zip(*(arrays_of(path) for path in SERIES))
+    result = mindahl.fit(list(displacement), list(force), time=list(seconds), normal_load=LOADS)
+    expected = program_json("fit", *SERIES, "--normal-load", ",".join(map(str, LOADS)))
+    assert without_files(result.to_dict()) == without_files(expected)
+    assert result.load_exponent.identifiability == "identifiable"
+    assert [len(residual) for residual in result.residual] == [len(x) for x in displacement]
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_a_load_series_of_frames_files_and_records_is_the_same():
+    expected = without_files(mindahl.fit(SERIES, normal_load=LOADS).to_dict())
+    records = [mindahl.read_csv(path) for path in SERIES]
+    frames = [pandas.read_csv(path, float_precision="round_trip") for path in SERIES]
+    for sources in (records, frames):
+        assert without_files(mindahl.fit(sources, normal_load=LOADS).to_dict()) == expected
+
+
+def test_a_frame_is_read_by_the_names_and_units_of_its_columns(sphere):
+    seconds, displacement, force = sphere
+    frame = pandas.DataFrame({"F (kN)": force / 1e3, "Time, s": seconds, "x [um]": displacement * 1e6})
+    result = mindahl.fit(frame)
+    # The three scalings round to a unit in the last place, which a fit does not enlarge much.
+    scale_rounding = 1e-9
+    expected = mindahl.fit(displacement, force, time=seconds)
+    assert result.sigma.value == pytest.approx(expected.sigma.value, rel=scale_rounding)
+    assert result.input.units.displacement == "um"
+
+
+def test_a_frame_s_columns_can_be_chosen(sphere):
+    seconds, displacement, force = sphere
+    frame = pandas.DataFrame({"left": displacement * 1e6, "right": force, "clock": seconds})
+    chosen = mindahl.fit(frame, displacement="left", force="right", time=3, displacement_unit="um",
+                         force_unit="N", time_unit="s")
+    assert chosen.input.units.displacement == "um"
+    with pytest.raises(mindahl.InputError, match="no column is called 'middle'"):
+        mindahl.fit(frame, displacement="middle")
+
+
+def test_what_arrays_are_made_of_does_not_matter(sphere):
+    _, displacement, force = sphere
+    expected = mindahl.fit(displacement, force).to_dict()
+    wide = np.column_stack([displacement, force])
+    for x, f in [(list(displacement), list(force)), (wide[:, 0], wide[:, 1]),
+                 (pandas.Series(displacement), pandas.Series(force)),
+                 (displacement.astype(">f8"), force.astype(np.longdouble))]:
+        assert mindahl.fit(x, f).to_dict() == expected
+
+
+def test_units_of_arrays_can_be_said(sphere):
+    _, displacement, force = sphere
+    micrometres = mindahl.fit(displacement * 1e6, force, displacement_unit="um")
+    assert micrometres.input.units.displacement == "um"
+    torsional = mindahl.fit(displacement, force, displacement_unit="rad")
+    assert torsional.sigma.unit == "N m/rad"
+
+
+def test_a_further_array_can_be_a_covariate(sphere):
+    _, displacement, force = sphere
+    pressure = np.sin(np.arange(len(force)) / 7.0)
+    factor = 2.0
+    result = mindahl.fit(displacement, force + factor * pressure, columns={"pressure": pressure},
+                         covariate="pressure")
+    # The truth lies within five standard errors but once in two million.
+    fitted = result.covariate_pressure
+    assert abs(fitted.value - factor) < 5 * fitted.standard_error
+
+
+def test_attributes_are_the_report_s(sphere):
+    seconds, displacement, force = sphere
+    result = mindahl.fit(displacement, force, time=seconds, normal_load=50)
+    report = result.to_dict()
+    assert result.sigma.value == report["parameters"]["sigma"]["value"]
+    assert result.sigma.interval == tuple(report["parameters"]["sigma"]["ci95"])
+    assert result.slip_force.identifiability == "identifiable"
+    assert result.adequacy.verdict == report["adequacy"]["verdict"]
+    friction = result.contact.friction_coefficient.value
+    assert friction == result.slip_force.value / 50
+    assert result.measured.cycles[0].amplitude == report["measured"]["cycles"][0]["amplitude"]
+    assert result.converged
+    assert {"sigma", "adequacy", "contact", "plot"} <= set(dir(result))
+    with pytest.raises(AttributeError, match="it has the parameters sigma, alpha"):
+        result.siqma
+    report["parameters"].clear()
+    assert result.sigma.value > 0
+
+
+def test_fitted_force_less_measured_is_the_residual(sphere):
+    _, displacement, force = sphere
+    result = mindahl.fit(displacement, force)
+    np.testing.assert_array_equal(result.records[0].force, force)
+    # A rounding of the difference, and one of each of its two terms' own storage.
+    rounding = 4 * np.finfo(float).eps * np.abs(force).max()
+    np.testing.assert_allclose(result.fitted_force - force, result.residual, rtol=0, atol=rounding)
+    with pytest.raises(ValueError, match="read-only"):
+        result.residual[0] = 0.0
+
+
+def test_arrays_outlive_their_result(sphere):
+    _, displacement, force = sphere
+    expected = mindahl.fit(displacement, force).residual.copy()
+    residual = mindahl.fit(displacement, force).residual
+    for _ in range(3):
+        mindahl.fit(displacement[:200], force[:200])
+    np.testing.assert_array_equal(residual, expected)
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (([0, 1, 2], [0, 1]), r"force \[N\] has 2 samples and displacement \[m\] 3"),
+    (([[0, 1], [1, 0]], None), "must be a list|force is missing"),
+    ((np.zeros((3, 2)), np.zeros(3)), r"displacement has the shape \(3, 2\)"),
+    (([0.0, 1.0, np.nan], [0.0, 1.0, 2.0]), r"displacement\[2\] = nan is invalid: must be finite"),
+    (([0.0, 1.0, 2.0], [0.0, np.inf, 2.0]), r"force\[1\] = inf is invalid: must be finite"),
+    ((np.array([0, 1, "x"], dtype=object), [0, 1, 2]), "."),
+    ((np.array([1j, 2j, 3]), [0, 1, 2]), "dtype complex128: must be an array of real numbers"),
+    ((np.array(["a", "b"]), [0, 1]), "dtype <U1: must be an array of real numbers"),
+    (([], []), "displacement is empty"),
+    (([0.0, 1.0, 0.0], None), "force is missing"),
+    ((None, None), "a record is missing"),
+    ((42, [1.0]), "."),
+])
+def test_what_is_no_record_is_refused_in_one_line(arguments, message):
+    with pytest.raises(ValueError, match=message) as refused:
+        mindahl.fit(*arguments)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("keywords, message", [
+    ({"model": "coulomb"}, "model: 'coulomb' is not one of mindlin-dahl"),
+    ({"initial_state": "new"}, "initial_state: 'new' is not one of auto, virgin, steady"),
+    ({"offsets": "maybe"}, "offsets: 'maybe' is not one of on, off"),
+    ({"fix": {"gamma": 1}}, "gamma"),
+    ({"fix": "alpha=1"}, "must be a dict"),
+    ({"fix": {"alpha": "x"}}, r"fix\['alpha'\] = 'x' is invalid: must be a number"),
+    ({"rig_stiffness": -1}, r"rig_stiffness \[N/m\] = -1 is invalid"),
+    ({"rig_stiffness": 1e8, "fix": {"rig_stiffness": 1e8}}, "rig_stiffness and fix rig_stiffness"),
+    ({"force_noise": 0}, r"force_noise \[N\] = 0 is invalid"),
+    ({"cycles": (3, 2)}, "cycles: '3:2' is empty"),
+    ({"cycles": 3}, "must be a pair"),
+    ({"normal_load": -5}, r"normal_load \[N\] = -5 is invalid"),
+    ({"normal_load": [1, 2]}, "2 loads for 1 file"),
+    ({"normal_load": (50, -1)}, "the standard uncertainty -1.0 is invalid"),
+    ({"poisson_1": 0.7}, r"poisson_1 \[-\] = 0.7 is invalid"),
+    ({"starts": 0}, "starts = 0 is invalid: must be >= 1"),
+    ({"covariate": "pressure"}, "pressure"),
+    ({"displacement_unit": "furlong"}, "furlong"),
+    ({"time": "t"}, "names a column, but the displacement is an array"),
+    ({"time_unit": "ms"}, "time_unit ms: record has no column of the time"),
+])
+def test_an_option_that_breaks_a_rule_is_named_as_its_keyword(sphere, keywords, message):
+    _, displacement, force = sphere
+    with pytest.raises(ValueError, match=message) as refused:
+        mindahl.fit(displacement, force, **keywords)
+    assert "--" not in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_fault_of_a_file_is_an_input_error(tmp_path):
+    broken = tmp_path / "loop.csv"
+    broken.write_text("x [m],F [N]\n0,0\n1,one\n2,2\n3,1\n")
+    with pytest.raises(mindahl.InputError, match=r"loop\.csv:3:2: 'one'"):
+        mindahl.fit(broken)
+    assert issubclass(mindahl.InputError, ValueError)
+    with pytest.raises(mindahl.InputError, match="cannot read"):
+        mindahl.read_csv(tmp_path / "none.csv")
+
+
+def test_a_missing_number_in_a_frame_is_named_by_row_and_column(sphere):
+    _, displacement, force = sphere
+    frame = pandas.DataFrame({"x [m]": displacement, "F [N]": force})
+    frame.loc[4, "F [N]"] = np.nan
+    with pytest.raises(mindahl.InputError, match="record:5:2: holds no number"):
+        mindahl.fit(frame)
+
+
+def test_what_a_person_should_act_on_is_warned_of():
+    with pytest.warns(mindahl.FitWarning) as warned:
+        result = mindahl.fit(DATA / "far_from_slip.csv")
+    assert [str(warning.message) for warning in warned] == [
+        re.sub(r"--([a-z-]+)", lambda option: option[1].replace("-", "_"), warning.message)
+        for warning in result.warnings]
+    assert not result.slip_force.identifiability == "identifiable"
+
+
+def test_every_option_of_the_program_s_fit_is_a_keyword():
+    options = set(re.findall(r"^ {2}(?:-\w, ?)?--([a-z0-9-]+)", program("fit", "--help"), re.M))
+    keywords = set(inspect.signature(mindahl.fit).parameters)
+    outputs = {"json", "residuals", "backbone", "plot", "strict", "report"}
+    general = {"help", "config", "version"}
+    missing = {option.replace("-", "_") for option in options - outputs - general} - keywords
+    assert len(options) > 30
+    assert not missing
+
+
+def test_a_result_is_drawn(sphere):
+    _, displacement, force = sphere
+    result = mindahl.fit(displacement, force)
+    loop, residual = result.plot()
+    np.testing.assert_array_equal(loop.lines[0].get_ydata(), force)
+    np.testing.assert_array_equal(loop.lines[1].get_ydata(), result.fitted_force)
+    np.testing.assert_array_equal(residual.lines[0].get_ydata(), result.residual)
+    assert loop.get_ylabel() == "force [N]"
+    _, own = matplotlib.pyplot.subplots()
+    assert result.plot(own) is own
+    assert len(own.lines) == 2
+
+
+def test_a_notebook_shows_parameters_and_warnings_escaped(sphere, tmp_path):
+    _, displacement, force = sphere
+    name = tmp_path / "a<b>&c.csv"
+    np.savetxt(name, np.column_stack([displacement, force]), delimiter=",", header="x [m],F [N]",
+               comments="")
+    page = mindahl.fit(name)._repr_html_()
+    assert "a&lt;b&gt;&amp;c.csv" in page and "<b>&c" not in page
+    assert "slip_force" in page and "identifiable" in page
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mindahl.FitWarning)
+        warned = mindahl.fit(DATA / "far_from_slip.csv")
+    assert "Warnings:" in warned._repr_html_()
+
+
+def test_other_threads_run_while_it_fits(sphere):
+    """No thread hands over by itself here: another one counts only where the fit lets go."""
+    _, displacement, force = sphere
+    many = np.tile(np.arange(len(force)), 20)
+    request = _mindahl.FitRequest()
+    record = _mindahl.record_of_columns(
+        "record", ["x [m]", "F [N]"], [displacement[many], force[many]], columns_of(*8 * [None]))
+    counted = [0]
+    may_end = threading.Event()
+
+    def count():
+        while not may_end.is_set():
+            counted[0] += 1
+            time.sleep(0)
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1000.0)
+    counting = threading.Thread(target=count)
+    try:
+        counting.start()
+        before = counted[0]
+        _mindahl.fit([record], request)
+        after = counted[0]
+    finally:
+        may_end.set()
+        sys.setswitchinterval(interval)
+        counting.join()
+    assert after > before
+
+
+def test_results_of_fits_at_once_are_those_of_one_after_the_other(sphere):
+    _, displacement, force = sphere
+    expected = mindahl.fit(displacement, force).to_dict()
+    results = []
+    threads = [threading.Thread(
+        target=lambda: results.append(mindahl.fit(displacement, force).to_dict()))
+        for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert results == [expected, expected]

@@ -1,0 +1,209 @@
+"""track(), simulate(), contact(), convert(), read_csv() and ContactState."""
+
+import copy
+import csv
+
+import numpy as np
+import pandas
+import pytest
+
+import mindahl
+from conftest import DATA, program, program_json, read_columns
+
+SIGMA, SLIP_FORCE = 4e7, 40.0
+
+
+@pytest.fixture(scope="module")
+def long_record(tmp_path_factory):
+    """Thirty cycles, of noise that does not hide them."""
+    path = tmp_path_factory.mktemp("track") / "long.csv"
+    path.write_text(program("simulate", "--model", "mindlin-dahl", "--sigma", SIGMA, "--slip-force",
+                            SLIP_FORCE, "--waveform", "sine", "--amplitude", "3e-6", "--cycles", 30,
+                            "--samples-per-cycle", 100, "--noise-force", 0.2, "--seed", 3))
+    return path
+
+
+def table_of(path, tmp_path, *options):
+    output = tmp_path / "cycles.csv"
+    program("track", path, "--output", output, *options)
+    with open(output, encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name.split(" [")[0]: [row[name] for row in rows] for name in rows[0]}
+
+
+def assert_same_table(tracked, table):
+    assert list(tracked) == [name for name in tracked if name in table]
+    assert set(tracked) == set(table)
+    for name, cells in table.items():
+        if name in ("flags", "slip_regime"):
+            assert list(tracked[name]) == cells, name
+            continue
+        expected = np.array([float(cell) if cell else np.nan for cell in cells])
+        np.testing.assert_array_equal(tracked[name], expected, err_msg=name)
+
+
+def test_track_gives_the_program_s_table(long_record, tmp_path):
+    table = table_of(long_record, tmp_path, "--normal-load", 100)
+    tracked = mindahl.track(long_record, normal_load=100)
+    assert len(tracked["cycle"]) == 29
+    assert_same_table(tracked, table)
+    assert tracked.units["sigma"] == "N/m"
+    assert list(tracked.to_pandas()["cycle"]) == list(tracked["cycle"])
+
+
+def test_track_of_arrays_frames_and_files_is_the_same(long_record):
+    expected = mindahl.track(long_record, average=2)
+    time, displacement, force = read_columns(long_record)
+    frame = pandas.read_csv(long_record, float_precision="round_trip")
+    for tracked in (mindahl.track(displacement, force, time=time, average=2),
+                    mindahl.track(frame, average=2)):
+        for name in set(expected) - {"first_line"}:  # a file's first sample is on line 2
+            np.testing.assert_array_equal(tracked[name], expected[name], err_msg=name)
+
+
+@pytest.mark.parametrize("keywords, message", [
+    ({"model": "auto"}, "model auto: a model is chosen for a test"),
+    ({"average": 0}, "average = 0 is invalid"),
+    ({"average": 1000}, "average 1000: "),
+    ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid"),
+    ({"normal_load": 0}, r"normal_load \[N\] = 0 is invalid"),
+])
+def test_track_refuses_what_the_program_refuses(long_record, keywords, message):
+    with pytest.raises(ValueError, match=message):
+        mindahl.track(long_record, **keywords)
+
+
+def test_track_warns_of_rows_that_it_skipped(long_record, tmp_path):
+    broken = tmp_path / "broken.csv"
+    lines = long_record.read_text().splitlines()
+    lines[700] = "7,oops,3"
+    broken.write_text("\n".join(lines) + "\n")
+    with pytest.raises(mindahl.InputError, match=r"broken\.csv:701:2: 'oops'"):
+        mindahl.track(broken)
+    with pytest.warns(mindahl.FitWarning, match=r"1 broken rows of .*broken\.csv:701:2"):
+        tracked = mindahl.track(broken, broken_rows="skip")
+    assert len(tracked["cycle"]) == 29
+
+
+def test_track_says_why_there_is_no_cycle():
+    with pytest.raises(mindahl.InputError, match="record: no whole cycle"):
+        mindahl.track([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, 1.5, 1.6, 1.7])
+
+
+@pytest.mark.parametrize("model", ["mindlin-dahl", "mindlin", "dahl", "jenkins", "simplified-dahl"])
+def test_simulate_gives_the_program_s_force(model, tmp_path):
+    generator = np.random.default_rng(7)
+    displacement = np.cumsum(generator.normal(size=400)) * 3e-7
+    path = tmp_path / "path.csv"
+    path.write_text("\n".join(map(repr, displacement.tolist())) + "\n")
+    output = tmp_path / "force.csv"
+    program("simulate", "--model", model, "--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--path",
+            path, "-o", output)
+    force = mindahl.simulate(displacement, sigma=SIGMA, slip_force=SLIP_FORCE, model=model)
+    np.testing.assert_array_equal(force, read_columns(output)[2])
+
+
+def test_a_contact_state_moves_as_simulate_does():
+    generator = np.random.default_rng(11)
+    displacement = np.cumsum(generator.normal(size=300)) * 3e-7
+    for model in ("mindlin-dahl", "dahl", "jenkins"):
+        expected = mindahl.simulate(displacement, sigma=SIGMA, slip_force=SLIP_FORCE, model=model)
+        state = mindahl.ContactState(sigma=SIGMA, slip_force=SLIP_FORCE, model=model)
+        moved = [state.move(x) for x in displacement]
+        # docs/accuracy.md: below 5e-14 of the slip force after reversals, in either of the two.
+        accuracy = 1e-13 * SLIP_FORCE
+        np.testing.assert_allclose(moved, expected, rtol=0, atol=accuracy)
+        assert state.force == moved[-1] and state.displacement == displacement[-1]
+
+
+def test_a_contact_state_is_copied_peeked_and_reset():
+    state = mindahl.ContactState(sigma=SIGMA, slip_force=SLIP_FORCE)
+    state.move(5e-7)
+    twin = copy.copy(state)
+    assert state.peek(2e-7) == twin.move(2e-7)
+    assert state.displacement == 5e-7
+    state.reset()
+    assert state.force == 0
+    assert state.tangent_stiffness == SIGMA
+
+
+def test_the_virgin_force_of_mindlin_is_the_closed_form():
+    x = np.linspace(0, 2e-6, 101)
+    force = mindahl.simulate(x, sigma=SIGMA, slip_force=SLIP_FORCE, model="mindlin")
+    share = np.clip(1 - SIGMA * x * (2 / 3) / SLIP_FORCE, 0, None)
+    # Both sides round a few times in numbers of the slip force's size.
+    rounding = 8 * np.finfo(float).eps * SLIP_FORCE
+    np.testing.assert_allclose(force, SLIP_FORCE * (1 - share**1.5), rtol=0, atol=rounding)
+
+
+@pytest.mark.parametrize("call, message", [
+    (lambda: mindahl.simulate([0, 1e-6], sigma=-1, slip_force=1), "must be finite and > 0"),
+    (lambda: mindahl.simulate([0, 1e-6], sigma=1, slip_force=1, model="oak"), "model: 'oak' is not"),
+    (lambda: mindahl.simulate([0, 1e-6], sigma=1, slip_force=1, model="mindlin", alpha=0.5),
+     "alpha contradicts model mindlin"),
+    (lambda: mindahl.simulate(np.zeros((2, 2)), sigma=1, slip_force=1), "shape"),
+    (lambda: mindahl.simulate([0, "x"], sigma=1, slip_force=1), "dtype"),
+    (lambda: mindahl.simulate([0, 1.0], sigma="stiff", slip_force=1), "sigma = 'stiff' is invalid"),
+    (lambda: mindahl.ContactState(sigma=1, slip_force=1).move(np.nan), "displacement"),
+    (lambda: mindahl.contact(friction=0.3), "normal_load, youngs_modulus_1"),
+    (lambda: mindahl.contact(friction=-1, normal_load=1, contact_radius=1, compliance=1),
+     r"friction \[-\] = -1 is invalid"),
+    (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="brass"),
+     "to: 'brass' is not one of"),
+    (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=-1, to="dahl"), "invalid"),
+    (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="dahl", normal_load=3),
+     "normal_load and contact_radius are of to lammps alone"),
+])
+def test_what_breaks_a_rule_is_refused(call, message):
+    with pytest.raises(ValueError, match=message) as refused:
+        call()
+    assert "\n" not in str(refused.value)
+
+
+def test_contact_gives_the_program_s_json():
+    keywords = {"friction": (0.3, 0.01), "normal_load": 50, "youngs_modulus_1": 2.1e11,
+                "poisson_1": 0.3, "radius_1": 0.01, "youngs_modulus_2": 7e10, "poisson_2": 0.34,
+                "radius_2": float("inf")}
+    options = []
+    for name, value in keywords.items():
+        text = "0.3±0.01" if isinstance(value, tuple) else repr(value)
+        options += [f"--{name.replace('_', '-')}", text]
+    result = mindahl.contact(**keywords)
+    assert result.to_dict() == program_json("contact", *options)
+    assert result.parameters.slip_force.value == pytest.approx(15.0, rel=1e-15)
+
+
+@pytest.mark.parametrize("to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps"])
+def test_convert_gives_the_program_s_json_and_lines(to):
+    options = ["--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--amplitude", 1.2e-6, "--to", to,
+               "--largest-amplitude", 2e-6]
+    keywords = {"normal_load": 100} if to == "lammps" else {}
+    options += ["--normal-load", 100] if to == "lammps" else []
+    result = mindahl.convert(sigma=SIGMA, slip_force=SLIP_FORCE, amplitude=1.2e-6, to=to,
+                             largest_amplitude=2e-6, **keywords)
+    assert result.to_dict() == program_json("convert", *options)
+    assert "\n".join(result.input_lines) + "\n" == program("convert", *options, "--input-lines", "-")
+
+
+def test_read_csv_converts_units_and_says_what_it_read(tmp_path):
+    path = tmp_path / "rig.csv"
+    path.write_text("Time, ms;disp_mm;F (kN);temp\n0;0;0;20\n1;0,5;1;21\n2;1;2;22\n3;0,5;1;23\n")
+    record = mindahl.read_csv(path)
+    np.testing.assert_array_equal(record.displacement, [0, 0.5 / 1e3, 1e-3, 0.5 / 1e3])
+    np.testing.assert_array_equal(record.force, [0, 1e3, 2e3, 1e3])
+    np.testing.assert_array_equal(record.time, [0, 1e-3, 2e-3, 3e-3])
+    np.testing.assert_array_equal(record.covariates["temp"], [20, 21, 22, 23])
+    assert record.normal_load is None
+    assert record.columns["force"] == {"name": "F (kN)", "number": 3, "unit": "kN"}
+    assert len(record) == 4
+
+
+def test_arrays_are_used_where_they_are():
+    """A read-only array is taken as it is, and none is written to."""
+    displacement = np.linspace(0, 1e-6, 50)
+    displacement.setflags(write=False)
+    before = displacement.copy()
+    mindahl.simulate(displacement, sigma=SIGMA, slip_force=SLIP_FORCE)
+    np.testing.assert_array_equal(displacement, before)
+    from mindahl._arguments import array
+    assert array("displacement", displacement) is displacement

@@ -1,0 +1,21 @@
+"""What a user writes, for mypy; test_types.py says what it must find wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+import mindahl
+
+displacement = np.linspace(0.0, 1e-6, 10)
+force: NDArray[np.float64] = mindahl.simulate(displacement, sigma=4e7, slip_force=40.0)
+state = mindahl.ContactState(sigma=4e7, slip_force=40.0)
+moved: float = state.move(1e-7)
+
+
+def fitted() -> tuple[float, float | None]:
+    result = mindahl.fit(displacement, force, normal_load=[(50.0, 0.5)], fix={"alpha": 1 / 3})
+    low, _ = result.slip_force.interval
+    cycles = mindahl.track(displacement, force, average=2)
+    print(result, cycles["sigma"].mean(), [warning.code for warning in result.warnings])
+    return result.slip_force.value or 0.0, low

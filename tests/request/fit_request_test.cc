@@ -1,0 +1,60 @@
+#include "mindahl/request/fit_request.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/request/fit_records.h"
+
+namespace mindahl::request {
+namespace {
+
+TEST(FitRequest, RefusesAChoiceThatIsNone) {
+  for (std::string FitRequest::*member :
+       {&FitRequest::model, &FitRequest::initial_state, &FitRequest::force_sign,
+        &FitRequest::offsets, &FitRequest::loss}) {
+    FitRequest request;
+    request.*member = "oak";
+    EXPECT_THROW(MakeFitOptions(request), InputError);
+    EXPECT_THROW(Validate(request), InputError);
+  }
+}
+
+TEST(FitRequest, TakesWhatItsTablesName) {
+  for (const std::string_view model : ModelNames()) {
+    FitRequest request;
+    request.model = model;
+    EXPECT_NO_THROW(MakeFitOptions(request)) << model;
+  }
+}
+
+TEST(FitRequest, ChoosesNoModelForEachCycle) {
+  FitRequest request;
+  request.model = kAutomatic;
+  EXPECT_THROW(MakeCycleFitOptions(request), InputError);
+  request.model = "dahl";
+  EXPECT_EQ(MakeCycleFitOptions(request).model->name, "dahl");
+  request.covariates = {"pressure"};
+  EXPECT_THROW(MakeCycleFitOptions(request), InputError);
+}
+
+TEST(FitRequest, KnowsTheMeanOfSeveralNormalLoads) {
+  ContactOptions options;
+  const std::vector<contact::UncertainValue> loads = {{20.0, 3.0}, {40.0, 4.0}};
+  SetNormalLoads(options, loads);
+  EXPECT_EQ(options.known.normal_load->value, 30.0);
+  EXPECT_EQ(options.known.normal_load->standard_error, 2.5);  // √(3² + 4²)/2
+  SetNormalLoads(options, {});
+  EXPECT_FALSE(IsAnythingGiven(options));
+}
+
+TEST(FitRecords, NeedsARecordAndANameForEach) {
+  const Tell ignore = [](std::string_view) {};
+  EXPECT_THROW(FitRecords({}, {}, ignore), InputError);
+  EXPECT_THROW(FitRecords({}, {io::RecordFile{}}, ignore), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::request
