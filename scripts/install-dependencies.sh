@@ -8,7 +8,8 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev
-  libgtest-dev libgmock-dev libbenchmark-dev gnuplot-nox jq python3
+  libgtest-dev libgmock-dev libbenchmark-dev gnuplot-nox jq python3 python3-jsonschema
+  man-db pkg-config
 )
 for group in "$@"; do
   case $group in
