@@ -24,6 +24,30 @@ install(FILES ${PROJECT_BINARY_DIR}/mindahlConfig.cmake
               ${PROJECT_BINARY_DIR}/mindahlConfigVersion.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
+# What the library links of others: how pkg-config finds it, and the Debian package that has it.
+set(fmt__fmt_pc Requires fmt)
+set(fmt__fmt_package libfmt-dev)
+set(libcsv__libcsv_pc Libs -lcsv)
+set(libcsv__libcsv_package libcsv-dev)
+set(Threads__Threads_pc Libs -pthread)
+set(Threads__Threads_package "")
+get_property(linked GLOBAL PROPERTY MINDAHL_LINKED)
+list(REMOVE_DUPLICATES linked)
+set(pc_Requires "")
+set(pc_Libs "")
+set(linked_packages "")
+foreach(library IN LISTS linked)
+  string(MAKE_C_IDENTIFIER ${library} id)
+  if(NOT DEFINED ${id}_pc)
+    message(FATAL_ERROR "the library links ${library}: say here how its users find it, and in "
+                        "mindahlConfig.cmake.in")
+  endif()
+  list(GET ${id}_pc 0 kind)
+  list(GET ${id}_pc 1 value)
+  string(APPEND pc_${kind} " ${value}")
+  list(APPEND linked_packages ${${id}_package})
+endforeach()
+
 # Modules are added after those that they use; a static linker wants them the other way round.
 set(link_order ${modules})
 list(REVERSE link_order)
@@ -58,4 +82,21 @@ if(Python3_Interpreter_FOUND AND NOT CMAKE_CROSSCOMPILING)
   install(FILES ${terminal}/mindahl.bash RENAME mindahl
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tool)
   install(FILES ${terminal}/_mindahl DESTINATION ${zsh_completions} COMPONENT tool)
+endif()
+
+# The licence and what has changed, as every Debian package has them.
+file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/changelog.gz
+  PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9 MTIME 0)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
+function(install_papers component package)
+  set(directory ${CMAKE_INSTALL_DATADIR}/doc/${package})
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright DESTINATION ${directory}
+          COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${directory} COMPONENT ${component})
+endfunction()
+install_papers(tool mindahl)
+install_papers(development libmindahl-dev)
+get_cmake_property(installed COMPONENTS)
+if(python IN_LIST installed)
+  install_papers(python python3-mindahl)
 endif()

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building, testing and plotting need, from Debian's packages; quick when all is there.
 #   install-dependencies.sh --checks    also what CI checks the source with
+#   install-dependencies.sh --packages  also what makes and tries the Debian packages
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
 set -euo pipefail
@@ -13,11 +14,12 @@ packages=(
 )
 for group in "$@"; do
   case $group in
-    --checks) packages+=(clang-format clang-tidy-19) ;;
+    --checks) packages+=(clang-format clang-tidy-19 doxygen) ;;
+    --packages) packages+=(dpkg-dev file lintian mmdebstrap) ;;
     --peers) packages+=(python3-lmfit python3-pandas lammps) ;;
     --workflow) packages+=(snakemake) ;;
     *)
-      echo "install-dependencies: there is no group '$group': --checks, --peers or --workflow" >&2
+      echo "install-dependencies: there is no group '$group': --checks, --packages, --peers or --workflow" >&2
       exit 2
       ;;
   esac

@@ -60,7 +60,8 @@ EXEMPT = {
 
 # Options of other programs in the documentation.
 OF_OTHERS = {
-    "--preset", "--build", "--install", "--target", "--peers",
+    "--preset", "--build", "--install", "--target", "--peers", "--prefix", "--cflags", "--libs",
+    "--static",
     "--details", "--half", "--jobs", "--kind", "--loops", "--repeats", "--rounds", "--write",
     "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }
