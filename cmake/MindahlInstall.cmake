@@ -85,8 +85,8 @@ if(Python3_Interpreter_FOUND AND NOT CMAKE_CROSSCOMPILING)
 endif()
 
 # The licence and what has changed, as every Debian package has them.
-file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/changelog.gz
-  PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9 MTIME 0)
+execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+  OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
 function(install_papers component package)
   set(directory ${CMAKE_INSTALL_DATADIR}/doc/${package})
