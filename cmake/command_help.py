@@ -26,8 +26,8 @@ class Option:
     @property
     def default(self):
         """Of a choice or a number; "" where the text says it, or there is none."""
-        match = re.fullmatch(r"(?:TEXT:\{[^}]*\}|UINT|INT|FLOAT|[A-Z]+)=([\w.-]+)", self.taken)
-        return match.group(1) if match and match.group(1) != "VALUE" else ""
+        match = re.fullmatch(r"(?!NAME=)(?:TEXT:\{[^}]*\}|[A-Z]+)=([\w.-]+)", self.taken)
+        return match.group(1) if match else ""
 
     @property
     def argument(self):
@@ -42,7 +42,7 @@ class Option:
 
     @property
     def is_repeatable(self):
-        return self.taken.endswith(" ...") or " ... " in self.taken + " "
+        return " ..." in self.taken
 
     @property
     def is_required(self):

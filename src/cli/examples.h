@@ -7,9 +7,9 @@
 
 namespace mindahl::cli {
 
-/// Ends a command's help with lines to copy, before what ends every help. Each works as it is where
-/// there are a loop.csv and, in `loops`, records of one contact; tests/cli/help_text.py runs them.
-/// A line that is the last one's continuation begins with blanks.
+/// Ends a command's help with lines to copy, before what ends every help. tests/cli/help_text.py
+/// runs each, and makes the records that they name. A line that continues the last one begins with
+/// blanks.
 void AddExamples(CLI::App& command, const CLI::App& app,
                  std::initializer_list<std::string_view> lines);
 
