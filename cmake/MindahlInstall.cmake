@@ -1,17 +1,102 @@
+# Two components: `tool`, the program with its manual page and completions, and `development`, the
+# library. Every module but the command line is installed.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(library_modules mindahl_core mindahl_contact mindahl_loop mindahl_models
-    mindahl_methods mindahl_tradeoff mindahl_convert mindahl_identification mindahl_io mindahl_report mindahl_request)
-install(TARGETS ${library_modules} EXPORT mindahlTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS mindahl RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY include/mindahl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+get_property(modules GLOBAL PROPERTY MINDAHL_MODULES)
+list(REMOVE_ITEM modules cli)
+list(TRANSFORM modules PREPEND mindahl_ OUTPUT_VARIABLE library_targets)
+
+install(TARGETS mindahl RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+install(TARGETS ${library_targets} EXPORT mindahlTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(DIRECTORY include/mindahl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
+        FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/mindahl COMPONENT development)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mindahl)
-install(EXPORT mindahlTargets NAMESPACE mindahl:: DESTINATION ${package_dir})
+install(EXPORT mindahlTargets NAMESPACE mindahl:: DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(cmake/mindahlConfig.cmake.in
   ${PROJECT_BINARY_DIR}/mindahlConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/mindahlConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/mindahlConfig.cmake
-              ${PROJECT_BINARY_DIR}/mindahlConfigVersion.cmake DESTINATION ${package_dir})
+              ${PROJECT_BINARY_DIR}/mindahlConfigVersion.cmake
+        DESTINATION ${package_dir} COMPONENT development)
+
+# What the library links of others: how pkg-config finds it, and the Debian package that has it.
+set(fmt__fmt_pc Requires fmt)
+set(fmt__fmt_package libfmt-dev)
+set(libcsv__libcsv_pc Libs -lcsv)
+set(libcsv__libcsv_package libcsv-dev)
+set(Threads__Threads_pc Libs -pthread)
+set(Threads__Threads_package "")
+get_property(linked GLOBAL PROPERTY MINDAHL_LINKED)
+list(REMOVE_DUPLICATES linked)
+set(pc_Requires "")
+set(pc_Libs "")
+set(linked_packages "")
+foreach(library IN LISTS linked)
+  string(MAKE_C_IDENTIFIER ${library} id)
+  if(NOT DEFINED ${id}_pc)
+    message(FATAL_ERROR "the library links ${library}: say here how its users find it, and in "
+                        "mindahlConfig.cmake.in")
+  endif()
+  list(GET ${id}_pc 0 kind)
+  list(GET ${id}_pc 1 value)
+  string(APPEND pc_${kind} " ${value}")
+  list(APPEND linked_packages ${${id}_package})
+endforeach()
+
+# Modules are added after those that they use; a static linker wants them the other way round.
+set(link_order ${modules})
+list(REVERSE link_order)
+list(TRANSFORM link_order PREPEND -lmindahl_)
+list(JOIN link_order " " module_libraries)
+file(RELATIVE_PATH prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
+configure_file(cmake/mindahl.pc.in ${PROJECT_BINARY_DIR}/mindahl.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/mindahl.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
+# The manual page and the completions are made from the program's own help, so by a program that
+# runs here.
+find_package(Python3 QUIET COMPONENTS Interpreter)
+if(Python3_Interpreter_FOUND AND NOT CMAKE_CROSSCOMPILING)
+  set(terminal ${PROJECT_BINARY_DIR}/terminal)
+  set(terminal_files ${terminal}/mindahl.1 ${terminal}/mindahl.1.gz ${terminal}/mindahl.bash
+      ${terminal}/_mindahl)
+  add_custom_command(OUTPUT ${terminal_files}
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/terminal_files.py
+            --program $<TARGET_FILE:mindahl> --directory ${terminal}
+    DEPENDS mindahl ${PROJECT_SOURCE_DIR}/cmake/terminal_files.py
+            ${PROJECT_SOURCE_DIR}/cmake/command_help.py
+    COMMENT "Making the manual page and the completions" VERBATIM)
+  add_custom_target(terminal_files ALL DEPENDS ${terminal_files})
+  # Where zsh looks: Debian keeps packages' completions apart.
+  set(zsh_completions ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  if(CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND EXISTS /etc/debian_version)
+    set(zsh_completions ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+  endif()
+  install(FILES ${terminal}/mindahl.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+  install(FILES ${terminal}/mindahl.bash RENAME mindahl
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT tool)
+  install(FILES ${terminal}/_mindahl DESTINATION ${zsh_completions} COMPONENT tool)
+endif()
+
+# The licence and what has changed, as every Debian package has them.
+execute_process(COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+  OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/CHANGELOG.md)
+function(install_papers component package)
+  set(directory ${CMAKE_INSTALL_DATADIR}/doc/${package})
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright DESTINATION ${directory}
+          COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${directory} COMPONENT ${component})
+endfunction()
+install_papers(tool mindahl)
+install_papers(development libmindahl-dev)
+get_cmake_property(installed COMPONENTS)
+if(python IN_LIST installed)
+  install_papers(python python3-mindahl)
+endif()

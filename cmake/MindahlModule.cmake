@@ -27,6 +27,8 @@ endif()
 # mindahl_add_module(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [PRECOMPILE headers...])
 # One static library a module, mindahl::NAME, whose public headers are include/mindahl/NAME/*.h.
 # PRECOMPILE: headers of others that take most of the time to compile its sources.
+# What is all headers is asked of nobody who links the library.
+set(header_only Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json CLI11::CLI11)
 function(mindahl_add_module name)
   cmake_parse_arguments(PARSE_ARGV 1 MODULE "" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE")
   add_library(mindahl_${name} STATIC ${MODULE_SOURCES})
@@ -37,9 +39,19 @@ function(mindahl_add_module name)
   target_include_directories(mindahl_${name}
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  set(private_libraries "")
+  foreach(library IN LISTS MODULE_PRIVATE)
+    if(library IN_LIST header_only)
+      set(library $<BUILD_INTERFACE:${library}>)
+    elseif(NOT library MATCHES "^mindahl::" AND NOT name STREQUAL "cli")
+      set_property(GLOBAL APPEND PROPERTY MINDAHL_LINKED ${library})
+    endif()
+    list(APPEND private_libraries ${library})
+  endforeach()
   target_link_libraries(mindahl_${name}
     PUBLIC ${MODULE_PUBLIC}
-    PRIVATE ${MODULE_PRIVATE} $<BUILD_INTERFACE:mindahl_build_flags>)
+    PRIVATE ${private_libraries} $<BUILD_INTERFACE:mindahl_build_flags>)
+  set_property(GLOBAL APPEND PROPERTY MINDAHL_MODULES ${name})
   if(MINDAHL_PRECOMPILE_HEADERS AND MODULE_PRECOMPILE)
     target_precompile_headers(mindahl_${name} PRIVATE ${MODULE_PRECOMPILE})
   endif()

@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
-# Installs what building, testing and plotting need, from Debian's packages; quick when all is there.
+# Installs what building and plotting need, from Debian's packages; quick when all is there.
+#   install-dependencies.sh --tests     also what the tests and the Python package need
 #   install-dependencies.sh --checks    also what CI checks the source with
+#   install-dependencies.sh --packages  also what makes and tries the Debian packages
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
 set -euo pipefail
@@ -8,17 +10,24 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev
-  libgtest-dev libgmock-dev libbenchmark-dev gnuplot-nox jq python3
-  pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
-  python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
+  gnuplot-nox jq python3
 )
 for group in "$@"; do
   case $group in
-    --checks) packages+=(clang-format clang-tidy-19) ;;
-    --peers) packages+=(python3-lmfit python3-pandas lammps) ;;
+    --tests)
+      packages+=(
+        libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema man-db pkg-config
+        pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
+        python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
+      )
+      ;;
+    --checks) packages+=(clang-format clang-tidy-19 doxygen) ;;
+    --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
+    --peers) packages+=(libbenchmark-dev python3-lmfit python3-pandas lammps) ;;
     --workflow) packages+=(snakemake) ;;
     *)
-      echo "install-dependencies: there is no group '$group': --checks, --peers or --workflow" >&2
+      echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers or" \
+        "--workflow" >&2
       exit 2
       ;;
   esac

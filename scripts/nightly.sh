@@ -2,7 +2,7 @@
 # What takes too long for .ci/run: every test with those labelled slow, under the sanitizers with all
 # their checks too; clang's static analyzer; the intervals' coverage over a thousand loops a row; how
 # often a corrupted loop is fitted wrongly without a word; the mapping over thousands of contacts with
-# another seed every night.
+# another seed every night; the Debian packages, used on a clean root.
 # Some hours on two cores. Every part runs, whatever became of those before.
 set -uo pipefail
 cd "$(dirname "$0")/.."
@@ -13,10 +13,11 @@ part() {
   "$@" || failed+=("$*")
 }
 
-./scripts/install-dependencies.sh --checks --peers || exit
+./scripts/install-dependencies.sh --checks --packages --peers || exit
 part ./scripts/test.sh ci
 part ./scripts/test.sh asan-full
 part ./scripts/tidy.sh --thorough
+part ./scripts/packages.sh
 part cmake --build build/ci --target coverage
 part cmake --build build/ci --target reliability
 seed=$(date +%Y%m%d)

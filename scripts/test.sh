@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 preset="${1:-ci}"
 shift $(($# > 0))
-./scripts/install-dependencies.sh
+./scripts/install-dependencies.sh --tests
 cmake --preset "$preset" >/dev/null
 cmake --build --preset "$preset"
 ctest --preset "$preset" --output-on-failure --parallel "$(nproc)" "$@"

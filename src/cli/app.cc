@@ -1,6 +1,7 @@
 #include "cli/app.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include "cli/colours.h"
 #include "cli/commands.h"
 #include "cli/toml.h"
+#include "core/nearest_name.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 
@@ -33,10 +35,29 @@ bool IsCommand(const CLI::App& app, std::string_view name) {
       Commands(app), [name](const CLI::App* command) { return command->get_name() == name; });
 }
 
-std::string CommandNames(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* command : Commands(app)) {
-    names += (names.empty() ? "" : ", ") + command->get_name();
+std::vector<std::string> CommandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : Commands(app)) names.push_back(command->get_name());
+  return names;
+}
+
+/// Keys of a configuration: the long names of a command's options.
+std::vector<std::string> KeyNames(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back(name);
+  }
+  return names;
+}
+
+/// Of the command that runs, then those that it shares with every other, with their dashes.
+std::vector<std::string> OptionNames(const CLI::App& app) {
+  std::vector<const CLI::App*> owners;
+  for (const CLI::App* command : app.get_subcommands()) owners.push_back(command);
+  owners.push_back(&app);
+  std::vector<std::string> names;
+  for (const CLI::App* owner : owners) {
+    for (const std::string& name : KeyNames(*owner)) names.push_back("--" + name);
   }
   return names;
 }
@@ -65,15 +86,17 @@ class CommandConfig : public CLI::ConfigTOML {
       const std::string where = fmt::format("--config: {}:{}", file, item.line);
       const std::string first = section.substr(0, section.find('.'));
       if (!IsCommand(app_, first)) {
-        throw InputError(fmt::format("{}: section '{}' is no command of mindahl: must be one of {}",
-                                     where, first, CommandNames(app_)));
+        const std::vector<std::string> commands = CommandNames(app_);
+        throw InputError(
+            fmt::format("{}: section '{}' is no command of mindahl{} must be one of {}", where,
+                        first, DidYouMean(first, commands), fmt::join(commands, ", ")));
       }
       if (first != command.get_name()) continue;
       if (section != first || command.get_option_no_throw("--" + item.key) == nullptr) {
-        throw InputError(
-            fmt::format("{}: '{}.{}' is no option of {}: keys are those of {} --help without the "
-                        "dashes",
-                        where, section, item.key, first, first));
+        throw InputError(fmt::format(
+            "{}: '{}.{}' is no option of {}{} keys are those of {} --help without the "
+            "dashes",
+            where, section, item.key, first, DidYouMean(item.key, KeyNames(command)), first));
       }
       if (item.values.empty()) continue;  // an array of nothing asks for nothing
       CLI::ConfigItem& option = selected.emplace_back();
@@ -94,6 +117,17 @@ std::optional<std::string> UnknownCommand(const CLI::App& app, int argc, const c
   if (argc < 2 || std::string_view(argv[1]).starts_with('-')) return std::nullopt;
   if (IsCommand(app, argv[1])) return std::nullopt;
   return argv[1];
+}
+
+/// The first word that looks like an option and is none, without its value: whatever else is then
+/// wrong with the line follows from it.
+std::optional<std::string> UnknownOption(const CLI::App& app) {
+  for (const std::string& word : app.remaining(/*recurse=*/true)) {
+    const bool is_option = word.size() > 1 && word[0] == '-' &&
+                           std::string_view("0123456789.").find(word[1]) == std::string_view::npos;
+    if (is_option && word != "--") return word.substr(0, word.find('='));
+  }
+  return std::nullopt;
 }
 
 std::string OneLine(std::string text) {
@@ -159,8 +193,10 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
   AddBatchCommand(app, console);
 
   if (const auto unknown = UnknownCommand(app, argc, argv)) {
-    err << fmt::format("mindahl: there is no command '{}': must be one of {}; see mindahl --help\n",
-                       OneLine(*unknown), CommandNames(app));
+    const std::vector<std::string> commands = CommandNames(app);
+    err << fmt::format(
+        "mindahl: there is no command '{}'{} must be one of {}; see mindahl --help\n",
+        OneLine(*unknown), DidYouMean(*unknown, commands), fmt::join(commands, ", "));
     return kBadInput;
   }
   try {
@@ -170,8 +206,11 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
     const int status = app.exit(request, results, err);
     return Print(results.view(), CommandName(app), status, out, err);
   } catch (const CLI::ParseError& error) {
-    err << fmt::format("{}: {}; see {} --help\n", CommandName(app), OneLine(error.what()),
-                       CommandName(app));
+    const auto unknown = UnknownOption(app);
+    const std::string fault = unknown ? fmt::format("there is no option '{}'{}", OneLine(*unknown),
+                                                    DidYouMean(*unknown, OptionNames(app)))
+                                      : OneLine(error.what()) + ";";
+    err << fmt::format("{}: {} see {} --help\n", CommandName(app), fault, CommandName(app));
     return kBadInput;
   } catch (const InputError& error) {
     err << fmt::format("{}: {}\n", CommandName(app), OneLine(error.what()));

@@ -18,6 +18,7 @@
 
 #include "cli/commands.h"
 #include "cli/established.h"
+#include "cli/examples.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/json_output.h"
@@ -298,6 +299,10 @@ void AddBatchCommand(CLI::App& app, Console& console) {
                          "one row a file, and the scatter between files beside their stated\n"
                          "errors. A file that fails does not stop the others: exit status 3\n"
                          "when any did.");
+  AddExamples(
+      *command, app,
+      {"mindahl batch run1.csv run2.csv run3.csv --output table.csv --normal-load 50",
+       "mindahl batch run1.csv run2.csv run3.csv --output mindlin.csv --model mindlin --strict"});
   command->add_option("files", options->request.files, "CSV records, each a test of its own")
       ->type_name("FILE")
       ->required();

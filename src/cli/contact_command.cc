@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/contact_options.h"
+#include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/output_path.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
@@ -64,6 +65,12 @@ void AddContactCommand(CLI::App& app, Console& console) {
       "contact",
       "Hertz, Mindlin and the Mindlin-Dahl mapping: from materials, radii, load and friction, or\n"
       "from contact radius and compliance, to sigma = 8a/G*, alpha = 1/3 and Tc = mu N.");
+  AddExamples(
+      *command, app,
+      {"mindahl contact --friction 0.3 --normal-load 50±0.5 --radius-1 0.05 --radius-2 inf \\",
+       "    --youngs-modulus-1 210e9 --poisson-1 0.3 --youngs-modulus-2 210e9 --poisson-2 0.3",
+       "mindahl contact --friction 0.3 --normal-load 50 --contact-radius 2.5e-4 --compliance "
+       "4.2e-11"});
   AddContactOptions(*command, options->contact);
   AddFrictionOption(*command, options->contact);
   command->add_option("--json", options->json_path, "result as JSON; - for standard output")

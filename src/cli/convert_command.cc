@@ -14,6 +14,7 @@
 
 #include "cli/commands.h"
 #include "cli/contact_options.h"
+#include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/output_path.h"
 #include "cli/text_output.h"
@@ -180,13 +181,11 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       app.add_subcommand("convert",
                          "A contact's steady loop by another law or another program: parameters,\n"
                          "the error that is left, and the amplitudes at which it is small.");
-  command->footer(
-      std::string("Examples:\n"
-                  "  mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl\n"
-                  "  mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan "
-                  "--elements 5\n"
-                  "      --input-lines contact.tcl\n\n") +
-      app.get_footer());
+  AddExamples(
+      *command, app,
+      {"mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl",
+       "mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan --elements 5 \\",
+       "    --input-lines contact.tcl"});
   const std::string contact = "The contact";
   command->add_option("--sigma", options->law.tangential_stiffness, "tangential stiffness [N/m]")
       ->required()

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/established.h"
+#include "cli/examples.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/output_path.h"
@@ -110,6 +111,10 @@ void AddFitCommand(CLI::App& app, Console& console) {
                                          "the fit does not converge or, with\n"
                                          "--strict, a parameter is not identifiable or the model "
                                          "inadequate.");
+  AddExamples(*command, app,
+              {"mindahl fit loop.csv --normal-load 50",
+               "mindahl fit loop.csv --displacement 2 --force 3 --json fit.json --plot fit.svg",
+               "mindahl fit 20N.csv 50N.csv 120N.csv --normal-load 20,50,120"});
   command->add_option("files", options->request.files, "CSV records of one contact")
       ->type_name("FILE")
       ->required();

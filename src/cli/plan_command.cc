@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
 #include "cli/output_path.h"
@@ -439,6 +440,10 @@ void AddPlanCommand(CLI::App& app, Console& console) {
                          "What should be measured: the standard errors that a loop of\n"
                          "each amplitude would give, and the least that reaches a wanted\n"
                          "precision. Exit status 3 when none does.");
+  AddExamples(
+      *command, app,
+      {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
+       "mindahl plan --record loop.csv --cycles 10 --json plan.json"});
   AddLawOptions(*command, options->law);
   const std::string expected = "What is expected";
   command

@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/drive_options.h"
+#include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
 #include "cli/output_path.h"
@@ -307,6 +308,10 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
       "The cheapest model and method that meet a tolerance along a given displacement: each is\n"
       "run and compared with the exact Masing response of the contact (Mindlin's for alpha = "
       "1/3).");
+  AddExamples(
+      *command, app,
+      {"mindahl recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --tolerance 1%",
+       "mindahl recommend --record loop.csv"});
   AddLawOptions(*command, options->law);
   AddDriveOptions(*command, options->drive);
   command->add_option("--seed", options->drive.seed, "of the random waveform")

@@ -13,6 +13,7 @@
 
 #include "cli/commands.h"
 #include "cli/drive_options.h"
+#include "cli/examples.h"
 #include "cli/law_options.h"
 #include "cli/output_path.h"
 #include "cli/whole_number.h"
@@ -201,6 +202,10 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       "imposed force (--force-path), exact for any history.\n"
       "The contact is unloaded at displacement zero; a first row that is not zero is the first\n"
       "loading step. Writes time [s], displacement [m], force [N].");
+  AddExamples(*command, app,
+              {"mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 -o loop.csv",
+               "mindahl simulate --model dahl --sigma 4e7 --alpha 1 --slip-force 40 --path "
+               "path.csv --path-unit um"});
   command->add_option("--model", options->model, "friction model")
       ->capture_default_str()
       ->check(CLI::IsMember(ModelNames()));

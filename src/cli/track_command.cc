@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/examples.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/json_output.h"
@@ -472,6 +473,10 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                          "length does not change: one row a cycle, and what changed over the\n"
                          "test. A run that was ended goes on with --resume. Exit status 3 when\n"
                          "no fit converged.");
+  AddExamples(*command, app,
+              {"mindahl track day1.csv --output cycles.csv",
+               "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "
+               "track.json"});
   command
       ->add_option("files", options->request.files,
                    "CSV records of one test, in order; a cycle ends with its file")

@@ -12,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/drive_options.h"
+#include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
 #include "cli/output_path.h"
@@ -382,6 +383,10 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
       "and the amplitudes at which each model is good enough. The contact is that of Peyret et "
       "al.\n"
       "(2017) unless another is given.");
+  AddExamples(*command, app,
+              {"mindahl tradeoff --excitation micro",
+               "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "
+               "points.csv"});
   AddLawOptions(*command, options->law);
   const std::string group = "Excitation";
   CLI::Option* scenes =

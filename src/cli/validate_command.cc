@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
@@ -144,6 +145,9 @@ void AddValidateCommand(CLI::App& app, Console& console) {
                                          "by Masing's law and by Dahl's own, and compares sigma "
                                          "with 8a/G*, alpha with 1/3 and Tc with\n"
                                          "mu N. Exit status 3 when a case misses its tolerance.");
+  AddExamples(
+      *command, app,
+      {"mindahl validate --cases 5", "mindahl validate --cases 20 --seed 7 --json validate.json"});
   command->add_option("--cases", options->validation.cases, "contacts to draw")
       ->capture_default_str()
       ->check(WholeNumber(1, kMostCases));

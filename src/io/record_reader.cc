@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/nearest_name.h"
 #include "io/column_name.h"
 #include "io/message_text.h"
 #include "mindahl/core/error.h"
@@ -149,8 +150,8 @@ class ColumnFinder {
       if (found.size() > 1) ThrowAmbiguous(role, found);
       if (found.size() == 1) return found.front();
     }
-    throw InputError(fmt::format("{}: no column is called '{}' (for the {}): {}", table_.file(),
-                                 choice, role.name, Listing()));
+    throw InputError(fmt::format("{}: no column is called '{}' (for the {}){} {}", table_.file(),
+                                 choice, role.name, DidYouMean(choice, Names()), Listing()));
   }
 
   /// The best match for a role among the columns that are not `taken`.
@@ -214,6 +215,13 @@ class ColumnFinder {
   std::string Label(std::size_t column) const {
     if (table_.names().empty()) return fmt::format("column {}", column + 1);
     return fmt::format("'{}' (column {})", ForMessage(table_.names()[column]), column + 1);
+  }
+
+  /// As a message shows them, without their units.
+  [[nodiscard]] std::vector<std::string> Names() const {
+    std::vector<std::string> names;
+    for (const ColumnName& column : split_) names.push_back(ForMessage(column.name));
+    return names;
   }
 
   /// "the columns are 'x' (1), 'F' (2)".

@@ -4,19 +4,27 @@
     help_text.py --program build/dev/src/mindahl text             compares it with tests/cli/help/*.txt
     help_text.py --program build/dev/src/mindahl --update text    rewrites these files: read the diff
     help_text.py --program build/dev/src/mindahl rules            what no update of files can satisfy
+    help_text.py --program build/dev/src/mindahl examples         runs the examples of every command
 
 The rules: every option is described; an option that takes a physical quantity states its unit in
-brackets; no line is wider than a page; every option that the documentation names exists.
+brackets; no line is wider than a page; every option that the documentation names exists. The
+options are read by cmake/command_help.py, as for the manual page and the completions.
 """
 
 import argparse
 import difflib
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "cmake"))
+
+import command_help  # noqa: E402
+
 KEPT = pathlib.Path(__file__).resolve().parent / "help"
 
 WIDTH = 100
@@ -52,47 +60,18 @@ EXEMPT = {
 
 # Options of other programs in the documentation.
 OF_OTHERS = {
-    "--preset", "--build", "--install", "--component", "--target", "--peers",
-    "--no-index", "--no-deps", "--no-build-isolation",
+    "--preset", "--build", "--install", "--target", "--peers", "--prefix", "--cflags", "--libs",
+    "--static",
+    "--component", "--no-index", "--no-deps", "--no-build-isolation",
     "--details", "--half", "--jobs", "--kind", "--loops", "--repeats", "--rounds", "--write",
     "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }
 
 
-def help_of(program, command):
-    words = [program, "--help"] if command == "mindahl" else [program, command, "--help"]
-    return subprocess.run(words, check=True, capture_output=True, text=True).stdout
-
-
 def helps(program):
     """The help of mindahl itself and of every command it lists."""
-    listed = help_of(program, "mindahl").split("Subcommands:")[1]
-    commands = re.findall(r"^  ([a-z]+) ", listed, re.MULTILINE)
-    return {command: help_of(program, command) for command in ["mindahl", *commands]}
-
-
-def options_of(text):
-    """(name, what it takes, description) of every option of a help text.
-
-    A description begins at one column, on the option's line or where that is long on the next."""
-    found = []
-    lines = text.splitlines()
-    for i, line in enumerate(lines):
-        match = re.match(r"  (?:-\w,)?(--[a-z][a-z0-9-]*) ?(.*)", line)
-        if not match:
-            continue
-        name, rest = match.groups()
-        if len(line) > 30 and line[29] == " " and line[30] != " ":
-            taken, description = line[:30].strip().partition(" ")[2], [line[30:]]
-        else:
-            taken, description = rest, []
-        taken = re.sub(r" ?(Excludes|Needs):.*", "", taken).strip()
-        for more in lines[i + 1:]:
-            if not more.startswith(" " * 30):
-                break
-            description.append(more.strip())
-        found.append((name, taken, " ".join(description)))
-    return found
+    return {command or "mindahl": text
+            for command, text in command_help.texts_of(program).items()}
 
 
 def check_text(texts, update):
@@ -120,7 +99,9 @@ def check_text(texts, update):
 
 
 def check_rules(texts):
-    options = {command: options_of(text) for command, text in texts.items()}
+    options = {command: [(option.name, option.taken, option.text)
+                         for option in command_help.parse(command, text).options]
+               for command, text in texts.items()}
     for command, text in texts.items():
         wide = [line for line in text.splitlines() if len(line) > WIDTH]
         left = WIDE_LINES_LEFT.get(command, 0)
@@ -152,15 +133,67 @@ def check_rules(texts):
     print(f"{sum(map(len, options.values()))} options of {len(texts)} helps, {named} in the pages")
 
 
+# Options that name a file to be written.
+WRITES = ("-o", "--json", "--plot", "--output", "--csv", "--input-lines")
+# Files that examples name, and what makes them.
+RECORDS = {
+    "loop.csv": "--lambda 1.2 --cycles 2",
+    **{f"{load}N.csv": f"--lambda 1.2 --cycles 2 --seed {load}" for load in (20, 50, 120)},
+    **{f"run{k}.csv": f"--lambda 1.2 --cycles 2 --seed {k}" for k in (1, 2, 3)},
+    **{f"day{k}.csv": f"--lambda 1.2 --cycles 6 --seed {k}" for k in (1, 2)},
+}
+
+
+def check_examples(program, texts):
+    """Every command but the program itself has two or three examples, which work."""
+    with tempfile.TemporaryDirectory() as scratch:
+        def run(words):
+            return subprocess.run([program, *words], cwd=scratch, capture_output=True,
+                                  encoding="utf-8", check=False)
+
+        for record, options in RECORDS.items():
+            load = int(record.removesuffix("N.csv")) if record.endswith("N.csv") else 50
+            law = f"--sigma {8e5 * load} --slip-force {0.8 * load}"
+            done = run(shlex.split(f"simulate {law} {options} --noise-force 0.1 -o {record}"))
+            if done.returncode != 0:
+                yield f"{record}: {done.stderr}"
+        path = pathlib.Path(scratch, "path.csv")
+        path.write_text("displacement\n" + "".join(f"{x}\n" for x in (0, 0.5, 1, 0.5, -0.5, -1, 0, 1)))
+        number = 0
+        for command, text in texts.items():
+            examples = command_help.parse(command, text).examples
+            if command != "mindahl" and len(examples) not in (2, 3):
+                yield f"{command}: {len(examples)} examples"
+            for example in examples:
+                words = shlex.split(example)
+                if words[:2] != ["mindahl", command]:
+                    yield f"{command}: an example of another command: {example}"
+                    continue
+                done = run(words[1:])
+                number += 1
+                if done.returncode != 0:
+                    yield f"{example}\n    exit status {done.returncode}: {done.stderr.strip()}"
+                written = [words[k + 1] for k, word in enumerate(words) if word in WRITES]
+                for name in written:
+                    if not pathlib.Path(scratch, name).stat().st_size:
+                        yield f"{example}: nothing in {name}"
+        print(f"{number} examples")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=["text", "rules"])
+    parser.add_argument("what", choices=["text", "rules", "examples"])
     parser.add_argument("--program", required=True)
     parser.add_argument("--update", action="store_true")
     arguments = parser.parse_args()
-    texts = helps(arguments.program)
-    problems = (check_text(texts, arguments.update) if arguments.what == "text"
-                else list(check_rules(texts)))
+    program = pathlib.Path(arguments.program).resolve()
+    texts = helps(program)
+    if arguments.what == "text":
+        problems = check_text(texts, arguments.update)
+    elif arguments.what == "rules":
+        problems = list(check_rules(texts))
+    else:
+        problems = list(check_examples(program, texts))
     for problem in problems:
         print(problem)
     return 1 if problems else 0

@@ -1,6 +1,7 @@
 cmake_minimum_required(VERSION 3.25)
-# Installs the build into a scratch prefix and builds and runs the examples against it. The JSON that a user of
-# the library writes is that of the installed program, byte for byte.
+# Installs the build into a scratch prefix and builds and runs examples against it, by find_package and
+# by pkg-config. The JSON that a user of the library writes is that of the installed program, byte for
+# byte.
 set(prefix ${BUILD_DIR}/installed_package/prefix)
 set(user ${BUILD_DIR}/installed_package/user)
 file(REMOVE_RECURSE ${BUILD_DIR}/installed_package)
@@ -18,11 +19,51 @@ if(SANITIZE)
   set(flags -DCMAKE_EXE_LINKER_FLAGS=-fsanitize=address,undefined)
 endif()
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
+# What only building mindahl needs is asked of no user.
+set(not_needed "")
+foreach(package Eigen3 Boost nlohmann_json CLI11 GTest)
+  list(APPEND not_needed -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${user} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${prefix} ${flags})
-run(${CMAKE_COMMAND} --build ${user})
-run(${user}/fit_record ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv)
-run(${user}/mass_on_contact)
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${prefix} ${not_needed} ${flags})
+# The two that together need every module which others may use; the project builds and tests all.
+run(${CMAKE_COMMAND} --build ${user} --target fit_to_json cycles_of_stream)
+run(${user}/cycles_of_stream)
+
+file(GLOB_RECURSE pc ${prefix}/*/mindahl.pc)
+get_filename_component(pc_directory "${pc}" DIRECTORY)
+find_program(pkg_config pkg-config REQUIRED)
+execute_process(
+  COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_directory}
+          ${pkg_config} --cflags --libs --static mindahl
+  OUTPUT_VARIABLE pc_flags COMMAND_ERROR_IS_FATAL ANY OUTPUT_STRIP_TRAILING_WHITESPACE)
+separate_arguments(pc_flags UNIX_COMMAND "${pc_flags}")
+set(sanitizer "")
+if(SANITIZE)
+  set(sanitizer -fsanitize=address,undefined)
+endif()
+run(${CXX} -std=c++20 ${sanitizer} ${SOURCE_DIR}/examples/fit_to_json.cc -o ${user}/by_pkg_config
+    ${pc_flags})
+run(${user}/by_pkg_config ${SOURCE_DIR}/data/mindlin_sphere_on_plane.csv)
+
+foreach(file include/mindahl/identification/fit.h share/mindahl/schema/fit.json
+        share/man/man1/mindahl.1.gz share/bash-completion/completions/mindahl
+        share/zsh/site-functions/_mindahl)
+  if(NOT EXISTS ${prefix}/${file})
+    message(FATAL_ERROR "${file} is not installed")
+  endif()
+endforeach()
+# Of every module that others may use, and of the program's own none.
+foreach(module core loop models contact methods tradeoff convert identification io report campaign)
+  file(GLOB_RECURSE library ${prefix}/lib*/libmindahl_${module}.a)
+  if(NOT library)
+    message(FATAL_ERROR "libmindahl_${module}.a is not installed")
+  endif()
+endforeach()
+file(GLOB_RECURSE own ${prefix}/lib*/libmindahl_cli.a)
+if(own)
+  message(FATAL_ERROR "the program's own library is installed")
+endif()
 
 function(expect_same_json record)  # further arguments: the normal load
   set(option "")

@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Makes the Debian packages, installs them on a clean root and uses them there: the program on a
+# record, an example against the library by pkg-config, the completions read by zsh, and the Python
+# module where there is one. Needs root and Debian's mirror; leaves build/package/packages.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+./scripts/install-dependencies.sh --packages
+cmake --preset package >/dev/null
+cmake --build --preset package
+packages=$PWD/build/package/packages
+rm -rf "$packages"
+(cd build/package && cpack -G DEB >/dev/null)
+ls -l "$packages"/*.deb
+
+# Debian's own packages have a maintainer with an address and a changelog in Debian's form.
+lintian --allow-root --fail-on error,warning \
+  --suppress-tags bogus-mail-host,syntax-error-in-debian-changelog "$packages"/*.deb
+
+on_root=$(mktemp)
+trap 'rm -f "$on_root"' EXIT
+cat >"$on_root" <<'END'
+set -eux
+cd /tmp/packages
+export DEBIAN_FRONTEND=noninteractive
+install() { apt-get install -y -q --no-install-recommends "$@" >/dev/null; }
+
+# The program alone, with what its package asks for.
+install ./mindahl_*.deb
+mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 --noise-force 0.1 -o loop.csv
+mindahl fit loop.csv --json fit.json | head -20
+grep -q '"schema": "mindahl.fit/1"' fit.json
+# A minimal root leaves out every manual page but the list of what a package has.
+dpkg -L mindahl | grep -qx /usr/share/man/man1/mindahl.1.gz
+bash -c '. /usr/share/bash-completion/completions/mindahl; COMP_WORDS=(mindahl fi); COMP_CWORD=1
+         _mindahl; test "${COMPREPLY[*]}" = fit'
+install zsh
+zsh -n /usr/share/zsh/vendor-completions/_mindahl
+zsh -fc 'autoload -Uz compinit; compinit -u -D; test "${_comps[mindahl]}" = _mindahl'
+
+# The library, without what only building it needs.
+install g++ pkg-config ./libmindahl-dev_*.deb
+test ! -e /usr/include/eigen3
+for example in fit_arrays own_term cycles_of_stream fit_to_json; do
+  g++ -std=c++20 -O1 "examples/$example.cc" -o "$example" \
+    $(pkg-config --cflags --libs --static mindahl)
+done
+./fit_arrays
+./own_term
+./cycles_of_stream
+./fit_to_json loop.csv >library.json
+grep -q '"schema": "mindahl.fit/1"' library.json
+test -s /usr/share/mindahl/schema/fit.json
+
+if ls ./python3-mindahl_*.deb >/dev/null 2>&1; then
+  install ./python3-mindahl_*.deb
+  python3 -c 'import mindahl; print(mindahl.__version__)'
+fi
+apt-get remove -y -q mindahl >/dev/null
+test ! -e /usr/bin/mindahl
+END
+
+mmdebstrap --quiet --variant=apt --format=null \
+  --customize-hook='mkdir -p "$1/tmp/packages"' \
+  --customize-hook="copy-in $(printf '%s ' "$packages"/*.deb) $PWD/examples /tmp/packages" \
+  --customize-hook="upload $on_root /tmp/packages/use.sh" \
+  --customize-hook='chroot "$1" sh /tmp/packages/use.sh' \
+  bookworm /dev/null
+echo "the packages install, run and compile on a clean root"

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mindahl {
+
+/// The name that a misspelt word was probably meant for: the one which fewest insertions,
+/// deletions, substitutions and swaps of neighbouring letters lead to (optimal string alignment),
+/// whatever their case; a third of the word's letters, at least one and at most three. Where there
+/// is none, the shortest name of those that begin with the word, of three letters or more. Of
+/// equals the first.
+///
+/// Costs the product of the lengths for each name.
+std::optional<std::string> NearestName(std::string_view word, std::span<const std::string> names);
+
+/// What follows an unknown word in a message, before its remedy: ": did you mean 'NAME'?", or ":"
+/// where no name is near.
+std::string DidYouMean(std::string_view word, std::span<const std::string> names);
+
+}  // namespace mindahl

@@ -1,0 +1,367 @@
+#!/usr/bin/env python3
+"""Checks what mindahl writes as JSON against docs/schema, and docs/schema against what it must refuse.
+
+    json_schemas.py --program build/dev/src/mindahl outputs    runs a table of commands
+    json_schemas.py refusals                                   each a document that is not valid
+    json_schemas.py contract                                   keys of fit.json and docs/contract.md
+"""
+
+import argparse
+import collections
+import copy
+import json
+import pathlib
+import random
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import warnings
+
+import jsonschema
+
+warnings.filterwarnings("ignore", category=DeprecationWarning)  # of RefResolver, in new jsonschema
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "docs/schema"
+SCHEMAS = {path.stem: json.loads(path.read_text()) for path in sorted(FOLDER.glob("*.json"))}
+
+# What every command writes as JSON, each in a directory with data/ and the files of MAKE. The exit
+# status is 0 unless it is given.
+MAKE = [
+    "simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --noise-force 0.1 -o loop.csv",
+    "simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --noise-force 0.1 --seed 2 -o twin.csv",
+    "simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 12 --noise-force 0.1 -o long.csv",
+    "simulate --model dahl --sigma 4e7 --alpha 0.5 --slip-force 40 --lambda 2 --waveform growing-sine "
+    "--cycles 4 -o dahl.csv",
+    "simulate --sigma 4e7 --slip-force 40 --lambda 0.02 --cycles 2 --noise-force 2 -o hopeless.csv",
+]
+STEEL = ("--radius-1 0.05 --radius-2 inf --youngs-modulus-1 210e9±1% --poisson-1 0.3 "
+         "--youngs-modulus-2 210e9±1% --poisson-2 0.3")
+BALL = "data/mindlin_sphere_on_plane.csv"
+SERIES = "data/load_series_20N.csv data/load_series_50N.csv data/load_series_120N.csv"
+COMMANDS = [
+    (f"fit {BALL}", 0),
+    (f"fit {BALL} --normal-load 50±0.5 {STEEL}", 0),
+    (f"fit {BALL} --normal-load 50 --contact-radius 3e-4±2% --compliance 4.2e-11", 0),
+    (f"fit {BALL} --model mindlin --offsets off --initial-state virgin", 0),
+    (f"fit {BALL} --model jenkins", 0),
+    (f"fit {BALL} --model dahl --loss huber --starts 6", 0),
+    (f"fit {BALL} --model auto", 0),
+    (f"fit {BALL} --fix sigma=4e7 --drift --plateau-slope --viscous fit --lag fit", 0),
+    (f"fit {BALL} --backbone backbone.csv", 0),
+    (f"fit {BALL} --samples 1:60", 0),
+    (f"fit {BALL} --bound alpha=0:0.1", 0),
+    ("fit data/partial_slip.csv", 0),
+    ("fit data/far_from_slip.csv --normal-load 80", 0),
+    ("fit data/far_from_slip.csv --strict", 3),
+    (f"fit {SERIES} --normal-load 20,50,120 {STEEL}", 0),
+    ("fit dahl.csv", 0),
+    ("fit hopeless.csv", 0),
+    ("fit torque.csv", 0),
+    ("fit steps.csv", 0),
+    ("fit noise.csv", 0),
+    ("fit loaded.csv", 0),
+    ("fit walk.csv", 0),
+    (f"fit {BALL} loop.csv --normal-load 50", None),
+    ("contact --friction 0.3 --normal-load 50±1% " + STEEL, 0),
+    ("contact --friction 0.3 --normal-load 50 --contact-radius 3e-4 --compliance 4.2e-11", 0),
+    *[(f"convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to {law}", 0)
+      for law in ("masing", "dahl", "lugre", "bouc-wen", "iwan")],
+    ("convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to lammps --normal-load 50 "
+     "--contact-radius 3e-4", 0),
+    ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan "
+     "--least-amplitude 1e-6 --largest-amplitude 2e-6", 0),
+    ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1", 0),
+    ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 --with rig_stiffness "
+     "--initial-state steady --want alpha=0.001,slip_force=1%", None),
+    ("plan --record loop.csv --amplitude 1e-6", 0),
+    ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3", 0),
+    ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --cost 0.0001", 3),
+    ("recommend --sigma 4e7 --slip-force 40 --lambda 5 --cycles 3 --tolerance 30% "
+     "--transient-cycles 1 --criterion energy", 0),
+    ("recommend --record loop.csv", 0),
+    ("recommend --record noise.csv", None),
+    ("tradeoff --excitation micro", 0),
+    ("validate --cases 2", 0),
+    ("validate --cases 1 --seed 3", None),
+    ("track long.csv --output cycles.csv --normal-load 50", 0),
+    ("track long.csv --output again.csv --average 3", 0),
+    ("batch loop.csv twin.csv data/partial_slip.csv --output table.csv --normal-load 50", 0),
+    ("batch loop.csv broken.csv --output table2.csv", 3),
+]
+
+
+def make_files(directory, run):
+    shutil.copytree(ROOT / "data", directory / "data")
+    for words in MAKE:
+        run(shlex.split(words))
+    rows = (directory / "loop.csv").read_text().splitlines()[1:]
+    cells = [row.split(",") for row in rows]
+
+    def write(name, header, lines):
+        (directory / name).write_text("\n".join([header, *lines]) + "\n")
+
+    write("torque.csv", "angle [rad],torque [N m]", [f"{x},{force}" for _, x, force in cells])
+    write("noise.csv", "displacement [m],force [N]",
+          [f"{x},{(k * 7919 % 101) / 50 - 1}" for k, (_, x, _) in enumerate(cells)])
+    write("loaded.csv", "time [s],displacement [m],force [N],normal load [N]",
+          [f"{row},{50 + k % 3}" for k, row in enumerate(rows)])
+    write("broken.csv", "displacement [m],force [N]", ["0,0", "1e-6,much"])
+    # Excursions of all sizes: no gate of the reversals is surer than another.
+    steps_to_and_fro = random.Random(2)
+    place, walk = 0.0, []
+    for _ in range(400):
+        place += steps_to_and_fro.gauss(0, 1e-7)
+        walk.append(f"{place}")
+    write("walk_path.csv", "displacement [m]", walk)
+    run(shlex.split("simulate --sigma 4e7 --slip-force 40 --path walk_path.csv -o walk.csv"))
+    steps = []
+    for n, load in enumerate((25, 100)):
+        steps += [f"{float(t) + 3 * n},{x},{force},{load}" for t, x, force in cells]
+    write("steps.csv", "time [s],displacement [m],force [N],normal load [N]", steps)
+
+
+def validator(name):
+    by_place = {place_of(name): schema for name, schema in SCHEMAS.items()}
+    resolver = jsonschema.RefResolver(place_of(name), SCHEMAS[name], store=by_place)
+    return jsonschema.Draft202012Validator(SCHEMAS[name], resolver=resolver)
+
+
+def place_of(name):
+    return (FOLDER / f"{name}.json").as_uri()
+
+
+def faults(document):
+    """What is wrong with a document, by the schema that it names."""
+    name = re.fullmatch(r"mindahl\.([a-z]+)/1", document["schema"]).group(1)
+    for error in validator(name).iter_errors(document):
+        yield f"{'.'.join(map(str, error.absolute_path))}: {error.message[:300]}"
+    if name == "fit":
+        yield from null_faults(document)
+    for file in document.get("files", []) if name == "batch" else []:
+        yield from null_faults(file["fit"]) if file["fit"] else []
+
+
+# Optional keys of a shared definition that this place never has, and why.
+NEVER = {
+    "fit: contact.mindlin_gross_slip_displacement.largest_input": "it rests on the fit alone",
+}
+
+
+def keys_of(value, schema, root, path=""):
+    """Every key of a document, as a schema knows it: by its place there."""
+    while "$ref" in schema:
+        if not schema["$ref"].startswith("#"):
+            return
+        schema = root["$defs"][schema["$ref"].rpartition("/")[2]]
+    if isinstance(value, dict):
+        for key, member in value.items():
+            known = schema.get("properties", {}).get(key)
+            yield f"{path}.{key}" if known else f"{path}.NAME"
+            below = known if known is not None else schema.get("additionalProperties")
+            if isinstance(below, dict):
+                yield from keys_of(member, below, root, f"{path}.{key}" if known else f"{path}.NAME")
+    elif isinstance(value, list) and "items" in schema:
+        for member in value:
+            yield from keys_of(member, schema["items"], root, f"{path}[]")
+
+
+def optional_keys(schema, root, path=""):
+    while "$ref" in schema:
+        if not schema["$ref"].startswith("#"):
+            return
+        schema = root["$defs"][schema["$ref"].rpartition("/")[2]]
+    for key, member in schema.get("properties", {}).items():
+        if key not in schema.get("required", []):
+            yield f"{path}.{key}"
+        yield from optional_keys(member, root, f"{path}.{key}")
+    if isinstance(schema.get("additionalProperties"), dict):
+        yield from optional_keys(schema["additionalProperties"], root, f"{path}.NAME")
+    if "items" in schema:
+        yield from optional_keys(schema["items"], root, f"{path}[]")
+
+
+def null_paths(value, path=""):
+    if value is None:
+        yield path
+    members = (value.items() if isinstance(value, dict)
+               else enumerate(value) if isinstance(value, list) else [])
+    for key, member in members:
+        step = f"[{key}]" if isinstance(value, list) else f".{key}" if path else key
+        yield from null_paths(member, path + step)
+
+
+def null_faults(fit):
+    """Every null has its reason, and every reason its null."""
+    listed = collections.Counter(null["path"] for null in fit["nulls"])
+    found = collections.Counter(null_paths({key: value for key, value in fit.items()
+                                            if key != "nulls"}))
+    for path in (found - listed):
+        yield f"{path}: is null, and nulls does not say why"
+    for path in (listed - found):
+        yield f"nulls: {path} is not null"
+
+
+def check_outputs(program):
+    problems = []
+    seen = collections.Counter()
+    keys = collections.defaultdict(set)
+    with tempfile.TemporaryDirectory() as scratch:
+        directory = pathlib.Path(scratch)
+
+        def run(words):
+            return subprocess.run([program, *words], cwd=directory, capture_output=True,
+                                  encoding="utf-8", check=False)
+
+        def make(words):
+            done = run(words)
+            assert done.returncode == 0, done.stderr
+
+        make_files(directory, make)
+        for line, status in COMMANDS:
+            done = run([*shlex.split(line), "--json", "-"])
+            if status is not None and done.returncode != status:
+                problems.append(f"{line}: exit status {done.returncode}: {done.stderr.strip()}")
+            if not done.stdout:
+                problems.append(f"{line}: no JSON: {done.stderr.strip()}")
+                continue
+            document = json.loads(done.stdout, parse_constant=lambda text: problems.append(
+                f"{line}: {text} is no JSON"))
+            seen[document["schema"]] += 1
+            if document["schema"] != f"mindahl.{line.split()[0]}/1":
+                problems.append(f"{line}: schema {document['schema']}")
+            problems += [f"{line}: {fault}" for fault in faults(document)]
+            name = line.split()[0]
+            keys[name].update(keys_of(document, SCHEMAS[name], SCHEMAS[name]))
+    for name in SCHEMAS:
+        if not seen[f"mindahl.{name}/1"]:
+            problems.append(f"{name}.json: no command of the table writes it")
+        for key in sorted(set(optional_keys(SCHEMAS[name], SCHEMAS[name])) - keys[name]):
+            if f"{name}: {key[1:]}" not in NEVER:
+                problems.append(f"{name}.json: no command of the table writes {key[1:]}")
+    print(f"{sum(seen.values())} documents of {len(seen)} schemas")
+    return problems
+
+
+# --- documents that the schemas must refuse ----------------------------------------------------
+
+CONTACT = {
+    "schema": "mindahl.contact/1", "version": "0.1.0", "compliance_definition": "G*",
+    "compliance_unit": "1/Pa",
+    "parameters": {name: {"value": 1.0, "standard_error": 0.0, "unit": "N"}
+                   for name in ("sigma", "alpha", "slip_force")},
+    "contact": {name: {"value": 1.0, "standard_error": 0.0, "unit": "m"}
+                for name in ("friction_coefficient", "normal_load", "compliance", "contact_radius",
+                             "gross_slip_displacement")},
+}
+
+
+def without(document, *path):
+    changed = copy.deepcopy(document)
+    place = changed
+    for key in path[:-1]:
+        place = place[key]
+    del place[path[-1]]
+    return changed
+
+
+def altered(document, value, *path):
+    changed = copy.deepcopy(document)
+    place = changed
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    return changed
+
+
+def check_refusals():
+    """A schema that lets anything pass is worth nothing."""
+    for name, schema in SCHEMAS.items():
+        jsonschema.Draft202012Validator.check_schema(schema)
+        if validator(name).is_valid({"schema": f"mindahl.{name}/1", "version": "0.1.0"}):
+            yield f"{name}.json lets a document pass that has nothing else than its name"
+    check = validator("contact")
+    if not check.is_valid(CONTACT):
+        yield "contact.json refuses a document as it should be"
+    for why, document in [
+            ("a missing key", without(CONTACT, "version")),
+            ("a missing parameter", without(CONTACT, "parameters", "alpha")),
+            ("another schema", altered(CONTACT, "mindahl.fit/1", "schema")),
+            ("a text for a number", altered(CONTACT, "1.0", "parameters", "sigma", "value")),
+            ("a null", altered(CONTACT, None, "contact", "compliance", "value")),
+            ("a negative error", altered(CONTACT, -1, "contact", "compliance", "standard_error")),
+            ("a key that it does not know", altered(CONTACT, 1, "temperature")),
+    ]:
+        if check.is_valid(document):
+            yield f"contact.json does not refuse {why}"
+    if len(list(null_faults({"nulls": [{"path": "a[0].b", "why": "."}], "a": [{"b": None}]}))) > 0:
+        yield "a null with its reason is refused"
+    if len(list(null_faults({"nulls": [], "a": [{"b": None}]}))) != 1:
+        yield "a null without a reason is not refused"
+    if len(list(null_faults({"nulls": [{"path": "a", "why": "."}], "a": 1}))) != 1:
+        yield "a reason without a null is not refused"
+
+
+# --- fit.json and the contract -----------------------------------------------------------------
+
+def schema_paths(schema, root, path=""):
+    """Every place of a schema, as docs/contract.md names it."""
+    definition = ""
+    while "$ref" in schema:
+        definition = schema["$ref"].rpartition("/")[2]
+        schema = root["$defs"][definition]
+    if path:
+        yield path
+    below = "contact.QUANTITY" if definition == "quantity" else path
+    for key, member in schema.get("properties", {}).items():
+        yield from schema_paths(member, root, f"{below}.{key}" if below else key)
+    if isinstance(schema.get("additionalProperties"), dict):
+        yield from schema_paths(schema["additionalProperties"], root, f"{path}.NAME")
+    if schema.get("type") in ("array", ["array", "null"]):
+        if schema.get("minItems") == schema.get("maxItems") == 2 and path.endswith("ci95"):
+            yield from (f"{path}[{place}]" for place in (0, 1))
+        elif schema["items"].get("type") not in ("string", "integer", "number", ["number", "null"]):
+            yield from schema_paths(schema["items"], root, f"{path}[]")
+
+
+def check_contract():
+    """Keys of docs/contract.md and of fit.json, each with those on the way to it."""
+    text = (ROOT / "docs/contract.md").read_text()
+    section = text.partition("### JSON, schema `mindahl.fit/1`")[2].partition("\n## ")[0]
+    documented = set(re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE))
+    paths = set(schema_paths(SCHEMAS["fit"], SCHEMAS["fit"]))
+    known = {part for path in documented for part in ways_to(path)}
+    for path in sorted(documented - paths):
+        yield f"{path}: in docs/contract.md, not in docs/schema/fit.json"
+    for path in sorted(paths - known):
+        yield f"{path}: in docs/schema/fit.json, not in docs/contract.md"
+    print(f"{len(documented)} keys of the contract, {len(paths)} places of the schema")
+
+
+def ways_to(path):
+    """The path, and every object or list that it lies in."""
+    yield path
+    while "." in path or path.endswith("]"):
+        path = path[:path.rindex("[")] if path.endswith("]") else path.rpartition(".")[0]
+        yield path
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("what", choices=["outputs", "refusals", "contract"])
+    parser.add_argument("--program", type=pathlib.Path)
+    arguments = parser.parse_args()
+    if arguments.what == "outputs":
+        problems = check_outputs(arguments.program.resolve())
+    else:
+        problems = list(check_refusals() if arguments.what == "refusals" else check_contract())
+    for problem in problems:
+        print(problem)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
