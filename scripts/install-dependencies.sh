@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
 # Installs what building, testing and plotting need, from Debian's packages; quick when all is there.
-#   install-dependencies.sh --checks    also what CI checks the source with
+#   install-dependencies.sh --checks    also what CI checks the source and the pages with
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
 set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
-  libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev
+  libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev libssl-dev
   libgtest-dev libgmock-dev libbenchmark-dev gnuplot-nox jq python3
 )
 for group in "$@"; do
   case $group in
-    --checks) packages+=(clang-format clang-tidy-19) ;;
+    --checks) packages+=(clang-format clang-tidy-19 chromium) ;;  # chromium: 290 MB installed
     --peers) packages+=(python3-lmfit python3-pandas lammps) ;;
     --workflow) packages+=(snakemake) ;;
     *)

@@ -17,6 +17,7 @@
 
 #include "cli/colours.h"
 #include "cli/commands.h"
+#include "cli/provenance.h"
 #include "cli/toml.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
@@ -145,7 +146,7 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
       ->type_name("FILE");
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
-  Console console{results, err, kDone, {}, HasColours(out)};
+  Console console{results, err, kDone, {}, HasColours(out), CommandLine(argc, argv)};
   app.parse_complete_callback([&] { console.inputs = {ConfigFile(app)}; });
   AddFitCommand(app, console);
   AddSimulateCommand(app, console);

@@ -16,7 +16,7 @@ set(stages_solve problem solve)
 set(stages_inference problem solve inference)
 set(stages_diagnosis problem solve inference diagnosis)
 set(stages_judge judge)
-set(allowed_campaign core loop models identification report)
+set(allowed_campaign core loop models identification io report)
 set(allowed_cli core contact loop models methods tradeoff convert identification io report campaign)
 
 set(errors "")
