@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what building and plotting need, from Debian's packages; quick when all is there.
 #   install-dependencies.sh --tests     also what the tests and the Python package need
-#   install-dependencies.sh --checks    also what CI checks the source with
+#   install-dependencies.sh --checks    also what CI checks the source and the pages with
 #   install-dependencies.sh --packages  also what makes and tries the Debian packages
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
@@ -9,7 +9,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
-  libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev
+  libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev libssl-dev
   gnuplot-nox jq python3
 )
 for group in "$@"; do
@@ -21,7 +21,7 @@ for group in "$@"; do
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )
       ;;
-    --checks) packages+=(clang-format clang-tidy-19 doxygen) ;;
+    --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
     --peers) packages+=(libbenchmark-dev python3-lmfit python3-pandas lammps) ;;
     --workflow) packages+=(snakemake) ;;

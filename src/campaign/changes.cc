@@ -285,15 +285,19 @@ void Course::Add(std::size_t cycle, double value, double weight) {
                     .cycle = (a.cycle + b.cycle) / 2,
                     .value = (a.weight * a.value + b.weight * b.value) / (a.weight + b.weight),
                     .weight = a.weight + b.weight,
+                    .least = std::min(a.least, b.least),
+                    .greatest = std::max(a.greatest, b.greatest),
                     .count = a.count + b.count};
       }
       bins_.resize(kMostBins / 2);
       width_ *= 2;
     }
-    bins_.push_back({.first_cycle = cycle, .last_cycle = cycle});
+    bins_.push_back({.first_cycle = cycle, .last_cycle = cycle, .least = value, .greatest = value});
   }
   Bin& bin = bins_.back();
   bin.last_cycle = cycle;
+  bin.least = std::min(bin.least, value);
+  bin.greatest = std::max(bin.greatest, value);
   ++bin.count;
   const auto count = static_cast<double>(bin.count);
   bin.cycle += (static_cast<double>(cycle) - bin.cycle) / count;

@@ -18,6 +18,7 @@
 
 #include "cli/colours.h"
 #include "cli/commands.h"
+#include "cli/provenance.h"
 #include "cli/toml.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
@@ -179,7 +180,7 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
       ->type_name("FILE");
   app.config_formatter(std::make_shared<CommandConfig>(app));
 
-  Console console{results, err, kDone, {}, HasColours(out)};
+  Console console{results, err, kDone, {}, HasColours(out), CommandLine(argc, argv)};
   app.parse_complete_callback([&] { console.inputs = {ConfigFile(app)}; });
   AddFitCommand(app, console);
   AddSimulateCommand(app, console);

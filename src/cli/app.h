@@ -13,6 +13,7 @@ struct Console {
   int exit_status = 0;
   std::vector<std::string> inputs = {};  // files that were read already: the configuration
   bool has_colours = false;              // results are read on a terminal that shows them
+  std::string command_line = {};         // as a shell takes it
 };
 
 inline constexpr int kDone = 0;

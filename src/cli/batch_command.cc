@@ -5,13 +5,17 @@
 #include <array>
 #include <cstddef>
 #include <deque>
+#include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -24,14 +28,18 @@
 #include "cli/json_output.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
+#include "cli/provenance.h"
 #include "cli/whole_number.h"
+#include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/repeats.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/csv_writer.h"
 #include "mindahl/report/json.h"
+#include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
+#include "report/statements.h"
 
 namespace mindahl::cli {
 namespace {
@@ -44,6 +52,7 @@ struct BatchCommandOptions {
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string output;
   std::string json_path;
+  std::string report_directory;
 };
 
 /// What became of a file.
@@ -52,6 +61,7 @@ struct FileFit {
   Json fit;              // of `fit --json`; null where there is none
   std::string fault;     // why not done
   std::string messages;  // notes and warnings of the run
+  campaign::FileResult result;
 };
 
 /// A column of the table, and where `fit --json` has it.
@@ -100,10 +110,11 @@ constexpr std::array kColumns = {
 struct Repeated {
   std::string_view name;
   std::string_view verdict;
+  std::string_view unit;
 };
 constexpr std::array kRepeated = {
-    Repeated{"sigma", "sigma_verdict"}, Repeated{"alpha", "alpha_verdict"},
-    Repeated{"slip_force", "slip_force_verdict"}, Repeated{"friction_coefficient", ""}};
+    Repeated{"sigma", "sigma_verdict", "N/m"}, Repeated{"alpha", "alpha_verdict", "-"},
+    Repeated{"slip_force", "slip_force_verdict", "N"}, Repeated{"friction_coefficient", "", "-"}};
 
 Json ValueAt(const Json& fit, std::string_view pointer) {
   const Json::json_pointer at{std::string(pointer)};
@@ -116,8 +127,34 @@ Json ValueOf(const Json& fit, std::string_view column) {
   return found == kColumns.end() ? Json(nullptr) : ValueAt(fit, found->pointer);
 }
 
-FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict) {
+/// Where the page of a file goes: its name without the directory and what a path may not have, and
+/// a number where two files would have one page.
+class PageNames {
+ public:
+  std::string Next(const std::string& file) {
+    std::string stem = std::filesystem::path(file).stem().string();
+    for (char& character : stem) {
+      const auto byte = static_cast<unsigned char>(character);
+      if (byte < 0x20 || std::string_view("<>:\"|?*\\").find(character) != std::string_view::npos) {
+        character = '_';
+      }
+    }
+    std::string name = stem;
+    for (std::size_t number = 2; !taken_.insert(name).second; ++number) {
+      name = fmt::format("{}-{}", stem, number);
+    }
+    return name + ".html";
+  }
+
+ private:
+  std::set<std::string> taken_ = {"index"};
+};
+
+/// @param write_page  is given the report, and gives the name of its page
+FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict,
+                const std::function<std::string(const report::Report&)>& write_page) {
   FileFit result;
+  result.result.file = file;
   FitRequest request = batch;
   request.files = {file};
   std::ostringstream messages;
@@ -125,6 +162,9 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict) {
     const report::Report report = FitRecords(request, {messages, "batch"});
     result.fit = Json::parse(report::ToJson(report));
     result.done = Established(report.fit, strict);
+    result.result.verdict = report::VerdictWord(report);
+    result.result.parameters = report.fit.parameters;
+    if (write_page) result.result.page = write_page(report);
     if (!result.done) {
       result.fault = report.fit.converged ? "not established: a free parameter is not identifiable "
                                             "or the model inadequate"
@@ -136,18 +176,31 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict) {
     result.fault = fmt::format("{}: {}", file, error.what());
   }
   result.messages = messages.str();
+  result.result.fault = result.fault;
   return result;
 }
 
 /// In the order of the files, whatever the number of threads.
-std::vector<FileFit> FitFiles(const BatchCommandOptions& options, Progress& progress) {
+std::vector<FileFit> FitFiles(const BatchCommandOptions& options, const CLI::App& command,
+                              const Console& console, Progress& progress) {
   const std::vector<std::string>& files = options.request.files;
   std::vector<FileFit> fits;
   std::deque<std::future<FileFit>> at_work;
+  PageNames names;
   for (std::size_t next = 0; fits.size() < files.size();) {
     while (next < files.size() && at_work.size() < options.threads) {
-      at_work.push_back(std::async(std::launch::async, [&options, &file = files[next]] {
-        return FitFile(options.request, file, options.strict);
+      const std::string& file = files[next];
+      std::function<std::string(const report::Report&)> write_page;
+      if (!options.report_directory.empty()) {
+        write_page = [&, page = names.Next(file)](const report::Report& report) {
+          io::WriteFileAtomically(
+              std::filesystem::path(options.report_directory) / page,
+              report::ToPage(report, ProvenanceOfOneFit(command, console, file)));
+          return page;
+        };
+      }
+      at_work.push_back(std::async(std::launch::async, [&options, &file, write_page] {
+        return FitFile(options.request, file, options.strict, write_page);
       }));
       ++next;
     }
@@ -264,7 +317,36 @@ Json JsonOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options
   return json;
 }
 
-void RunBatch(const BatchCommandOptions& options, Console& console) {
+/// A directory that is there, or can be made where it is to be.
+void RequireReportDirectory(const std::string& directory) {
+  if (directory.empty()) return;
+  std::error_code error;
+  if (std::filesystem::is_directory(directory, error)) return;
+  if (std::filesystem::exists(directory, error)) {
+    throw InputError(
+        fmt::format("--report: '{}' is a file: give a directory for the pages", directory));
+  }
+  if (!std::filesystem::create_directory(directory, error)) {
+    throw InputError(
+        fmt::format("--report: cannot make the directory '{}': {}", directory, error.message()));
+  }
+}
+
+std::string IndexOf(const std::vector<FileFit>& fits, report::Provenance provenance) {
+  std::vector<campaign::FileResult> results;
+  for (const FileFit& fit : fits) results.push_back(fit.result);
+  std::vector<campaign::RepeatedQuantity> repeated;
+  for (const Repeated& quantity : kRepeated) {
+    const std::optional<campaign::Repeats> found = RepeatsOf(fits, quantity);
+    if (!found) continue;
+    repeated.push_back({.name = std::string(quantity.name),
+                        .unit = std::string(quantity.unit),
+                        .repeats = *found});
+  }
+  return campaign::BatchIndexPage(results, repeated, provenance);
+}
+
+void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Console& console) {
   const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
@@ -273,10 +355,11 @@ void RunBatch(const BatchCommandOptions& options, Console& console) {
   RequireOutputPaths(
       {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}}, read);
   MakeFitOptions(request);  // what is wrong with the options is no fault of a file
+  RequireReportDirectory(options.report_directory);
   std::vector<FileFit> fits;
   {
     Progress progress(console.err, "fitting files");
-    fits = FitFiles(options, progress);
+    fits = FitFiles(options, command, console, progress);
   }
   for (std::size_t k = 0; k < fits.size(); ++k) {
     console.err << fits[k].messages;
@@ -284,6 +367,10 @@ void RunBatch(const BatchCommandOptions& options, Console& console) {
     console.err << fmt::format("mindahl batch: warning: {}: {}\n", request.files[k], fits[k].fault);
   }
   io::WriteFileAtomically(options.output, TableOf(request.files, fits));
+  if (!options.report_directory.empty()) {
+    io::WriteFileAtomically(std::filesystem::path(options.report_directory) / "index.html",
+                            IndexOf(fits, ProvenanceOf(command, console, request.files)));
+  }
   if (!options.json_path.empty()) WriteJson(JsonOf(fits, options), options.json_path, console);
   if (options.json_path != "-") console.out << TextOf(fits, options);
   console.exit_status = std::ranges::all_of(fits, &FileFit::done) ? kDone : kNotEstablished;
@@ -318,6 +405,12 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       ->type_name("PATH")
       ->group(group);
   command
+      ->add_option("--report", options->report_directory,
+                   "directory for a page of HTML a file, and index.html with all of\n"
+                   "them; made where it is not there")
+      ->type_name("DIR")
+      ->group(group);
+  command
       ->add_option("--threads", options->threads,
                    "that fit; the results do not depend on it; default one a core")
       ->check(WholeNumber(1, 1024))
@@ -327,7 +420,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
                  "a file fails too where a free parameter is not identifiable\n"
                  "or the model inadequate")
       ->group(group);
-  command->callback([options, &console] { RunBatch(*options, console); });
+  command->callback([options, command, &console] { RunBatch(*options, *command, console); });
 }
 
 }  // namespace mindahl::cli

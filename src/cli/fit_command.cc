@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/output_path.h"
+#include "cli/provenance.h"
 #include "cli/text_output.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/backbone_estimate.h"
@@ -18,6 +20,7 @@
 #include "mindahl/report/backbone.h"
 #include "mindahl/report/figure.h"
 #include "mindahl/report/json.h"
+#include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/report/residual_table.h"
 #include "mindahl/report/text.h"
@@ -32,6 +35,7 @@ struct FitCommandOptions {
   std::string residuals_path;
   std::string backbone_path;
   std::string plot_path;
+  std::string report_path;
 };
 
 /// What the records carry whatever the law.
@@ -47,7 +51,9 @@ identification::BackboneEstimate BackboneOf(const FitRequest& request,
   return identification::EstimateBackbone(records, MakeFitOptions(request), report.fit);
 }
 
-void Write(const FitCommandOptions& options, const report::Report& report, const Messages& messages,
+/// @param provenance  asked for where a page is written: it reads the files once more
+void Write(const FitCommandOptions& options, const report::Report& report,
+           const std::function<report::Provenance()>& provenance, const Messages& messages,
            Console& console) {
   for (const report::Warning& warning : report.fit_warnings) {
     if (warning.code == "fit_failed") continue;  // an error, below
@@ -59,11 +65,17 @@ void Write(const FitCommandOptions& options, const report::Report& report, const
   }
   if (report.failed()) {  // no curve to draw, no residual to list
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.termination);
+    if (!options.report_path.empty()) {
+      io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
+    }
     if (!options.json_path.empty()) WriteText(report::ToJson(report), options.json_path, console);
     return;
   }
   // The plot first: it alone may still fail.
   if (!options.plot_path.empty()) io::WritePlot(report::ToPlot(report), options.plot_path);
+  if (!options.report_path.empty()) {
+    io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
+  }
   if (!options.residuals_path.empty()) {
     io::WriteFileAtomically(options.residuals_path, report::ResidualsCsv(report));
   }
@@ -80,7 +92,7 @@ void Write(const FitCommandOptions& options, const report::Report& report, const
   }
 }
 
-void RunFit(const FitCommandOptions& options, Console& console) {
+void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
   const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
@@ -89,7 +101,8 @@ void RunFit(const FitCommandOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--residuals", options.residuals_path},
                       {"--backbone", options.backbone_path},
-                      {"--plot", options.plot_path}},
+                      {"--plot", options.plot_path},
+                      {"--report", options.report_path}},
                      read);
   const Messages messages{console.err, "fit"};
   report::Report report = FitRecords(request, messages);
@@ -97,7 +110,8 @@ void RunFit(const FitCommandOptions& options, Console& console) {
     report.backbone = BackboneOf(request, report);
   }
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
-  Write(options, report, messages, console);
+  const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
+  Write(options, report, provenance, messages, console);
 }
 
 }  // namespace
@@ -138,11 +152,17 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->type_name("PATH")
       ->group(group);
   command
+      ->add_option("--report", options->report_path,
+                   "everything as one page of HTML with its figures, to read,\n"
+                   "send and print; it loads nothing")
+      ->type_name("PATH")
+      ->group(group);
+  command
       ->add_flag("--strict", options->strict,
                  "exit status 3 unless every free parameter is identifiable\n"
                  "and the model not inadequate")
       ->group(group);
-  command->callback([options, &console] { RunFit(*options, console); });
+  command->callback([options, command, &console] { RunFit(*options, *command, console); });
 }
 
 }  // namespace mindahl::cli

@@ -25,14 +25,19 @@
 #include "cli/kept_cycles.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
+#include "cli/provenance.h"
 #include "cli/whole_number.h"
 #include "mindahl/campaign/changes.h"
 #include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/evolution.h"
+#include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/reading.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/appended_file.h"
+#include "mindahl/io/atomic_file.h"
+#include "mindahl/io/plot.h"
 #include "mindahl/io/record_stream.h"
 #include "mindahl/report/units.h"
 
@@ -51,6 +56,8 @@ struct TrackCommandOptions {
   std::string broken_rows = "refuse";
   std::string output;
   std::string json_path;
+  std::string plot_path;
+  std::string report_path;
   bool resume = false;
   bool overwrite = false;
 };
@@ -62,6 +69,9 @@ struct TrackedQuantity {
   std::string_view open_flag;
   std::optional<double> (*of)(const CycleFit&);
   std::optional<double> (*error)(const CycleFit&);  // in proportion to its standard error
+  bool is_drawn = false;
+  /// Whether that is the standard error of the value, without a factor.
+  bool has_standard_error = false;
 };
 
 std::optional<double> Rms(const CycleFit& fit) { return fit.rms; }
@@ -69,17 +79,24 @@ std::optional<double> Rms(const CycleFit& fit) { return fit.rms; }
 constexpr std::array kTracked = {
     TrackedQuantity{"sigma", "N/m", "sigma_open",
                     [](const CycleFit& fit) { return fit.sigma.value; },
-                    [](const CycleFit& fit) { return fit.sigma.standard_error; }},
+                    [](const CycleFit& fit) { return fit.sigma.standard_error; },
+                    /*is_drawn=*/true, /*has_standard_error=*/true},
     TrackedQuantity{"alpha", "-", "alpha_open", [](const CycleFit& fit) { return fit.alpha.value; },
-                    [](const CycleFit& fit) { return fit.alpha.standard_error; }},
+                    [](const CycleFit& fit) { return fit.alpha.standard_error; },
+                    /*is_drawn=*/true, /*has_standard_error=*/true},
     TrackedQuantity{"slip_force", "N", "slip_force_open",
                     [](const CycleFit& fit) { return fit.slip_force.value; },
-                    [](const CycleFit& fit) { return fit.slip_force.standard_error; }},
+                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
+                    /*is_drawn=*/true, /*has_standard_error=*/true},
     TrackedQuantity{"friction_coefficient", "-", "",
                     [](const CycleFit& fit) { return fit.friction_coefficient; },
-                    [](const CycleFit& fit) { return fit.slip_force.standard_error; }},
-    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }, Rms},
+                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
+                    /*is_drawn=*/true},
+    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }, Rms,
+                    /*is_drawn=*/true},
     TrackedQuantity{"energy", "J", "", [](const CycleFit& fit) { return fit.energy; }, Rms},
+    TrackedQuantity{"energy_ratio", "-", "", [](const CycleFit& fit) { return fit.energy_ratio; },
+                    Rms, /*is_drawn=*/true},
 };
 
 bool HasFlag(const CycleFit& fit, std::string_view flag) {
@@ -133,8 +150,8 @@ void RequireOptions(const TrackCommandOptions& options) {
 
 class Run {
  public:
-  Run(const TrackCommandOptions& options, Console& console)
-      : options_(options), console_(console), messages_{console.err, "track"} {}
+  Run(const TrackCommandOptions& options, const CLI::App& command, Console& console)
+      : options_(options), command_(command), console_(console), messages_{console.err, "track"} {}
 
   void Go();
 
@@ -146,12 +163,18 @@ class Run {
   [[noreturn]] void ThrowOther() const;
   void SayProgress();
   void WriteSummary();
+  /// Courses that a picture of the test shows: of friction coefficient and slip force, which say
+  /// the same, the first where it is known.
+  [[nodiscard]] std::vector<campaign::Evolution> Evolutions() const;
+  [[nodiscard]] campaign::TestSummary Summary() const;
+  void Draw();
   [[nodiscard]] nlohmann::ordered_json Json() const;
   [[nodiscard]] std::string_view UnitOf(std::string_view unit) const {
     return report::UnitIn(is_torsional_ ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
   }
 
   const TrackCommandOptions& options_;
+  const CLI::App& command_;
   Console& console_;
   Messages messages_;
   FitOptions fit_;
@@ -317,6 +340,7 @@ void Run::Go() {
   std::ranges::transform(totals_.courses, courses_.begin(), [](const campaign::Course& course) {
     return campaign::FindChanges(course);
   });
+  Draw();
   if (!options_.json_path.empty()) WriteJson(Json(), options_.json_path, console_);
   if (options_.json_path != "-") WriteSummary();
 }
@@ -363,6 +387,71 @@ std::vector<std::string> TextOf(const campaign::CourseDescription& course) {
     if (course.stretches[k].trends) lines.push_back(TextOf(course.stretches[k]));
   }
   return lines;
+}
+
+std::vector<campaign::Evolution> Run::Evolutions() const {
+  std::vector<campaign::Evolution> evolutions;
+  const auto is_known = [this](std::string_view name) {
+    const auto found = std::ranges::find(kTracked, name, &TrackedQuantity::name);
+    const auto k = static_cast<std::size_t>(found - kTracked.begin());
+    return !courses_[k].stretches.empty();
+  };
+  for (std::size_t k = 0; k < kTracked.size(); ++k) {
+    const TrackedQuantity& quantity = kTracked[k];
+    if (!quantity.is_drawn || courses_[k].stretches.empty()) continue;
+    if (quantity.name == "slip_force" && is_known("friction_coefficient")) continue;
+    evolutions.push_back({.name = std::string(quantity.name),
+                          .unit = std::string(UnitOf(quantity.unit)),
+                          .has_errors = quantity.has_standard_error,
+                          .course = totals_.courses[k],
+                          .description = courses_[k]});
+  }
+  return evolutions;
+}
+
+campaign::TestSummary Run::Summary() const {
+  campaign::TestSummary test{.files = options_.request.files,
+                             .cycles = reading_.cycles,
+                             .samples = reading_.samples,
+                             .fits = totals_.fits,
+                             .unused_samples = reading_.unused_samples,
+                             .dissipated = totals_.energy,
+                             .evolutions = Evolutions()};
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = totals_.flags.find(std::string(flag.name));
+    if (found == totals_.flags.end()) continue;
+    test.flags.push_back(
+        {.name = found->first, .meaning = std::string(flag.meaning), .cycles = found->second});
+  }
+  for (std::size_t k = 0; k < kTracked.size(); ++k) {
+    const std::string name =
+        fmt::format("{}{}", kTracked[k].name, InBrackets(UnitOf(kTracked[k].unit)));
+    for (const std::string& line : TextOf(courses_[k])) {
+      test.changes.push_back(fmt::format("{}: {}", name, line));
+    }
+  }
+  return test;
+}
+
+void Run::Draw() {
+  if (!options_.plot_path.empty()) {
+    const campaign::TestSummary test = Summary();
+    const std::string file = std::filesystem::path(test.files.front()).filename().string();
+    io::WritePlot(
+        campaign::EvolutionPlot(
+            test.evolutions,
+            test.files.size() > 1 ? fmt::format("{} and {} more", file, test.files.size() - 1)
+                                  : file,
+            fmt::format("{} cycles: {}", test.cycles,
+                        test.changes.empty() ? "nothing changed beyond chance"
+                                             : "dashed where it changed beyond chance")),
+        options_.plot_path);
+  }
+  if (!options_.report_path.empty()) {
+    io::WriteFileAtomically(
+        options_.report_path,
+        campaign::ToPage(Summary(), ProvenanceOf(command_, console_, options_.request.files)));
+  }
 }
 
 void Run::WriteSummary() {
@@ -454,13 +543,17 @@ nlohmann::ordered_json Run::Json() const {
   return json;
 }
 
-void RunTrack(const TrackCommandOptions& options, Console& console) {
+void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
   RequireDistinctFiles(options.request.files);
   std::vector<std::string> read = console.inputs;
   read.insert(read.end(), options.request.files.begin(), options.request.files.end());
-  RequireOutputPaths(
-      {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}}, read);
-  Run(options, console).Go();
+  RequireOutputPaths({{"--output", options.output},
+                      {"--json", options.json_path, /*dash_is_stdout=*/true},
+                      {"--plot", options.plot_path},
+                      {"--report", options.report_path}},
+                     read);
+  if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
+  Run(options, command, console).Go();
 }
 
 }  // namespace
@@ -517,12 +610,22 @@ void AddTrackCommand(CLI::App& app, Console& console) {
       ->type_name("PATH")
       ->group(group);
   command
+      ->add_option("--plot", options->plot_path,
+                   "evolution over the cycles with what changed, as svg or png")
+      ->type_name("PATH")
+      ->group(group);
+  command
+      ->add_option("--report", options->report_path,
+                   "all of it as one page of HTML with its figures; it loads nothing")
+      ->type_name("PATH")
+      ->group(group);
+  command
       ->add_flag("--resume", options->resume,
                  "go on with the table that is there: the same files and options")
       ->group(group);
   command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
       ->group(group);
-  command->callback([options, &console] { RunTrack(*options, console); });
+  command->callback([options, command, &console] { RunTrack(*options, *command, console); });
 }
 
 }  // namespace mindahl::cli

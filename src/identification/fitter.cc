@@ -405,12 +405,13 @@ void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solut
   const double peak_force = result.PeakForce();
   if (NeedsSlipForceProfile(problem, solution, noise, estimates, peak_force / result.law.slip_force,
                             options, buffers)) {
-    const SlipForceProfile profile =
+    SlipForceProfile profile =
         ProfileSlipForce(problem, solution, noise, estimates, options, buffers);
     WidenByProfile(problem, profile, estimates.quantile(), peak_force, result);
     for (Finding& finding : FindOpenSlipForce(result, profile)) {
       result.findings.push_back(std::move(finding));
     }
+    result.slip_force_profile = std::move(profile.likelihood);
   }
   if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
     ParameterEstimate& sigma = result.parameters[kStiffness];
@@ -618,6 +619,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   result.branch_shapes.clear();
   result.law_choice.reset();
   result.memory.reset();
+  result.slip_force_profile.reset();
   result.correlation.clear();
   result.residuals = {};
   result.starts.clear();

@@ -12,6 +12,9 @@
 #include <utility>
 
 #include "io/gnuplot.h"
+#include "io/plot_rules.h"
+#include "io/power_of_ten.h"
+#include "io/thinning.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/atomic_file.h"
 
@@ -19,11 +22,14 @@ namespace mindahl::io {
 namespace {
 
 constexpr std::size_t kMostPoints = 20'000;
-constexpr std::size_t kExtremesPerRun = 4;  // least and greatest x and y
 
 // Of unlike lightness, so that they are told apart in grey and by colour-blind readers too.
 constexpr std::array<std::string_view, 6> kColours = {"#4878a8", "#d1495b", "#3a9d6e",
                                                       "#8d6bb1", "#e09f3e", "#5f6b76"};
+
+// Of series that follow each other: from early, dark, to late.
+constexpr std::array<std::string_view, 8> kShades = {"#440154", "#46327e", "#365c8d", "#277f8e",
+                                                     "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
 
 // gnuplot's point types, one a colour: filled at first, then open and on another colour than
 // before.
@@ -37,6 +43,7 @@ constexpr int kCross = 2;
 constexpr double kLeft = 95;
 constexpr double kRight = 25;
 constexpr double kTitle = 40;
+constexpr double kSubtitle = 22;
 constexpr double kLegend = 30;  // above each panel
 constexpr double kBelow = 58;   // tics and x label under each panel
 constexpr double kEdge = 8;
@@ -47,36 +54,13 @@ constexpr double kCharacter = 8;
 constexpr std::size_t kMostAbove = 4;
 constexpr double kLargestLegendShare = 0.4;  // of a column's width
 
-void RequireDrawable(const std::string& name, const std::vector<double>& values, bool logarithmic) {
-  for (const double value : values) {
-    RequireFinite(name, value);
-    if (logarithmic && value <= 0) ThrowInvalid(name, value, "must be > 0 on a logarithmic axis");
-  }
-}
-
 void Validate(const Plot& plot) {
   if (plot.panels.empty()) throw InvalidArgument("number of panels = 0 is invalid: must be >= 1");
   RequirePositive("plot width [px]", plot.width);
   RequirePositive("plot height [px]", plot.height);
   RequirePositive("number of plot columns", plot.columns);
   for (std::size_t panel = 0; panel < plot.panels.size(); ++panel) {
-    const std::string where = fmt::format("panel {}", panel + 1);
-    RequirePositive("height of " + where, plot.panels[panel].height);
-    if (plot.panels[panel].series.empty()) {
-      throw InvalidArgument(where + " has no series: must have one");
-    }
-    for (const PlotSeries& series : plot.panels[panel].series) {
-      const std::string name = fmt::format("'{}' of {}", series.label, where);
-      RequireSameSize("x of " + name, series.x.size(), "y of " + name, series.y.size());
-      if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
-      RequireDrawable("x of " + name, series.x, plot.panels[panel].log_x);
-      RequireDrawable("y of " + name, series.y, plot.panels[panel].log_y);
-      if (series.style != PlotStyle::kIntervals) continue;
-      for (const auto* ends : {&series.lower, &series.upper}) {
-        RequireSameSize("ends of intervals of " + name, ends->size(), "points", series.y.size());
-        RequireDrawable("ends of intervals of " + name, *ends, plot.panels[panel].log_y);
-      }
-    }
+    RequireDrawable(plot.panels[panel], fmt::format("panel {}", panel + 1));
   }
 }
 
@@ -91,38 +75,18 @@ std::string Quoted(std::string_view text) {
   return quoted + "'";
 }
 
-/// Indices of the points to draw.
-std::vector<std::size_t> Thinned(const PlotSeries& series) {
-  const std::size_t size = series.x.size();
-  std::vector<std::size_t> kept;
-  if (size <= kMostPoints) {
-    for (std::size_t point = 0; point < size; ++point) kept.push_back(point);
-    return kept;
-  }
-  constexpr std::size_t kRuns = kMostPoints / kExtremesPerRun;
-  for (std::size_t run = 0; run < kRuns; ++run) {
-    const auto begin = static_cast<std::ptrdiff_t>(run * size / kRuns);
-    const auto end = static_cast<std::ptrdiff_t>((run + 1) * size / kRuns);
-    std::vector<std::size_t> extremes;
-    for (const std::vector<double>* values : {&series.x, &series.y}) {
-      const auto [least, greatest] =
-          std::minmax_element(values->begin() + begin, values->begin() + end);
-      extremes.push_back(static_cast<std::size_t>(least - values->begin()));
-      extremes.push_back(static_cast<std::size_t>(greatest - values->begin()));
-    }
-    std::ranges::sort(extremes);
-    const auto repeated = std::ranges::unique(extremes);
-    extremes.erase(repeated.begin(), repeated.end());
-    kept.insert(kept.end(), extremes.begin(), extremes.end());
-  }
-  return kept;
+std::string_view ColourOf(const PlotSeries& curve, std::size_t series) {
+  if (!curve.shade) return kColours[series % kColours.size()];
+  const auto shade = static_cast<std::size_t>(*curve.shade * (kShades.size() - 1) + 0.5);
+  return kShades[std::min(shade, kShades.size() - 1)];
 }
 
 /// How a series is drawn. Beyond the first six, colours repeat with dashes, crosses or other
 /// markers.
 /// @param series     its place in the panel
 /// @param in_legend  there the dots of a dense series would be too small to tell
-std::string StyleCommand(PlotStyle style, std::size_t series, bool in_legend) {
+std::string StyleCommand(const PlotSeries& curve, std::size_t series, bool in_legend) {
+  const PlotStyle style = curve.style;
   const std::size_t round = series / kColours.size();
   const std::string dashes(kDashes[round % kDashes.size()]);
   const int marker = kMarkerShapes[series % kMarkerShapes.size()];
@@ -145,19 +109,14 @@ std::string StyleCommand(PlotStyle style, std::size_t series, bool in_legend) {
     case PlotStyle::kLineAndPoints:
       command = fmt::format("linespoints lw 1.5 pt {} ps 0.9{}", marker, dashes);
       break;
+    case PlotStyle::kBand:
+      command = "lines lw 1.5" + dashes;
+      break;
+    case PlotStyle::kBars:
+      command = "boxes fill transparent solid 0.4";
+      break;
   }
-  return command + fmt::format(" lc rgb '{}'", kColours[series % kColours.size()]);
-}
-
-/// 10ⁿ in plain text, of which labels are made.
-std::string PowerOfTen(int exponent) {
-  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
-                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = "10";
-  for (const char character : std::to_string(exponent)) {
-    text += character == '-' ? "⁻" : kDigits[static_cast<std::size_t>(character - '0')];
-  }
-  return text;
+  return command + fmt::format(" lc rgb '{}'", ColourOf(curve, series));
 }
 
 /// Powers of ten between two labels of a logarithmic axis.
@@ -257,9 +216,9 @@ class Script {
       const std::vector<PlotSeries>& all = plot_.panels[panel].series;
       for (std::size_t series = 0; series < all.size(); ++series) {
         Add("$data_{}_{} << END\n", panel, series);
-        for (const std::size_t point : Thinned(all[series])) {
+        for (const std::size_t point : Thinned(all[series], kMostPoints)) {
           Add("{:.9g} {:.9g}", all[series].x[point], all[series].y[point]);
-          if (all[series].style == PlotStyle::kIntervals) {
+          if (HasEnds(all[series].style)) {
             Add(" {:.9g} {:.9g}", all[series].lower[point], all[series].upper[point]);
           }
           Add("\n");
@@ -318,13 +277,18 @@ class Script {
     }
     double shares = 0.0;
     for (const double row : rows) shares += row;
-    const double title = plot_.title.empty() ? kEdge : kTitle;
+    const double subtitle = plot_.subtitle.empty() ? 0.0 : kSubtitle;
+    const double title = (plot_.title.empty() ? kEdge : kTitle) + subtitle;
     const double around = (kLegend + kBelow) * static_cast<double>(rows.size());
     // A page too small for its margins still gets axes one pixel high.
     const double drawable = std::max(plot_.height - title - around - kEdge, shares);
     if (!plot_.title.empty()) {
       Add("set label 1 {} at screen 0.5, screen {:.6f} center font ',15'\n", Quoted(plot_.title),
           FromBottom(kTitle / 2));
+    }
+    if (!plot_.subtitle.empty()) {
+      Add("set label 3 {} at screen 0.5, screen {:.6f} center\n", Quoted(plot_.subtitle),
+          FromBottom(title - subtitle / 2));
     }
     const std::vector<std::pair<double, double>> columns = ColumnFrames();
     double top = title;
@@ -359,7 +323,7 @@ class Script {
       const auto [low, high] = std::ranges::minmax(series.*values);
       least = std::min(least, low);
       greatest = std::max(greatest, high);
-      if (name == 'x' || series.style != PlotStyle::kIntervals) continue;
+      if (name == 'x' || !HasEnds(series.style)) continue;
       least = std::min(least, std::ranges::min(series.lower));
       greatest = std::max(greatest, std::ranges::max(series.upper));
     }
@@ -404,17 +368,30 @@ class Script {
           FromBottom(frame.top - kLegend / 2));
     }
     AddKey(panel, frame);
+    for (const PlotMark& mark : panel.marks) {
+      Add("set arrow from first {0:.9g}, graph 0 to first {0:.9g}, graph 1 nohead dt (4,4) lw 1.5 "
+          "lc rgb '#444444'\n",
+          mark.x);
+      if (mark.label.empty()) continue;
+      Add("set label {} at first {:.9g}, graph 0.97 left offset 0.5,0 font ',10'\n",
+          Quoted(mark.label), mark.x);
+    }
     Add("plot ");
     for (std::size_t series = 0; series < panel.series.size(); ++series) {
       const PlotSeries& curve = panel.series[series];
       const bool has_ends = curve.style == PlotStyle::kIntervals;
-      Add("{}$data_{}_{} using {} with {} notitle", series == 0 ? "" : ", ", index, series,
-          has_ends ? "1:2:3:4" : "1:2", StyleCommand(curve.style, series, false));
+      Add("{}", series == 0 ? "" : ", ");
+      if (curve.style == PlotStyle::kBand) {
+        Add("$data_{}_{} using 1:3:4 with filledcurves fill transparent solid 0.2 noborder "
+            "lc rgb '{}' notitle, ",
+            index, series, ColourOf(curve, series));
+      }
+      Add("$data_{}_{} using {} with {} notitle", index, series, has_ends ? "1:2:3:4" : "1:2",
+          StyleCommand(curve, series, false));
       if (curve.label.empty()) continue;
-      Add(", keyentry with {} title {}", StyleCommand(curve.style, series, true),
-          Quoted(curve.label));
+      Add(", keyentry with {} title {}", StyleCommand(curve, series, true), Quoted(curve.label));
     }
-    Add("\nunset label\n");
+    Add("\nunset label\nunset arrow\n");
   }
 
   const Plot& plot_;
@@ -433,6 +410,8 @@ std::string_view Terminal(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+void RequirePlotName(const std::filesystem::path& path) { Terminal(path); }
 
 void WritePlot(const Plot& plot, const std::filesystem::path& path) {
   Validate(plot);

@@ -14,6 +14,7 @@
 #include "mindahl/report/contact.h"
 #include "mindahl/report/quantity.h"
 #include "report/fields.h"
+#include "report/statements.h"
 #include "report/wrapped.h"
 
 namespace mindahl::report {
@@ -28,11 +29,9 @@ std::string ValueAndError(const UncertainValue& value, std::string_view unit) {
   return QuantityWithError(value.value, value.standard_error, unit);
 }
 
-/// What to measure better; nothing where the inputs are exact and the fit alone is uncertain.
 std::string SharesText(const PropagatedValue& value) {
-  if (value.largest_input.empty()) return "";
-  return fmt::format("{:<23}variance: fit {:.0f} %, inputs {:.0f} %, mostly the {}\n", "",
-                     100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
+  const std::string statement = VarianceStatement(value);
+  return statement.empty() ? "" : fmt::format("{:<23}{}\n", "", statement);
 }
 
 /// What would have to be known for more of the contact.
@@ -64,58 +63,20 @@ std::string MissingText(const Report& report) {
                         2);
 }
 
-std::string BranchShapesText(const FitResult& fit) {
-  std::string text;
-  for (const identification::BranchShape& shape : fit.branch_shapes) {
-    text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "  α branch by branch: " : ", ",
-                        shape.branch, shape.shape_exponent, shape.standard_error);
-  }
-  return text.empty() ? text : Wrapped(text, 4);
-}
-
-/// A theory of the load's exponent in words.
-std::string Words(const LoadHypothesis& hypothesis) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
-      {"sphere", "smooth sphere, Hertz (1/3)"},
-      {"elements", "elements in parallel (α)"},
-      {"cone", "cone (1/2)"},
-      {"flat_punch", "flat punch (0)"},
-      {"rough", "rough contact (1)"},
-  }};
-  const auto row = std::ranges::find(kWords, hypothesis.name,
-                                     &std::pair<std::string_view, std::string_view>::first);
-  return std::string(row == kWords.end() ? hypothesis.name : row->second);
-}
-
 /// No number of what is not known.
 std::string IfKnown(const UncertainValue& value, std::string_view unit, const FitResult& fit,
                     std::string_view parameter) {
   return fit.Find(parameter)->is_known() ? ValueAndError(value, unit) : "-";
 }
 
-/// No p-value is 0.
-std::string Chance(double p_value) {
-  constexpr double kLeast = 1e-12;
-  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.3g}", p_value);
-}
-
-const char* Verdict(double p_value) { return p_value < kSignificance ? "rejected" : "tenable"; }
-
 }  // namespace
 
 std::string ContactText(const Report& report) {
-  // Of what the loop leaves open nothing follows for the contact, whatever its error is.
-  const bool knows_stiffness = report.fit.Find("sigma")->is_known();
-  const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
   std::string text;
   bool has_compliance = false;
   for (const ContactField& field : ContactFields()) {
     const std::optional<PropagatedValue> value = field.get(report);
-    if (!value || !std::isfinite(value->standard_error)) continue;
-    const bool is_of_radius_alone =
-        field.key == "maximum_pressure" && report.known.contact_radius.has_value();
-    if (!knows_stiffness && field.key != "friction_coefficient" && !is_of_radius_alone) continue;
-    if (!knows_slip_force && field.key == "mindlin_gross_slip_displacement") continue;
+    if (!value || !IsIdentified(report, field, *value)) continue;
     text += fmt::format("{:<22} {:<27} {}\n", field.label, ValueAndError(*value, field.unit),
                         field.formula);
     text += SharesText(*value);
@@ -173,45 +134,20 @@ std::string LoadSeriesText(const Report& report) {
     text +=
         fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, {}{}\n",
                     Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
-                    Chance(p_value), p_value < kSignificance ? ": rejected" : "");
+                    ChanceText(p_value), p_value < kSignificance ? ": rejected" : "");
   }
   return text;
 }
 
 std::string MappingText(const Report& report) {
   std::string text;
-  const auto& mindlin = report.fit.mindlin_test;
-  // Of the two tests the likelihood ratio has the say: it needs no parabola.
-  if (report.alpha.z) {
-    text += fmt::format(
-        "  α − 1/3 = {:.3g}, {:.2f} standard errors, {}{}\n", *report.alpha.minus_third,
-        *report.alpha.z, Chance(*report.alpha.p_value),
-        mindlin ? "" : fmt::format(": Mindlin's exponent is {}", Verdict(*report.alpha.p_value)));
+  for (const std::string& statement : ExponentStatements(report)) {
+    text += Wrapped("  " + statement, 6);
   }
-  if (mindlin) {
-    const std::string rig = mindlin->rig_stiffness
-                                ? fmt::format(
-                                      " for a rigid rig, but tenable with a rig of {} in series: "
-                                      "the record does not tell which",
-                                      Quantity(*mindlin->rig_stiffness, "N/m", 4))
-                                : "";
-    text +=
-        Wrapped(fmt::format("  likelihood ratio of α = 1/3: {:.3g}, {}: Mindlin's exponent is {}{}",
-                            mindlin->likelihood_ratio, Chance(mindlin->p_value),
-                            Verdict(mindlin->p_value), rig),
-                6);
-  }
-  text += BranchShapesText(report.fit);
   for (const StiffnessTest& test : report.stiffness) {
-    text += fmt::format("  σ/(8a/G*) = {}: 1 where Hertz and Mindlin hold\n",
-                        ValueAndError(test.ratio, "-"));
-    if (test.z) {
-      text += Wrapped(
-          fmt::format(
-              "      with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: {}",
-              test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
-              test.interval95->upper, *test.z, Chance(*test.p_value), Verdict(*test.p_value)),
-          10);
+    const std::vector<std::string> statements = StiffnessStatements(test);
+    for (std::size_t k = 0; k < statements.size(); ++k) {
+      text += Wrapped((k == 0 ? "  " : "      ") + statements[k], 6);
     }
     text += SharesText(test.ratio);
   }

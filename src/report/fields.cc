@@ -1,5 +1,6 @@
 #include "report/fields.h"
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
@@ -197,6 +198,24 @@ const FieldTable& Table() {
   return table;
 }
 
+/// Fields of a value and of its members, lists aside.
+void Describe(const Report& report, const Value& value, const std::string& path,
+              const std::vector<FieldDescription>& descriptions,
+              std::vector<DescribedValue>& described) {
+  if (const auto* object = std::get_if<Value::Object>(&value.content)) {
+    for (const auto& [key, member] : *object) {
+      Describe(report, member, path.empty() ? key : path + "." + key, descriptions, described);
+    }
+    return;
+  }
+  if (std::holds_alternative<Value::Array>(value.content)) return;
+  const auto found = std::ranges::find(descriptions, path, &FieldDescription::path);
+  if (found == descriptions.end()) return;
+  FieldDescription field = *found;
+  field.unit = UnitIn(report.units, field.unit);
+  described.push_back({.field = std::move(field), .value = value});
+}
+
 }  // namespace
 
 std::string WhyFailed(const Report& report) { return "the fit failed: " + report.fit.termination; }
@@ -214,6 +233,20 @@ std::vector<FieldDescription> DescribeFields() {
     descriptions.push_back({std::string(list) + "[].message", "", "for people"});
   }
   return descriptions;
+}
+
+std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix) {
+  const std::vector<FieldDescription> descriptions = DescribeFields();
+  std::vector<DescribedValue> described;
+  const std::string_view subject = prefix.substr(0, prefix.find('.'));
+  for (const Field<Report>& row : Table().rows) {
+    if (row.path.substr(0, row.path.find('.')) != subject) continue;
+    Describe(report, row.get(report), row.path, descriptions, described);
+  }
+  std::erase_if(described, [prefix](const DescribedValue& item) {
+    return !item.field.path.starts_with(prefix);
+  });
+  return described;
 }
 
 Value::Object Document(const Report& report) { return Render(Table().rows, report); }

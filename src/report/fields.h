@@ -33,6 +33,16 @@ struct FieldDescription {
 /// Every field that a report may have.
 std::vector<FieldDescription> DescribeFields();
 
+/// A number, word or flag of a report, with what the documentation says of it.
+struct DescribedValue {
+  FieldDescription field;
+  Value value;
+};
+
+/// What a report has of one subject, without its lists: every field whose path begins with
+/// `prefix`, such as "measured.", with its unit as the report has it.
+std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix);
+
 /// The whole report as keys and values.
 Value::Object Document(const Report& report);
 

@@ -16,6 +16,7 @@
 #include "report/field_table.h"
 #include "report/names.h"
 #include "report/requirements.h"
+#include "report/statements.h"
 #include "report/style.h"
 #include "report/wrapped.h"
 
@@ -110,29 +111,6 @@ std::string SelectionText(const identification::ModelSelection& selection, const
   return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
 }
 
-std::string SlipText(const LoopDescription& loop, const Units& units) {
-  if (!loop.regime) return "whether it slips is open: slip_force is not identifiable";
-  if (loop.gross_slip_displacement) {
-    return fmt::format("{}, the contact slips as a whole from an amplitude of {}",
-                       Name(*loop.regime),
-                       Quantity(*loop.gross_slip_displacement, units.displacement, 5));
-  }
-  if (!loop.knows_slip) {
-    return fmt::format("{} (gross-slip displacement not identified)", Name(*loop.regime));
-  }
-  return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
-                     100 * loop.slip_force_share);
-}
-
-/// A trend over the cycles in words, where it is worth any.
-std::string TrendText(const char* what, const std::optional<loop::Trend>& trend,
-                      const std::optional<double>& mean) {
-  if (!trend || !mean || !identification::IsWorthSaying(*trend, *mean)) return "";
-  return fmt::format("{} changes by {:+.2g} ± {:.1g} % a cycle (p = {:.1g})", what,
-                     100 * trend->slope / std::abs(*mean),
-                     100 * trend->standard_error / std::abs(*mean), trend->p_value);
-}
-
 /// What needs no model.
 std::string MeasuredText(const Report& report) {
   const RecordFit& widest = report.fit.WidestRecord();
@@ -163,11 +141,7 @@ std::string MeasuredText(const Report& report) {
   add("slope after reversals", facts.slope_after_reversal, units.stiffness);
   add("plateau slope", facts.plateau_slope, units.stiffness);
   add("asymmetry", facts.asymmetry, "-");
-  for (const std::string& trend :
-       {TrendText("half gap", facts.half_gap_trend, facts.half_gap),
-        TrendText("energy", facts.energy_trend, facts.energy_per_cycle)}) {
-    if (!trend.empty()) parts.push_back(trend);
-  }
+  for (const std::string& trend : TrendStatements(facts)) parts.push_back(trend);
   return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
 }
 
@@ -206,114 +180,14 @@ std::string AdequacyText(const Report& report, const Style& style) {
   return text;
 }
 
-/// Which of the two laws σ and Tc are of, and what the other would make of the contact.
 std::string LawText(const Report& report) {
-  if (!report.fit.law_choice) return "";
-  const identification::LawChoice& choice = *report.fit.law_choice;
-  const auto name = [](const models::FrictionModel& model) {
-    return model.memory == models::Memory::kReturnPoint ? "Masing's law" : "Dahl's own law";
-  };
-  if (choice.preferred == report.fit.model) {
-    return choice.delta_aicc
-               ? fmt::format("law:  {}, not {} (ΔAICc = {:.3g})\n", name(*report.fit.model),
-                             name(*choice.alternative), *choice.delta_aicc)
-               : fmt::format("law:  {}\n", name(*report.fit.model));
-  }
-  const Units& units = report.units;
-  if (!report.fit.Find("sigma")->is_known()) {
-    return Wrapped(
-        fmt::format("law:  {}{}", name(*choice.alternative),
-                    choice.decided
-                        ? fmt::format(" fits better (ΔAICc = {:.3g}, --model {})",
-                                      choice.delta_aicc.value_or(0.0), choice.alternative->name)
-                        : fmt::format(" or {}, which the record does not tell apart",
-                                      name(*report.fit.model))),
-        6);
-  }
-  const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
-  std::string text = fmt::format(
-      "law:  sigma{} of {}; by {}, which {}, {} {}",
-      knows_slip_force ? " and slip_force are" : " is", name(*report.fit.model),
-      name(*choice.alternative),
-      choice.decided ? fmt::format("fits better (ΔAICc = {:.3g}, --model {})",
-                                   choice.delta_aicc.value_or(0.0), choice.alternative->name)
-                     : std::string("the record does not tell from it"),
-      knows_slip_force ? "they are" : "it is",
-      Quantity(choice.law.tangential_stiffness, units.stiffness, 5));
-  if (knows_slip_force) text += " and " + Quantity(choice.law.slip_force, units.force, 5);
-  const auto add = [&](const char* what, const std::optional<PropagatedValue>& quantity) {
-    if (quantity) text += fmt::format(", {} {}", what, Quantity(quantity->value, "m", 5));
-  };
-  add("contact radius", report.contact_by_other_law.contact_radius);
-  add("equivalent radius", report.contact_by_other_law.equivalent_radius);
-  return Wrapped(text, 6);
+  const std::string statement = LawStatement(report);
+  return statement.empty() ? "" : Wrapped("law:  " + statement, 6);
 }
 
-/// The comparisons of branches, in words.
-struct ComparisonWords {
-  std::string_view code;
-  std::string_view words;
-};
-
-constexpr std::array<ComparisonWords, 6> kComparisons = {{
-    {"virgin_branch", "virgin branch"},
-    {"directions", "directions"},
-    {"amplitudes", "amplitudes"},
-    {"slope_at_reversal", "slopes after reversals"},
-    {"return_point", "way on after inner loops"},
-    {"other_law", "what the other law fits"},
-}};
-
-/// Of which memory the record is, whatever the shape of its branches.
 std::string MemoryText(const Report& report) {
-  if (!report.fit.memory || report.fit.memory->comparisons.empty()) return "";
-  const identification::MemoryTest& memory = *report.fit.memory;
-  const auto p = [](double value) {
-    return value < 1e-6 ? std::string("p < 1e-6") : fmt::format("p = {:.2g}", value);
-  };
-  std::string text = "memory: ";
-  using enum identification::MemoryVerdict;
-  switch (memory.verdict) {
-    case kMasing:
-      text +=
-          fmt::format("Masing's ({}), not Dahl's ({})", p(memory.p_value), p(memory.dahl_p_value));
-      break;
-    case kDahl:
-      text +=
-          fmt::format("Dahl's ({}), not Masing's ({})", p(memory.dahl_p_value), p(memory.p_value));
-      break;
-    case kNeither:
-      text += fmt::format("neither Masing's ({}) nor Dahl's ({})", p(memory.p_value),
-                          p(memory.dahl_p_value));
-      break;
-    case kUndecided:
-      text += fmt::format("Masing's ({}) or Dahl's ({}), undecided", p(memory.p_value),
-                          p(memory.dahl_p_value));
-      break;
-  }
-  std::vector<std::string> compared;
-  for (const ComparisonWords& row : kComparisons) {
-    const auto found =
-        std::ranges::find(memory.comparisons, row.code, &identification::MemoryComparison::code);
-    if (found == memory.comparisons.end()) continue;
-    if (memory.verdict == kNeither) {
-      compared.push_back(fmt::format("{} ({}, {})", row.words, p(found->p_value),
-                                     Quantity(found->size, report.units.force, 2)));
-    } else {
-      compared.emplace_back(row.words);
-    }
-  }
-  text += fmt::format("; compared: {}", fmt::join(compared, ", "));
-  if (memory.verdict == kUndecided) {
-    const auto has = [&](std::string_view code) {
-      return std::ranges::find(memory.comparisons, code, &identification::MemoryComparison::code) !=
-             memory.comparisons.end();
-    };
-    text += has("virgin_branch") || has("amplitudes")
-                ? "; amplitudes further apart, or less noise, would decide"
-                : "; a virgin branch, a second amplitude or an inner loop would decide";
-  }
-  return Wrapped(text, 8);
+  const std::string statement = MemoryStatement(report);
+  return statement.empty() ? "" : Wrapped("memory: " + statement, 8);
 }
 
 std::string NotesText(const Report& report) {
@@ -382,8 +256,9 @@ std::string ResidualText(const Report& report) {
 
 std::string LoopText(const Report& report) {
   const LoopDescription& loop = *report.loop;
-  std::string text = fmt::format("slip: {}; energy {} a cycle of the model",
-                                 SlipText(loop, report.units), Quantity(loop.model_energy, "J", 5));
+  std::string text =
+      fmt::format("slip: {}; energy {} a cycle of the model", SlipStatement(loop, report.units),
+                  Quantity(loop.model_energy, "J", 5));
   if (loop.gross_slip_energy_ratio) {
     text +=
         fmt::format(", gross slip from an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);

@@ -137,17 +137,19 @@ TEST(Figure, MarksTheReversalsOfEveryRecord) {
   }
 }
 
-TEST(Figure, HasTheVerdictAndNoNumberOfWhatIsNotKnownInItsTitle) {
+TEST(Figure, HasTheFileTheVerdictAndNoNumberOfWhatIsNotKnownInItsTitles) {
   report::ReportInput input = MadeInput();
   input.fit.adequacy.tried = 15;
-  EXPECT_EQ(ToPlot(report::MakeReport(input)).title,
+  EXPECT_EQ(ToPlot(report::MakeReport(input)).title, "loop_1.csv: adequate");
+  EXPECT_EQ(ToPlot(report::MakeReport(input)).subtitle,
             "mindlin-dahl, adequate: σ = 4e+07 N/m, α = 0.3333, Tc = 40 N");
   input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
   input.fit.parameters[0].identifiability = identification::Identifiability::kNotIdentifiable;
   input.fit.parameters[1].status = identification::ParameterStatus::kFixed;
   input.fit.parameters[2].identifiability = identification::Identifiability::kBoundedBelow;
   input.fit.parameters[2].lower95 = 12.5;
-  EXPECT_EQ(ToPlot(report::MakeReport(input)).title,
+  EXPECT_EQ(ToPlot(report::MakeReport(input)).title, "loop_1.csv: inadequate");
+  EXPECT_EQ(ToPlot(report::MakeReport(input)).subtitle,
             "mindlin-dahl, inadequate: σ not known, α = 0.3333, Tc > 12.5 N");
 }
 

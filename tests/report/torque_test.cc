@@ -82,7 +82,7 @@ TEST(Torque, HasItsUnitsInWarningsTableAndFigure) {
   EXPECT_THAT(report.fit_warnings.at(0).message, HasSubstr("T* = 3 N m at X = 500 mrad"));
   EXPECT_THAT(ResidualsCsv(report), HasSubstr("displacement [rad],force [N m],fitted_force [N m]"));
   const io::Plot plot = ToPlot(report);
-  EXPECT_THAT(plot.title, HasSubstr("N m/rad"));
+  EXPECT_THAT(plot.subtitle, HasSubstr("N m/rad"));
   EXPECT_EQ(plot.panels.at(0).y_label, "torque [N m]");
   EXPECT_THAT(plot.panels.at(1).x_label, HasSubstr("rad]"));
 }

@@ -17,6 +17,8 @@ class Course {
     double cycle = 0.0;  ///< mean number
     double value = 0.0;  ///< mean, weighted
     double weight = 0.0;
+    double least = 0.0;     ///< of its values
+    double greatest = 0.0;  ///< likewise
     std::size_t count = 0;
   };
 

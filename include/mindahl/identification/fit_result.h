@@ -9,6 +9,7 @@
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/law_choice.h"
+#include "mindahl/identification/likelihood_profile.h"
 #include "mindahl/identification/memory.h"
 #include "mindahl/identification/residual_statistics.h"
 #include "mindahl/identification/residual_structure.h"
@@ -149,6 +150,8 @@ struct FitResult {
   /// bounded, and under loads that differ or vary or a lag, where branches are no copies of each
   /// other.
   std::optional<MemoryTest> memory;
+  /// From Depth::kFull on, and at kErrors; empty where the parabola was good enough.
+  std::optional<LikelihoodProfile> slip_force_profile;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

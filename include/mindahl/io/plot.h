@@ -1,14 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace mindahl::io {
 
 /// Points are small dots for dense records. Markers are large, and of another shape in each series;
-/// they show few values one by one, alone or joined by a line, or with an interval around each.
-enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kIntervals };
+/// they show few values one by one, alone or joined by a line, or with an interval around each. A
+/// band is a line with the area between its lower and upper ends; bars stand on 0 and touch.
+enum class PlotStyle { kLine, kPoints, kMarkers, kLineAndPoints, kIntervals, kBand, kBars };
 
 /// One curve. Points are drawn and joined in the order given, so a loop is a loop.
 struct PlotSeries {
@@ -16,8 +18,17 @@ struct PlotSeries {
   std::vector<double> x;  ///< finite, at least one; > 0 on a logarithmic axis
   std::vector<double> y;  ///< finite, as many as x; > 0 on a logarithmic axis
   PlotStyle style = PlotStyle::kLine;
-  std::vector<double> lower = {};  ///< ends of intervals of y, as many; for kIntervals alone
+  std::vector<double> lower = {};  ///< ends of intervals of y, as many; for kIntervals and kBand
   std::vector<double> upper = {};
+  /// Place on a scale of colours from 0 to 1, where series follow each other as cycles do; else
+  /// each has a colour of its own.
+  std::optional<double> shade = {};
+};
+
+/// A vertical line across a panel, where something happened.
+struct PlotMark {
+  double x = 0.0;     ///< finite; > 0 on a logarithmic axis
+  std::string label;  ///< beside it; "" = none
 };
 
 /// One pair of axes. The legend stands above them, on the right of them when it has more than four
@@ -30,16 +41,22 @@ struct PlotPanel {
   bool log_x = false;
   bool log_y = false;
   std::string title = {};  ///< above the axes; "" = none
+  std::vector<PlotMark> marks = {};
 };
 
 /// Panels row by row; a row is as high as its highest panel.
 struct Plot {
   std::string title;  ///< "" = none
   std::vector<PlotPanel> panels;
-  int width = 900;   ///< [px]
-  int height = 700;  ///< [px]
-  int columns = 1;   ///< >= 1
+  int width = 900;            ///< [px]
+  int height = 700;           ///< [px]
+  int columns = 1;            ///< >= 1
+  std::string subtitle = {};  ///< under the title; "" = none
 };
+
+/// Before the work whose plot it is.
+/// @throws InputError when WritePlot() has no format for a file of that name
+void RequirePlotName(const std::filesystem::path& path);
 
 /// Draws a plot with gnuplot into an SVG or PNG file, by the extension of its name, atomically.
 ///

@@ -59,6 +59,12 @@ std::vector<double> Continue(const Parameters& parameters, const std::vector<dou
   return start;
 }
 
+models::BranchLaw LawOf(const Parameters& parameters, const std::vector<double>& theta) {
+  return {.tangential_stiffness = parameters[kStiffness].ToValue(theta[kStiffness]),
+          .shape_exponent = parameters[kShape].ToValue(theta[kShape]),
+          .slip_force = parameters[kSlipForce].ToValue(theta[kSlipForce])};
+}
+
 void Include(SlipForceProfile& profile, const std::vector<double>& theta) {
   const auto include = [](Range& range, double value) {
     range.lower = std::min(range.lower, value);
@@ -117,6 +123,15 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
   const Parameter& parameter = problem.parameters[kSlipForce];
   const double critical = estimates.quantile() * estimates.quantile();  // of F(1, ν)
   HeldParameter held(problem, kSlipForce, best, noise, estimates, options, buffers);
+  LikelihoodProfile& likelihood = profile.likelihood;
+  likelihood.critical = critical;
+  likelihood.points.push_back({.law = LawOf(problem.parameters, best.theta)});
+  const auto look_at = [&](double theta, const std::vector<double>& start) {
+    const double statistic = held.At(theta, start);
+    likelihood.points.push_back(
+        {.law = LawOf(problem.parameters, held.solution().theta), .statistic = statistic});
+    return statistic;
+  };
 
   const auto walk = [&](bool upwards) {
     std::vector<double> grid;
@@ -132,7 +147,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
     bool any_rejected = false;
     bool far_end_is_open = true;  // by the test of the verdict
     for (const double theta : grid) {
-      const double value = held.At(theta, Continue(problem.parameters, last_theta, theta));
+      const double value = look_at(theta, Continue(problem.parameters, last_theta, theta));
       last_theta = held.solution().theta;
       far_end_is_open = value < std::max(critical, options.thresholds.open_slip_force);
       if (value < critical) {
@@ -151,7 +166,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
     double outside = rejected;
     for (int i = 0; i < kBisections; ++i) {
       const double middle = accepted_theta[kSlipForce] / 2 + outside / 2;
-      if (held.At(middle, Continue(problem.parameters, accepted_theta, middle)) < critical) {
+      if (look_at(middle, Continue(problem.parameters, accepted_theta, middle)) < critical) {
         Include(profile, held.solution().theta);
         accepted_theta = held.solution().theta;
       } else {
@@ -162,6 +177,8 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
   };
   walk(/*upwards=*/false);
   profile.open_above = walk(/*upwards=*/true);
+  std::ranges::sort(likelihood.points, {},
+                    [](const ProfilePoint& point) { return point.law.slip_force; });
   // α rises with Tc along the valley: where its bound ends the valley, the data do not.
   const Parameter& shape = problem.parameters[kShape];
   if (!shape.fixed && SideOf(shape, profile.shape_exponent.upper) == BoundSide::kUpper) {

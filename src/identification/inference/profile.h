@@ -3,6 +3,7 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
 #include "identification/solve/search.h"
+#include "mindahl/identification/likelihood_profile.h"
 
 namespace mindahl::identification {
 
@@ -26,6 +27,7 @@ struct SlipForceProfile {
   Range slip_force = {};      // ln Tc
   Range shape_exponent = {};  // α
   Range stiffness = {};       // ln σ
+  LikelihoodProfile likelihood = {};
 };
 
 /// May the parabola be wrong along Tc? It is asked where the loop stays away from slip, where Tc is

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mindahl/campaign/evolution.h"
+#include "mindahl/campaign/repeats.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/report/page.h"
+
+namespace mindahl::campaign {
+
+/// A number of cycles with a flag, and what that says.
+struct FlagCount {
+  std::string name;
+  std::string meaning;
+  std::size_t cycles = 0;
+};
+
+/// What there is to say of a test of many cycles.
+struct TestSummary {
+  std::vector<std::string> files;
+  std::size_t cycles = 0;
+  std::size_t samples = 0;
+  std::size_t fits = 0;
+  std::size_t unused_samples = 0;
+  double dissipated = 0.0;            ///< [J] in all
+  std::vector<FlagCount> flags = {};  ///< those that a cycle has
+  std::vector<Evolution> evolutions = {};
+  std::vector<std::string> changes = {};  ///< in words, one sentence each
+};
+
+/// A test of many cycles as one page of HTML, as report::ToPage() makes one of a fit.
+std::string ToPage(const TestSummary& test, const report::Provenance& provenance = {});
+
+/// A file of a batch.
+struct FileResult {
+  std::string file;
+  std::string page;     ///< address of its page, relative to the index; "" where there is none
+  std::string verdict;  ///< of the fit, in a word; "" where there is none
+  std::string fault;    ///< why it is not done; "" where it is
+  std::vector<identification::ParameterEstimate> parameters;  ///< empty where the fit failed
+};
+
+/// A quantity of files that are repeats of one test, in words.
+struct RepeatedQuantity {
+  std::string name;
+  std::string unit;
+  Repeats repeats;
+};
+
+/// The index of a batch: every file with its verdict and parameters, those alone that it
+/// identifies, what failed and why, and the scatter between files beside their stated errors.
+std::string BatchIndexPage(std::span<const FileResult> files,
+                           std::span<const RepeatedQuantity> repeated,
+                           const report::Provenance& provenance = {});
+
+}  // namespace mindahl::campaign

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mindahl/report/report.h"
+
+namespace mindahl::report {
+
+/// Bytes that a result was made from.
+struct InputFile {
+  std::string name;                   ///< as it was given
+  std::optional<std::string> sha256;  ///< io::Sha256OfFile(); empty where it is no regular file
+};
+
+/// What it takes to make a result again.
+struct Provenance {
+  std::string command;            ///< as a shell takes it; "" where there was none
+  std::vector<InputFile> inputs;  ///< files that were read
+  /// Options with their values, those of a configuration file too.
+  std::vector<std::pair<std::string, std::string>> options;
+};
+
+/// Everything that is said of a fit as one page of HTML 5, for people: docs/report.md. It loads
+/// nothing and runs no script, follows the light or dark scheme of its reader, and prints. No
+/// number of what is not identified is in it. Of a fit that failed, why, and what it was made from.
+///
+/// Figures have at most 6000 points each, so that the size of a page, some hundred kilobytes, does
+/// not grow with the record.
+std::string ToPage(const Report& report, const Provenance& provenance = {});
+
+}  // namespace mindahl::report

@@ -1,0 +1,102 @@
+#include "cli/provenance.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "mindahl/io/digest.h"
+
+namespace mindahl::cli {
+namespace {
+
+/// Options of the command and of the program that were given, but for the files.
+std::vector<const CLI::Option*> GivenOptions(const CLI::App& command) {
+  std::vector<const CLI::Option*> given;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() > 0 && !option->get_lnames().empty()) given.push_back(option);
+  }
+  return given;
+}
+
+std::string NameOf(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
+
+bool IsFlag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
+
+report::InputFile DigestOf(const std::string& file) {
+  return {.name = file, .sha256 = io::Sha256OfFile(file)};
+}
+
+report::Provenance OptionsAndInputs(const CLI::App& command, const Console& console,
+                                    std::span<const std::string> files) {
+  report::Provenance provenance;
+  for (const std::string& file : files) provenance.inputs.push_back(DigestOf(file));
+  for (const std::string& file : console.inputs) {
+    if (!file.empty()) provenance.inputs.push_back(DigestOf(file));
+  }
+  for (const CLI::Option* option : GivenOptions(command)) {
+    provenance.options.emplace_back(
+        NameOf(*option),
+        IsFlag(*option) ? "on" : fmt::format("{}", fmt::join(option->results(), ", ")));
+  }
+  return provenance;
+}
+
+}  // namespace
+
+std::string ShellWord(std::string_view word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:,=+@%";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) {
+    return std::string(word);
+  }
+  std::string quoted = "'";
+  for (const char character : word) {
+    if (character == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += character;
+    }
+  }
+  return quoted + "'";
+}
+
+std::string CommandLine(int argc, const char* const* argv) {
+  std::string line = "mindahl";
+  for (int i = 1; i < argc; ++i) line += " " + ShellWord(argv[i]);
+  return line;
+}
+
+report::Provenance ProvenanceOf(const CLI::App& command, const Console& console,
+                                std::span<const std::string> files) {
+  report::Provenance provenance = OptionsAndInputs(command, console, files);
+  provenance.command = console.command_line;
+  return provenance;
+}
+
+report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& console,
+                                      const std::string& file) {
+  constexpr std::array<std::string_view, 5> kOfBatch = {"--output", "--json", "--report",
+                                                        "--threads", "--strict"};
+  report::Provenance provenance = OptionsAndInputs(batch, console, {&file, 1});
+  std::erase_if(provenance.options, [&](const auto& option) {
+    return std::ranges::find(kOfBatch, option.first) != kOfBatch.end();
+  });
+  provenance.command = "mindahl fit " + ShellWord(file);
+  for (const CLI::Option* option : GivenOptions(batch)) {
+    const std::string name = NameOf(*option);
+    if (std::ranges::find(kOfBatch, name) != kOfBatch.end()) continue;
+    if (IsFlag(*option)) {
+      provenance.command += " " + name;
+      continue;
+    }
+    for (const std::string& value : option->results()) {
+      provenance.command += " " + name + " " + ShellWord(value);
+    }
+  }
+  return provenance;
+}
+
+}  // namespace mindahl::cli

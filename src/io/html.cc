@@ -1,0 +1,109 @@
+#include "mindahl/io/html.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+namespace mindahl::io {
+namespace {
+
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+
+/// Bytes of the character of UTF-8 that begins there, 0 where there is none.
+std::size_t LengthOfCharacter(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(at);
+  std::size_t length = 0;
+  if (first < 0x80) return 1;
+  if (first >= 0xC2 && first <= 0xDF) length = 2;
+  if (first >= 0xE0 && first <= 0xEF) length = 3;
+  if (first >= 0xF0 && first <= 0xF4) length = 4;
+  if (length == 0 || at + length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0) != 0x80) return 0;
+  }
+  const unsigned char second = byte(at + 1);
+  const bool is_overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool is_beyond = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
+  return is_overlong || is_beyond ? 0 : length;
+}
+
+constexpr std::string_view kPageStyle = R"css(
+*{box-sizing:border-box}
+body{margin:0 auto;padding:1.2rem 1rem 3rem;max-width:72rem;background:var(--paper);color:var(--ink);
+ font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans",sans-serif;overflow-wrap:anywhere}
+h1{font-size:1.45rem;line-height:1.25;margin:.2rem 0 .6rem}
+h2{font-size:1.15rem;margin:2.2rem 0 .6rem;padding-top:.5rem;border-top:1px solid var(--grid)}
+h3{font-size:1rem;margin:1.2rem 0 .4rem}
+p,ul,ol{margin:.4rem 0;max-width:60rem}
+ul,ol{padding-left:1.3rem}
+li{margin:.25rem 0}
+a{color:var(--accent)}
+.faint{color:var(--faint)}
+.verdict{border-left:.4rem solid var(--faint);padding:.5rem .9rem;margin:.6rem 0;background:var(--panel);
+ max-width:60rem;border-radius:0 .3rem .3rem 0}
+.verdict.good{border-color:var(--good)} .verdict.poor{border-color:var(--poor)} .verdict.bad{border-color:var(--bad)}
+.good b,.good strong,td.good{color:var(--good)} .poor b,.poor strong,td.poor{color:var(--poor)}
+.bad b,.bad strong,td.bad{color:var(--bad)}
+.table{overflow-x:auto;margin:.5rem 0}
+table{border-collapse:collapse;font-variant-numeric:tabular-nums;overflow-wrap:normal}
+caption{text-align:left;color:var(--faint);font-size:.9rem;padding:.2rem 0}
+th,td{text-align:left;padding:.28rem .8rem .28rem 0;border-bottom:1px solid var(--grid);vertical-align:top}
+thead th{color:var(--faint);font-weight:600;font-size:.88rem}
+tbody th{font-weight:600}
+td.number{white-space:nowrap}
+td.words{min-width:13rem;overflow-wrap:anywhere}
+code,pre{font:0.9em/1.45 ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;overflow-wrap:anywhere}
+pre{background:var(--panel);border:1px solid var(--grid);border-radius:.3rem;padding:.5rem .7rem;
+ white-space:pre-wrap;margin:.4rem 0;max-width:60rem}
+.figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,27rem),1fr));gap:1.4rem 2rem;
+ align-items:start}
+.wide{max-width:46rem}
+@media (max-width:600px){body{padding:.8rem .8rem 2rem} th,td{padding-right:.6rem}
+ tbody th{min-width:7rem;overflow-wrap:anywhere} td.words{min-width:8rem}}
+@media print{body{max-width:none;font-size:10.5pt;padding:0} figure,tr,.verdict,pre{break-inside:avoid}
+ h2,h3{break-after:avoid} .figures{grid-template-columns:1fr 1fr} .table{overflow:visible} a{color:inherit}}
+)css";
+
+}  // namespace
+
+std::string HtmlText(std::string_view text) {
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = LengthOfCharacter(text, at);
+    const auto first = static_cast<unsigned char>(text[at]);
+    if (length == 0 || (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F) {
+      escaped += kReplacement;
+    } else if (first == '&') {
+      escaped += "&amp;";
+    } else if (first == '<') {
+      escaped += "&lt;";
+    } else if (first == '>') {
+      escaped += "&gt;";
+    } else if (first == '"') {
+      escaped += "&quot;";
+    } else if (first == '\'') {
+      escaped += "&#39;";
+    } else {
+      escaped += text.substr(at, length);
+    }
+    at += length == 0 ? 1 : length;
+  }
+  return escaped;
+}
+
+std::string HtmlPage(std::string_view title, std::string_view body) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+      "'unsafe-inline'; img-src data:\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+      "<meta name=\"generator\" content=\"mindahl\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>{}</title>\n<style>{}{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+      HtmlText(title), FigureStyle(), kPageStyle, body);
+}
+
+}  // namespace mindahl::io

@@ -1,0 +1,514 @@
+#include "mindahl/report/page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <variant>
+
+#include "mindahl/io/html.h"
+#include "report/adequacy.h"
+#include "report/field_table.h"
+#include "report/fields.h"
+#include "report/names.h"
+#include "report/page_parts.h"
+#include "report/panels.h"
+#include "report/prefixed.h"
+#include "report/statements.h"
+
+namespace mindahl::report {
+
+using contact::PropagatedValue;
+using contact::UncertainValue;
+using identification::AdequacyVerdict;
+using identification::FitResult;
+using identification::ParameterEstimate;
+
+namespace {
+
+constexpr const char* kNone = "–";
+
+bool IsInadequate(const Report& report) {
+  return report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
+}
+
+/// No number of what is not known.
+bool IsShown(const FitResult& fit, std::string_view parameter) {
+  const ParameterEstimate* const estimate = fit.Find(parameter);
+  return estimate != nullptr &&
+         (WhatIsShown(*estimate) == Shown::kValue || WhatIsShown(*estimate) == Shown::kHeld);
+}
+
+std::string_view ColourOf(const Report& report) {
+  const std::string_view word = VerdictWord(report);
+  if (word == "adequate") return "good";
+  return word == "doubtful" || word == "not judged" ? "poor" : "bad";
+}
+
+// --- the verdict
+
+/// "identifiable: sigma, alpha": parameters by their verdicts.
+std::vector<std::string> ParameterVerdicts(const FitResult& fit) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    const std::string verdict = VerdictWords(estimate);
+    auto group = std::ranges::find(groups, verdict, &decltype(groups)::value_type::first);
+    if (group == groups.end()) group = groups.insert(group, {verdict, {}});
+    group->second.push_back(estimate.name);
+  }
+  std::vector<std::string> sentences;
+  for (const auto& [verdict, names] : groups) {
+    sentences.push_back(fmt::format("{}: {}", verdict, fmt::join(names, ", ")));
+  }
+  return sentences;
+}
+
+std::string VerdictSection(const Report& report) {
+  // The sentence begins with the verdict itself.
+  std::string sentence = VerdictSentence(report);
+  const std::string word(VerdictWord(report));
+  if (sentence.starts_with(word + ": ")) sentence.erase(0, word.size() + 2);
+  if (!report.fit.converged) sentence = report.fit.termination;
+  std::string html = VerdictBlock(ColourOf(report), word, sentence);
+  html += SentenceList(ParameterVerdicts(report.fit));
+  const identification::Adequacy& adequacy = report.fit.adequacy;
+  if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return html;
+  std::vector<std::string> others;
+  for (std::size_t i = 1; i < adequacy.causes.size(); ++i) {
+    others.push_back(Sentence(adequacy.causes[i]));
+  }
+  if (!others.empty()) html += Paragraph("It may be as well:") + SentenceList(others);
+  return html;
+}
+
+// --- parameters
+
+std::string_view ColourOf(const ParameterEstimate& estimate) {
+  if (estimate.is_known()) return "good";
+  return WhatIsShown(estimate) == Shown::kNothing ? "bad" : "poor";
+}
+
+std::string ParameterSection(const Report& report) {
+  Table table("fitted and given, with one standard error and the 95 % interval",
+              {"parameter", "value", "unit", "95 % interval", "verdict"});
+  for (const ParameterEstimate& estimate : report.fit.parameters) {
+    const Shown shown = WhatIsShown(estimate);
+    const double magnitude =
+        shown == Shown::kLowerLimit
+            ? estimate.lower95.value_or(0.0)
+            : std::max(std::abs(estimate.value), estimate.standard_error.value_or(0.0));
+    const PrefixedUnit unit = PrefixFor(magnitude, estimate.unit);
+    std::string value = kNone;
+    std::string interval = kNone;
+    if (shown == Shown::kHeld) value = ValueText(estimate.value, std::nullopt, unit.size);
+    if (shown == Shown::kLowerLimit && estimate.lower95) {
+      value = "> " + ValueText(*estimate.lower95, std::nullopt, unit.size);
+    }
+    if (shown == Shown::kValue) {
+      value = ValueText(estimate.value, estimate.standard_error, unit.size);
+      interval = IntervalText(estimate.lower95, estimate.upper95, unit.size);
+    }
+    table.Row(estimate.name, {Number(value), Number(std::string(unit.unit)), Number(interval),
+                              Words(VerdictWords(estimate), ColourOf(estimate))});
+  }
+  const FitResult& fit = report.fit;
+  std::string about =
+      fmt::format("{}; initial state {}", fit.model->title, Name(fit.initial_state));
+  if (fit.normal_load && fit.is_load_series()) {
+    about += fmt::format("; sigma and slip_force are those at the mean of the loads, {}",
+                         QuantityText(*fit.normal_load, "N"));
+  }
+  return Heading("Parameters") + Paragraph(about + ".") + table.Html();
+}
+
+// --- what to do
+
+/// What a finding asks to be run, beside what was run.
+struct NextCommand {
+  std::string_view finding;
+  std::string_view option;
+  std::string_view why;
+};
+
+constexpr std::array kNextCommands = {
+    NextCommand{"systematic_residual", "--model auto", "compares the laws on this record"},
+    NextCommand{"no_model_fits", "--model auto", "compares the laws on this record"},
+    NextCommand{"shape_or_rig", "--rig-stiffness fit", "asks whether the rig gives way"},
+};
+
+std::string WithOption(const std::string& command, std::string_view option) {
+  return fmt::format("{} {}", command, option);
+}
+
+/// What to run next, each a command after what it is for.
+std::string NextSection(const Report& report, const Provenance& provenance) {
+  const std::string command =
+      provenance.command.empty() ? std::string("mindahl fit FILE") : provenance.command;
+  std::string html;
+  std::vector<std::string> said;
+  const auto add = [&](const std::string& why, std::string_view option) {
+    const std::string_view name = option.substr(0, option.find(' '));
+    const bool is_given = std::ranges::any_of(
+        provenance.options, [&](const auto& given) { return given.first == name; });
+    if (is_given || std::ranges::find(said, option) != said.end()) return;
+    said.emplace_back(option);
+    html += Paragraph(why) + CommandBlock(WithOption(command, option));
+  };
+  const FitResult& fit = report.fit;
+  if (IsJudged(report) && fit.adequacy.verdict != AdequacyVerdict::kAdequate) {
+    for (const identification::Cause& cause : fit.adequacy.causes) {
+      if (cause.option.empty()) continue;
+      add(fmt::format("Takes into account what explains {:.0f} % of the residuals' variance:",
+                      100 * cause.explains),
+          cause.option);
+    }
+  }
+  for (const NextCommand& row : kNextCommands) {
+    if (fit.FindFinding(row.finding) == nullptr) continue;
+    std::string why(row.why);
+    why.front() = static_cast<char>(why.front() - 'a' + 'A');
+    add(why + ":", row.option);
+  }
+  return html.empty() ? "" : SubHeading("What to try next") + html;
+}
+
+std::vector<std::string> MessagesOf(const std::vector<Warning>& warnings) {
+  std::vector<std::string> messages;
+  for (const Warning& warning : warnings) {
+    messages.push_back(fmt::format("{} [{}]", warning.message, warning.code));
+  }
+  return messages;
+}
+
+std::string WarningSection(const Report& report, const Provenance& provenance) {
+  std::vector<std::string> warnings = MessagesOf(report.fit_warnings);
+  if (!IsInadequate(report)) {
+    for (std::string& message : MessagesOf(report.contact_warnings)) {
+      warnings.push_back(std::move(message));
+    }
+  }
+  const std::string next = NextSection(report, provenance);
+  std::string html = Heading("Warnings and what to do");
+  html += warnings.empty() ? Paragraph("No warning.") : SentenceList(warnings);
+  html += next;
+  if (!report.notes.empty()) html += SubHeading("Notes") + SentenceList(MessagesOf(report.notes));
+  return html;
+}
+
+// --- what needs no model
+
+/// A value as people read it; empty for what is missing.
+std::string TextOf(const DescribedValue& item) {
+  struct Writer {
+    std::string_view unit;
+    std::string operator()(double number) const { return QuantityText(number, unit); }
+    std::string operator()(std::uint64_t number) const { return std::to_string(number); }
+    std::string operator()(std::int64_t number) const { return std::to_string(number); }
+    std::string operator()(bool flag) const { return flag ? "yes" : "no"; }
+    std::string operator()(const std::string& text) const { return text; }
+    std::string operator()(const Value::Absent&) const { return ""; }
+    std::string operator()(const Value::Null&) const { return ""; }
+    std::string operator()(const Value::Array&) const { return ""; }
+    std::string operator()(const Value::Object&) const { return ""; }
+  };
+  return std::visit(Writer{item.field.unit}, item.value.content);
+}
+
+/// Rows of the report's fields of one subject, named as the JSON names them.
+void AddFields(const Report& report, std::string_view prefix, Table& table,
+               const std::vector<std::string_view>& without = {}) {
+  for (const DescribedValue& item : ValuesUnder(report, prefix)) {
+    const std::string text = TextOf(item);
+    if (text.empty()) continue;
+    if (std::ranges::find(without, item.field.path) != without.end()) continue;
+    // "half_gap.value" of "measured.": what follows a subject is name enough in its table.
+    const std::string name =
+        prefix.ends_with('.') ? item.field.path.substr(prefix.size()) : item.field.path;
+    table.Row(name, {Number(text), Words(item.field.label)});
+  }
+}
+
+std::string MeasuredSection(const Report& report) {
+  std::string html = Heading("What the record says without a model");
+  Table table("of the widest steady cycles", {"fact", "value", "what it is"});
+  AddFields(report, "loop.amplitude", table);
+  AddFields(report, "loop.peak_force", table);
+  AddFields(report, "measured.", table, {"measured.closed"});
+  html += table.Html();
+  if (!report.fit.WidestRecord().facts.closed) {
+    html += Paragraph("The record closes no cycle, so that it has no facts of one.");
+  }
+  html += SentenceList(TrendStatements(report.fit.WidestRecord().facts));
+  const std::string memory = MemoryStatement(report);
+  return memory.empty() ? html : html + Paragraph("Memory: " + memory + ".");
+}
+
+// --- figures
+
+std::string Figure(const io::PlotPanel& panel, const char* id, std::string_view title,
+                   std::string_view text) {
+  return io::HtmlFigure(panel,
+                        {.id = id, .title = std::string(title), .description = std::string(text)});
+}
+
+std::string Grid(const std::string& figures) {
+  return figures.empty() ? "" : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
+}
+
+std::string FigureSection(const Report& report) {
+  const PanelUnits units = PrefixedUnits(report);
+  std::string html = Heading("Loop and residuals");
+  html +=
+      "<div class=\"wide\">\n" +
+      Figure(LoopPanel(report, units, LoopColours::kByCycle), "loop", "Measured and fitted loop",
+             "Where the line leaves the points, the model misses something; circles are where "
+             "the motion was found to turn.") +
+      "</div>\n";
+  std::string figures =
+      Figure(ResidualAlongStroke(report, units, LoopColours::kByCycle), "residual-stroke",
+             "Residual along the stroke",
+             "A band without shape is noise; a shape that all cycles share is what the model has "
+             "not.") +
+      Figure(ResidualInTime(report, units), "residual-time", "Residual in time",
+             "A slope is drift; a band that widens or narrows is a contact that changes.") +
+      Figure(ResidualDistribution(report, units), "residual-distribution",
+             "Distribution of the residuals",
+             "Bars beyond the curve on either side are readings that are far off: look for "
+             "disturbances.");
+  if (const auto panel = ResidualAutocorrelation(report)) {
+    figures += Figure(*panel, "residual-autocorrelation", "Autocorrelation of the residuals",
+                      "Outside the band residuals know of each other, and samples count for less; "
+                      "a peak a cycle apart is a shape that repeats.");
+  }
+  html += Grid(figures);
+  Table table("residuals", {"figure", "value", "what it is"});
+  std::vector<std::string_view> without;
+  if (!IsShown(report.fit, "slip_force")) without.emplace_back("residuals.normalized_rms");
+  AddFields(report, "residuals.", table, without);
+  return html + table.Html();
+}
+
+std::string LikelihoodSection(const Report& report) {
+  const auto panel = SlipForceLikelihood(report);
+  if (!panel) return "";
+  return Heading("Likelihood") +
+         Grid(Figure(*panel, "likelihood", "Likelihood of the slip force",
+                     "Where the curve stays below the line, the record does not tell those slip "
+                     "forces from the best: a side that never rises is open."));
+}
+
+// --- the model's loop, the contact, the mapping
+
+/// "–" with why where the record leaves it open.
+Cell ValueCell(const UncertainValue& value, std::string_view unit) {
+  if (!std::isfinite(value.standard_error)) return Number("not identified");
+  return Number(QuantityText(value.value, value.standard_error, unit));
+}
+
+std::string LoopSection(const Report& report) {
+  const LoopDescription& loop = *report.loop;
+  std::vector<std::string> sentences = {
+      SlipStatement(loop, report.units),
+      fmt::format("energy per cycle of the model {}", QuantityText(loop.model_energy, "J"))};
+  if (loop.gross_slip_energy_ratio) {
+    sentences.back() +=
+        fmt::format(", gross slip from an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);
+  }
+  const std::string law = LawStatement(report);
+  if (!law.empty()) sentences.push_back("law: " + law);
+  return Heading("Loop of the model") + SentenceList(sentences);
+}
+
+std::string HertzTable(const contact::HertzPrediction& hertz) {
+  Table table("what Hertz and Mindlin predict from materials, radii and load",
+              {"quantity", "predicted", "measured over predicted"});
+  const auto row = [&](std::string_view name, const PropagatedValue& value, std::string_view unit,
+                       const PropagatedValue& ratio) {
+    table.Row(name, {ValueCell(value, unit), ValueCell(ratio, "-")});
+  };
+  row("contact radius a", hertz.contact_radius, "m", hertz.sigma_over_hertz_mindlin);
+  row("tangential stiffness 8a/G*", hertz.tangential_stiffness, "N/m",
+      hertz.sigma_over_hertz_mindlin);
+  row("gross slip at α = 1/3", hertz.gross_slip_displacement, "m",
+      hertz.gross_slip_displacement_ratio);
+  return table.Html();
+}
+
+std::string ContactSection(const Report& report) {
+  const contact::IdentifiedContact& contact = report.contact;
+  std::string html = Heading("The contact");
+  html += Paragraph(
+      "By the Mindlin-Dahl mapping σ = 8a/G*, Tc = μN, with G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a "
+      "compliance: many texts write G* for its inverse.");
+  Table table("what the fit and what is known of the contact give together",
+              {"quantity", "value", "from", "what its error is made of"});
+  for (const ContactField& field : ContactFields()) {
+    const std::optional<PropagatedValue> value = field.get(report);
+    if (!value) continue;
+    if (!IsIdentified(report, field, *value)) {
+      table.Row(field.label,
+                {Number("not identified"), Number(std::string(field.formula)), Words("")});
+      continue;
+    }
+    table.Row(field.label, {ValueCell(*value, field.unit), Number(std::string(field.formula)),
+                            Words(VarianceStatement(*value))});
+  }
+  html += table.Html();
+  const bool knows_stiffness = report.fit.Find("sigma")->is_known();
+  if (contact.hertz && knows_stiffness) html += HertzTable(*contact.hertz);
+  html += SentenceList(contact.redundant);
+  std::vector<std::string> missing;
+  for (const std::string& sentence : contact.unidentified) {
+    missing.push_back("not identified: " + sentence);
+  }
+  html += SentenceList(missing);
+
+  html += SubHeading("Is it Mindlin's contact?");
+  html += Paragraph(
+      "Cattaneo and Mindlin's smooth spheres have α = 1/3 and σ = 8a/G*: each is a hypothesis that "
+      "the record may reject, at a chance of 5 % to do so wrongly.");
+  std::vector<std::string> tests;
+  if (IsShown(report.fit, "alpha")) tests = ExponentStatements(report);
+  for (const StiffnessTest& test : report.stiffness) {
+    if (!knows_stiffness || !std::isfinite(test.ratio.standard_error)) continue;
+    for (std::string& statement : StiffnessStatements(test)) tests.push_back(std::move(statement));
+  }
+  if (tests.empty()) {
+    tests.emplace_back(
+        "not tested: alpha is held or not identified, and no radius is known besides the fit");
+  }
+  return html + SentenceList(tests);
+}
+
+// --- comparisons
+
+std::string SelectionSection(const Report& report) {
+  if (!report.selection) return "";
+  const identification::ModelSelection& selection = *report.selection;
+  Table table(fmt::format("on {:.0f} effective samples; {}", selection.effective_samples,
+                          selection.held_out_cycles > 0
+                              ? fmt::format("and by predicting {} held-out cycles",
+                                            selection.held_out_cycles)
+                              : std::string("too few cycles to hold any out")),
+              {"model", "free parameters", "rms", "ΔAICc", "weight", "held-out rms", "remark"});
+  for (std::size_t i = 0; i < selection.scores.size(); ++i) {
+    const identification::ModelScore& score = selection.scores[i];
+    const bool is_listed =
+        std::ranges::find(selection.indistinguishable, i) != selection.indistinguishable.end();
+    std::string remark = score.remark;
+    if (i == selection.chosen) {
+      remark = remark.empty() ? "reported" : "reported; " + remark;
+    } else if (is_listed) {
+      remark = remark.empty() ? "not told from it" : "not told from it; " + remark;
+    }
+    table.Row(
+        fmt::format("{}{}", score.model->name, score.rig ? " + rig" : ""),
+        {Number(std::to_string(score.free_parameters)),
+         Number(QuantityText(score.rms, report.units.force)),
+         Number(std::isfinite(score.delta_aicc) ? fmt::format("{:.1f}", score.delta_aicc)
+                                                : std::string(kNone)),
+         Number(fmt::format("{:.3f}", score.akaike_weight)),
+         Number(score.held_out_rms ? QuantityText(*score.held_out_rms,
+                                                  score.held_out_standard_error, report.units.force)
+                                   : std::string(kNone)),
+         Words(remark)});
+  }
+  return Heading("Models compared") + table.Html() + Paragraph(selection.verdict);
+}
+
+std::string LoadSection(const Report& report) {
+  if (!report.load_series || IsInadequate(report)) return "";
+  const FitResult& fit = report.fit;
+  const LoadSeries& series = *report.load_series;
+  const auto known = [&](const UncertainValue& value, std::string_view parameter,
+                         std::string_view unit) {
+    return fit.Find(parameter)->is_known() ? ValueCell(value, unit) : Number(kNone);
+  };
+  Table table("σ ∝ N^p, Tc = μN, of the whole series",
+              {"normal load", "σ", "Tc", "a = σG*/8", "a of Hertz"});
+  for (const ContactUnderLoad& contact : series.contacts) {
+    table.Row(
+        QuantityText(contact.normal_load, "N"),
+        {known(contact.stiffness, "sigma", "N/m"), known(contact.slip_force, "slip_force", "N"),
+         contact.contact_radius ? known(*contact.contact_radius, "sigma", "m") : Number(kNone),
+         Number(contact.hertz_radius ? QuantityText(*contact.hertz_radius, "m")
+                                     : std::string(kNone))});
+  }
+  Table hypotheses("exponent of the load against theories",
+                   {"theory", "p − its exponent", "standard errors", "p-value", ""});
+  for (const LoadHypothesis& hypothesis : series.hypotheses) {
+    if (!hypothesis.p_value) continue;
+    const bool is_rejected = *hypothesis.p_value < kSignificance;
+    hypotheses.Row(
+        Words(hypothesis),
+        {Number(fmt::format("{:.3g}", *hypothesis.difference)),
+         Number(fmt::format("{:.2f}", *hypothesis.z)),
+         Number(*hypothesis.p_value < 1e-12 ? std::string("< 1e-12")
+                                            : fmt::format("{:.3g}", *hypothesis.p_value)),
+         Words(is_rejected ? "rejected" : "tenable", is_rejected ? "bad" : "good")});
+  }
+  std::string figures;
+  constexpr std::array kIds = {"load-stiffness", "load-slip-force"};
+  const std::vector<io::PlotPanel> panels = LoadPanels(report, PrefixedUnits(report));
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    figures += Figure(panels[k], kIds.at(k), k == 0 ? "Stiffness and load" : "Slip force and load",
+                      "Intervals are of each file by itself, with the shape of the whole series.");
+  }
+  return Heading("Under several loads") + table.Html() + hypotheses.Html() + Grid(figures);
+}
+
+std::string BackboneSection(const Report& report) {
+  const auto panel = BackbonePanel(report, PrefixedUnits(report));
+  if (!panel) return "";
+  return Heading("First loading without a law") +
+         Grid(Figure(*panel, "backbone", "Force of first loading",
+                     "Where the law leaves the band, the contact has another shape."));
+}
+
+std::string RecordSection(const Report& report) {
+  Table table("how the record was read", {"field", "value", "what it is"});
+  AddFields(report, "input.", table);
+  AddFields(report, "reversals.", table);
+  return Heading("The record") + table.Html();
+}
+
+std::string FailedBody(const Report& report) {
+  return VerdictBlock("bad", "failed", report.fit.termination) +
+         Heading("Warnings and what to do") + SentenceList(MessagesOf(report.fit_warnings));
+}
+
+}  // namespace
+
+std::string ToPage(const Report& report, const Provenance& provenance) {
+  std::string body =
+      fmt::format("<header><h1>{}</h1></header>\n<main>\n", io::HtmlText(TitleOf(report)));
+  if (report.files.size() > 1) {
+    body += Paragraph(fmt::format("{}", fmt::join(report.files, ", ")), "faint");
+  }
+  if (report.failed()) {
+    body += FailedBody(report);
+  } else {
+    body += VerdictSection(report) + ParameterSection(report) + WarningSection(report, provenance) +
+            MeasuredSection(report) + FigureSection(report);
+    if (IsInadequate(report)) {
+      body += Heading("The contact") +
+              Paragraph(
+                  "No loop of the model, and no contact: the model does not describe this record.");
+    } else {
+      body += LikelihoodSection(report) + LoopSection(report);
+      body += report.is_torsional()
+                  ? Heading("The contact") + Paragraph(std::string("No contact: ") + kWhyNoContact)
+                  : ContactSection(report);
+    }
+    body += SelectionSection(report) + LoadSection(report) + BackboneSection(report) +
+            RecordSection(report);
+  }
+  body += ReproduceSection(provenance) + "</main>\n";
+  return io::HtmlPage(TitleOf(report), body);
+}
+
+}  // namespace mindahl::report

@@ -1,0 +1,507 @@
+#include "report/panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <utility>
+
+namespace mindahl::report {
+
+using identification::AdequacyVerdict;
+using identification::ParameterEstimate;
+using identification::RecordFit;
+using io::PlotPanel;
+using io::PlotSeries;
+using io::PlotStyle;
+
+namespace {
+
+constexpr double kDataShade = 0.3;  // of what is measured, where it is of one kind
+constexpr std::size_t kMostGroups = 8;
+constexpr double kQuantile95 = 1.959963984540054;  // of the normal distribution
+
+/// How often the prefixed unit goes into the plain one: 10⁶ of µm, to the last bit.
+double Per(const PrefixedUnit& unit) {
+  return unit.size < 1 ? std::round(1 / unit.size) : 1 / unit.size;
+}
+
+bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t sample) {
+  if (!report.load_window) return true;
+  const double load = record.normal_load[sample];
+  return load >= report.load_window->lower && load <= report.load_window->upper;
+}
+
+bool Counts(const RecordFit& fit, std::size_t sample) {
+  return fit.counts.empty() || fit.counts[sample] != 0;
+}
+
+/// Residuals of the samples of a record that count.
+std::vector<double> CountedResiduals(const RecordFit& fit) {
+  std::vector<double> residuals;
+  for (std::size_t i = 0; i < fit.residual.size(); ++i) {
+    if (Counts(fit, i)) residuals.push_back(fit.residual[i]);
+  }
+  return residuals;
+}
+
+std::vector<double> CountedResiduals(const Report& report) {
+  std::vector<double> residuals;
+  for (const RecordFit& fit : report.fit.records) {
+    const std::vector<double> more = CountedResiduals(fit);
+    residuals.insert(residuals.end(), more.begin(), more.end());
+  }
+  return residuals;
+}
+
+std::string ForceName(const Report& report) { return report.is_torsional() ? "torque" : "force"; }
+
+std::string DisplacementLabel(const Report& report, const PanelUnits& units) {
+  return fmt::format("{} [{}]", report.is_torsional() ? "angle" : "displacement",
+                     units.displacement.unit);
+}
+
+std::string ResidualLabel(const PanelUnits& units) {
+  return fmt::format("fitted − measured [{}]", units.residual.unit);
+}
+
+/// Samples that are drawn alike: of a record, or of some of its cycles in a row.
+struct Group {
+  std::string label;
+  std::optional<double> shade = kDataShade;
+  std::size_t record = 0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// Cycles of a record that is alone, as many in a row as make eight groups at most; otherwise its
+/// records. A cycle begins at every second reversal.
+std::vector<Group> GroupsOf(const Report& report, const std::string& what) {
+  std::vector<Group> groups;
+  const std::size_t records = report.records.size();
+  if (records > 1) {
+    for (std::size_t r = 0; r < records; ++r) {
+      // A legend of many files would be longer than the page.
+      const bool is_named = records <= kMostGroups || r == 0 || r + 1 == records;
+      groups.push_back(
+          {.label = is_named ? fmt::format("{} {}", what, report.files[r]) : std::string(),
+           .shade = static_cast<double>(r) / static_cast<double>(records - 1),
+           .record = r,
+           .begin = 0,
+           .end = report.records[r].record.size()});
+    }
+    return groups;
+  }
+  const std::vector<std::size_t>& reversals = report.fit.records.front().reversals;
+  std::vector<std::size_t> starts = {0};
+  for (std::size_t k = 2; k < reversals.size(); k += 2) starts.push_back(reversals[k]);
+  const std::size_t samples = report.records.front().record.size();
+  if (starts.size() > 1 && starts.back() + 1 >= samples) starts.pop_back();
+  const std::size_t cycles = starts.size();
+  const std::size_t count = std::min(cycles, kMostGroups);
+  for (std::size_t g = 0; g < count; ++g) {
+    const std::size_t first = g * cycles / count;
+    const std::size_t next = (g + 1) * cycles / count;
+    Group group{.label = what,
+                .shade = kDataShade,
+                .record = 0,
+                .begin = starts[first],
+                .end = next < cycles ? starts[next] : samples};
+    if (cycles > 1) {
+      group.shade = static_cast<double>(g) / static_cast<double>(count - 1);
+      group.label = next == first + 1 ? fmt::format("{}, cycle {}", what, first + 1)
+                                      : fmt::format("{}, cycles {} to {}", what, first + 1, next);
+    }
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+PlotSeries Range(const Group& group, const std::vector<double>& x, double per_x,
+                 const std::vector<double>& y, double per_y) {
+  PlotSeries series{.label = group.label, .x = {}, .y = {}, .style = PlotStyle::kPoints};
+  series.shade = group.shade;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    series.x.push_back(per_x * x[i]);
+    series.y.push_back(per_y * y[i]);
+  }
+  return series;
+}
+
+/// The fitted force of a record; of one that is too long to be drawn whole, of its last cycle.
+PlotSeries FittedLine(const Report& report, std::size_t r, const PanelUnits& units,
+                      std::string suffix) {
+  constexpr std::size_t kMostSamples = 4000;
+  const RecordFit& fit = report.fit.records[r];
+  Group range{.label = "fitted" + suffix, .record = r, .begin = 0, .end = fit.fitted_force.size()};
+  const std::vector<std::size_t>& reversals = fit.reversals;
+  if (range.end > kMostSamples / report.records.size() && reversals.size() >= 3) {
+    range.begin = reversals[reversals.size() - 3];
+    range.end = reversals.back() + 1;
+    range.label += ", last cycle";
+  }
+  PlotSeries series = Range(range, report.records[r].record.displacement, Per(units.displacement),
+                            fit.fitted_force, Per(units.force));
+  series.style = PlotStyle::kLine;
+  series.shade.reset();
+  return series;
+}
+
+PlotSeries Reversals(const Report& report, const PanelUnits& units) {
+  PlotSeries reversals{"reversals", {}, {}, PlotStyle::kMarkers};
+  for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
+    const loop::Record& record = report.records[r].record;
+    for (const std::size_t sample : report.fit.records[r].reversals) {
+      reversals.x.push_back(Per(units.displacement) * record.displacement[sample]);
+      reversals.y.push_back(Per(units.force) * record.force[sample]);
+    }
+  }
+  return reversals;
+}
+
+/// σ or Tc against the load: of the whole series a line, of each file alone an interval.
+struct LoadPanel {
+  std::string label;
+  double scale;  // of what is drawn over SI
+  ParameterEstimate identification::RecordAlone::*alone;
+  bool is_stiffness;
+};
+
+PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
+  const identification::FitResult& fit = report.fit;
+  PlotPanel panel{
+      .x_label = "normal load N [N]", .y_label = quantity.label, .series = {}, .height = 1.2};
+  double least = report.load_series->contacts.front().normal_load;
+  double greatest = least;
+  PlotSeries alone;
+  alone.label = "each file alone, 95 %";
+  alone.style = PlotStyle::kIntervals;
+  for (const ContactUnderLoad& contact : report.load_series->contacts) {
+    least = std::min(least, contact.normal_load);
+    greatest = std::max(greatest, contact.normal_load);
+    if (!contact.alone) continue;
+    const ParameterEstimate& estimate = (*contact.alone).*quantity.alone;
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    alone.x.push_back(contact.normal_load);
+    alone.y.push_back(quantity.scale * estimate.value);
+    alone.lower.push_back(quantity.scale * *estimate.lower95);
+    alone.upper.push_back(quantity.scale * *estimate.upper95);
+  }
+  const auto is_known = [&fit](std::string_view name) {
+    const ParameterEstimate* const estimate = fit.Find(name);
+    return estimate != nullptr && estimate->is_known();
+  };
+  const bool has_line = quantity.is_stiffness ? is_known("sigma") && is_known("load_exponent")
+                                              : is_known("slip_force");
+  if (has_line) {
+    constexpr int kSteps = 60;
+    PlotSeries line;
+    line.label = quantity.is_stiffness ? fmt::format("σ ∝ N^{:.3g}, the series", fit.load_exponent)
+                                       : std::string("Tc = μN, the series");
+    for (int i = 0; i <= kSteps; ++i) {
+      const double load = least + (greatest - least) * i / kSteps;
+      const double ratio = load / *fit.normal_load;
+      line.x.push_back(load);
+      const double value = quantity.is_stiffness
+                               ? fit.law.tangential_stiffness * std::pow(ratio, fit.load_exponent)
+                               : fit.law.slip_force * ratio;
+      line.y.push_back(quantity.scale * value);
+    }
+    panel.series.push_back(std::move(line));
+  }
+  if (!alone.x.empty()) panel.series.push_back(std::move(alone));
+  return panel;
+}
+
+/// Samples a cycle, where the record tells.
+std::size_t SamplesOfCycle(const RecordFit& fit) {
+  if (fit.reversals.size() < 2) return 0;
+  return 2 * (fit.reversals.back() - fit.reversals.front()) / (fit.reversals.size() - 1);
+}
+
+double Quartile(std::vector<double>& values, double share) {
+  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + place);
+  return values[static_cast<std::size_t>(place)];
+}
+
+}  // namespace
+
+PanelUnits PlainUnits(const Report& report) {
+  double extent = 0.0;
+  for (const RecordFit& fit : report.fit.records) {
+    extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
+  }
+  return {.displacement = PrefixFor(extent, report.units.displacement),
+          .force = {.unit = std::string(report.units.force), .size = 1.0},
+          .residual = {.unit = std::string(report.units.force), .size = 1.0}};
+}
+
+PanelUnits PrefixedUnits(const Report& report) {
+  PanelUnits units = PlainUnits(report);
+  double force = 0.0;
+  double residual = 0.0;
+  for (const RecordFit& fit : report.fit.records) {
+    force = std::max(force, std::abs(fit.measures.centre_force) + fit.measures.peak_force);
+    for (const double value : fit.residual) residual = std::max(residual, std::abs(value));
+  }
+  units.force = PrefixFor(force, report.units.force);
+  units.residual = PrefixFor(residual, report.units.force);
+  return units;
+}
+
+PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours colours) {
+  PlotPanel panel{.x_label = "",
+                  .y_label = fmt::format("{} [{}]", ForceName(report), units.force.unit),
+                  .series = {},
+                  .height = 2.5};
+  const double per_displacement = Per(units.displacement);
+  const double per_force = Per(units.force);
+  if (colours == LoopColours::kByCycle) {
+    panel.x_label = DisplacementLabel(report, units);
+    panel.height = 1.3;
+    for (const Group& group : GroupsOf(report, "measured")) {
+      const loop::Record& record = report.records[group.record].record;
+      panel.series.push_back(
+          Range(group, record.displacement, per_displacement, record.force, per_force));
+    }
+    for (std::size_t r = 0; r < report.records.size(); ++r) {
+      PlotSeries line = FittedLine(report, r, units, "");
+      if (r > 0) line.label.clear();
+      panel.series.push_back(std::move(line));
+    }
+  } else {
+    const auto scaled = [](std::vector<double> values, double per) {
+      for (double& value : values) value *= per;
+      return values;
+    };
+    for (std::size_t r = 0; r < report.fit.records.size(); ++r) {
+      const loop::Record& record = report.records[r].record;
+      const std::string suffix =
+          report.files.size() > 1 ? fmt::format(" {}", report.files[r]) : std::string();
+      const std::vector<double> x = scaled(record.displacement, per_displacement);
+      panel.series.push_back(
+          {"measured" + suffix, x, scaled(record.force, per_force), PlotStyle::kPoints});
+      panel.series.push_back({"fitted" + suffix, x,
+                              scaled(report.fit.records[r].fitted_force, per_force),
+                              PlotStyle::kLine});
+    }
+  }
+  PlotSeries reversals = Reversals(report, units);
+  if (!reversals.x.empty()) panel.series.push_back(std::move(reversals));
+  return panel;
+}
+
+PlotPanel ResidualAlongStroke(const Report& report, const PanelUnits& units, LoopColours colours) {
+  PlotPanel panel{
+      .x_label = DisplacementLabel(report, units), .y_label = ResidualLabel(units), .series = {}};
+  std::vector<Group> groups;
+  if (colours == LoopColours::kByCycle) {
+    groups = GroupsOf(report, "");
+  } else {
+    for (std::size_t r = 0; r < report.records.size(); ++r) {
+      groups.push_back({.label = "",
+                        .shade = std::nullopt,
+                        .record = r,
+                        .begin = 0,
+                        .end = report.records[r].record.size()});
+    }
+  }
+  for (const Group& group : groups) {
+    const RecordFit& fit = report.fit.records[group.record];
+    const loop::Record& record = report.records[group.record].record;
+    PlotSeries shown{"", {}, {}, PlotStyle::kPoints};
+    shown.shade = group.shade;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      // What the load window leaves out would squeeze the rest together.
+      if (!IsUnderLoad(report, record, i)) continue;
+      shown.x.push_back(Per(units.displacement) * record.displacement[i]);
+      shown.y.push_back(Per(units.residual) * fit.residual[i]);
+    }
+    if (!shown.x.empty()) panel.series.push_back(std::move(shown));
+  }
+  return panel;
+}
+
+PlotPanel ResidualInTime(const Report& report, const PanelUnits& units) {
+  const bool is_timed = std::ranges::none_of(
+      report.records, [](const io::RecordFile& input) { return input.record.time.empty(); });
+  PlotPanel panel{
+      .x_label = is_timed ? "time [s]" : "sample", .y_label = ResidualLabel(units), .series = {}};
+  for (const Group& group : GroupsOf(report, "")) {
+    const RecordFit& fit = report.fit.records[group.record];
+    const loop::Record& record = report.records[group.record].record;
+    PlotSeries shown{"", {}, {}, PlotStyle::kPoints};
+    shown.shade = group.shade;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      if (!Counts(fit, i)) continue;
+      shown.x.push_back(is_timed ? record.time[i] : static_cast<double>(i + 1));
+      shown.y.push_back(Per(units.residual) * fit.residual[i]);
+    }
+    if (!shown.x.empty()) panel.series.push_back(std::move(shown));
+  }
+  return panel;
+}
+
+PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units) {
+  std::vector<double> residuals = CountedResiduals(report);
+  for (double& residual : residuals) residual *= Per(units.residual);
+  const auto n = static_cast<double>(residuals.size());
+  const double mean = std::accumulate(residuals.begin(), residuals.end(), 0.0) / n;
+  double squares = 0.0;
+  for (const double residual : residuals) squares += (residual - mean) * (residual - mean);
+  const double deviation = std::sqrt(squares / std::max(n - 1, 1.0));
+  PlotPanel panel{.x_label = ResidualLabel(units), .y_label = "samples", .series = {}};
+  if (!(deviation > 0)) {
+    panel.series.push_back({"residuals", {mean}, {n}, PlotStyle::kBars});
+    return panel;
+  }
+  constexpr double kFurthest = 5.0;  // standard deviations
+  const auto [least, greatest] = std::ranges::minmax(residuals);
+  const double from = std::max(least, mean - kFurthest * deviation);
+  const double to = std::min(greatest, mean + kFurthest * deviation);
+  std::vector<double> sorted = residuals;
+  const double quartiles = Quartile(sorted, 0.75) - Quartile(sorted, 0.25);
+  const double wanted = quartiles > 0 ? 2 * quartiles / std::cbrt(n) : (to - from) / 10;
+  const auto bins = static_cast<std::size_t>(std::clamp((to - from) / wanted, 10.0, 60.0));
+  const double width = (to - from) / static_cast<double>(bins);
+  PlotSeries bars{"residuals", {}, std::vector<double>(bins, 0.0), PlotStyle::kBars};
+  bars.shade = kDataShade;
+  std::size_t beyond = 0;
+  for (const double residual : residuals) {
+    if (residual < from || residual > to) {
+      ++beyond;
+      continue;
+    }
+    const auto bin = static_cast<std::size_t>((residual - from) / width);
+    ++bars.y[std::min(bin, bins - 1)];
+  }
+  for (std::size_t k = 0; k < bins; ++k) {
+    bars.x.push_back(from + (static_cast<double>(k) + 0.5) * width);
+  }
+  if (beyond > 0) bars.label += fmt::format(", {} of them further out", beyond);
+  const boost::math::normal_distribution<> normal(mean, deviation);
+  PlotSeries curve{"normal distribution of the same standard deviation", {}, {}, PlotStyle::kLine};
+  constexpr int kSteps = 120;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double at = from + (to - from) * i / kSteps;
+    curve.x.push_back(at);
+    curve.y.push_back(n * width * boost::math::pdf(normal, at));
+  }
+  panel.series = {std::move(bars), std::move(curve)};
+  return panel;
+}
+
+std::optional<PlotPanel> ResidualAutocorrelation(const Report& report) {
+  constexpr std::size_t kLeastSamples = 8;
+  constexpr std::size_t kLeastLags = 30;
+  constexpr std::size_t kMostLags = 1500;
+  constexpr double kMostProducts = 1e8;
+  std::vector<std::vector<double>> records;
+  std::size_t longest = 0;
+  std::size_t cycle = 0;
+  std::size_t samples = 0;
+  double squares = 0.0;
+  for (const RecordFit& fit : report.fit.records) {
+    std::vector<double>& residuals = records.emplace_back(CountedResiduals(fit));
+    longest = std::max(longest, residuals.size());
+    cycle = std::max(cycle, SamplesOfCycle(fit));
+    samples += residuals.size();
+    for (const double residual : residuals) squares += residual * residual;
+  }
+  if (samples < kLeastSamples || !(squares > 0)) return std::nullopt;
+  std::size_t lags = std::min({std::max(kLeastLags, cycle + cycle / 4), longest / 2, kMostLags});
+  lags = std::min(lags, static_cast<std::size_t>(kMostProducts / static_cast<double>(samples)) + 1);
+  PlotSeries correlation{"residuals", {}, {}, PlotStyle::kLine};
+  correlation.shade = kDataShade;
+  for (std::size_t lag = 0; lag <= lags; ++lag) {
+    double products = 0.0;
+    for (const std::vector<double>& residuals : records) {
+      for (std::size_t i = lag; i < residuals.size(); ++i) {
+        products += residuals[i] * residuals[i - lag];
+      }
+    }
+    correlation.x.push_back(static_cast<double>(lag));
+    correlation.y.push_back(products / squares);
+  }
+  const double limit = kQuantile95 / std::sqrt(static_cast<double>(samples));
+  const std::vector<double> ends = {0.0, static_cast<double>(lags)};
+  PlotSeries white{"white noise, 95 %", ends, {0.0, 0.0}, PlotStyle::kBand};
+  white.lower = {-limit, -limit};
+  white.upper = {limit, limit};
+  return PlotPanel{.x_label = "samples apart",
+                   .y_label = "autocorrelation of the residuals",
+                   .series = {std::move(correlation), std::move(white)}};
+}
+
+std::optional<PlotPanel> SlipForceLikelihood(const Report& report) {
+  const auto& profile = report.fit.slip_force_profile;
+  if (!profile || profile->points.size() < 2 ||
+      report.fit.adequacy.verdict == AdequacyVerdict::kInadequate) {
+    return std::nullopt;
+  }
+  constexpr double kHighest = 4.0;  // of what is drawn, over the critical value
+  const double ceiling = kHighest * profile->critical;
+  std::vector<identification::ProfilePoint> shown;
+  for (std::size_t k = 0; k < profile->points.size(); ++k) {
+    const auto& points = profile->points;
+    const bool is_near = points[k].statistic <= ceiling ||
+                         (k > 0 && points[k - 1].statistic <= ceiling) ||
+                         (k + 1 < points.size() && points[k + 1].statistic <= ceiling);
+    if (is_near) shown.push_back(points[k]);
+  }
+  const PrefixedUnit unit = PrefixFor(report.fit.law.slip_force, report.units.force);
+  PlotSeries curve{"each point fitted again with Tc held", {}, {}, PlotStyle::kLineAndPoints};
+  curve.shade = kDataShade;
+  for (const identification::ProfilePoint& point : shown) {
+    curve.x.push_back(point.law.slip_force / unit.size);
+    curve.y.push_back(std::min(point.statistic, ceiling));
+  }
+  PlotSeries critical{"above it outside the 95 % interval",
+                      {curve.x.front(), curve.x.back()},
+                      {profile->critical, profile->critical},
+                      PlotStyle::kLine};
+  PlotPanel panel{.x_label = fmt::format("slip force Tc, held [{}]", unit.unit),
+                  .y_label = "F against the best fit",
+                  .series = {std::move(curve), std::move(critical)}};
+  panel.log_x = true;
+  return panel;
+}
+
+std::vector<PlotPanel> LoadPanels(const Report& report, const PanelUnits& units) {
+  std::vector<PlotPanel> panels;
+  if (!report.load_series) return panels;
+  panels.push_back(
+      PanelOverLoad(report, {fmt::format("σ [{}/{}]", report.units.force, units.displacement.unit),
+                             1 / Per(units.displacement), &identification::RecordAlone::stiffness,
+                             /*is_stiffness=*/true}));
+  panels.push_back(
+      PanelOverLoad(report, {fmt::format("Tc [{}]", report.units.force), 1.0,
+                             &identification::RecordAlone::slip_force, /*is_stiffness=*/false}));
+  std::erase_if(panels, [](const PlotPanel& panel) { return panel.series.empty(); });
+  return panels;
+}
+
+std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units) {
+  if (!report.backbone || report.backbone->points.empty()) return std::nullopt;
+  PlotSeries band{"without a law, 95 %", {}, {}, PlotStyle::kBand};
+  band.shade = kDataShade;
+  PlotSeries law{"the fitted law", {}, {}, PlotStyle::kLine};
+  for (const identification::BackbonePoint& point : report.backbone->points) {
+    band.x.push_back(Per(units.displacement) * point.displacement);
+    band.y.push_back(Per(units.force) * point.force.value);
+    band.lower.push_back(Per(units.force) * point.force.lower95);
+    band.upper.push_back(Per(units.force) * point.force.upper95);
+    law.x.push_back(band.x.back());
+    law.y.push_back(Per(units.force) * point.law);
+  }
+  return PlotPanel{.x_label = DisplacementLabel(report, units) + " of first loading",
+                   .y_label = fmt::format("{} [{}]", ForceName(report), units.force.unit),
+                   .series = {std::move(band), std::move(law)}};
+}
+
+}  // namespace mindahl::report

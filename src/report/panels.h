@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mindahl/io/plot.h"
+#include "mindahl/report/report.h"
+#include "report/prefixed.h"
+
+// The figures of a report, each one panel. None is of a fit that failed.
+namespace mindahl::report {
+
+/// Units in which a report's figures are drawn.
+struct PanelUnits {
+  PrefixedUnit displacement;
+  PrefixedUnit force;
+  PrefixedUnit residual;
+};
+
+/// Displacements in the unit in which the widest record has a number between 1 and 1000, as far as
+/// there is one; forces as they are.
+PanelUnits PlainUnits(const Report& report);
+
+/// Likewise, with forces and residuals in units of their own.
+PanelUnits PrefixedUnits(const Report& report);
+
+/// How points are told apart: those of each record, or, of a record that is alone, those of each of
+/// its cycles too.
+enum class LoopColours { kOneARecord, kByCycle };
+
+/// Measured and fitted force over the displacement, with the reversals. By cycle, a record of many
+/// samples has the fit of its last cycle alone: of all of them a page would draw chords.
+io::PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours colours);
+
+/// Fitted less measured force, of samples in the load window where there is one.
+io::PlotPanel ResidualAlongStroke(const Report& report, const PanelUnits& units,
+                                  LoopColours colours);
+
+// Of the samples that count.
+io::PlotPanel ResidualInTime(const Report& report, const PanelUnits& units);
+/// How often a residual is how large, in bins of 2·IQR·n^(−1/3) (Freedman & Diaconis 1981), 10 to
+/// 60 of them, out to five standard deviations; and the normal distribution of the same standard
+/// deviation.
+io::PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units);
+/// Correlation of residuals that many samples apart, up to a little over a cycle, with the limits
+/// ±1.96/√n of white noise. Empty for fewer than eight samples, or where nothing is left over.
+std::optional<io::PlotPanel> ResidualAutocorrelation(const Report& report);
+
+/// The likelihood along the slip force. Empty where the fit had no need to look at it, and under a
+/// model that is inadequate.
+std::optional<io::PlotPanel> SlipForceLikelihood(const Report& report);
+
+/// σ and Tc against the load: of the whole series a line where it tells, of each file alone an
+/// interval. Empty where the records have one load, or nothing is told.
+std::vector<io::PlotPanel> LoadPanels(const Report& report, const PanelUnits& units);
+
+/// The force of first loading without a law, with its band. Empty where it was not asked for.
+std::optional<io::PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units);
+
+}  // namespace mindahl::report

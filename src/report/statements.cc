@@ -1,0 +1,279 @@
+#include "report/statements.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "mindahl/identification/trend.h"
+#include "mindahl/report/quantity.h"
+#include "report/adequacy.h"
+#include "report/names.h"
+
+namespace mindahl::report {
+
+using contact::PropagatedValue;
+using identification::FitResult;
+using identification::Identifiability;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
+
+namespace {
+
+/// A trend over the cycles in words, where it is worth any.
+std::string TrendText(const char* what, const std::optional<loop::Trend>& trend,
+                      const std::optional<double>& mean) {
+  if (!trend || !mean || !identification::IsWorthSaying(*trend, *mean)) return "";
+  return fmt::format("{} changes by {:+.2g} ± {:.1g} % a cycle (p = {:.1g})", what,
+                     100 * trend->slope / std::abs(*mean),
+                     100 * trend->standard_error / std::abs(*mean), trend->p_value);
+}
+
+/// The comparisons of branches, in words.
+struct ComparisonWords {
+  std::string_view code;
+  std::string_view words;
+};
+
+constexpr std::array<ComparisonWords, 6> kComparisons = {{
+    {"virgin_branch", "virgin branch"},
+    {"directions", "directions"},
+    {"amplitudes", "amplitudes"},
+    {"slope_at_reversal", "slopes after reversals"},
+    {"return_point", "way on after inner loops"},
+    {"other_law", "what the other law fits"},
+}};
+
+std::string BranchShapesStatement(const FitResult& fit) {
+  std::string text;
+  for (const identification::BranchShape& shape : fit.branch_shapes) {
+    text += fmt::format("{}{} {:.4g} ± {:.2g}", text.empty() ? "α branch by branch: " : ", ",
+                        shape.branch, shape.shape_exponent, shape.standard_error);
+  }
+  return text;
+}
+
+std::string_view TestVerdict(double p_value) {
+  return p_value < kSignificance ? "rejected" : "tenable";
+}
+
+}  // namespace
+
+std::string TitleOf(const Report& report) {
+  std::string name = std::filesystem::path(report.files.front()).filename().string();
+  if (report.files.size() > 1) name += fmt::format(" and {} more", report.files.size() - 1);
+  return fmt::format("{}: {}", name, VerdictWord(report));
+}
+
+std::string_view VerdictWord(const Report& report) {
+  if (report.failed()) return "failed";
+  if (!report.fit.converged) return "not converged";
+  return IsJudged(report) ? Name(report.fit.adequacy.verdict) : "not judged";
+}
+
+Shown WhatIsShown(const ParameterEstimate& estimate) {
+  if (estimate.status == ParameterStatus::kFixed) return Shown::kHeld;
+  if (estimate.identifiability == Identifiability::kNotIdentifiable) return Shown::kNothing;
+  if (estimate.identifiability == Identifiability::kBoundedBelow) return Shown::kLowerLimit;
+  return Shown::kValue;
+}
+
+std::string VerdictWords(const ParameterEstimate& estimate) {
+  if (estimate.status == ParameterStatus::kFixed) return "fixed";
+  const bool is_free = estimate.status == ParameterStatus::kFree;
+  return Words(estimate.identifiability) + (is_free ? "" : ", at bound");
+}
+
+std::string ChanceText(double p_value) {
+  constexpr double kLeast = 1e-12;
+  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.3g}", p_value);
+}
+
+bool IsIdentified(const Report& report, const ContactField& field, const PropagatedValue& value) {
+  if (!std::isfinite(value.standard_error)) return false;
+  const bool knows_stiffness = report.fit.Find("sigma")->is_known();
+  const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
+  const bool is_of_radius_alone =
+      field.key == "maximum_pressure" && report.known.contact_radius.has_value();
+  if (!knows_stiffness && field.key != "friction_coefficient" && !is_of_radius_alone) return false;
+  return knows_slip_force || field.key != "mindlin_gross_slip_displacement";
+}
+
+std::string VarianceStatement(const PropagatedValue& value) {
+  if (value.largest_input.empty()) return "";
+  return fmt::format("variance: fit {:.0f} %, inputs {:.0f} %, mostly the {}",
+                     100 * value.FitShare(), 100 * value.InputShare(), value.largest_input);
+}
+
+std::string SlipStatement(const LoopDescription& loop, const Units& units) {
+  if (!loop.regime) return "whether it slips is open: slip_force is not identifiable";
+  if (loop.gross_slip_displacement) {
+    return fmt::format("{}, the contact slips as a whole from an amplitude of {}",
+                       Name(*loop.regime),
+                       Quantity(*loop.gross_slip_displacement, units.displacement, 5));
+  }
+  if (!loop.knows_slip) {
+    return fmt::format("{} (gross-slip displacement not identified)", Name(*loop.regime));
+  }
+  return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
+                     100 * loop.slip_force_share);
+}
+
+std::vector<std::string> TrendStatements(const loop::LoopFacts& facts) {
+  std::vector<std::string> statements;
+  for (const std::string& trend :
+       {TrendText("half gap", facts.half_gap_trend, facts.half_gap),
+        TrendText("energy", facts.energy_trend, facts.energy_per_cycle)}) {
+    if (!trend.empty()) statements.push_back(trend);
+  }
+  return statements;
+}
+
+std::string LawStatement(const Report& report) {
+  if (!report.fit.law_choice) return "";
+  const identification::LawChoice& choice = *report.fit.law_choice;
+  const auto name = [](const models::FrictionModel& model) {
+    return model.memory == models::Memory::kReturnPoint ? "Masing's law" : "Dahl's own law";
+  };
+  if (choice.preferred == report.fit.model) {
+    return choice.delta_aicc ? fmt::format("{}, not {} (ΔAICc = {:.3g})", name(*report.fit.model),
+                                           name(*choice.alternative), *choice.delta_aicc)
+                             : std::string(name(*report.fit.model));
+  }
+  const Units& units = report.units;
+  if (!report.fit.Find("sigma")->is_known()) {
+    return fmt::format(
+        "{}{}", name(*choice.alternative),
+        choice.decided
+            ? fmt::format(" fits better (ΔAICc = {:.3g}, --model {})",
+                          choice.delta_aicc.value_or(0.0), choice.alternative->name)
+            : fmt::format(" or {}, which the record does not tell apart", name(*report.fit.model)));
+  }
+  const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
+  std::string text = fmt::format(
+      "sigma{} of {}; by {}, which {}, {} {}", knows_slip_force ? " and slip_force are" : " is",
+      name(*report.fit.model), name(*choice.alternative),
+      choice.decided ? fmt::format("fits better (ΔAICc = {:.3g}, --model {})",
+                                   choice.delta_aicc.value_or(0.0), choice.alternative->name)
+                     : std::string("the record does not tell from it"),
+      knows_slip_force ? "they are" : "it is",
+      Quantity(choice.law.tangential_stiffness, units.stiffness, 5));
+  if (knows_slip_force) text += " and " + Quantity(choice.law.slip_force, units.force, 5);
+  const auto add = [&](const char* what, const std::optional<PropagatedValue>& quantity) {
+    if (quantity) text += fmt::format(", {} {}", what, Quantity(quantity->value, "m", 5));
+  };
+  add("contact radius", report.contact_by_other_law.contact_radius);
+  add("equivalent radius", report.contact_by_other_law.equivalent_radius);
+  return text;
+}
+
+std::string MemoryStatement(const Report& report) {
+  if (!report.fit.memory || report.fit.memory->comparisons.empty()) return "";
+  const identification::MemoryTest& memory = *report.fit.memory;
+  const auto p = [](double value) {
+    return value < 1e-6 ? std::string("p < 1e-6") : fmt::format("p = {:.2g}", value);
+  };
+  std::string text;
+  using enum identification::MemoryVerdict;
+  switch (memory.verdict) {
+    case kMasing:
+      text +=
+          fmt::format("Masing's ({}), not Dahl's ({})", p(memory.p_value), p(memory.dahl_p_value));
+      break;
+    case kDahl:
+      text +=
+          fmt::format("Dahl's ({}), not Masing's ({})", p(memory.dahl_p_value), p(memory.p_value));
+      break;
+    case kNeither:
+      text += fmt::format("neither Masing's ({}) nor Dahl's ({})", p(memory.p_value),
+                          p(memory.dahl_p_value));
+      break;
+    case kUndecided:
+      text += fmt::format("Masing's ({}) or Dahl's ({}), undecided", p(memory.p_value),
+                          p(memory.dahl_p_value));
+      break;
+  }
+  std::vector<std::string> compared;
+  for (const ComparisonWords& row : kComparisons) {
+    const auto found =
+        std::ranges::find(memory.comparisons, row.code, &identification::MemoryComparison::code);
+    if (found == memory.comparisons.end()) continue;
+    if (memory.verdict == kNeither) {
+      compared.push_back(fmt::format("{} ({}, {})", row.words, p(found->p_value),
+                                     Quantity(found->size, report.units.force, 2)));
+    } else {
+      compared.emplace_back(row.words);
+    }
+  }
+  text += fmt::format("; compared: {}", fmt::join(compared, ", "));
+  if (memory.verdict == kUndecided) {
+    const auto has = [&](std::string_view code) {
+      return std::ranges::find(memory.comparisons, code, &identification::MemoryComparison::code) !=
+             memory.comparisons.end();
+    };
+    text += has("virgin_branch") || has("amplitudes")
+                ? "; amplitudes further apart, or less noise, would decide"
+                : "; a virgin branch, a second amplitude or an inner loop would decide";
+  }
+  return text;
+}
+
+std::vector<std::string> ExponentStatements(const Report& report) {
+  std::vector<std::string> statements;
+  const auto& mindlin = report.fit.mindlin_test;
+  // Of the two tests the likelihood ratio has the say: it needs no parabola.
+  if (report.alpha.z) {
+    statements.push_back(fmt::format(
+        "α − 1/3 = {:.3g}, {:.2f} standard errors, {}{}", *report.alpha.minus_third,
+        *report.alpha.z, ChanceText(*report.alpha.p_value),
+        mindlin ? ""
+                : fmt::format(": Mindlin's exponent is {}", TestVerdict(*report.alpha.p_value))));
+  }
+  if (mindlin) {
+    const std::string rig = mindlin->rig_stiffness
+                                ? fmt::format(
+                                      " for a rigid rig, but tenable with a rig of {} in "
+                                      "series: the record does not tell which",
+                                      Quantity(*mindlin->rig_stiffness, "N/m", 4))
+                                : "";
+    statements.push_back(fmt::format(
+        "likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}{}",
+        mindlin->likelihood_ratio, mindlin->p_value, TestVerdict(mindlin->p_value), rig));
+  }
+  const std::string shapes = BranchShapesStatement(report.fit);
+  if (!shapes.empty()) statements.push_back(shapes);
+  return statements;
+}
+
+std::vector<std::string> StiffnessStatements(const StiffnessTest& test) {
+  std::vector<std::string> statements = {
+      fmt::format("σ/(8a/G*) = {}: 1 where Hertz and Mindlin hold",
+                  QuantityWithError(test.ratio.value, test.ratio.standard_error, "-"))};
+  if (test.z) {
+    statements.push_back(fmt::format(
+        "with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: {}",
+        test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
+        test.interval95->upper, *test.z, ChanceText(*test.p_value), TestVerdict(*test.p_value)));
+  }
+  return statements;
+}
+
+std::string Words(const LoadHypothesis& hypothesis) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
+      {"sphere", "smooth sphere, Hertz (1/3)"},
+      {"elements", "elements in parallel (α)"},
+      {"cone", "cone (1/2)"},
+      {"flat_punch", "flat punch (0)"},
+      {"rough", "rough contact (1)"},
+  }};
+  const auto row = std::ranges::find(kWords, hypothesis.name,
+                                     &std::pair<std::string_view, std::string_view>::first);
+  return std::string(row == kWords.end() ? hypothesis.name : row->second);
+}
+
+}  // namespace mindahl::report

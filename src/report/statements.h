@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/report/report.h"
+#include "report/fields.h"
+
+// What the text and the page both say of a fit, in words and without an end of line.
+namespace mindahl::report {
+
+/// The names of the files, without their directories, and the verdict: "loop.csv: adequate".
+std::string TitleOf(const Report& report);
+
+/// "adequate", "doubtful", "inadequate", "not judged", "not converged" or "failed".
+std::string_view VerdictWord(const Report& report);
+
+/// What may be said of a parameter: no number of what the record does not give.
+enum class Shown {
+  kValue,       ///< the estimate, with its error and interval
+  kHeld,        ///< the value that it was given
+  kLowerLimit,  ///< the lower end of the interval alone
+  kNothing,
+};
+Shown WhatIsShown(const identification::ParameterEstimate& estimate);
+
+/// "identifiable, at bound", "fixed" …
+std::string VerdictWords(const identification::ParameterEstimate& estimate);
+
+/// "p = 0.012"; no p-value is 0.
+std::string ChanceText(double p_value);
+
+/// Whether a quantity of the contact follows from what the loop tells: of what it leaves open
+/// nothing follows, whatever the error is.
+bool IsIdentified(const Report& report, const ContactField& field,
+                  const contact::PropagatedValue& value);
+
+/// What to measure better: the shares of a variance. Empty where the inputs are exact and the fit
+/// alone is uncertain.
+std::string VarianceStatement(const contact::PropagatedValue& value);
+
+/// Whether the contact slips as a whole, and from where on.
+std::string SlipStatement(const LoopDescription& loop, const Units& units);
+
+/// What changes over the cycles, where it is worth saying.
+std::vector<std::string> TrendStatements(const loop::LoopFacts& facts);
+
+/// Which of the two laws σ and Tc are of, and what the other would make of the contact. Empty where
+/// they are not compared.
+std::string LawStatement(const Report& report);
+
+/// Of which memory the record is, whatever the shape of its branches. Empty where that is not
+/// tested.
+std::string MemoryStatement(const Report& report);
+
+/// Is the exponent Mindlin's: the tests of α = 1/3. Empty where α was held.
+std::vector<std::string> ExponentStatements(const Report& report);
+
+/// Is the stiffness 8a/G*: the ratio, then its test where there is one.
+std::vector<std::string> StiffnessStatements(const StiffnessTest& test);
+
+/// A theory of the load's exponent in words.
+std::string Words(const LoadHypothesis& hypothesis);
+
+}  // namespace mindahl::report

@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/provenance.h"
+#include "io/temporary_directory.h"
+#include "mindahl/io/digest.h"
+
+// --report of fit, batch and track: pages for people.
+namespace mindahl::cli {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::Outcome;
+using testing::RunCommand;
+using testing::SampleRecord;
+
+class ReportPage : public ::testing::Test {
+ protected:
+  std::string At(const std::string& name) const { return (directory_.path() / name).string(); }
+  std::string Copy(const std::string& name) const {
+    return directory_.Write(name, FileContent(SampleRecord())).string();
+  }
+  bool Exists(const std::string& name) const { return std::filesystem::exists(At(name)); }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(ReportPage, OfAFitSaysTheVerdictAndWhatItWasMadeFrom) {
+  const std::string record = Copy("it's <loop>.csv");
+  const Outcome outcome =
+      RunCommand({"fit", record, "--normal-load", "50", "--drift", "--report", At("out.html")});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const std::string page = FileContent(At("out.html"));
+  EXPECT_THAT(page, HasSubstr("<h1>it&#39;s &lt;loop&gt;.csv: adequate</h1>"));
+  EXPECT_THAT(page, Not(HasSubstr("<loop>")));
+  EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(record)));
+  EXPECT_THAT(page, HasSubstr("--normal-load 50 --drift --report"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">--drift</th><td class=\"words\">on</td>"));
+}
+
+TEST_F(ReportPage, OfAConfigurationFileHasItsOptionsAndItsDigest) {
+  const std::string config = directory_.Write("fit.toml", "model = \"mindlin\"\n").string();
+  const Outcome outcome = RunCommand(
+      {"--config", config, "fit", SampleRecord(), "--report", At("out.html"), "--json", "-"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const std::string page = FileContent(At("out.html"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">--model</th><td class=\"words\">mindlin</td>"));
+  EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(config)));
+}
+
+TEST_F(ReportPage, IsNotWrittenOverTheRecord) {
+  const std::string record = Copy("loop.csv");
+  const Outcome outcome = RunCommand({"fit", record, "--report", record});
+  EXPECT_EQ(outcome.status, kBadInput);
+  EXPECT_THAT(outcome.err, HasSubstr("--report: "));
+  EXPECT_EQ(FileContent(record), FileContent(SampleRecord()));
+}
+
+TEST_F(ReportPage, OfABatchIsAnIndexAndAPageAFile) {
+  std::filesystem::create_directory(At("a"));
+  std::filesystem::create_directory(At("b"));
+  const std::string first = Copy("a/loop.csv");
+  const std::string second = Copy("b/loop.csv");
+  const std::string broken = directory_.Write("index.csv", "x,F\n1,none\n").string();
+  const Outcome outcome = RunCommand({"batch", first, second, broken, "--model", "mindlin",
+                                      "--output", At("table.csv"), "--report", At("pages")});
+  EXPECT_EQ(outcome.status, kNotEstablished) << outcome.err;
+  const std::string index = FileContent(At("pages/index.html"));
+  EXPECT_THAT(index, HasSubstr("<h1>2 of 3 files fitted</h1>"));
+  EXPECT_THAT(index, HasSubstr("<a href=\"loop.html\">"));
+  EXPECT_THAT(index, HasSubstr("<a href=\"loop-2.html\">"));
+  EXPECT_THAT(index, HasSubstr("index.csv:2"));  // where it is broken
+  EXPECT_FALSE(Exists("pages/index-2.html"));
+  // Each page says how to make it alone.
+  EXPECT_THAT(FileContent(At("pages/loop-2.html")),
+              HasSubstr(fmt::format("<code>mindahl fit {} --model mindlin</code>", second)));
+}
+
+TEST_F(ReportPage, OfABatchNeedsADirectory) {
+  const std::string record = Copy("loop.csv");
+  const std::string file = directory_.Write("file", "").string();
+  for (const std::string& path : {file, At("absent/pages")}) {
+    const Outcome outcome =
+        RunCommand({"batch", record, "--output", At("table.csv"), "--report", path});
+    EXPECT_EQ(outcome.status, kBadInput);
+    EXPECT_THAT(outcome.err, HasSubstr("--report: "));
+    EXPECT_FALSE(Exists("table.csv"));
+  }
+}
+
+TEST_F(ReportPage, OfATestOfManyCyclesShowsWhatChanged) {
+  std::vector<std::string> words = {"track"};
+  for (const char* slip_force : {"60", "50"}) {
+    const std::string path = At(std::string("loop_") + slip_force + ".csv");
+    ASSERT_EQ(RunCommand({"simulate", "--sigma", "5e7", "--slip-force", slip_force, "--amplitude",
+                          "2.5e-6", "--cycles", "40", "--samples-per-cycle", "80", "--noise-force",
+                          "0.5", "-o", path})
+                  .status,
+              kDone);
+    words.push_back(path);
+  }
+  for (const std::string& word :
+       {std::string("--output"), At("cycles.csv"), std::string("--report"), At("out.html")}) {
+    words.push_back(word);
+  }
+  const Outcome outcome = RunCommand(words);
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const std::string page = FileContent(At("out.html"));
+  EXPECT_THAT(page, HasSubstr("<strong>changed</strong>"));
+  EXPECT_THAT(page, HasSubstr("slip_force [N]: at cycle 40"));
+  EXPECT_THAT(page, HasSubstr("<figure id=\"evolution-5\">"));
+}
+
+TEST_F(ReportPage, ATestIsNotTrackedForAPlotThatCannotBe) {
+  const Outcome outcome =
+      RunCommand({"track", SampleRecord(), "--output", At("cycles.csv"), "--plot", At("plot.pdf")});
+  EXPECT_EQ(outcome.status, kBadInput);
+  EXPECT_THAT(outcome.err, HasSubstr("must end in .svg or .png"));
+  EXPECT_FALSE(Exists("cycles.csv"));
+}
+
+TEST(ShellWord, IsQuotedWhereAShellWouldTakeItApart) {
+  EXPECT_EQ(ShellWord("loop_1.csv"), "loop_1.csv");
+  EXPECT_EQ(ShellWord("my loop.csv"), "'my loop.csv'");
+  EXPECT_EQ(ShellWord("it's"), "'it'\\''s'");
+  EXPECT_EQ(ShellWord(""), "''");
+  EXPECT_EQ(ShellWord("$(rm)"), "'$(rm)'");
+}
+
+}  // namespace
+}  // namespace mindahl::cli

@@ -1,0 +1,223 @@
+#include "mindahl/report/page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/models/friction_model.h"
+#include "report/made_report.h"
+#include "support/histories.h"
+
+namespace mindahl::report {
+namespace {
+
+using identification::AdequacyVerdict;
+using identification::Identifiability;
+using testing::FailedInput;
+using ::testing::HasSubstr;
+using testing::MadeInput;
+using testing::MadeRecord;
+using ::testing::Not;
+
+/// What the reader sees: without the rules of style.
+std::string BodyOf(const std::string& page) { return page.substr(page.find("<body>")); }
+
+std::string PageOf(ReportInput input, const Provenance& provenance = {}) {
+  return BodyOf(ToPage(MakeReport(std::move(input)), provenance));
+}
+
+ReportInput JudgedInput(AdequacyVerdict verdict) {
+  ReportInput input = MadeInput();
+  input.fit.adequacy.tried = 15;
+  input.fit.adequacy.verdict = verdict;
+  return input;
+}
+
+/// A figure from its first tag to its last.
+std::string FigureOf(const std::string& page, const std::string& id) {
+  const std::size_t begin = page.find("<figure id=\"" + id + "\"");
+  if (begin == std::string::npos) return "";
+  return page.substr(begin, page.find("</figure>", begin) - begin);
+}
+
+TEST(Page, BeginsWithTheFileAndTheVerdict) {
+  const std::string page = PageOf(JudgedInput(AdequacyVerdict::kDoubtful));
+  EXPECT_THAT(page, HasSubstr("<h1>loop_1.csv: doubtful</h1>"));
+  EXPECT_LT(page.find("class=\"verdict poor\""), page.find("<h2>Parameters</h2>"));
+}
+
+TEST(Page, SaysItsSectionsInTheOrderInWhichTheyAreRead) {
+  const std::string page = PageOf(JudgedInput(AdequacyVerdict::kAdequate));
+  std::size_t last = 0;
+  for (const char* heading :
+       {"class=\"verdict good\"", "<h2>Parameters</h2>", "<h2>Warnings and what to do</h2>",
+        "<h2>What the record says without a model</h2>", "<h2>Loop and residuals</h2>",
+        "<h2>Loop of the model</h2>", "<h2>The contact</h2>",
+        "<h3>Is it Mindlin&#39;s contact?</h3>", "<h2>The record</h2>",
+        "<h2>To make this again</h2>"}) {
+    const std::size_t at = page.find(heading);
+    ASSERT_NE(at, std::string::npos) << heading;
+    EXPECT_GT(at, last) << heading;
+    last = at;
+  }
+}
+
+TEST(Page, DrawsEveryFigureOfAFit) {
+  const std::string page = PageOf(JudgedInput(AdequacyVerdict::kAdequate));
+  for (const char* id : {"loop", "residual-stroke", "residual-time", "residual-distribution",
+                         "residual-autocorrelation"}) {
+    const std::string figure = FigureOf(page, id);
+    EXPECT_THAT(figure, ::testing::ContainsRegex("class=\"(line|dots|bars) [hs][0-7]\" d=\"M[0-9]"))
+        << id;
+    EXPECT_THAT(figure, HasSubstr("<desc ")) << id;
+  }
+}
+
+TEST(Page, WritesParametersWithPrefixesAndIntervals) {
+  const std::string page = PageOf(JudgedInput(AdequacyVerdict::kAdequate));
+  // σ = 4e7 ± 4e5 N/m, to 2 of the error's digits; the made interval is two errors to either side.
+  EXPECT_THAT(page, HasSubstr("40.00 ± 0.40</td><td class=\"number\">N/µm</td>"
+                              "<td class=\"number\">39.20 … 40.80</td>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">slip_force</th>"));
+}
+
+TEST(Page, HasNoNumberOfWhatIsNotIdentified) {
+  ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
+  // Digits that nothing else has.
+  identification::ParameterEstimate& sigma = input.fit.parameters[0];
+  sigma.value = 7.6543e7;
+  sigma.lower95 = 7.5432e7;
+  sigma.upper95 = 7.8765e7;
+  sigma.identifiability = Identifiability::kNotIdentifiable;
+  identification::ParameterEstimate& alpha = input.fit.parameters[1];
+  alpha.value = 0.34567;
+  alpha.identifiability = Identifiability::kNotIdentifiable;
+  identification::ParameterEstimate& slip_force = input.fit.parameters[2];
+  slip_force.value = 98.765;
+  slip_force.lower95 = 12.5;
+  slip_force.upper95.reset();
+  slip_force.standard_error.reset();
+  slip_force.identifiability = Identifiability::kBoundedBelow;
+  input.fit.law = {7.6543e7, 0.34567, 98.765};
+  input.fit.residuals.normalized_rms = 0.013579;
+  input.known.normal_load = 123.0;
+  const std::string page = PageOf(std::move(input));
+  // Places in figures have one decimal.
+  for (const char* digits : {"76.54", "7.654", "75.43", "78.76", "0.3456", "0.3457", "98.76",
+                             "98.77", "0.0135", "0.803"}) {  // and μ = 98.765/123
+    EXPECT_THAT(page, Not(HasSubstr(digits)));
+  }
+  EXPECT_THAT(page, HasSubstr("&gt; 12.5"));
+}
+
+TEST(Page, OfAnInadequateModelHasNoContactAndNoLikelihood) {
+  ReportInput input = JudgedInput(AdequacyVerdict::kInadequate);
+  input.fit.slip_force_profile = {.critical = 4.0,
+                                  .points = {{{4e7, 0.3, 30}, 9.0}, {{4e7, 0.3, 40}, 0.0}}};
+  const std::string page = PageOf(std::move(input));
+  EXPECT_THAT(page, HasSubstr("the model does not describe this record"));
+  EXPECT_THAT(page, Not(HasSubstr("Mindlin-Dahl mapping")));
+  EXPECT_EQ(FigureOf(page, "likelihood"), "");
+}
+
+TEST(Page, DrawsTheLikelihoodThatTheFitLookedAt) {
+  ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
+  EXPECT_EQ(FigureOf(PageOf(input), "likelihood"), "");
+  input.fit.slip_force_profile = {
+      .critical = 4.0,
+      .points = {{{4e7, 0.3, 30}, 9.0}, {{4e7, 0.33, 40}, 0.0}, {{4e7, 0.5, 80}, 2.0}}};
+  EXPECT_THAT(FigureOf(PageOf(input), "likelihood"), HasSubstr("<circle class=\"marker"));
+}
+
+TEST(Page, GivesTheCommandToTryNext) {
+  ReportInput input = JudgedInput(AdequacyVerdict::kDoubtful);
+  input.fit.adequacy.causes = {{.code = "channel_lag",
+                                .delta_aicc = -50,
+                                .explains = 0.5,
+                                .size = 0.01,
+                                .unit = "s",
+                                .option = "--lag fit"}};
+  Provenance provenance;
+  provenance.command = "mindahl fit 'my loop.csv'";
+  EXPECT_THAT(PageOf(input, provenance),
+              HasSubstr("<pre><code>mindahl fit &#39;my loop.csv&#39; --lag fit</code></pre>"));
+  provenance.options = {{"--lag", "0.001"}};  // tried already
+  EXPECT_THAT(PageOf(input, provenance), Not(HasSubstr("--lag fit</code>")));
+}
+
+TEST(Page, SaysWhatItTakesToMakeItAgain) {
+  Provenance provenance;
+  provenance.command = "mindahl fit loop.csv --model mindlin";
+  provenance.inputs = {{.name = "loop.csv", .sha256 = std::string(64, 'a')},
+                       {.name = "/dev/stdin", .sha256 = std::nullopt}};
+  provenance.options = {{"--model", "mindlin"}};
+  const std::string page = PageOf(MadeInput(), provenance);
+  EXPECT_THAT(page, HasSubstr("<pre><code>mindahl fit loop.csv --model mindlin</code></pre>"));
+  EXPECT_THAT(page, HasSubstr(std::string(64, 'a')));
+  EXPECT_THAT(page, HasSubstr("no regular file"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">--model</th>"));
+}
+
+TEST(Page, EscapesWhateverComesFromOutside) {
+  const std::string attack = "<script>alert(1)</script>\"'&";
+  ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
+  input.files = {attack};
+  input.records[0].displacement.unit = attack;
+  input.records[0].displacement.name = attack;
+  Provenance provenance;
+  provenance.command = attack;
+  provenance.inputs = {{.name = attack, .sha256 = attack}};
+  provenance.options = {{attack, attack}};
+  const std::string page = ToPage(MakeReport(input), provenance);
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;"));
+}
+
+TEST(Page, TellsRecordsOfAJointFitApart) {
+  ReportInput input = MadeInput({MadeRecord(1e-6), MadeRecord(2e-6)}, 2e-6);
+  const std::string page = PageOf(std::move(input));
+  EXPECT_THAT(page, HasSubstr("<h1>loop_1.csv and 1 more: not judged</h1>"));
+  const std::string loop = FigureOf(page, "loop");
+  EXPECT_THAT(loop, HasSubstr("measured loop_1.csv"));
+  EXPECT_THAT(loop, HasSubstr("measured loop_2.csv"));
+}
+
+TEST(Page, OfAFitThatFailedSaysWhy) {
+  const std::string page = PageOf(FailedInput());
+  EXPECT_THAT(page, HasSubstr("class=\"verdict bad\""));
+  EXPECT_THAT(page, HasSubstr("no start led anywhere"));
+  EXPECT_THAT(page, Not(HasSubstr("<figure")));
+}
+
+TEST(Page, HasASizeThatDoesNotGrowWithTheRecord) {
+  constexpr std::size_t kSamples = 200'000;
+  // Five figures of 6000 points at most, the longest of them below 30 bytes, and the words.
+  constexpr std::size_t kMost = 5 * 6000 * 30 + 100'000;
+  EXPECT_LT(PageOf(MadeInput({MadeRecord(2e-6, kSamples)}, 2e-6)).size(), kMost);
+}
+
+TEST(Page, OfARealFitDrawsItsCycles) {
+  // A loop of three cycles, sampled without noise but for a ripple.
+  loop::Record record;
+  for (int i = 0; i <= 600; ++i) {
+    record.displacement.push_back(2e-6 * std::sin(2 * M_PI * i / 200.0));
+  }
+  record.force = mindahl::testing::Respond(*models::FindFrictionModel("mindlin-dahl"),
+                                           {4e7, 1.0 / 3, 40.0}, record.displacement);
+  for (std::size_t i = 0; i < record.force.size(); ++i) {
+    record.force[i] += 0.05 * std::sin(1.7 * static_cast<double>(i));
+  }
+  ReportInput input = MadeInput({record}, 2e-6);
+  input.fit = identification::Fit(std::vector<loop::Record>{input.records[0].record});
+  const std::string page = PageOf(std::move(input));
+  EXPECT_THAT(FigureOf(page, "loop"), HasSubstr("measured, cycle 3"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">half_gap.value</th>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">gross slip (α = 1/3)</th>"));
+}
+
+}  // namespace
+}  // namespace mindahl::report
