@@ -14,7 +14,7 @@ struct SolverOptions {
   double function_tolerance = 1e-10;
   double parameter_tolerance = 1e-13;
   int max_iterations = 500;
-  /// Of the cost: a full step from where no more can be gained is the last, and taken unseen.
+  /// Of the cost: a full step from where no more can be gained is the last.
   double last_step = 1e-6;
 };
 
