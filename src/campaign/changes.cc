@@ -90,11 +90,13 @@ std::vector<Cut> BestCuts(const Lines& lines, std::size_t bins) {
   // Of k + 1 stretches up to before bin j: the least squares, and where the last begins.
   std::vector<std::vector<double>> squares(most, std::vector<double>(bins + 1, kNone));
   std::vector<std::vector<std::size_t>> last(most, std::vector<std::size_t>(bins + 1, 0));
-  for (std::size_t j = 1; j <= bins; ++j) squares[0][j] = lines.Of(0, j).squares;
-  for (std::size_t k = 1; k < most; ++k) {
-    for (std::size_t j = (k + 1) * kLeastBins; j <= bins; ++j) {
-      for (std::size_t i = k * kLeastBins; i + kLeastBins <= j; ++i) {
-        const double sum = squares[k - 1][i] + lines.Of(i, j).squares;
+  for (std::size_t j = 1; j <= bins; ++j) {
+    squares[0][j] = lines.Of(0, j).squares;
+    // The line over [i, j) is the last stretch of cuts into any number.
+    for (std::size_t i = kLeastBins; i + kLeastBins <= j; ++i) {
+      const double of_line = lines.Of(i, j).squares;
+      for (std::size_t k = 1; k < most && k * kLeastBins <= i; ++k) {
+        const double sum = squares[k - 1][i] + of_line;
         if (sum < squares[k][j]) {
           squares[k][j] = sum;
           last[k][j] = i;

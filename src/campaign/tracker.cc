@@ -1,5 +1,8 @@
 #include "mindahl/campaign/tracker.h"
 
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 #include "mindahl/core/error.h"
@@ -16,11 +19,66 @@ std::vector<CycleFit> FitBatch(const identification::FitOptions& options,
   return fits;
 }
 
+using Batch = std::packaged_task<std::vector<CycleFit>()>;
+
 void RequireCount(const char* quantity, std::size_t count) {
   if (count < 1) ThrowInvalid(quantity, 0, "must be >= 1");
 }
 
 }  // namespace
+
+/// Threads that fit batches in the order in which these are begun, no more than there are batches.
+class Tracker::Workers {
+ public:
+  explicit Workers(std::size_t most) : most_(most) {}
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+  /// What nobody has begun to fit is left.
+  ~Workers() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    }
+    waiting_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  [[nodiscard]] std::size_t most() const { return most_; }
+
+  std::future<std::vector<CycleFit>> Begin(Batch batch) {
+    std::future<std::vector<CycleFit>> fits = batch.get_future();
+    {
+      const std::lock_guard lock(mutex_);
+      batches_.push_back(std::move(batch));
+    }
+    if (threads_.size() < most_) {
+      threads_.emplace_back([this] { Work(); });
+    } else {
+      waiting_.notify_one();
+    }
+    return fits;
+  }
+
+ private:
+  void Work() {
+    for (;;) {
+      std::unique_lock lock(mutex_);
+      waiting_.wait(lock, [this] { return is_over_ || !batches_.empty(); });
+      if (is_over_) return;
+      Batch batch = std::move(batches_.front());
+      batches_.pop_front();
+      lock.unlock();
+      batch();
+    }
+  }
+
+  std::size_t most_;
+  std::mutex mutex_;
+  std::condition_variable waiting_;
+  std::deque<Batch> batches_;
+  bool is_over_ = false;
+  std::vector<std::thread> threads_;
+};
 
 Tracker::Tracker(TrackOptions options, Done done)
     : options_(std::move(options)),
@@ -33,7 +91,10 @@ Tracker::Tracker(TrackOptions options, Done done)
                  "must be a multiple of a batch");
   }
   const CycleFitter refused_here(options_.fit);  // and not in a thread
+  workers_ = std::make_unique<Workers>(options_.threads);
 }
+
+Tracker::~Tracker() = default;
 
 void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> lines) {
   cycles_.clear();
@@ -48,20 +109,21 @@ void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> 
 
 void Tracker::Finish() {
   if (!batch_.empty()) Begin();
-  while (!at_work_.empty()) Deliver();
+  while (!begun_.empty()) Deliver();
 }
 
 void Tracker::Begin() {
-  while (at_work_.size() >= options_.threads) Deliver();
-  at_work_.push_back(std::async(
-      std::launch::async,
-      [&fit = options_.fit, batch = std::exchange(batch_, {})] { return FitBatch(fit, batch); }));
+  // One that waits for each that is fitted: no thread waits for the reader while this one waits.
+  while (begun_.size() >= 2 * workers_->most()) Deliver();
+  begun_.push_back(workers_->Begin(Batch([&fit = options_.fit, cycles = std::exchange(batch_, {})] {
+    return FitBatch(fit, cycles);
+  })));
   batch_.reserve(kBatch);
 }
 
 void Tracker::Deliver() {
-  const std::vector<CycleFit> fits = at_work_.front().get();
-  at_work_.pop_front();
+  const std::vector<CycleFit> fits = begun_.front().get();
+  begun_.pop_front();
   done_(fits);
 }
 

@@ -186,11 +186,9 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
 }
 
 /// Fitted forces and residuals as the files have them, of every sample, and their rms.
-void FillForces(const Attempt& attempt, const Problem& problem, const Solution& solution,
+/// @param force  of the model, of every sample
+void FillForces(const Attempt& attempt, const Problem& problem, std::span<const double> force,
                 FitResult& result) {
-  std::pmr::vector<double> force(problem.size(), attempt.memory);
-  attempt.buffers.response.Bind(problem);
-  Predict(problem, solution.theta, attempt.buffers.response, force);
   const ScaledRecords& data = *problem.data;
   double squares = 0.0;
   std::size_t k = 0;
@@ -269,6 +267,8 @@ void DescribeFit(const Problem& problem, const Noise& noise, FitResult& result) 
   for (const RecordFit& fit : result.records) {
     std::vector<double>& residual = residuals.emplace_back();
     std::vector<double>& force = forces.emplace_back();
+    residual.reserve(fit.residual.size());
+    force.reserve(fit.residual.size());
     for (std::size_t i = 0; i < fit.residual.size(); ++i) {
       if (fit.counts[i] == 0) continue;
       residual.push_back(fit.residual[i]);
@@ -291,9 +291,9 @@ double DescribeStructures(const Problem& problem, std::span<const double> residu
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     RecordFit& fit = result.records[r];
-    std::vector<double> newtons;
+    std::vector<double> newtons(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
-      newtons.push_back(residual[begin + i] * problem.data->force);
+      newtons[i] = residual[begin + i] * problem.data->force;
     }
     fit.structure = DescribeStructure(record.displacement, record.reversals, newtons, record.counts,
                                       {thresholds.main_stroke, thresholds.repeat_chance});
@@ -366,11 +366,10 @@ MemoryTest CompareBranches(const Problem& problem, const Solution& solution,
 }
 
 /// What the residuals say of the noise, and of themselves.
+/// @param residual  weighted, of every sample
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
-                  Noise& noise, FitResult& result) {
+                  std::span<const double> residual, Noise& noise, FitResult& result) {
   const FitOptions& options = attempt.options;
-  std::vector<double> residual(problem.size());
-  EvaluateResidual(problem, solution.theta, attempt.buffers.response, residual);
   // Rounding errors are autocorrelated as they like: nothing is to be learnt from them.
   const double rms =
       std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
@@ -422,12 +421,14 @@ void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solut
 }
 
 /// What there is at Depth::kErrors.
+/// @param at  the problem by all its free parameters, at the solution
 void InferErrors(const Attempt& attempt, const Problem& problem, const Solution& solution,
-                 Noise& noise, const DisplacementErrors& displacement_errors, FitResult& result) {
-  MeasureNoise(attempt, problem, solution, noise, result);
+                 Linearization at, Noise& noise, const DisplacementErrors& displacement_errors,
+                 FitResult& result) {
+  MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
   const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
   const Estimates estimates(problem, solution, noise, displacement, attempt.options.thresholds,
-                            attempt.buffers.response);
+                            std::move(at));
   FillErrors(problem, estimates, result);
   WidenByProfiles(attempt, problem, solution, noise, estimates, result);
   Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
@@ -439,16 +440,17 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
 }
 
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
+/// @param at     the problem by all its free parameters, at the solution
 /// @param rival  the other past of the contact, where the record hardly tells; else null
-void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution, Noise& noise,
-           const DisplacementErrors& displacement_errors, const Candidate* rival,
-           FitResult& result) {
+void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution,
+           Linearization at, Noise& noise, const DisplacementErrors& displacement_errors,
+           const Candidate* rival, FitResult& result) {
   const FitOptions& options = attempt.options;
   SearchBuffers& buffers = attempt.buffers;
-  MeasureNoise(attempt, problem, solution, noise, result);
+  MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
   const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
   const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
-                            buffers.response);
+                            std::move(at));
   FillErrors(problem, estimates, result);
   if (result.depth >= Depth::kFull) {
     result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
@@ -710,7 +712,17 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   result.force_noise = noise.force * data.force;
   result.outliers = noise.outliers;
   FillParameters(best->problem, solution, result);
-  FillForces(attempt, best->problem, solution, result);
+  Linearization at;
+  if (depth >= Depth::kErrors) {
+    at = LinearizeAt(best->problem, solution.theta, buffers.response,
+                     best->problem.parameters.free());
+    FillForces(attempt, best->problem, {at.force.data(), best->problem.size()}, result);
+  } else {
+    std::pmr::vector<double> force(best->problem.size(), &arena);
+    buffers.response.Bind(best->problem);
+    Predict(best->problem, solution.theta, buffers.response, force);
+    FillForces(attempt, best->problem, force, result);
+  }
   if (turned) {
     std::size_t k = 0;
     double longest = 0.0;
@@ -724,10 +736,11 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     result.findings.push_back(FoundTurningPoints(longest));
   }
   if (is_judged) {
-    Infer(attempt, best->problem, solution, noise, displacement_errors,
+    Infer(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
           rival && !turned ? &*rival : nullptr, result);
   } else if (depth == Depth::kErrors) {
-    InferErrors(attempt, best->problem, solution, noise, displacement_errors, result);
+    InferErrors(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
+                result);
   }
   if (depth >= Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "io/csv_layout.h"
 #include "io/number_row.h"
@@ -39,26 +40,26 @@ class LinePieces {
   /// @returns whole lines, the last of the file perhaps without its end; empty at the end. Valid
   ///   until the next call
   std::string_view Next() {
-    buffer_.erase(0, given_);
+    size_ -= given_;
+    std::memmove(buffer_.data(), buffer_.data() + given_, size_);
     given_ = 0;
     std::size_t end = std::string::npos;  // of the last line's end
     while (end == std::string::npos && !at_end_) {
-      if (buffer_.size() > kLongestLine) {
+      if (size_ > kLongestLine) {
         throw InputError(
             fmt::format("{}: has a line of more than {} bytes: lines must end in LF or CRLF", name_,
                         kLongestLine));
       }
-      const std::size_t before = buffer_.size();
-      buffer_.resize(before + kPiece);
-      const std::size_t size = std::fread(buffer_.data() + before, 1, kPiece, file_.get());
+      if (buffer_.size() < size_ + kPiece) buffer_.resize(size_ + kPiece);
+      const std::size_t size = std::fread(buffer_.data() + size_, 1, kPiece, file_.get());
       if (std::ferror(file_.get()) != 0) Fail();
-      buffer_.resize(before + size);
+      size_ += size;
       bytes_ += size;
       at_end_ = size < kPiece;
-      end = buffer_.rfind('\n');
+      end = Text().rfind('\n');
     }
-    given_ = at_end_ ? buffer_.size() : end + 1;
-    return std::string_view(buffer_).substr(0, given_);
+    given_ = at_end_ ? size_ : end + 1;
+    return Text().substr(0, given_);
   }
 
   [[nodiscard]] bool at_end() const { return at_end_; }
@@ -69,10 +70,13 @@ class LinePieces {
     throw InputError(fmt::format("cannot read '{}': {}", name_, std::strerror(errno)));
   }
 
+  [[nodiscard]] std::string_view Text() const { return {buffer_.data(), size_}; }
+
   std::string name_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
-  std::string buffer_;
-  std::size_t given_ = 0;  // bytes of it that were returned
+  std::vector<char> buffer_ = std::vector<char>(kPiece);
+  std::size_t size_ = 0;   // bytes of it that were read
+  std::size_t given_ = 0;  // bytes of these that were returned
   bool at_end_ = false;
   std::uintmax_t bytes_ = 0;
 };

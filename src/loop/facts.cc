@@ -33,40 +33,53 @@ Stroke StrokeOf(const RecordView& record, std::size_t first, std::size_t last) {
           record.force.subspan(first, last - first + 1)};
 }
 
-/// Mean of y over the range [lower, upper] of x that a line from sample to sample crosses: ∫ y dx
-/// by trapezia, to and fro, over the range. Empty where it does not cross it once in all.
-std::optional<double> MeanOver(Column x, Column y, double lower, double upper) {
+/// Means of y over ranges of x that follow on each other, `edges` from the lowest: of a line from
+/// sample to sample ∫ y dx by trapezia, to and fro, over each range. Empty where the line does not
+/// cross one of them once in all.
+template <std::size_t kEdges>
+std::optional<std::array<double, kEdges - 1>> MeansBetween(
+    Column x, Column y, const std::array<double, kEdges>& edges) {
   constexpr double kWhole = 1e-6;
-  double integral = 0.0;
-  double way = 0.0;
+  constexpr std::size_t kParts = kEdges - 1;
+  std::array<double, kParts> integrals{};
+  std::array<double, kParts> ways{};
+  std::size_t first = 0;  // part that the lower end of the step lies in, or the nearest
   for (std::size_t i = 1; i < x.size(); ++i) {
     const double step = x[i] - x[i - 1];
-    const double from = std::clamp(x[i - 1], lower, upper);
-    const double to = std::clamp(x[i], lower, upper);
-    if (from == to) continue;
-    const double slope = (y[i] - y[i - 1]) / step;
-    const double middle = y[i - 1] + slope * ((from + to) / 2 - x[i - 1]);
-    integral += middle * (to - from);
-    way += to - from;
+    const auto [lowest, highest] = std::minmax(x[i - 1], x[i]);
+    while (first > 0 && lowest < edges[first]) --first;
+    while (first + 1 < kParts && lowest >= edges[first + 1]) ++first;
+    for (std::size_t j = first; j < kParts && highest > edges[j]; ++j) {
+      const double from = std::clamp(x[i - 1], edges[j], edges[j + 1]);
+      const double to = std::clamp(x[i], edges[j], edges[j + 1]);
+      if (from == to) continue;
+      const double slope = (y[i] - y[i - 1]) / step;
+      const double middle = y[i - 1] + slope * ((from + to) / 2 - x[i - 1]);
+      integrals[j] += middle * (to - from);
+      ways[j] += to - from;
+    }
   }
-  if (!(std::abs(way) > (1 - kWhole) * (upper - lower))) return std::nullopt;
-  return integral / way;
+  for (std::size_t j = 0; j < kParts; ++j) {
+    if (!(std::abs(ways[j]) > (1 - kWhole) * (edges[j + 1] - edges[j]))) return std::nullopt;
+    integrals[j] /= ways[j];
+  }
+  return integrals;
+}
+
+std::optional<double> MeanOver(Column x, Column y, double lower, double upper) {
+  const auto mean = MeansBetween<2>(x, y, {lower, upper});
+  return mean ? std::optional(mean->front()) : std::nullopt;
 }
 
 /// Means of a stroke's force over equal parts of [centre − reach, centre + reach], from the lowest.
 template <std::size_t kParts>
 std::optional<std::array<double, kParts>> PartsOf(const Stroke& stroke, double centre,
                                                   double reach) {
-  std::array<double, kParts> means{};
-  const auto edge = [&](std::size_t j) {
-    return centre - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
-  };
-  for (std::size_t j = 0; j < kParts; ++j) {
-    const auto mean = MeanOver(stroke.displacement, stroke.force, edge(j), edge(j + 1));
-    if (!mean) return std::nullopt;
-    means[j] = *mean;
+  std::array<double, kParts + 1> edges{};
+  for (std::size_t j = 0; j <= kParts; ++j) {
+    edges[j] = centre - reach + 2 * reach * static_cast<double>(j) / static_cast<double>(kParts);
   }
-  return means;
+  return MeansBetween(stroke.displacement, stroke.force, edges);
 }
 
 /// The two strokes of a cycle, with the middle of what both pass.

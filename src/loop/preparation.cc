@@ -195,7 +195,7 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
     PreparedRecord& prepared = result.records.emplace_back(record, memory);
     LeaveOutGlitches(prepared, options, memory);
     FindTurns(prepared, options, memory);
-    votes += ForceSense(prepared.readings(), prepared.reversals, memory);
+    if (!options.force_sense) votes += ForceSense(prepared.readings(), prepared.reversals, memory);
   }
   result.force_sense = options.force_sense.value_or(votes < 0 ? -1 : 1);
   for (std::size_t r = 0; r < records.size(); ++r) {

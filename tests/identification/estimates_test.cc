@@ -157,6 +157,34 @@ TEST(Estimates, OfCorrelatedNoiseAreWiderAndItsAbsorbedShareIsGivenBack) {
   }
 }
 
+TEST(Estimates, FollowTheParabolaBesideAParameterThatIsMoved) {
+  // Where its cost |r + J·Δθ|² is least, J of what is not moved is at right angles to the residual,
+  // J from differences; and the cost has risen by the squared step over the parameter's variance.
+  constexpr double kStep = 0.03;
+  Stages stages(NoisyLoop(), Virgin());
+  const Solution solution = stages.Solve();
+  const Noise noise = KnownNoise(1.0, stages.data.counted);
+  const Estimates estimates(stages.problem, solution, noise, {}, {}, stages.buffers.response);
+  const Eigen::MatrixXd jacobian = stages.DifferencesAt(solution.theta);
+  const auto& free = stages.problem.parameters.free();
+  for (const std::size_t moved : {kStiffness, kSlipForce}) {
+    const std::vector<double> theta = estimates.Beside(moved, kStep);
+    EXPECT_EQ(theta[moved], solution.theta[moved] + kStep);
+    Eigen::VectorXd step(jacobian.cols());
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      step[static_cast<Eigen::Index>(j)] = theta[free[j]] - solution.theta[free[j]];
+    }
+    const Eigen::VectorXd change = jacobian * step;
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      if (free[j] == moved) continue;
+      const auto column = jacobian.col(static_cast<Eigen::Index>(j));
+      EXPECT_NEAR(column.dot(change) / (column.norm() * change.norm()), 0.0, kDifferences);
+    }
+    const double rise = std::pow(kStep / estimates.ErrorOfTheta(moved), 2);
+    EXPECT_NEAR(change.squaredNorm() / rise, 1.0, kDifferences);
+  }
+}
+
 TEST(Estimates, AtABoundReachOneSidedFromIt) {
   FitOptions options = Virgin();
   for (const Interval& bounds : {Interval{0.45, 2.0}, Interval{0.0, 0.35}}) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -58,6 +59,35 @@ TEST(Profile, ThatIsNotNeededWouldHaveChangedNothing) {
       EXPECT_EQ(one.identifiability, other.identifiability) << name;
     }
   }
+}
+
+TEST(Profile, LooksAtTheEndsOfTheParabolaInOneStepAsInMany) {
+  // The step that is the last leaves less than a tenth of what it may gain.
+  constexpr double kLeft = 0.1 * kLastGainAtEnds;  // of F
+  int asked = 0;
+  for (const double lambda : {0.95, 1.2, 2.0}) {
+    for (const double noise_level : {0.003, 0.02}) {
+      Stages stages(NoisyLoop(lambda, noise_level, 5));
+      const Solution best = stages.Solve();
+      const Noise noise = KnownNoise(best.sum_of_squares / static_cast<double>(stages.data.counted),
+                                     stages.data.counted);
+      const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
+      const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
+      if (half > stages.options.thresholds.parabola_error) continue;
+      ++asked;
+      const auto ratios = [&](double last_gain) {
+        return RatiosAtEnds(stages.problem, best, noise, estimates, stages.options, last_gain,
+                            stages.buffers);
+      };
+      const std::array<double, 2> quick = ratios(kLastGainAtEnds);
+      const std::array<double, 2> exact = ratios(0.0);
+      for (std::size_t end = 0; end < 2; ++end) {
+        EXPECT_NEAR(quick[end], exact[end], kLeft / (estimates.quantile() * estimates.quantile()))
+            << lambda << " " << noise_level;
+      }
+    }
+  }
+  EXPECT_GE(asked, 4);
 }
 
 /// Made estimates of σ, α and Tc, widened by a profile.

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <future>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -28,7 +29,7 @@ struct TrackOptions {
 inline constexpr std::size_t kBatch = 64;
 
 /// Takes the samples of a long record and gives the fits of its cycles, in their order and by whole
-/// batches but for the last. Memory: of a batch a thread, and one cycle.
+/// batches but for the last. Memory: of two batches a thread, and one cycle.
 class Tracker {
  public:
   using Done = std::function<void(std::span<const CycleFit>)>;
@@ -36,9 +37,10 @@ class Tracker {
   /// @param done  called by Add() and Finish(), in the thread that calls these
   /// @throws InvalidArgument for options that break a rule
   Tracker(TrackOptions options, Done done);
+  ~Tracker();
 
   /// @param samples, lines  as CycleSplitter takes them
-  /// Waits where as many batches are at work as there are threads.
+  /// Waits where two batches a thread are at work or on their way.
   void Add(const loop::RecordView& samples, std::span<const std::size_t> lines);
 
   /// What follows is another file.
@@ -52,6 +54,8 @@ class Tracker {
   [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
 
  private:
+  class Workers;
+
   void Begin();
   void Deliver();
 
@@ -60,9 +64,10 @@ class Tracker {
   CycleSplitter splitter_;
   std::vector<Cycle> cycles_;  // that were split off at last
   std::vector<Cycle> batch_;
-  std::size_t pieces_ = 0;  // that the splitter gave
-  std::size_t fits_ = 0;    // of those, to be made or skipped
-  std::deque<std::future<std::vector<CycleFit>>> at_work_;
+  std::size_t pieces_ = 0;                                // that the splitter gave
+  std::size_t fits_ = 0;                                  // of those, to be made or skipped
+  std::deque<std::future<std::vector<CycleFit>>> begun_;  // in their order
+  std::unique_ptr<Workers> workers_;
 };
 
 }  // namespace mindahl::campaign

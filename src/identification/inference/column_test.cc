@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "identification/inference/evidence.h"
+#include "identification/solve/sums.h"
 
 namespace mindahl::identification {
 namespace {
@@ -31,15 +32,33 @@ Eigen::MatrixXd Inverse(const Eigen::MatrixXd& symmetric) {
   return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(symmetric).pseudoInverse();
 }
 
-/// AᵀRA
-Eigen::MatrixXd CorrelationOf(const ScaledRecords& data, const Noise& noise,
-                              const Autocorrelation& autocorrelation,
-                              const DisplacementEffect& displacement,
-                              const Eigen::MatrixXd& columns, const Eigen::MatrixXd& plain) {
-  if (displacement.residuals.size() > 0) {
-    return CorrelatedProduct(data, autocorrelation, noise, displacement, columns);
+std::span<const double> ColumnOf(const Eigen::MatrixXd& matrix, Eigen::Index j) {
+  return {matrix.col(j).data(), static_cast<std::size_t>(matrix.rows())};
+}
+
+std::span<const double> SpanOf(const Eigen::VectorXd& vector) {
+  return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
+
+/// AᵀA
+Eigen::MatrixXd ProductsOf(const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd products(columns.cols(), columns.cols());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    for (Eigen::Index k = 0; k <= j; ++k) {
+      products(j, k) = products(k, j) = Dot(ColumnOf(columns, j), ColumnOf(columns, k));
+    }
   }
-  return autocorrelation.order == 0 ? plain : CorrelatedProduct(data, autocorrelation, columns);
+  return products;
+}
+
+/// AᵀRA of noise that is not white.
+Eigen::MatrixXd CorrelatedProducts(const ScaledRecords& data, const Noise& noise,
+                                   const Autocorrelation& autocorrelation,
+                                   const DisplacementEffect& displacement,
+                                   const Eigen::MatrixXd& columns) {
+  return displacement.residuals.size() > 0
+             ? CorrelatedProduct(data, autocorrelation, noise, displacement, columns)
+             : CorrelatedProduct(data, autocorrelation, columns);
 }
 
 }  // namespace
@@ -53,16 +72,20 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
       sum_of_squares_(residual.squaredNorm()) {
   Eigen::MatrixXd columns(law.rows(), law_ + others.cols());
   columns << law, others;
-  for (auto column : columns.colwise()) {
-    if (!column.allFinite()) column.setZero();  // overflow: nothing to be told
+  norms_.resize(columns.cols());
+  residual_.resize(columns.cols());
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const double square = Dot(ColumnOf(columns, j), ColumnOf(columns, j));
+    const bool is_told = std::isfinite(square) && square > 0;
+    norms_[j] = is_told ? std::sqrt(square) : 1.0;
+    if (is_told) {
+      columns.col(j) *= 1 / norms_[j];
+    } else {
+      columns.col(j).setZero();  // overflow: nothing to be told
+    }
+    residual_[j] = Dot(ColumnOf(columns, j), SpanOf(residual));
   }
-  norms_ = columns.colwise().norm().transpose();
-  for (double& norm : norms_) norm = norm > 0 ? norm : 1.0;
-  columns *= norms_.cwiseInverse().asDiagonal();
-  plain_ = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  plain_.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-  plain_.triangularView<Eigen::StrictlyUpper>() = plain_.transpose();
-  residual_ = columns.transpose() * residual;
+  plain_ = ProductsOf(columns);
   inverse_of_law_ = Inverse(plain_.topLeftCorner(law_, law_));
   shares_ = inverse_of_law_ * plain_.topRightCorner(law_, others.cols());
   free_plain_ = FreedOfLaw(plain_);
@@ -75,17 +98,22 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   Eigen::VectorXd in_columns(columns.cols());
   in_columns.tail(others.cols()) = all_ * explained;
   in_columns.head(law_) = -shares_ * in_columns.tail(others.cols());
-  const Eigen::VectorXd rest = residual - columns * in_columns;
+  Eigen::VectorXd rest = residual;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    AddMultiple({rest.data(), problem.size()}, -in_columns[j], ColumnOf(columns, j));
+  }
   autocorrelation_ = quieter != nullptr
                          ? quieter->autocorrelation_
                          : AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
+  is_white_ = autocorrelation_.order == 0 && displacement.residuals.size() == 0;
   correlated_ =
-      CorrelationOf(*problem.data, noise, autocorrelation_, displacement, columns, plain_);
-  free_correlated_ = FreedOfLaw(correlated_);
+      is_white_ ? plain_
+                : CorrelatedProducts(*problem.data, noise, autocorrelation_, displacement, columns);
+  if (!is_white_) free_correlated_ = FreedOfLaw(correlated_);
 
   // Of correlated noise a fit takes up more than its parameters' number.
   const double by_law = (inverse_of_law_ * correlated_.topLeftCorner(law_, law_)).trace();
-  const double by_others = (all_.transpose() * free_correlated_ * all_).trace();
+  const double by_others = CorrelationOf(all_).trace();
   const double absorbed = std::min(by_law + by_others, samples_ / 2);
   if (quieter != nullptr) {
     variance_ = quieter->variance_;
@@ -135,12 +163,19 @@ Eigen::MatrixXd ColumnTest::Orthonormal(std::span<const Eigen::Index> places) co
   return result.leftCols(count);
 }
 
+Eigen::MatrixXd ColumnTest::CorrelationOf(const Eigen::MatrixXd& basis) const {
+  if (is_white_) return Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
+  return basis.transpose() * free_correlated_ * basis;
+}
+
 ColumnTest::Part ColumnTest::AskBasis(const Eigen::MatrixXd& basis) const {
   Part part{.columns = static_cast<std::size_t>(basis.cols())};
   if (part.columns == 0 || !(variance_ > 0)) return part;
   const Eigen::VectorXd explained = basis.transpose() * free_residual_;
-  const Eigen::MatrixXd correlated = basis.transpose() * free_correlated_ * basis;
-  const double f = WaldF(explained, correlated, variance_);
+  const Eigen::MatrixXd correlated = CorrelationOf(basis);
+  const double f = is_white_
+                       ? explained.squaredNorm() / static_cast<double>(basis.cols()) / variance_
+                       : WaldF(explained, correlated, variance_);
   const double of_noise = variance_ * correlated.trace();
   part.rms = std::sqrt(std::max(0.0, explained.squaredNorm() - of_noise) / samples_);
   // Where nothing is explained, by rounding less, noise alone makes it.
@@ -156,7 +191,7 @@ double ColumnTest::p_value() const { return AskBasis(all_).p_value; }
 
 double ColumnTest::misfit_over_noise() const {
   const Eigen::VectorXd explained = all_.transpose() * free_residual_;
-  const double of_noise = (all_.transpose() * free_correlated_ * all_).trace();
+  const double of_noise = CorrelationOf(all_).trace();
   return std::sqrt(std::max(0.0, explained.squaredNorm() / variance_ - of_noise) / samples_);
 }
 

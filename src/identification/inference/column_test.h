@@ -59,6 +59,8 @@ class ColumnTest {
   [[nodiscard]] Eigen::MatrixXd FreedOfLaw(const Eigen::MatrixXd& products) const;
   [[nodiscard]] Eigen::MatrixXd Orthonormal(std::span<const Eigen::Index> places) const;
   [[nodiscard]] Part AskBasis(const Eigen::MatrixXd& basis) const;
+  /// UᵀRU of orthonormal columns U by their coefficients in columns freed of the law.
+  [[nodiscard]] Eigen::MatrixXd CorrelationOf(const Eigen::MatrixXd& basis) const;
 
   // The columns A of the law and of what is asked for, of unit norm, and their products with each
   // other and with the residuals: all that any question asks for, whatever the number of samples.
@@ -67,12 +69,13 @@ class ColumnTest {
   double sum_of_squares_;
   Eigen::VectorXd norms_;
   Eigen::MatrixXd plain_;       // AᵀA
+  bool is_white_ = true;        // R = 1
   Eigen::MatrixXd correlated_;  // AᵀRA
   Eigen::VectorXd residual_;    // Aᵀr
   Eigen::MatrixXd inverse_of_law_;
   Eigen::MatrixXd shares_;           // of the law's columns in each of the others
   Eigen::MatrixXd free_plain_;       // the same products of the others freed of the law
-  Eigen::MatrixXd free_correlated_;  //
+  Eigen::MatrixXd free_correlated_;  // of noise that is not white
   Eigen::VectorXd free_residual_;    //
   Eigen::MatrixXd all_;              // orthonormal, of all that have something of their own
   Autocorrelation autocorrelation_;  // of what all columns leave

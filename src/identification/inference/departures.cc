@@ -178,6 +178,8 @@ double Mobilised(const Place& at) {
   return std::clamp(std::abs(at.response - at.origin_response) / at.reach, 0.0, 1.0);
 }
 
+double Cube(double x) { return x * x * x; }
+
 template <int kHalfWaves>
 double Bulge(const Place& at) {
   return at.direction * at.reach * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
@@ -202,9 +204,7 @@ constexpr std::array<Column, 26> kColumns = {{
        return at.slope * (at.displacement * at.displacement - at.origin * at.origin);
      }},
     {kSensor, Along::kBranch,
-     [](const Place& at) {
-       return at.slope * (std::pow(at.displacement, 3) - std::pow(at.origin, 3));
-     }},
+     [](const Place& at) { return at.slope * (Cube(at.displacement) - Cube(at.origin)); }},
     {kInertia, Along::kForce, [](const Place& at) { return at.acceleration; }},
     {kUnequal, Along::kForce, [](const Place& at) { return std::abs(at.force); }},
     {kRunningIn, Along::kForce, [](const Place& at) { return at.force * at.time; }},
@@ -213,13 +213,13 @@ constexpr std::array<Column, 26> kColumns = {{
        constexpr double kFrom = 0.9;  // of the largest force
        return -std::copysign(std::max(0.0, std::abs(at.force) - kFrom * at.peak), at.force);
      }},
-    {kSaturation, Along::kForce, [](const Place& at) { return std::pow(at.force, 3); }},
+    {kSaturation, Along::kForce, [](const Place& at) { return Cube(at.force); }},
     {kLoad, Along::kForce, [](const Place& at) { return at.force * at.displacement; }},
     {kLoad, Along::kForce,
      [](const Place& at) { return at.force * at.displacement * at.displacement; }},
     {kLoad, Along::kForce, [](const Place& at) { return std::abs(at.force) * at.displacement; }},
     {kPosition, Along::kForce, [](const Place& at) { return at.displacement * at.displacement; }},
-    {kPosition, Along::kForce, [](const Place& at) { return std::pow(at.displacement, 3); }},
+    {kPosition, Along::kForce, [](const Place& at) { return Cube(at.displacement); }},
     {kSmoothing, Along::kForce, [](const Place& at) { return at.curvature / 2; }},
     // A turn is the first of its repeats, where nothing is missed.
     {kHeld, Along::kBranch, [](const Place& at) { return at.slope * at.missed; }},

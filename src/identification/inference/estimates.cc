@@ -20,14 +20,20 @@ ParameterStatus StatusOf(const Parameter& parameter, BoundSide side) {
 Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
                      const DisplacementEffect& displacement, const Thresholds& thresholds,
                      Response& response)
+    : Estimates(problem, solution, noise, displacement, thresholds,
+                LinearizeAt(problem, solution.theta, response, problem.parameters.free())) {}
+
+Estimates::Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
+                     const DisplacementEffect& displacement, const Thresholds& thresholds,
+                     Linearization at)
     : problem_(problem),
       solution_(solution),
+      quantile_(StudentQuantile95(noise.degrees_of_freedom(problem.parameters.free().size()))),
       white_variance_(noise.variance),
-      variance_(noise.variance * noise.repeating) {
+      variance_(noise.variance * noise.repeating),
+      at_(std::move(at)) {
   const std::vector<std::size_t> free(problem.parameters.free().begin(),
                                       problem.parameters.free().end());
-  quantile_ = StudentQuantile95(noise.degrees_of_freedom(free.size()));
-  jacobian_ = JacobianAt(problem, solution.theta, response, free, residual_);
   std::vector<std::size_t> inside;
   std::vector<Eigen::Index> places;
   for (std::size_t j = 0; j < free.size(); ++j) {
@@ -35,11 +41,11 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
     inside.push_back(free[j]);
     places.push_back(static_cast<Eigen::Index>(j));
   }
-  full_ = AnalyseJacobian(problem, free, jacobian_, noise, displacement);
+  full_ = AnalyseJacobian(problem, free, at_.jacobian, noise, displacement);
   conditional_ =
       inside.size() == free.size()
           ? full_
-          : AnalyseJacobian(problem, inside, jacobian_(Eigen::all, places), noise, displacement);
+          : AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, displacement);
   // Of correlated residuals a fit takes up more than its parameters' number, and leaves less than
   // the noise's variance; where it takes up most, that is all that can be said.
   if (noise.is_known || displacement.residuals.size() > 0) return;
@@ -62,6 +68,19 @@ double Estimates::ErrorOfTheta(std::size_t parameter) const {
   }
   const auto place = static_cast<Eigen::Index>(j);
   return std::sqrt(local.factor(place, place) * variance_);
+}
+
+std::vector<double> Estimates::Beside(std::size_t parameter, double step) const {
+  std::vector<double> theta = solution_.theta;
+  theta[parameter] += step;
+  const LocalUncertainty& local = LocalOf(parameter);
+  const auto place = static_cast<Eigen::Index>(local.PlaceOf(parameter));
+  const double own = local.white_factor(place, place);
+  for (std::size_t j = 0; j < local.columns.size() && own > 0; ++j) {
+    if (local.columns[j] == parameter) continue;
+    theta[local.columns[j]] += step * local.white_factor(static_cast<Eigen::Index>(j), place) / own;
+  }
+  return theta;
 }
 
 void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
@@ -115,7 +134,8 @@ double Estimates::WhiteShare(std::size_t parameter) const {
   const auto place = static_cast<Eigen::Index>(j);
   // A correlation that is estimated from a handful of residuals may leave no variance at all.
   if (!(variance_ * full_.factor(place, place) > 0)) return 1.0;
-  return white_variance_ * full_.white_factor[place] / (variance_ * full_.factor(place, place));
+  return white_variance_ * full_.white_factor(place, place) /
+         (variance_ * full_.factor(place, place));
 }
 
 }  // namespace mindahl::identification

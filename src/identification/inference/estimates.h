@@ -22,6 +22,10 @@ class Estimates {
             const DisplacementEffect& displacement, const Thresholds& thresholds,
             Response& response);
 
+  /// @param at  the problem by all its free parameters, near the solution
+  Estimates(const Problem& problem, const Solution& solution, const Noise& noise,
+            const DisplacementEffect& displacement, const Thresholds& thresholds, Linearization at);
+
   /// Fills an estimate; its identifiability is the judge's.
   void Fill(std::size_t parameter, ParameterEstimate& estimate) const;
 
@@ -36,11 +40,13 @@ class Estimates {
   /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
   /// this share a likelihood ratio counts. 1 where it is not determined.
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
+  /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
+  [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
   /// Half width of a 95 % interval in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
   /// The Jacobian by all free parameters at the solution, and the weighted residuals.
-  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return jacobian_; }
-  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
+  [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return at_.jacobian; }
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
   /// Of a residual, as errors are made from it.
   [[nodiscard]] double variance() const { return variance_; }
 
@@ -52,8 +58,7 @@ class Estimates {
   double quantile_;
   double white_variance_;
   double variance_;
-  Eigen::MatrixXd jacobian_;
-  Eigen::VectorXd residual_;
+  Linearization at_;
   LocalUncertainty conditional_;  // of the parameters inside their bounds, the others held there
   LocalUncertainty full_;         // of all free parameters
 };

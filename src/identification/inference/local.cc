@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "identification/solve/sums.h"
 #include "identification/solve/turning_points.h"
 
 namespace mindahl::identification {
@@ -14,26 +16,65 @@ constexpr double kRankTolerance = 1e-11;
 /// A parameter with more than this component in a null direction is not determined.
 constexpr double kNullComponent = 1e-3;
 
+std::span<double> ColumnOf(Eigen::MatrixXd& matrix, Eigen::Index j) {
+  return {matrix.col(j).data(), static_cast<std::size_t>(matrix.rows())};
+}
+
+/// To unit norm; nothing where it is zero.
+/// @returns the norm that it had
+double Normalize(std::span<double> column) {
+  const double norm = std::sqrt(Dot(column, column));
+  if (norm < std::numeric_limits<double>::min()) return 0.0;  // its inverse would overflow
+  const double factor = 1 / norm;
+  for (double& value : column) value *= factor;
+  return norm;
+}
+
+/// R of J = QR has J's singular values and is small, however long the record. By Gram and Schmidt's
+/// modified rule, whose R is as good as Householder's (Björck 1967), though its Q is not.
+Eigen::MatrixXd TriangleOf(Eigen::MatrixXd columns) {
+  const Eigen::Index count = columns.cols();
+  Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    triangle(j, j) = Normalize(ColumnOf(columns, j));
+    for (Eigen::Index k = j + 1; k < count; ++k) {
+      triangle(j, k) = TakeOut(ColumnOf(columns, k), ColumnOf(columns, j));
+    }
+  }
+  return triangle;
+}
+
 }  // namespace
 
 std::size_t LocalUncertainty::PlaceOf(std::size_t parameter) const {
   return static_cast<std::size_t>(std::ranges::find(columns, parameter) - columns.begin());
 }
 
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
+                          std::span<const std::size_t> columns) {
+  const std::size_t samples = problem.size();
+  const auto rows = static_cast<Eigen::Index>(samples);
+  Linearization at{.jacobian = Eigen::MatrixXd(rows, static_cast<Eigen::Index>(columns.size())),
+                   .residual = {},
+                   .force = Eigen::VectorXd(rows)};
+  response.Bind(problem);
+  PredictAndDifferentiate(problem, theta, response, columns, {at.force.data(), samples},
+                          {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
+  at.residual = at.force;
+  TakeOffMeasured(problem, {at.residual.data(), samples});
+  if (HasTurningPoints(*problem.data)) {
+    const TurningPointColumns turning(problem, theta, response);
+    for (Eigen::Index c = 0; c < at.jacobian.cols(); ++c) turning.ProjectOut(at.jacobian.col(c));
+  }
+  return at;
+}
+
 Eigen::MatrixXd JacobianAt(const Problem& problem, std::span<const double> theta,
                            Response& response, std::span<const std::size_t> columns,
                            Eigen::VectorXd& residual) {
-  const auto rows = static_cast<Eigen::Index>(problem.size());
-  Eigen::MatrixXd jacobian(rows, static_cast<Eigen::Index>(columns.size()));
-  residual.resize(rows);
-  response.Bind(problem);
-  Differentiate(problem, theta, response, columns, {residual.data(), problem.size()},
-                {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-  if (HasTurningPoints(*problem.data)) {
-    const TurningPointColumns turning(problem, theta, response);
-    for (Eigen::Index c = 0; c < jacobian.cols(); ++c) turning.ProjectOut(jacobian.col(c));
-  }
-  return jacobian;
+  Linearization at = LinearizeAt(problem, theta, response, columns);
+  residual = std::move(at.residual);
+  return std::move(at.jacobian);
 }
 
 Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const double> residual,
@@ -90,21 +131,14 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   const std::size_t count = result.columns.size();
   const auto size = static_cast<Eigen::Index>(count);
   result.factor = Eigen::MatrixXd::Zero(size, size);
-  result.white_factor = Eigen::VectorXd::Zero(size);
+  result.white_factor = Eigen::MatrixXd::Zero(size, size);
   result.determined.assign(count, true);
   if (count == 0) return result;
 
-  const Eigen::Index rows = jacobian.rows();
-  Eigen::VectorXd norms = jacobian.colwise().norm().transpose();
-  for (Eigen::Index j = 0; j < size; ++j) {
-    if (norms[j] == 0) norms[j] = 1;
-    jacobian.col(j) /= norms[j];
-  }
-  // R of J = QR has J's singular values and is small, however long the record.
-  const Eigen::MatrixXd triangle = Eigen::HouseholderQR<Eigen::MatrixXd>(jacobian)
-                                       .matrixQR()
-                                       .topRows(std::min(rows, size))
-                                       .triangularView<Eigen::Upper>();
+  Eigen::VectorXd norms(size);
+  for (Eigen::Index j = 0; j < size; ++j) norms[j] = Normalize(ColumnOf(jacobian, j));
+  for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
+  const Eigen::MatrixXd triangle = TriangleOf(jacobian);
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
   Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index k = 0; k < size; ++k) {
@@ -125,13 +159,15 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   const Eigen::MatrixXd correlated =
       displacement.residuals.size() > 0
           ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, jacobian)
-          : CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian);
+      : noise.autocorrelation.order > 0
+          ? CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian)
+          : triangle.transpose() * triangle;
   result.absorbed = (factor * correlated).trace();
   const Eigen::MatrixXd product = factor * correlated * factor;
   const Eigen::MatrixXd sandwich = (product + product.transpose()) / 2;  // to the last bit
   for (Eigen::Index i = 0; i < size; ++i) {
-    result.white_factor[i] = factor(i, i) / (norms[i] * norms[i]);
     for (Eigen::Index j = 0; j < size; ++j) {
+      result.white_factor(i, j) = factor(i, j) / (norms[i] * norms[j]);
       result.factor(i, j) = sandwich(i, j) / (norms[i] * norms[j]);
     }
   }

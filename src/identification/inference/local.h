@@ -19,7 +19,7 @@ struct LocalUncertainty {
   /// with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's share of the noise and
   /// E the K drawn residuals
   Eigen::MatrixXd factor;
-  Eigen::VectorXd white_factor;  // the diagonal of (JᵀJ)⁻¹: what white residuals would give
+  Eigen::MatrixXd white_factor;  // (JᵀJ)⁻¹: what white residuals would give
   /// Residuals' worth of noise that the fit takes up, tr((JᵀJ)⁻¹JᵀRJ): the number of parameters
   /// where the residuals are white, more where they are autocorrelated as the response is.
   double absorbed = 0.0;
@@ -29,6 +29,18 @@ struct LocalUncertainty {
   /// Place of a parameter among the columns; columns.size() where it has none.
   [[nodiscard]] std::size_t PlaceOf(std::size_t parameter) const;
 };
+
+/// A problem near one point.
+struct Linearization {
+  Eigen::MatrixXd jacobian;  // weighted, of a record whose turning points were fitted too, freed of
+                             // what these explain
+  Eigen::VectorXd residual;  // weighted, model − measured
+  Eigen::VectorXd force;     // of the model, without weights
+};
+
+/// @param columns  positions in θ to differentiate by
+Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
+                          std::span<const std::size_t> columns);
 
 /// The weighted Jacobian at θ, by columns; of a record whose turning points were fitted too, freed
 /// of what these explain.

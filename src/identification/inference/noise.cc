@@ -150,8 +150,10 @@ Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixX
       break;
     }
   }
-  const auto used = filtered.leftCols(i);
-  return innovation_share * used * used.transpose();
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  product.selfadjointView<Eigen::Lower>().rankUpdate(filtered.leftCols(i), innovation_share);
+  product.triangularView<Eigen::StrictlyUpper>() = product.transpose();
+  return product;
 }
 
 double Noise::effective_samples() const {

@@ -15,38 +15,41 @@ constexpr double kHopeless = 100.0;
 constexpr int kBisections = 6;
 constexpr double kRigid = 1e3;
 
-/// The likelihood with one parameter held, the others fitted again.
+/// The likelihood with one parameter held, the others fitted again. The solver is its own.
 class HeldParameter {
  public:
   HeldParameter(const Problem& problem, std::size_t parameter, const Solution& best,
-                const Noise& noise, const Estimates& estimates, const FitOptions& options,
+                const Noise& noise, const Estimates& estimates, const SolverOptions& options,
                 SearchBuffers& buffers)
-      : problem_(problem),
+      : problem_(problem.WithFixed(parameter, best.theta[parameter])),
         parameter_(parameter),
         best_(best),
         variance_(noise.variance),
         evidence_(noise.samples,
                   static_cast<double>(noise.samples) * estimates.WhiteShare(parameter)),
-        options_(SolverOptionsOf(options)),
-        buffers_(buffers) {}
+        options_(options),
+        solver_(buffers.solver) {
+    solver_.Bind(problem_, buffers.response);
+  }
+  HeldParameter(const HeldParameter&) = delete;
+  HeldParameter& operator=(const HeldParameter&) = delete;
 
   /// @returns F of the best fit against that with the parameter at θ, which is in solution()
   double At(double theta, const std::vector<double>& start) {
-    const Problem held = problem_.WithFixed(parameter_, theta);
-    buffers_.solver.Bind(held, buffers_.response);
-    buffers_.solver.Solve(start, options_, solution_);
+    solver_.HoldAt(parameter_, theta);
+    solver_.Solve(start, options_, solution_);
     return evidence_.FStatistic(solution_.sum_of_squares, best_.sum_of_squares, variance_);
   }
   [[nodiscard]] const Solution& solution() const { return solution_; }
 
  private:
-  const Problem& problem_;
+  Problem problem_;
   std::size_t parameter_;
   const Solution& best_;
   double variance_;
   Evidence evidence_;
   SolverOptions options_;
-  SearchBuffers& buffers_;
+  Solver& solver_;
   Solution solution_;
 };
 
@@ -89,6 +92,23 @@ void Widen(ParameterEstimate& estimate, const Parameter& parameter, const Range&
 
 }  // namespace
 
+std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best, const Noise& noise,
+                                   const Estimates& estimates, const FitOptions& options,
+                                   double last_gain, SearchBuffers& buffers) {
+  const double critical = estimates.quantile() * estimates.quantile();
+  SolverOptions search = SolverOptionsOf(options);
+  // Of the cost at the ends, by the parabola.
+  search.last_step = last_gain * noise.variance / (best.sum_of_squares + critical * noise.variance);
+  HeldParameter held(problem, kSlipForce, best, noise, estimates, search, buffers);
+  const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
+  const auto ratio_at = [&](double step) {
+    const std::vector<double> start = estimates.Beside(kSlipForce, step);
+    return held.At(start[kSlipForce], start) / critical;
+  };
+  const double below = ratio_at(-half);
+  return {below, ratio_at(half)};
+}
+
 bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
                            const Estimates& estimates, double peak_share, const FitOptions& options,
                            SearchBuffers& buffers) {
@@ -102,14 +122,9 @@ bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const N
       !(peak_share >= thresholds.parabola_mobilised)) {
     return true;
   }
-  HeldParameter held(problem, kSlipForce, best, noise, estimates, options, buffers);
-  const double critical = estimates.quantile() * estimates.quantile();
-  for (const double side : {-1.0, 1.0}) {
-    const double theta = best.theta[kSlipForce] + side * half;
-    const double ratio = held.At(theta, best.theta);
-    if (!(std::abs(ratio / critical - 1) <= thresholds.parabola_departure)) return true;
-  }
-  return false;
+  return std::ranges::any_of(
+      RatiosAtEnds(problem, best, noise, estimates, options, kLastGainAtEnds, buffers),
+      [&](double ratio) { return !(std::abs(ratio - 1) <= thresholds.parabola_departure); });
 }
 
 SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, const Noise& noise,
@@ -122,7 +137,8 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
   profile.stiffness = {best.theta[kStiffness], best.theta[kStiffness]};
   const Parameter& parameter = problem.parameters[kSlipForce];
   const double critical = estimates.quantile() * estimates.quantile();  // of F(1, ν)
-  HeldParameter held(problem, kSlipForce, best, noise, estimates, options, buffers);
+  HeldParameter held(problem, kSlipForce, best, noise, estimates, SolverOptionsOf(options),
+                     buffers);
   LikelihoodProfile& likelihood = profile.likelihood;
   likelihood.critical = critical;
   likelihood.points.push_back({.law = LawOf(problem.parameters, best.theta)});
@@ -195,7 +211,8 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
   if (half <= options.thresholds.rigid_error && best.side[kStiffness] == BoundSide::kInside) {
     return false;
   }
-  HeldParameter held(problem, kStiffness, best, noise, estimates, options, buffers);
+  HeldParameter held(problem, kStiffness, best, noise, estimates, SolverOptionsOf(options),
+                     buffers);
   std::vector<double> start = best.theta;
   start[kStiffness] += std::log(kRigid);
   return held.At(start[kStiffness], start) < estimates.quantile() * estimates.quantile();

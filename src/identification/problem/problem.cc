@@ -241,7 +241,8 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   }
 }
 
-/// Weighted residuals in the place of the forces of the model.
+}  // namespace
+
 void TakeOffMeasured(const Problem& problem, std::span<double> force) {
   std::size_t k = 0;
   for (const ScaledRecord& record : problem.data->records) {
@@ -250,8 +251,6 @@ void TakeOffMeasured(const Problem& problem, std::span<double> force) {
     }
   }
 }
-
-}  // namespace
 
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> force) {
@@ -266,25 +265,34 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
   TakeOffMeasured(problem, residual);
 }
 
-void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
-                   std::span<const std::size_t> columns, std::span<double> residual,
-                   std::span<double> jacobian) {
+void PredictAndDifferentiate(const Problem& problem, std::span<const double> theta,
+                             Response& response, std::span<const std::size_t> columns,
+                             std::span<double> force, std::span<double> jacobian) {
   const std::size_t samples = problem.size();
-  const bool has_lag = problem.parameters.has_lag();
-  std::vector<double> derivatives(samples * (has_lag ? 5 : 4));
-  const auto part = [&](std::size_t k) {
-    return std::span(derivatives).subspan(k * samples, samples);
+  const Parameters& parameters = problem.parameters;
+  const auto asks = [&](std::size_t p) { return std::ranges::find(columns, p) != columns.end(); };
+  const auto asks_term = [&](std::string_view term) {
+    return std::ranges::any_of(columns,
+                               [&](std::size_t p) { return parameters[p].term->name == term; });
   };
-  const ResponseColumns gradient{.log_rate = part(0),
-                                 .shape_exponent = part(1),
-                                 .unloaded_displacement = part(2),
-                                 .log_spring_travel = part(3),
-                                 .lag = has_lag ? part(4) : std::span<double>()};
-  response.Differentiate(PointAt(problem, theta), residual, gradient);
+  const bool by_rate = asks(kStiffness) || asks(kSlipForce) || asks(kLoadExponent);
+  const bool by_travel = parameters.has_rig() && (asks(kSlipForce) || asks(kRig));
+  constexpr std::size_t kMostDerivatives = 5;
+  const std::span<double> scratch = response.Scratch(kMostDerivatives * samples);
+  std::size_t used = 0;
+  const auto part_if = [&](bool wanted) {
+    return wanted ? scratch.subspan(used++ * samples, samples) : std::span<double>();
+  };
+  const ResponseColumns gradient{.log_rate = part_if(by_rate),
+                                 .shape_exponent = part_if(asks(kShape)),
+                                 .unloaded_displacement = part_if(asks_term("displacement_offset")),
+                                 .log_spring_travel = part_if(by_travel),
+                                 .lag = part_if(parameters.has_lag() && asks_term("lag"))};
+  response.Differentiate(PointAt(problem, theta), force, gradient);
   const double slip_force = std::exp(theta[kSlipForce]);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::size_t p = columns[c];
-    const Parameter& parameter = problem.parameters[p];
+    const Parameter& parameter = parameters[p];
     const bool is_unloaded = parameter.term->name == "displacement_offset";
     const bool is_lag = parameter.term->name == "lag";
     std::size_t k = 0;
@@ -297,6 +305,7 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
       if (parameter.term->scope == Scope::kRecord && parameter.record != r) continue;
       if (parameter.term->column != nullptr) AddColumn(problem, p, r, 1.0, column);
       const auto add = [&](std::span<const double> derivative, double factor) {
+        if (derivative.empty()) return;
         for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * derivative[begin + i];
       };
       if (p == kStiffness) {
@@ -304,7 +313,7 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
       } else if (p == kShape) {
         add(gradient.shape_exponent, slip_force);
       } else if (p == kSlipForce) {
-        add(residual, slip_force);
+        add(force, slip_force);
         add(gradient.log_rate, -slip_force);
         add(gradient.log_spring_travel, slip_force);
       } else if (p == kRig) {
@@ -313,13 +322,19 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
         add(gradient.log_rate, slip_force * record.log_load);
       } else if (is_unloaded) {
         add(gradient.unloaded_displacement, slip_force);
-      } else if (is_lag && has_lag) {
+      } else if (is_lag) {
         add(gradient.lag, slip_force);
       }
       for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }
   }
-  Complete(problem, theta, residual);
+  Complete(problem, theta, force);
+}
+
+void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
+                   std::span<const std::size_t> columns, std::span<double> residual,
+                   std::span<double> jacobian) {
+  PredictAndDifferentiate(problem, theta, response, columns, residual, jacobian);
   TakeOffMeasured(problem, residual);
 }
 

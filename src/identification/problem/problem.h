@@ -71,6 +71,11 @@ class Response {
                               models::OriginSensitivity& sensitivity);
   /// The loading path of a record of the problem that is bound, of its samples.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
+  /// Columns for derivatives on their way to a Jacobian; valid until the next call.
+  std::span<double> Scratch(std::size_t size) {
+    if (scratch_.size() < size) scratch_.resize(size);
+    return std::span(scratch_).first(size);
+  }
 
  private:
   void DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<double> t,
@@ -93,6 +98,7 @@ class Response {
   std::vector<CachedPath> paths_;
   std::vector<std::size_t> unloaded_;  // position of each record's displacement_offset
   models::NormalizedResponse response_;
+  std::vector<double> scratch_;
   // Of a problem with a lag:
   std::size_t lag_ = 0;  // its position
   bool has_lag_ = false;
@@ -117,9 +123,18 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
 void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record, double factor,
                std::span<double> to);
 
-/// Weighted residuals and their derivatives by the parameters at `columns`.
-/// @param residual  size() values
+/// Puts weighted residuals, model − measured, in the place of the model's forces.
+void TakeOffMeasured(const Problem& problem, std::span<double> force);
+
+/// The forces of the whole model, without weights, and the derivatives of the weighted residuals by
+/// the parameters at `columns`. The response is bound to the problem.
+/// @param force     size() values
 /// @param jacobian  column-major, size() × columns.size()
+void PredictAndDifferentiate(const Problem& problem, std::span<const double> theta,
+                             Response& response, std::span<const std::size_t> columns,
+                             std::span<double> force, std::span<double> jacobian);
+
+/// The same with the weighted residuals in the place of the forces.
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
                    std::span<const std::size_t> columns, std::span<double> residual,
                    std::span<double> jacobian);

@@ -434,7 +434,6 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
   constexpr double kFirstDamping = 1e-3;
   constexpr double kLeastDamping = 1e-12;
   constexpr double kMostDamping = 1e16;
-  constexpr double kLastStep = 1e-6;      // of the cost: the step after it has nothing left to gain
   constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
   constexpr int kSlowSteps = 20;          // ... in as many steps
   const auto longest = [](Role role) {
@@ -472,7 +471,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
       solution.termination = "No step can lower the cost by more than the function tolerance.";
       break;
     }
-    const bool last = newton && left <= kLastStep * cost && cost > floor;
+    const bool last = newton && left <= options.last_step * cost && cost > floor;
     if (!last && !Step(damping, frozen_, step_)) {
       damping *= growth;
       growth *= 2;

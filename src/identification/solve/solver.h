@@ -14,6 +14,8 @@ struct SolverOptions {
   double function_tolerance = 1e-10;
   double parameter_tolerance = 1e-13;
   int max_iterations = 500;
+  /// Of the cost: a full step from where no more can be gained is the last.
+  double last_step = 1e-6;
 };
 
 struct Solution {
@@ -40,6 +42,9 @@ class Solver {
   /// @param problem   must outlive the solves; its weights may change between them
   /// @param response  bound to the problem here
   void Bind(const Problem& problem, Response& response);
+
+  /// Moves a parameter that the problem holds, of those without a column of their own.
+  void HoldAt(std::size_t parameter, double theta) { held_theta_[parameter] = theta; }
 
   /// Least cost at the searched parameters of θ: writes the eliminated ones into θ.
   /// @returns Σ of the squared weighted residuals
