@@ -1,6 +1,6 @@
-"""From a CSV file to a saved summary: python3 from_csv_to_report.py LOOP.csv SUMMARY.html
+"""From a CSV file to a report: python3 from_csv_to_report.py LOOP.csv REPORT.html
 
-Reads a loop, fits it, prints what was found and saves the page that a notebook shows of it.
+Reads a loop, fits it, prints what was found and saves the page that a notebook shows.
 """
 
 import sys
@@ -10,7 +10,7 @@ from pathlib import Path
 import mindahl
 
 
-def main(loop: str, summary: str) -> None:
+def main(loop: str, report: str) -> None:
     record = mindahl.read_csv(loop)
     print(f"{len(record)} samples, displacement from {record.columns['displacement']['name']}")
     for note in record.notes:
@@ -32,8 +32,8 @@ def main(loop: str, summary: str) -> None:
     for warning in result.warnings:
         print(f"{warning.code}: {warning.message}")
 
-    Path(summary).write_text(result._repr_html_(), encoding="utf-8")
-    print(f"summary in {Path(summary).name}")
+    Path(report).write_text(result.page(), encoding="utf-8")
+    print(f"report in {Path(report).name}")
 
 
 if __name__ == "__main__":

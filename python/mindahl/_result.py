@@ -6,11 +6,11 @@ import copy
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from html import escape
 from typing import Any, Optional
 
 from . import _mindahl
 from ._arguments import Floats
-from ._html import summary
 
 
 class FitWarning(UserWarning):
@@ -212,8 +212,14 @@ class FitResult:
         verdict = self.adequacy.verdict or "adequacy not decided"
         return f"<mindahl.FitResult: {values}; {verdict}>"
 
+    def page(self) -> str:
+        """The page of HTML that `mindahl fit --report` writes: verdict, parameters, figures."""
+        return self._fitted.page()
+
     def _repr_html_(self) -> str:
-        return summary(self._report)
+        """The page in a frame of its own, so that its style and a notebook's do not mix."""
+        return (f'<iframe srcdoc="{escape(self.page())}" title="mindahl fit" sandbox '
+                'style="width: 100%; height: 45em; border: 1px solid #888"></iframe>')
 
     def plot(self, ax: Any = None) -> Any:
         """Draws the measured and the fitted loop, and the residual below where ax is None.

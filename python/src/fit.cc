@@ -9,6 +9,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/report/json.h"
+#include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "mindahl/report/residual_table.h"
 #include "mindahl/report/text.h"
@@ -119,6 +120,11 @@ void AddFit(py::module_& module) {
            [](const Fitted& fitted) {
              const py::gil_scoped_release others_may_run;
              return report::ToJson(fitted.report);
+           })
+      .def("page",
+           [](const Fitted& fitted) {
+             const py::gil_scoped_release others_may_run;
+             return report::ToPage(fitted.report);
            })
       .def("text", &TextOf)
       .def("residuals_csv",

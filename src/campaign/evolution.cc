@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "mindahl/core/error.h"
-#include "report/prefixed.h"
+#include "mindahl/report/quantity.h"
 
 namespace mindahl::campaign {
 namespace {
@@ -31,11 +31,11 @@ io::PlotPanel PanelOf(const Evolution& evolution) {
   const std::span<const Course::Bin> bins = evolution.course.bins();
   double largest = 0.0;
   for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
-  const report::PrefixedUnit unit = report::PrefixFor(largest, evolution.unit);
+  const report::ScaledUnit unit = report::UnitFor(evolution.unit, largest);
   io::PlotPanel panel{.x_label = "cycle",
-                      .y_label = unit.unit.empty()
+                      .y_label = unit.name.empty()
                                      ? evolution.name
-                                     : fmt::format("{} [{}]", evolution.name, unit.unit),
+                                     : fmt::format("{} [{}]", evolution.name, unit.name),
                       .series = {}};
   io::PlotSeries course{evolution.has_errors ? "cycles, 95 % of one" : "cycles, least and greatest",
                         {},
@@ -44,12 +44,12 @@ io::PlotPanel PanelOf(const Evolution& evolution) {
   course.shade = kShade;
   for (const Course::Bin& bin : bins) {
     const double error =
-        kQuantile95 * std::sqrt(static_cast<double>(bin.count) / bin.weight) / unit.size;
-    const double value = bin.value / unit.size;
+        kQuantile95 * std::sqrt(static_cast<double>(bin.count) / bin.weight) / unit.factor;
+    const double value = bin.value / unit.factor;
     course.x.push_back(bin.cycle);
     course.y.push_back(value);
-    course.lower.push_back(evolution.has_errors ? value - error : bin.least / unit.size);
-    course.upper.push_back(evolution.has_errors ? value + error : bin.greatest / unit.size);
+    course.lower.push_back(evolution.has_errors ? value - error : bin.least / unit.factor);
+    course.upper.push_back(evolution.has_errors ? value + error : bin.greatest / unit.factor);
   }
   panel.series.push_back(std::move(course));
   for (std::size_t k = 0; k < evolution.description.stretches.size(); ++k) {
@@ -57,7 +57,7 @@ io::PlotPanel PanelOf(const Evolution& evolution) {
     panel.series.push_back(
         {k == 0 ? "straight stretches" : "",
          {static_cast<double>(stretch.first_cycle), static_cast<double>(stretch.last_cycle)},
-         {stretch.at_start / unit.size, stretch.at_end / unit.size},
+         {stretch.at_start / unit.factor, stretch.at_end / unit.factor},
          io::PlotStyle::kLine});
   }
   for (const Change& change : evolution.description.changes) {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "mindahl/io/html.h"
+#include "mindahl/report/quantity.h"
 #include "report/page_parts.h"
-#include "report/prefixed.h"
 #include "report/statements.h"
 
 namespace mindahl::campaign {
@@ -21,7 +21,8 @@ using report::Cell;
 using report::Heading;
 using report::Number;
 using report::Paragraph;
-using report::QuantityText;
+using report::Quantity;
+using report::QuantityWithError;
 using report::SentenceList;
 using report::Shown;
 using report::Table;
@@ -47,11 +48,11 @@ Cell ParameterCell(const std::vector<ParameterEstimate>& parameters, std::string
   if (found == parameters.end()) return Number(kNone);
   switch (report::WhatIsShown(*found)) {
     case Shown::kValue:
-      return Number(QuantityText(found->value, found->standard_error, found->unit));
+      return Number(QuantityWithError(found->value, found->standard_error, found->unit));
     case Shown::kHeld:
-      return Number(QuantityText(found->value, found->unit) + ", held");
+      return Number(Quantity(found->value, found->unit) + ", held");
     case Shown::kLowerLimit:
-      if (found->lower95) return Number("> " + QuantityText(*found->lower95, found->unit));
+      if (found->lower95) return Number("> " + Quantity(*found->lower95, found->unit));
       break;
     case Shown::kNothing:
       break;
@@ -83,14 +84,14 @@ std::optional<io::PlotPanel> PanelOf(std::span<const FileResult> files, std::str
     largest = std::max(largest, std::abs(found->value));
   }
   if (series.x.size() < 2) return std::nullopt;
-  const report::PrefixedUnit prefixed = report::PrefixFor(largest, unit);
+  const report::ScaledUnit prefixed = report::UnitFor(unit, largest);
   for (auto* values : {&series.y, &series.lower, &series.upper}) {
-    for (double& value : *values) value /= prefixed.size;
+    for (double& value : *values) value /= prefixed.factor;
   }
   return io::PlotPanel{.x_label = "file",
-                       .y_label = prefixed.unit.empty()
+                       .y_label = prefixed.name.empty()
                                       ? std::string(name)
-                                      : fmt::format("{} [{}]", name, prefixed.unit),
+                                      : fmt::format("{} [{}]", name, prefixed.name),
                        .series = {std::move(series)}};
 }
 
@@ -127,14 +128,13 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
   body += Paragraph(fmt::format(
       "{} cycles of {} samples, {} fits; {} dissipated in all; {} samples at the ends are part of "
       "no whole cycle.",
-      test.cycles, test.samples, test.fits, QuantityText(test.dissipated, "J"),
-      test.unused_samples));
+      test.cycles, test.samples, test.fits, Quantity(test.dissipated, "J"), test.unused_samples));
   Table courses("by the straight stretches of each course", {"quantity", "at first", "at last"});
   for (const Evolution& evolution : test.evolutions) {
     const auto& stretches = evolution.description.stretches;
     if (stretches.empty()) continue;
-    courses.Row(evolution.name, {Number(QuantityText(stretches.front().at_start, evolution.unit)),
-                                 Number(QuantityText(stretches.back().at_end, evolution.unit))});
+    courses.Row(evolution.name, {Number(Quantity(stretches.front().at_start, evolution.unit)),
+                                 Number(Quantity(stretches.back().at_end, evolution.unit))});
   }
   body += courses.Html();
 
@@ -199,14 +199,14 @@ std::string BatchIndexPage(std::span<const FileResult> files,
                 {"quantity", "files", "mean", "scatter between files", "stated error", ""});
   for (const RepeatedQuantity& quantity : repeated) {
     const Repeats& repeats = quantity.repeats;
-    const report::PrefixedUnit unit = report::PrefixFor(repeats.mean, quantity.unit);
+    const report::ScaledUnit unit = report::UnitFor(quantity.unit, repeats.mean);
     const auto cell = [&](double value) {
       return Number(
-          fmt::format("{:.3g}{}{}", value / unit.size, unit.unit.empty() ? "" : " ", unit.unit));
+          fmt::format("{:.3g}{}{}", value / unit.factor, unit.name.empty() ? "" : " ", unit.name));
     };
     scatter.Row(
         quantity.name,
-        {Number(std::to_string(repeats.count)), Number(QuantityText(repeats.mean, quantity.unit)),
+        {Number(std::to_string(repeats.count)), Number(Quantity(repeats.mean, quantity.unit)),
          cell(repeats.standard_deviation), cell(repeats.stated_error),
          repeats.p_value < 0.01
              ? Words(fmt::format("more than the errors, p {:.1g}", repeats.p_value), "poor")

@@ -464,7 +464,8 @@ void Run::WriteSummary() {
   }
   text += fmt::format("{:.6g} J dissipated in all\n", totals_.energy);
   if (totals_.flagged > 0) {
-    text += fmt::format("\n{} cycles have a flag:\n", totals_.flagged);
+    text += fmt::format("\n{} {} a flag:\n", totals_.flagged,
+                        totals_.flagged == 1 ? "cycle has" : "cycles have");
     for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
       const auto found = totals_.flags.find(std::string(flag.name));
       if (found == totals_.flags.end()) continue;

@@ -11,13 +11,13 @@
 #include <variant>
 
 #include "mindahl/io/html.h"
+#include "mindahl/report/quantity.h"
 #include "report/adequacy.h"
 #include "report/field_table.h"
 #include "report/fields.h"
 #include "report/names.h"
 #include "report/page_parts.h"
 #include "report/panels.h"
-#include "report/prefixed.h"
 #include "report/statements.h"
 
 namespace mindahl::report {
@@ -101,18 +101,18 @@ std::string ParameterSection(const Report& report) {
         shown == Shown::kLowerLimit
             ? estimate.lower95.value_or(0.0)
             : std::max(std::abs(estimate.value), estimate.standard_error.value_or(0.0));
-    const PrefixedUnit unit = PrefixFor(magnitude, estimate.unit);
+    const ScaledUnit unit = UnitFor(estimate.unit, magnitude);
     std::string value = kNone;
     std::string interval = kNone;
-    if (shown == Shown::kHeld) value = ValueText(estimate.value, std::nullopt, unit.size);
+    if (shown == Shown::kHeld) value = NumberWithError(estimate.value, std::nullopt, unit.factor);
     if (shown == Shown::kLowerLimit && estimate.lower95) {
-      value = "> " + ValueText(*estimate.lower95, std::nullopt, unit.size);
+      value = "> " + NumberWithError(*estimate.lower95, std::nullopt, unit.factor);
     }
     if (shown == Shown::kValue) {
-      value = ValueText(estimate.value, estimate.standard_error, unit.size);
-      interval = IntervalText(estimate.lower95, estimate.upper95, unit.size);
+      value = NumberWithError(estimate.value, estimate.standard_error, unit.factor);
+      interval = IntervalText(estimate.lower95, estimate.upper95, unit.factor);
     }
-    table.Row(estimate.name, {Number(value), Number(std::string(unit.unit)), Number(interval),
+    table.Row(estimate.name, {Number(value), Number(unit.name), Number(interval),
                               Words(VerdictWords(estimate), ColourOf(estimate))});
   }
   const FitResult& fit = report.fit;
@@ -120,7 +120,7 @@ std::string ParameterSection(const Report& report) {
       fmt::format("{}; initial state {}", fit.model->title, Name(fit.initial_state));
   if (fit.normal_load && fit.is_load_series()) {
     about += fmt::format("; sigma and slip_force are those at the mean of the loads, {}",
-                         QuantityText(*fit.normal_load, "N"));
+                         Quantity(*fit.normal_load, "N"));
   }
   return Heading("Parameters") + Paragraph(about + ".") + table.Html();
 }
@@ -205,7 +205,7 @@ std::string WarningSection(const Report& report, const Provenance& provenance) {
 std::string TextOf(const DescribedValue& item) {
   struct Writer {
     std::string_view unit;
-    std::string operator()(double number) const { return QuantityText(number, unit); }
+    std::string operator()(double number) const { return Quantity(number, unit); }
     std::string operator()(std::uint64_t number) const { return std::to_string(number); }
     std::string operator()(std::int64_t number) const { return std::to_string(number); }
     std::string operator()(bool flag) const { return flag ? "yes" : "no"; }
@@ -306,14 +306,14 @@ std::string LikelihoodSection(const Report& report) {
 /// "–" with why where the record leaves it open.
 Cell ValueCell(const UncertainValue& value, std::string_view unit) {
   if (!std::isfinite(value.standard_error)) return Number("not identified");
-  return Number(QuantityText(value.value, value.standard_error, unit));
+  return Number(QuantityWithError(value.value, value.standard_error, unit));
 }
 
 std::string LoopSection(const Report& report) {
   const LoopDescription& loop = *report.loop;
   std::vector<std::string> sentences = {
       SlipStatement(loop, report.units),
-      fmt::format("energy per cycle of the model {}", QuantityText(loop.model_energy, "J"))};
+      fmt::format("energy per cycle of the model {}", Quantity(loop.model_energy, "J"))};
   if (loop.gross_slip_energy_ratio) {
     sentences.back() +=
         fmt::format(", gross slip from an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);
@@ -405,17 +405,17 @@ std::string SelectionSection(const Report& report) {
     } else if (is_listed) {
       remark = remark.empty() ? "not told from it" : "not told from it; " + remark;
     }
-    table.Row(
-        fmt::format("{}{}", score.model->name, score.rig ? " + rig" : ""),
-        {Number(std::to_string(score.free_parameters)),
-         Number(QuantityText(score.rms, report.units.force)),
-         Number(std::isfinite(score.delta_aicc) ? fmt::format("{:.1f}", score.delta_aicc)
-                                                : std::string(kNone)),
-         Number(fmt::format("{:.3f}", score.akaike_weight)),
-         Number(score.held_out_rms ? QuantityText(*score.held_out_rms,
-                                                  score.held_out_standard_error, report.units.force)
-                                   : std::string(kNone)),
-         Words(remark)});
+    table.Row(fmt::format("{}{}", score.model->name, score.rig ? " + rig" : ""),
+              {Number(std::to_string(score.free_parameters)),
+               Number(Quantity(score.rms, report.units.force)),
+               Number(std::isfinite(score.delta_aicc) ? fmt::format("{:.1f}", score.delta_aicc)
+                                                      : std::string(kNone)),
+               Number(fmt::format("{:.3f}", score.akaike_weight)),
+               Number(score.held_out_rms
+                          ? QuantityWithError(*score.held_out_rms, score.held_out_standard_error,
+                                              report.units.force)
+                          : std::string(kNone)),
+               Words(remark)});
   }
   return Heading("Models compared") + table.Html() + Paragraph(selection.verdict);
 }
@@ -432,11 +432,10 @@ std::string LoadSection(const Report& report) {
               {"normal load", "σ", "Tc", "a = σG*/8", "a of Hertz"});
   for (const ContactUnderLoad& contact : series.contacts) {
     table.Row(
-        QuantityText(contact.normal_load, "N"),
+        Quantity(contact.normal_load, "N"),
         {known(contact.stiffness, "sigma", "N/m"), known(contact.slip_force, "slip_force", "N"),
          contact.contact_radius ? known(*contact.contact_radius, "sigma", "m") : Number(kNone),
-         Number(contact.hertz_radius ? QuantityText(*contact.hertz_radius, "m")
-                                     : std::string(kNone))});
+         Number(contact.hertz_radius ? Quantity(*contact.hertz_radius, "m") : std::string(kNone))});
   }
   Table hypotheses("exponent of the load against theories",
                    {"theory", "p − its exponent", "standard errors", "p-value", ""});

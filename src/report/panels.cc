@@ -26,8 +26,8 @@ constexpr std::size_t kMostGroups = 8;
 constexpr double kQuantile95 = 1.959963984540054;  // of the normal distribution
 
 /// How often the prefixed unit goes into the plain one: 10⁶ of µm, to the last bit.
-double Per(const PrefixedUnit& unit) {
-  return unit.size < 1 ? std::round(1 / unit.size) : 1 / unit.size;
+double Per(const ScaledUnit& unit) {
+  return unit.factor < 1 ? std::round(1 / unit.factor) : 1 / unit.factor;
 }
 
 bool IsUnderLoad(const Report& report, const loop::Record& record, std::size_t sample) {
@@ -62,11 +62,11 @@ std::string ForceName(const Report& report) { return report.is_torsional() ? "to
 
 std::string DisplacementLabel(const Report& report, const PanelUnits& units) {
   return fmt::format("{} [{}]", report.is_torsional() ? "angle" : "displacement",
-                     units.displacement.unit);
+                     units.displacement.name);
 }
 
 std::string ResidualLabel(const PanelUnits& units) {
-  return fmt::format("fitted − measured [{}]", units.residual.unit);
+  return fmt::format("fitted − measured [{}]", units.residual.name);
 }
 
 /// Samples that are drawn alike: of a record, or of some of its cycles in a row.
@@ -236,9 +236,9 @@ PanelUnits PlainUnits(const Report& report) {
   for (const RecordFit& fit : report.fit.records) {
     extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
   }
-  return {.displacement = PrefixFor(extent, report.units.displacement),
-          .force = {.unit = std::string(report.units.force), .size = 1.0},
-          .residual = {.unit = std::string(report.units.force), .size = 1.0}};
+  return {.displacement = UnitFor(report.units.displacement, extent),
+          .force = {.factor = 1.0, .name = std::string(report.units.force)},
+          .residual = {.factor = 1.0, .name = std::string(report.units.force)}};
 }
 
 PanelUnits PrefixedUnits(const Report& report) {
@@ -249,14 +249,14 @@ PanelUnits PrefixedUnits(const Report& report) {
     force = std::max(force, std::abs(fit.measures.centre_force) + fit.measures.peak_force);
     for (const double value : fit.residual) residual = std::max(residual, std::abs(value));
   }
-  units.force = PrefixFor(force, report.units.force);
-  units.residual = PrefixFor(residual, report.units.force);
+  units.force = UnitFor(report.units.force, force);
+  units.residual = UnitFor(report.units.force, residual);
   return units;
 }
 
 PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours colours) {
   PlotPanel panel{.x_label = "",
-                  .y_label = fmt::format("{} [{}]", ForceName(report), units.force.unit),
+                  .y_label = fmt::format("{} [{}]", ForceName(report), units.force.name),
                   .series = {},
                   .height = 2.5};
   const double per_displacement = Per(units.displacement);
@@ -454,18 +454,18 @@ std::optional<PlotPanel> SlipForceLikelihood(const Report& report) {
                          (k + 1 < points.size() && points[k + 1].statistic <= ceiling);
     if (is_near) shown.push_back(points[k]);
   }
-  const PrefixedUnit unit = PrefixFor(report.fit.law.slip_force, report.units.force);
+  const ScaledUnit unit = UnitFor(report.units.force, report.fit.law.slip_force);
   PlotSeries curve{"each point fitted again with Tc held", {}, {}, PlotStyle::kLineAndPoints};
   curve.shade = kDataShade;
   for (const identification::ProfilePoint& point : shown) {
-    curve.x.push_back(point.law.slip_force / unit.size);
+    curve.x.push_back(point.law.slip_force / unit.factor);
     curve.y.push_back(std::min(point.statistic, ceiling));
   }
   PlotSeries critical{"above it outside the 95 % interval",
                       {curve.x.front(), curve.x.back()},
                       {profile->critical, profile->critical},
                       PlotStyle::kLine};
-  PlotPanel panel{.x_label = fmt::format("slip force Tc, held [{}]", unit.unit),
+  PlotPanel panel{.x_label = fmt::format("slip force Tc, held [{}]", unit.name),
                   .y_label = "F against the best fit",
                   .series = {std::move(curve), std::move(critical)}};
   panel.log_x = true;
@@ -476,7 +476,7 @@ std::vector<PlotPanel> LoadPanels(const Report& report, const PanelUnits& units)
   std::vector<PlotPanel> panels;
   if (!report.load_series) return panels;
   panels.push_back(
-      PanelOverLoad(report, {fmt::format("σ [{}/{}]", report.units.force, units.displacement.unit),
+      PanelOverLoad(report, {fmt::format("σ [{}/{}]", report.units.force, units.displacement.name),
                              1 / Per(units.displacement), &identification::RecordAlone::stiffness,
                              /*is_stiffness=*/true}));
   panels.push_back(
@@ -500,7 +500,7 @@ std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& u
     law.y.push_back(Per(units.force) * point.law);
   }
   return PlotPanel{.x_label = DisplacementLabel(report, units) + " of first loading",
-                   .y_label = fmt::format("{} [{}]", ForceName(report), units.force.unit),
+                   .y_label = fmt::format("{} [{}]", ForceName(report), units.force.name),
                    .series = {std::move(band), std::move(law)}};
 }
 

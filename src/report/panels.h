@@ -4,17 +4,17 @@
 #include <vector>
 
 #include "mindahl/io/plot.h"
+#include "mindahl/report/quantity.h"
 #include "mindahl/report/report.h"
-#include "report/prefixed.h"
 
 // The figures of a report, each one panel. None is of a fit that failed.
 namespace mindahl::report {
 
 /// Units in which a report's figures are drawn.
 struct PanelUnits {
-  PrefixedUnit displacement;
-  PrefixedUnit force;
-  PrefixedUnit residual;
+  ScaledUnit displacement;
+  ScaledUnit force;
+  ScaledUnit residual;
 };
 
 /// Displacements in the unit in which the widest record has a number between 1 and 1000, as far as

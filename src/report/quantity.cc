@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 
 namespace mindahl::report {
@@ -108,16 +109,29 @@ std::string RoundedTo(double error, double value) {
              : text;
 }
 
-std::string QuantityWithError(double value, double error, std::string_view unit) {
-  const bool is_open = !std::isfinite(error);
-  const ScaledUnit scaled = UnitFor(unit, is_open ? value : std::max(std::abs(value), error));
-  const std::string blank = scaled.name.empty() ? "" : " ";
-  const double scaled_error = error / scaled.factor;
-  const std::string number = RoundedTo(scaled_error, value / scaled.factor);
-  if (is_open) return fmt::format("{} ± open{}{}", number, blank, scaled.name);
-  if (error == 0) return fmt::format("{}{}{}", number, blank, scaled.name);
-  return fmt::format("{} ± {}{}{}", number, RoundedTo(scaled_error, scaled_error), blank,
-                     scaled.name);
+std::string NumberWithError(double value, std::optional<double> error, double factor) {
+  const double scaled_error = error.value_or(0.0) / factor;
+  const std::string number = RoundedTo(scaled_error, value / factor);
+  if (!std::isfinite(scaled_error)) return number + " ± open";
+  if (scaled_error == 0) return number;
+  return fmt::format("{} ± {}", number, RoundedTo(scaled_error, scaled_error));
+}
+
+std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit) {
+  const bool has_error = error && std::isfinite(*error);
+  const ScaledUnit scaled = UnitFor(unit, std::max(std::abs(value), has_error ? *error : 0.0));
+  return fmt::format("{}{}{}", NumberWithError(value, error, scaled.factor),
+                     scaled.name.empty() ? "" : " ", scaled.name);
+}
+
+std::string IntervalText(std::optional<double> lower, std::optional<double> upper, double factor) {
+  // As of an error a tenth of the width, of which RoundedTo() leaves two digits.
+  constexpr double kOfWidth = 0.1;
+  const double error = lower && upper ? kOfWidth * (*upper - *lower) / factor : 0.0;
+  const auto end = [&](const std::optional<double>& value) {
+    return value ? RoundedTo(error, *value / factor) : std::string("open");
+  };
+  return fmt::format("{} … {}", end(lower), end(upper));
 }
 
 }  // namespace mindahl::report

@@ -64,4 +64,4 @@ def test_examples_print_what_the_page_shows(tmp_path, monkeypatch):
         PAGE.write_text(page, encoding="utf-8")
     assert count >= 8
     assert page == shown
-    assert "<table>" in (tmp_path / "summary.html").read_text(encoding="utf-8")
+    assert "<figure" in (tmp_path / "report.html").read_text(encoding="utf-8")

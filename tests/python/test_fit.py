@@ -1,5 +1,6 @@
 """mindahl.fit(): what it takes, what it gives, what it refuses."""
 
+import html
 import inspect
 import re
 import sys
@@ -278,13 +279,18 @@ def test_a_notebook_shows_parameters_and_warnings_escaped(sphere, tmp_path):
     name = tmp_path / "a<b>&c.csv"
     np.savetxt(name, np.column_stack([displacement, force]), delimiter=",", header="x [m],F [N]",
                comments="")
-    page = mindahl.fit(name)._repr_html_()
+    result = mindahl.fit(name)
+    page = result.page()
+    assert page.startswith("<!DOCTYPE html>") and page.count("<svg") >= 4
     assert "a&lt;b&gt;&amp;c.csv" in page and "<b>&c" not in page
     assert "slip_force" in page and "identifiable" in page
+    frame = result._repr_html_()
+    assert frame.startswith("<iframe srcdoc=") and frame.count("<") == 2  # all else is escaped
+    assert html.unescape(frame).count(page) == 1
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", mindahl.FitWarning)
         warned = mindahl.fit(DATA / "far_from_slip.csv")
-    assert "Warnings:" in warned._repr_html_()
+    assert html.escape(warned.warnings[0].code) in warned.page()
 
 
 def test_other_threads_run_while_it_fits(sphere):

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace mindahl::report {
 namespace {
@@ -53,6 +54,22 @@ TEST(QuantityWithError, HasTheUnitOfTheLargerOfTheTwo) {
 TEST(QuantityWithError, SaysWhatHasNoErrorAndWhatIsOpen) {
   EXPECT_EQ(QuantityWithError(2.5329e-4, 0.0, "m"), "253.29 µm");
   EXPECT_EQ(QuantityWithError(2e-5, std::numeric_limits<double>::infinity(), "m"), "20 ± open µm");
+}
+
+TEST(QuantityWithError, WithoutAnErrorIsTheQuantity) {
+  EXPECT_EQ(QuantityWithError(1.5e-6, std::nullopt, "m"), "1.5 µm");
+  EXPECT_EQ(NumberWithError(40.0, 12.0, 1.0), "40 ± 12");
+  EXPECT_EQ(NumberWithError(4e7, 4e5, 1e6), "40.00 ± 0.40");
+}
+
+TEST(IntervalText, HasThreeDigitsOfItsWidth) {
+  EXPECT_EQ(IntervalText(3.92e7, 4.08e7, 1e6), "39.20 … 40.80");
+  EXPECT_EQ(IntervalText(-0.5, 0.25, 1.0), "-0.500 … 0.250");
+}
+
+TEST(IntervalText, SaysWhichEndIsOpen) {
+  EXPECT_EQ(IntervalText(12.5, std::nullopt, 1.0), "12.5 … open");
+  EXPECT_EQ(IntervalText(std::nullopt, 12.5, 1.0), "open … 12.5");
 }
 
 /// What is printed is the value to within half of its last digit, whatever the sizes.

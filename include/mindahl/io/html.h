@@ -18,9 +18,9 @@ struct FigureText {
   std::string description;  ///< how to read it, under the title
 };
 
-/// A panel as a <figure> with its drawing as inline SVG and a legend: nothing is loaded and no
-/// script is run. Text stays text; colours are classes of FigureStyle(), which follows the scheme
-/// of the reader, light or dark, and is light in print.
+/// A panel as a figure element with its drawing as inline SVG and a legend: nothing is loaded and
+/// no script is run. Text stays text; colours are classes of FigureStyle(), which follows the
+/// scheme of the reader, light or dark, and is light in print.
 ///
 /// At most 6000 points are drawn, evenly over the series, of which each is thinned as WritePlot()
 /// thins: no peak is lost, and a page has a size.
