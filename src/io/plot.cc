@@ -377,19 +377,21 @@ class Script {
           Quoted(mark.label), mark.x);
     }
     Add("plot ");
+    std::size_t look = 0;  // a series without a label goes on with that of the one before
     for (std::size_t series = 0; series < panel.series.size(); ++series) {
       const PlotSeries& curve = panel.series[series];
+      if (series > 0 && !curve.label.empty()) look = series;
       const bool has_ends = curve.style == PlotStyle::kIntervals;
       Add("{}", series == 0 ? "" : ", ");
       if (curve.style == PlotStyle::kBand) {
         Add("$data_{}_{} using 1:3:4 with filledcurves fill transparent solid 0.2 noborder "
             "lc rgb '{}' notitle, ",
-            index, series, ColourOf(curve, series));
+            index, series, ColourOf(curve, look));
       }
       Add("$data_{}_{} using {} with {} notitle", index, series, has_ends ? "1:2:3:4" : "1:2",
-          StyleCommand(curve, series, false));
+          StyleCommand(curve, look, false));
       if (curve.label.empty()) continue;
-      Add(", keyentry with {} title {}", StyleCommand(curve, series, true), Quoted(curve.label));
+      Add(", keyentry with {} title {}", StyleCommand(curve, look, true), Quoted(curve.label));
     }
     Add("\nunset label\nunset arrow\n");
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -23,6 +24,7 @@ struct CauseRow {
   const char* looks;     // like what, with its size; an argument is left unused where it has none
   const char* negative;  // likewise of a negative size; null where the sign is shown
   const char* remedy;    // where no option takes it into account
+  double whole = std::numeric_limits<double>::infinity();  // a size from which on it is all
 };
 
 constexpr std::array<CauseRow, 22> kCauses = {{
@@ -57,7 +59,7 @@ constexpr std::array<CauseRow, 22> kCauses = {{
      "leave the first cycles out with --skip-cycles, or fit parts of the record"},
     {"force_saturates", "a force reading that loses {} of what is beyond nine tenths of its peak",
      "a force reading that gains {} of what is beyond nine tenths of its peak",
-     "look at the ranges of the force sensor and its amplifier"},
+     "look at the ranges of the force sensor and its amplifier", 1.0},
     {"load_varies", "a friction that grows by {} from the middle of the stroke to its end",
      "a friction that falls by {} from the middle of the stroke to its end",
      "look whether the normal load varies with the position; where it is recorded, name its column "
@@ -91,6 +93,7 @@ const CauseRow& RowOf(const Cause& cause) {
 }
 
 std::string SizeText(const Cause& cause, double size) {
+  if (size >= RowOf(cause).whole) return "all";
   if (cause.unit == "-") return fmt::format("{:.3g} %", 100 * size);
   return Quantity(size, cause.unit, 3);
 }

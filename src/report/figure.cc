@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/adequacy.h"
-#include "report/names.h"
+#include "mindahl/report/quantity.h"
 #include "report/panels.h"
 #include "report/requirements.h"
 #include "report/statements.h"
@@ -17,26 +16,29 @@ namespace mindahl::report {
 using identification::FitResult;
 using identification::Identifiability;
 using identification::ParameterEstimate;
+using identification::ParameterStatus;
 
 namespace {
 
 /// A parameter by its sign: no number of what is not known.
 std::string ParameterText(const char* sign, const ParameterEstimate& estimate) {
-  const std::string unit = estimate.unit == "-" ? "" : " " + estimate.unit;
+  if (estimate.status == ParameterStatus::kFixed) {
+    return fmt::format("{} = {}, held", sign, Quantity(estimate.value, estimate.unit));
+  }
   if (estimate.is_known()) {
-    return fmt::format("{} = {:.4g}{}", sign, estimate.value, unit);
+    return fmt::format("{} = {}", sign,
+                       QuantityWithError(estimate.value, estimate.standard_error, estimate.unit));
   }
   if (estimate.identifiability == Identifiability::kBoundedBelow && estimate.lower95) {
-    return fmt::format("{} > {:.3g}{}", sign, *estimate.lower95, unit);
+    return fmt::format("{} > {}", sign, Quantity(*estimate.lower95, estimate.unit, 3));
   }
   return fmt::format("{} not known", sign);
 }
 
 std::string FindingsOf(const Report& report) {
   const FitResult& fit = report.fit;
-  return fmt::format("{}, {}: {}, {}, {}", fit.model->name,
-                     IsJudged(report) ? Name(fit.adequacy.verdict) : std::string_view("not judged"),
-                     ParameterText("σ", *fit.Find("sigma")), ParameterText("α", *fit.Find("alpha")),
+  return fmt::format("{}: {}, {}, {}", fit.model->name, ParameterText("σ", *fit.Find("sigma")),
+                     ParameterText("α", *fit.Find("alpha")),
                      ParameterText("Tc", *fit.Find("slip_force")));
 }
 

@@ -84,6 +84,12 @@ TEST(CauseSentence, HasALineInTheContractForEveryCode) {
   }
 }
 
+TEST(CauseSentence, OfAReadingThatLosesMoreThanThereIsSaysAll) {
+  const Cause saturates{
+      .code = "force_saturates", .explains = 0.7, .size = 4.09, .unit = "-", .option = ""};
+  EXPECT_THAT(Sentence(saturates), HasSubstr("loses all of what is beyond"));
+}
+
 TEST(CauseSentence, HasSizeUnitShareAndRemedy) {
   EXPECT_EQ(Sentence(Lag()),
             "a force that is read 2.5 ms after the displacement, which explains 93 % of the "

@@ -142,7 +142,7 @@ TEST(Figure, HasTheFileTheVerdictAndNoNumberOfWhatIsNotKnownInItsTitles) {
   input.fit.adequacy.tried = 15;
   EXPECT_EQ(ToPlot(report::MakeReport(input)).title, "loop_1.csv: adequate");
   EXPECT_EQ(ToPlot(report::MakeReport(input)).subtitle,
-            "mindlin-dahl, adequate: σ = 4e+07 N/m, α = 0.3333, Tc = 40 N");
+            "mindlin-dahl: σ = 40.00 ± 0.40 N/µm, α = 0.333 ± 0.010, Tc = 40.00 ± 0.40 N");
   input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
   input.fit.parameters[0].identifiability = identification::Identifiability::kNotIdentifiable;
   input.fit.parameters[1].status = identification::ParameterStatus::kFixed;
@@ -150,7 +150,7 @@ TEST(Figure, HasTheFileTheVerdictAndNoNumberOfWhatIsNotKnownInItsTitles) {
   input.fit.parameters[2].lower95 = 12.5;
   EXPECT_EQ(ToPlot(report::MakeReport(input)).title, "loop_1.csv: inadequate");
   EXPECT_EQ(ToPlot(report::MakeReport(input)).subtitle,
-            "mindlin-dahl, inadequate: σ not known, α = 0.3333, Tc > 12.5 N");
+            "mindlin-dahl: σ not known, α = 0.33333, held, Tc > 12.5 N");
 }
 
 TEST(Figure, OfAFitThatFailedIsRefused) {
