@@ -114,6 +114,8 @@ def array(name: str, values: Any, *, keep_missing: bool = False) -> Floats:
 
     keep_missing: NaN and what is no number at all stay, as NaN, for the reader to judge.
     """
+    if isinstance(values, np.ma.MaskedArray) and np.any(values.mask):
+        raise ValueError(f"{name} has masked values: leave these samples out of all arrays")
     given = np.asarray(values)
     if keep_missing and (given.dtype == object or given.dtype.kind not in "fiu"):
         return np.full(given.shape, np.nan)

@@ -206,11 +206,16 @@ class FitResult:
     def __repr__(self) -> str:
         if self._fitted.failed:
             return f"<mindahl.FitResult: {self.text().strip()}>"
-        values = ", ".join(f"{name} = {parameter.value:.6g}"
-                           + ("" if parameter.unit == "-" else f" {parameter.unit}")
-                           for name, parameter in list(self.parameters.items())[:3])
+        values = ", ".join(self._short(name) for name in ("sigma", "alpha", "slip_force"))
         verdict = self.adequacy.verdict or "adequacy not decided"
         return f"<mindahl.FitResult: {values}; {verdict}>"
+
+    def _short(self, name: str) -> str:
+        parameter = self.parameters[name]
+        if parameter.status != "fixed" and parameter.identifiability != "identifiable":
+            return f"{name} {parameter.identifiability.replace('_', ' ')}"
+        unit = "" if parameter.unit == "-" else f" {parameter.unit}"
+        return f"{name} = {parameter.value:.6g}{unit}"
 
     def page(self) -> str:
         """The page of HTML that `mindahl fit --report` writes: verdict, parameters, figures."""

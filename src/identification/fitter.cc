@@ -490,6 +490,10 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindShapeLimitedByLoad(problem, solution));
   Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
+  if (const auto slow = FindSlowResiduals(result, options.thresholds)) {
+    Append(result.findings, slow);
+    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
   if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result);
   if (result.depth >= Depth::kFull) {

@@ -377,10 +377,10 @@ class Script {
           Quoted(mark.label), mark.x);
     }
     Add("plot ");
-    std::size_t look = 0;  // a series without a label goes on with that of the one before
+    std::size_t look = 0;  // a line without a label goes on with that of the series before
     for (std::size_t series = 0; series < panel.series.size(); ++series) {
       const PlotSeries& curve = panel.series[series];
-      if (series > 0 && !curve.label.empty()) look = series;
+      if (!curve.label.empty() || curve.style != PlotStyle::kLine) look = series;
       const bool has_ends = curve.style == PlotStyle::kIntervals;
       Add("{}", series == 0 ? "" : ", ");
       if (curve.style == PlotStyle::kBand) {

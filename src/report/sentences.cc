@@ -317,6 +317,14 @@ std::string SystematicResidual(const Finding& finding, const FitResult& fit, con
       fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding, units));
 }
 
+std::string SlowResiduals(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "what the model misses goes on in one sense for {:.2g} strokes, which noise does not: "
+      "something that changes slowly, or from cycle to cycle, is not in the model; look at the "
+      "residual over the time, or fit parts of the record with --cycles",
+      Needed(finding, "strokes"));
+}
+
 std::string EnergyContradiction(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
       "the steady cycles lose {} each and {} as fitted {} at their amplitude of {}: the two are "
@@ -377,7 +385,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 31> kSentences = {{
+constexpr std::array<Row, 32> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -403,6 +411,7 @@ constexpr std::array<Row, 31> kSentences = {{
     {"memory_contradicts_law", MemoryContradictsLaw},
     {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
+    {"slow_residuals", SlowResiduals},
     {"rig_not_tried", RigNotTried},
     {"load_followed", LoadFollowed},
     {"load_not_followed", LoadNotFollowed},

@@ -174,8 +174,9 @@ std::string AdequacyText(const Report& report, const Style& style) {
     text += Wrapped("  or " + Sentence(adequacy.causes[i]), 5);
   }
   if (adequacy.causes.size() > kMost) {
-    text += fmt::format("  or like {} others that explain less, which --json lists\n",
-                        adequacy.causes.size() - kMost);
+    const std::size_t more = adequacy.causes.size() - kMost;
+    text += fmt::format("  or like {} other{} that explain{} less, which --json lists\n", more,
+                        more == 1 ? "" : "s", more == 1 ? "s" : "");
   }
   return text;
 }

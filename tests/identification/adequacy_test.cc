@@ -53,6 +53,23 @@ std::vector<double> NoiseOf(double memory, std::size_t samples, Generator& gener
   return noise;
 }
 
+/// A friction that steps to half as much again halfway through ten cycles: each stroke is of either
+/// contact, and what one law misses of both looks like noise with a long memory.
+TEST(Adequacy, OfAFrictionThatStepsIsDoubtedHoweverLongItsNoiseWouldRemember) {
+  const History displacement = Cycling(Wave::kSine, kReach, 10, kCycle);
+  std::vector<double> force = Respond(Model("mindlin-dahl"), kLaw, displacement);
+  const std::vector<double> after = Respond(
+      Model("mindlin-dahl"), {kLaw.tangential_stiffness, kLaw.shape_exponent, 60.0}, displacement);
+  Generator generator(1);
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (i >= force.size() / 2) force[i] = after[i];
+    force[i] += kNoise * Normal(generator);
+  }
+  const FitResult fit = Fitted(MakeRecord(displacement, force));
+  EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  EXPECT_NE(fit.FindFinding("slow_residuals"), nullptr);
+}
+
 constexpr int kLoops = 200;
 
 struct Shares {

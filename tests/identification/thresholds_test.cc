@@ -506,6 +506,21 @@ AdequacyTest TestWith(std::vector<DepartureFit> fits, double p_value = 1.0) {
   return test;
 }
 
+/// Whether residuals of a fifth of the force that remember for so many strokes are told.
+bool IsSlow(const Thresholds& thresholds, double strokes) {
+  constexpr std::size_t kSamplesAStroke = 50;
+  FitResult result;
+  result.law = {1.0, 1.0 / 3, 10.0};
+  RecordFit& record = result.records.emplace_back();
+  record.residual.resize(2 * kSamplesAStroke);
+  record.reversals.resize(1);
+  record.measures.peak_force = 10.0;
+  result.residuals.rms = 2.0;
+  result.residuals.durbin_watson =
+      2 - 2 * std::exp(-1 / (strokes * static_cast<double>(kSamplesAStroke)));
+  return FindSlowResiduals(result, thresholds).has_value();
+}
+
 /// Whether residuals of such a chance are doubted.
 bool IsDoubted(const Thresholds& thresholds, double chance) {
   const Stages stages(SlippingLoop(), With(thresholds));
@@ -721,6 +736,8 @@ const std::map<std::string_view, Case>& Cases() {
          };
          return causes(kBelow * 0.5) == 1 && causes(kAbove * 0.5) == 2;
        }},
+      {"noise_memory",
+       [](const Thresholds& t) { return IsSlow(t, kAbove * 0.5) && !IsSlow(t, kBelow * 0.5); }},
       {"rival_past",
        [](const Thresholds& t) {
          return PastIsUndecided(-kBelow * 10, t) && !PastIsUndecided(kAbove * 10, t);

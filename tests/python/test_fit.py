@@ -293,6 +293,22 @@ def test_a_notebook_shows_parameters_and_warnings_escaped(sphere, tmp_path):
     assert html.escape(warned.warnings[0].code) in warned.page()
 
 
+def test_a_short_form_has_no_number_of_what_is_not_identified():
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", mindahl.FitWarning)
+        far = mindahl.fit(DATA / "far_from_slip.csv")
+    assert "alpha not identifiable" in repr(far)
+    assert "slip_force bounded below" in repr(far)
+    assert "sigma = 4.84" in repr(far)
+
+
+def test_masked_values_are_refused(sphere):
+    _, displacement, force = sphere
+    masked = np.ma.masked_array(force, np.abs(force) > 14)
+    with pytest.raises(ValueError, match="force has masked values"):
+        mindahl.fit(displacement, masked)
+
+
 def test_other_threads_run_while_it_fits(sphere):
     """No thread hands over by itself here: another one counts only where the fit lets go."""
     _, displacement, force = sphere

@@ -69,6 +69,7 @@ Finding Complete(std::string_view code, std::string_view kind = "") {
                      {"r_squared", 0.0625},
                      {"variation", 0.055},
                      {"bound", 0.99},
+                     {"strokes", 2.5},
                      {"p_value", 0.0035},
                      {"dahl_p_value", 0.25}};
   return finding;
@@ -125,6 +126,7 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"unknown_past", "cut", {"alpha, slip_force: ", "--initial-state virgin"}},
       {"unknown_past", "one_stroke", {"sigma, alpha, slip_force: ", "--initial-state virgin"}},
       {"initial_state_undecided", "", {"alpha, force_offset: ", "--initial-state"}},
+      {"slow_residuals", "", {"strokes", "--cycles"}},
       {"law_undecided",
        "dahl",
        {"sigma, slip_force: ", "from Dahl's own law", "32.5 N/µm", "43.5 N", "ΔAICc = -31.5"}},
@@ -261,7 +263,7 @@ TEST(FindingCodes, HaveAVerdictUnlessTheyAreOfNoParameter) {
   for (const char* of_the_whole_fit :
        {"fit_failed", "weights_not_settled", "reversals_uncertain", "glitches_left_out",
         "path_too_long", "no_closed_cycle", "load_followed", "load_not_followed",
-        "memory_contradicts_law"}) {
+        "memory_contradicts_law", "slow_residuals"}) {
     EXPECT_EQ(of_parameters.erase(of_the_whole_fit), 1U) << of_the_whole_fit;
   }
   const std::string judge = Content(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src" /

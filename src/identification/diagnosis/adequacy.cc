@@ -104,6 +104,19 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
   return std::abs(delta_aicc) < thresholds.rival_past;
 }
 
+std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds) {
+  const double force = std::min(result.law.slip_force, result.PeakForce());
+  if (!(result.residuals.rms >= thresholds.poor_misfit * force)) return std::nullopt;
+  const double correlation = 1 - result.residuals.durbin_watson / 2;
+  if (!(correlation > 0)) return std::nullopt;
+  const RecordFit& widest = result.WidestRecord();
+  const double samples_a_stroke = static_cast<double>(widest.residual.size()) /
+                                  static_cast<double>(widest.reversals.size() + 1);
+  const double strokes = -1 / std::log(correlation) / samples_a_stroke;
+  if (!(strokes > thresholds.noise_memory)) return std::nullopt;
+  return Finding{.code = "slow_residuals", .numbers = {{"strokes", strokes}}};
+}
+
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
   const double force = std::min(result.law.slip_force, result.PeakForce());

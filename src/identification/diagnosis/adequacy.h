@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "identification/inference/adequacy_test.h"
 #include "identification/inference/irregularities.h"
 #include "mindahl/identification/adequacy.h"
+#include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 
@@ -31,6 +33,11 @@ void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> 
 /// Does the record hardly tell whether the contact was virgin or in a steady loop?
 /// @param delta_aicc  of the two
 bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds);
+
+/// Residuals that are a poor misfit and remember for longer than noise_memory: by their
+/// autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of that length would be
+/// told from nothing that changes slowly.
+std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds);
 
 /// A misfit that is no noise and as large as failing_misfit, wherever it comes back.
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds);

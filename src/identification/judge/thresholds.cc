@@ -119,6 +119,10 @@ constexpr std::array kTable = {
                  "a cause that explains so much is one that intervals cover",
                  "departures are taken to first order: of two imperfect accounts the better need "
                  "not be the true one"},
+    ThresholdRow{"noise_memory", &Thresholds::noise_memory, "strokes",
+                 "a poor misfit whose residuals remember for longer is not taken for noise",
+                 "within half a stroke the force does all that a law says of it: noise of that "
+                 "length and a misfit are one"},
     ThresholdRow{"rival_past", &Thresholds::rival_past, "ΔAICc",
                  "virgin and steady are both covered by the intervals if less apart",
                  "an evidence of e⁵ = 150 to 1: the two differ in a few samples only, where one "
