@@ -4,8 +4,7 @@
     bench/peers/campaign.py [--build build/release] [--cycles 10000] [--rounds 5]
 
 Everything runs in turn on one core; a ratio is that of one round, the table has the median and the
-range. Then time and memory against the number of cycles, and time against threads. docs/performance.md
-has the tables. Needs pandas and lmfit: scripts/install-dependencies.sh --peers
+range. Then time against threads. docs/performance.md has the tables; scaling.py goes on to long records. Needs pandas and lmfit: scripts/install-dependencies.sh --peers
 """
 
 import argparse
@@ -34,14 +33,14 @@ print(time.process_time() - start, len(table))
 
 
 def cost_of(command):
-    """(processor seconds, seconds, greatest resident memory [MB]) of a program."""
+    """(processor seconds, seconds) of a program."""
     start = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     elapsed = time.monotonic() - start
     if status != 0:
         sys.exit(f"failed: {' '.join(map(str, command))}")
-    return usage.ru_utime + usage.ru_stime, elapsed, usage.ru_maxrss / 1024
+    return usage.ru_utime + usage.ru_stime, elapsed
 
 
 def main():
@@ -94,13 +93,6 @@ def main():
                   f"{max(ratios):.3g} | {statistics.median(values):.3g} |")
 
         os.sched_setaffinity(0, cores)
-        print("\n| cycles | processor time [s] | µs a cycle | greatest memory [MB] |")
-        print("|---|---|---|---|")
-        for cycles in (100, 1_000, 10_000, 100_000):
-            if cycles > 10 * arguments.cycles:
-                break
-            seconds, _, memory = cost_of(track(simulated(cycles), "--threads", "1"))
-            print(f"| {cycles} | {seconds:.3g} | {1e6 * seconds / cycles:.3g} | {memory:.3g} |")
         print("\n| threads | time over one thread's |")
         print("|---|---|")
         alone = None

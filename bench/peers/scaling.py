@@ -15,9 +15,8 @@ import tempfile
 import threading
 import time
 
-# sigma = 5e7 N/m, Tc = 20 N, alpha = 1/3, lambda = 1.2; noise 1 % of Tc; 200 samples a cycle.
-CONTACT = ("simulate --model mindlin --sigma 5e7 --slip-force 20 --lambda 1.2 "
-           "--samples-per-cycle 200 --noise-force 0.2 --seed 1").split()
+from campaign import CONTACT
+
 PIECE = 1000  # cycles that are repeated
 
 FIGURE = """
