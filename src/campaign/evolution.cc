@@ -6,14 +6,14 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/normal_quantile.h"
 #include "mindahl/core/error.h"
 #include "mindahl/report/quantity.h"
 
 namespace mindahl::campaign {
 namespace {
 
-constexpr double kQuantile95 = 1.959963984540054;  // of the normal distribution
-constexpr double kShade = 0.3;                     // of what is measured
+constexpr double kShade = 0.3;  // of what is measured
 
 std::string_view Words(ChangeKind kind) {
   switch (kind) {
@@ -32,11 +32,8 @@ io::PlotPanel PanelOf(const Evolution& evolution) {
   double largest = 0.0;
   for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
   const report::ScaledUnit unit = report::UnitFor(evolution.unit, largest);
-  io::PlotPanel panel{.x_label = "cycle",
-                      .y_label = unit.name.empty()
-                                     ? evolution.name
-                                     : fmt::format("{} [{}]", evolution.name, unit.name),
-                      .series = {}};
+  io::PlotPanel panel{
+      .x_label = "cycle", .y_label = report::WithUnit(evolution.name, unit.name), .series = {}};
   io::PlotSeries course{evolution.has_errors ? "cycles, 95 % of one" : "cycles, least and greatest",
                         {},
                         {},
@@ -44,7 +41,7 @@ io::PlotPanel PanelOf(const Evolution& evolution) {
   course.shade = kShade;
   for (const Course::Bin& bin : bins) {
     const double error =
-        kQuantile95 * std::sqrt(static_cast<double>(bin.count) / bin.weight) / unit.factor;
+        kNormalQuantile95 * std::sqrt(static_cast<double>(bin.count) / bin.weight) / unit.factor;
     const double value = bin.value / unit.factor;
     course.x.push_back(bin.cycle);
     course.y.push_back(value);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -18,6 +17,7 @@ namespace mindahl::campaign {
 
 using identification::ParameterEstimate;
 using report::Cell;
+using report::CssClass;
 using report::Heading;
 using report::Number;
 using report::Paragraph;
@@ -37,11 +37,6 @@ std::string Header(const std::string& title) {
   return fmt::format("<header><h1>{}</h1></header>\n<main>\n", io::HtmlText(title));
 }
 
-std::string TitleOf(const std::vector<std::string>& files) {
-  std::string name = std::filesystem::path(files.front()).filename().string();
-  return files.size() > 1 ? fmt::format("{} and {} more", name, files.size() - 1) : name;
-}
-
 /// No number of what is not known.
 Cell ParameterCell(const std::vector<ParameterEstimate>& parameters, std::string_view name) {
   const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
@@ -58,11 +53,6 @@ Cell ParameterCell(const std::vector<ParameterEstimate>& parameters, std::string
       break;
   }
   return Number(kNone);
-}
-
-std::string_view ColourOf(const FileResult& result) {
-  if (result.verdict == "adequate") return "good";
-  return result.verdict == "doubtful" || result.verdict == "not judged" ? "poor" : "bad";
 }
 
 /// A parameter of every file that identifies it, with its interval, over the file's place.
@@ -89,9 +79,7 @@ std::optional<io::PlotPanel> PanelOf(std::span<const FileResult> files, std::str
     for (double& value : *values) value /= prefixed.factor;
   }
   return io::PlotPanel{.x_label = "file",
-                       .y_label = prefixed.name.empty()
-                                      ? std::string(name)
-                                      : fmt::format("{} [{}]", name, prefixed.name),
+                       .y_label = report::WithUnit(name, prefixed.name),
                        .series = {std::move(series)}};
 }
 
@@ -111,7 +99,7 @@ std::string Address(std::string_view name) {
 }  // namespace
 
 std::string ToPage(const TestSummary& test, const report::Provenance& provenance) {
-  const std::string title = TitleOf(test.files) + fmt::format(": {} cycles", test.cycles);
+  const std::string title = fmt::format("{}: {} cycles", report::NameOf(test.files), test.cycles);
   std::string body = Header(title);
   const bool is_failed = std::ranges::any_of(test.flags, [&](const FlagCount& flag) {
     return flag.name == "not_converged" && flag.cycles == test.fits;
@@ -185,7 +173,8 @@ std::string BatchIndexPage(std::span<const FileResult> files,
     body += fmt::format(
         "<tr><td class=\"number\">{}</td><th scope=\"row\">{}</th>", k + 1,
         file.page.empty() ? name : fmt::format("<a href=\"{}\">{}</a>", Address(file.page), name));
-    body += fmt::format("<td class=\"{}\">{}</td>", file.verdict.empty() ? "" : ColourOf(file),
+    body += fmt::format("<td class=\"{}\">{}</td>",
+                        file.verdict.empty() ? "" : CssClass(report::JudgementOf(file.verdict)),
                         io::HtmlText(file.verdict.empty() ? kNone : file.verdict));
     for (const std::string_view parameter : kParameters) {
       body += fmt::format("<td class=\"number\">{}</td>",
@@ -208,9 +197,7 @@ std::string BatchIndexPage(std::span<const FileResult> files,
         quantity.name,
         {Number(std::to_string(repeats.count)), Number(Quantity(repeats.mean, quantity.unit)),
          cell(repeats.standard_deviation), cell(repeats.stated_error),
-         repeats.p_value < 0.01
-             ? Words(fmt::format("more than the errors, p {:.1g}", repeats.p_value), "poor")
-             : Words(fmt::format("as the errors say, p {:.2g}", repeats.p_value), "good")});
+         Words(repeats.InWords(), repeats.exceed_errors() ? "poor" : "good")});
   }
   if (!scatter.empty()) body += Heading("If these are repeats") + scatter.Html();
   std::string figures;

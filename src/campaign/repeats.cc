@@ -1,11 +1,18 @@
 #include "mindahl/campaign/repeats.h"
 
+#include <fmt/format.h>
+
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign {
+
+std::string Repeats::InWords() const {
+  return exceed_errors() ? fmt::format("more than the errors, p {:.1g}", p_value)
+                         : fmt::format("as the errors say, p {:.2g}", p_value);
+}
 
 std::optional<Repeats> DescribeRepeats(std::span<const double> values,
                                        std::span<const double> errors) {

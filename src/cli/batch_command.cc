@@ -30,6 +30,7 @@
 #include "cli/progress.h"
 #include "cli/provenance.h"
 #include "cli/whole_number.h"
+#include "core/normal_quantile.h"
 #include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/repeats.h"
 #include "mindahl/core/error.h"
@@ -246,7 +247,7 @@ std::optional<double> StatedError(const Json& fit, std::string_view name) {
   const Json lower = ValueOf(fit, std::string(name) + "_lower95");
   const Json upper = ValueOf(fit, std::string(name) + "_upper95");
   if (!lower.is_number() || !upper.is_number()) return error.get<double>();
-  constexpr double kWidth = 2 * 1.959963984540054;  // of 95 %, in standard errors
+  constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
   return std::max(error.get<double>(), (upper.get<double>() - lower.get<double>()) / kWidth);
 }
 
@@ -276,11 +277,9 @@ std::string TextOf(const std::vector<FileFit>& fits, const BatchCommandOptions& 
   for (const Repeated& quantity : kRepeated) {
     const std::optional<campaign::Repeats> found = RepeatsOf(fits, quantity);
     if (!found) continue;
-    scatter += fmt::format(
-        "  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14.2g}   {}\n", quantity.name, found->count, found->mean,
-        found->standard_deviation, found->stated_error,
-        found->p_value < 0.01 ? fmt::format("more than the errors, p {:.1g}", found->p_value)
-                              : fmt::format("as the errors say, p {:.2g}", found->p_value));
+    scatter +=
+        fmt::format("  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14.2g}   {}\n", quantity.name, found->count,
+                    found->mean, found->standard_deviation, found->stated_error, found->InWords());
   }
   if (!scatter.empty()) {
     text += fmt::format("\nif these are repeats:\n  {:<22}{:>6}{:>14}{:>14}{:>14}\n", "", "files",

@@ -39,7 +39,9 @@
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_stream.h"
+#include "mindahl/report/quantity.h"
 #include "mindahl/report/units.h"
+#include "report/statements.h"
 
 namespace mindahl::cli {
 namespace {
@@ -345,11 +347,6 @@ void Run::Go() {
   if (options_.json_path != "-") WriteSummary();
 }
 
-/// "N/m" as " [N/m]", nothing of a pure number.
-std::string InBrackets(std::string_view unit) {
-  return unit == "-" ? "" : fmt::format(" [{}]", unit);
-}
-
 /// "p 0.003", or that it is beyond telling.
 std::string ChanceText(double p_value) {
   return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
@@ -424,8 +421,7 @@ campaign::TestSummary Run::Summary() const {
         {.name = found->first, .meaning = std::string(flag.meaning), .cycles = found->second});
   }
   for (std::size_t k = 0; k < kTracked.size(); ++k) {
-    const std::string name =
-        fmt::format("{}{}", kTracked[k].name, InBrackets(UnitOf(kTracked[k].unit)));
+    const std::string name = report::WithUnit(kTracked[k].name, UnitOf(kTracked[k].unit));
     for (const std::string& line : TextOf(courses_[k])) {
       test.changes.push_back(fmt::format("{}: {}", name, line));
     }
@@ -434,23 +430,19 @@ campaign::TestSummary Run::Summary() const {
 }
 
 void Run::Draw() {
+  if (options_.plot_path.empty() && options_.report_path.empty()) return;
+  const campaign::TestSummary test = Summary();
   if (!options_.plot_path.empty()) {
-    const campaign::TestSummary test = Summary();
-    const std::string file = std::filesystem::path(test.files.front()).filename().string();
-    io::WritePlot(
-        campaign::EvolutionPlot(
-            test.evolutions,
-            test.files.size() > 1 ? fmt::format("{} and {} more", file, test.files.size() - 1)
-                                  : file,
-            fmt::format("{} cycles: {}", test.cycles,
-                        test.changes.empty() ? "nothing changed beyond chance"
-                                             : "dashed where it changed beyond chance")),
-        options_.plot_path);
+    const char* const changes = test.changes.empty() ? "nothing changed beyond chance"
+                                                     : "dashed where it changed beyond chance";
+    io::WritePlot(campaign::EvolutionPlot(test.evolutions, report::NameOf(test.files),
+                                          fmt::format("{} cycles: {}", test.cycles, changes)),
+                  options_.plot_path);
   }
   if (!options_.report_path.empty()) {
     io::WriteFileAtomically(
         options_.report_path,
-        campaign::ToPage(Summary(), ProvenanceOf(command_, console_, options_.request.files)));
+        campaign::ToPage(test, ProvenanceOf(command_, console_, options_.request.files)));
   }
 }
 
@@ -477,8 +469,7 @@ void Run::WriteSummary() {
   for (std::size_t k = 0; k < kTracked.size(); ++k) {
     const campaign::CourseDescription& course = courses_[k];
     if (course.stretches.empty()) continue;
-    const std::string name =
-        fmt::format("{}{}", kTracked[k].name, InBrackets(UnitOf(kTracked[k].unit)));
+    const std::string name = report::WithUnit(kTracked[k].name, UnitOf(kTracked[k].unit));
     courses += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
                            course.stretches.back().at_end);
     for (const std::string& line : TextOf(course)) {

@@ -112,16 +112,17 @@ double UsualStepWithoutZeros(Column values, const RecordView& record,
   return UsualStep(kept, scratch);
 }
 
-/// Successive samples that read 0 and 0: [begin, end).
-struct ZeroRun {
+/// Successive samples: [begin, end).
+struct Run {
   std::size_t begin = 0;
   std::size_t end = 0;
 
   [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
 };
 
-std::pmr::vector<ZeroRun> ZeroRuns(const RecordView& record, std::pmr::memory_resource* scratch) {
-  std::pmr::vector<ZeroRun> runs(scratch);
+/// Samples that read 0 and 0.
+std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resource* scratch) {
+  std::pmr::vector<Run> runs(scratch);
   for (std::size_t i = 0; i < record.size(); ++i) {
     if (record.displacement[i] != 0 || record.force[i] != 0) continue;
     if (runs.empty() || runs.back().end < i) runs.push_back({i, i});
@@ -132,12 +133,12 @@ std::pmr::vector<ZeroRun> ZeroRuns(const RecordView& record, std::pmr::memory_re
 
 void FindDropouts(const RecordView& record, const GlitchRules& rules, Channel& displacement,
                   Channel& force, std::pmr::memory_resource* scratch) {
-  const std::pmr::vector<ZeroRun> runs = ZeroRuns(record, scratch);
+  const std::pmr::vector<Run> runs = ZeroRuns(record, scratch);
   if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
   const Column x = record.displacement;
   const double step_of_x = UsualStepWithoutZeros(x, record, scratch);
   const double step_of_force = UsualStepWithoutZeros(record.force, record, scratch);
-  const auto lies_off = [&](const ZeroRun& run) {
+  const auto lies_off = [&](const Run& run) {
     if (!run.IsInside(record.size())) {
       return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
     }
@@ -149,8 +150,8 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules, Channel& d
   };
   // Where one inside the record is a dropout the others are, wherever the loop just was.
   const bool any = std::ranges::any_of(
-      runs, [&](const ZeroRun& run) { return run.IsInside(record.size()) && lies_off(run); });
-  for (const ZeroRun& run : runs) {
+      runs, [&](const Run& run) { return run.IsInside(record.size()) && lies_off(run); });
+  for (const Run& run : runs) {
     if (!(any && run.IsInside(record.size())) && !lies_off(run)) continue;
     displacement.LeaveOut(run.begin, run.end, Glitch::kDropout);
     force.LeaveOut(run.begin, run.end, Glitch::kDropout);
@@ -245,12 +246,7 @@ bool GoesOn(Column values, std::size_t begin, std::size_t end) {
          0;
 }
 
-/// The next run of at least so many equal values from a sample on: [begin, end), empty at the end.
-struct Run {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
-
+/// The next run of at least so many equal values from a sample on; empty at the end.
 Run NextRun(Column values, std::size_t from, std::size_t shortest) {
   for (std::size_t begin = from; begin < values.size();) {
     std::size_t end = begin + 1;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mindahl/report/quantity.h"
+#include "report/statements.h"
 
 namespace mindahl::report {
 
@@ -106,10 +107,6 @@ std::string Looks(const Cause& cause) {
                      SizeText(cause, turns ? -cause.size : cause.size));
 }
 
-std::string ChanceText(double p_value) {
-  return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p = {:.2g}", p_value);
-}
-
 /// Units by sample of a record without a time, and over that of a column, of a force and of a
 /// torque.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kOthersOfForce = {{
@@ -156,7 +153,7 @@ std::string VerdictSentence(const Report& report) {
   if (!IsJudged(report)) return fmt::format("not judged: {}", kWhyNotJudged);
   const Adequacy& adequacy = report.fit.adequacy;
   const std::string misfit = fmt::format("{:.2g} times the noise ({})", adequacy.misfit_over_noise,
-                                         ChanceText(adequacy.p_value));
+                                         ChanceText(adequacy.p_value, 2));
   std::string found;
   switch (adequacy.verdict) {
     case AdequacyVerdict::kAdequate:

@@ -43,12 +43,6 @@ bool IsShown(const FitResult& fit, std::string_view parameter) {
          (WhatIsShown(*estimate) == Shown::kValue || WhatIsShown(*estimate) == Shown::kHeld);
 }
 
-std::string_view ColourOf(const Report& report) {
-  const std::string_view word = VerdictWord(report);
-  if (word == "adequate") return "good";
-  return word == "doubtful" || word == "not judged" ? "poor" : "bad";
-}
-
 // --- the verdict
 
 /// "identifiable: sigma, alpha": parameters by their verdicts.
@@ -73,7 +67,7 @@ std::string VerdictSection(const Report& report) {
   const std::string word(VerdictWord(report));
   if (sentence.starts_with(word + ": ")) sentence.erase(0, word.size() + 2);
   if (!report.fit.converged) sentence = report.fit.termination;
-  std::string html = VerdictBlock(ColourOf(report), word, sentence);
+  std::string html = VerdictBlock(CssClass(JudgementOf(word)), word, sentence);
   html += SentenceList(ParameterVerdicts(report.fit));
   const identification::Adequacy& adequacy = report.fit.adequacy;
   if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return html;
@@ -86,11 +80,6 @@ std::string VerdictSection(const Report& report) {
 }
 
 // --- parameters
-
-std::string_view ColourOf(const ParameterEstimate& estimate) {
-  if (estimate.is_known()) return "good";
-  return WhatIsShown(estimate) == Shown::kNothing ? "bad" : "poor";
-}
 
 std::string ParameterSection(const Report& report) {
   Table table("fitted and given, with one standard error and the 95 % interval",
@@ -113,7 +102,7 @@ std::string ParameterSection(const Report& report) {
       interval = IntervalText(estimate.lower95, estimate.upper95, unit.factor);
     }
     table.Row(estimate.name, {Number(value), Number(unit.name), Number(interval),
-                              Words(VerdictWords(estimate), ColourOf(estimate))});
+                              Words(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
   }
   const FitResult& fit = report.fit;
   std::string about =
@@ -135,14 +124,10 @@ struct NextCommand {
 };
 
 constexpr std::array kNextCommands = {
-    NextCommand{"systematic_residual", "--model auto", "compares the laws on this record"},
-    NextCommand{"no_model_fits", "--model auto", "compares the laws on this record"},
-    NextCommand{"shape_or_rig", "--rig-stiffness fit", "asks whether the rig gives way"},
+    NextCommand{"systematic_residual", "--model auto", "Compares the laws on this record:"},
+    NextCommand{"no_model_fits", "--model auto", "Compares the laws on this record:"},
+    NextCommand{"shape_or_rig", "--rig-stiffness fit", "Asks whether the rig gives way:"},
 };
-
-std::string WithOption(const std::string& command, std::string_view option) {
-  return fmt::format("{} {}", command, option);
-}
 
 /// What to run next, each a command after what it is for.
 std::string NextSection(const Report& report, const Provenance& provenance) {
@@ -150,13 +135,13 @@ std::string NextSection(const Report& report, const Provenance& provenance) {
       provenance.command.empty() ? std::string("mindahl fit FILE") : provenance.command;
   std::string html;
   std::vector<std::string> said;
-  const auto add = [&](const std::string& why, std::string_view option) {
+  const auto add = [&](std::string_view why, std::string_view option) {
     const std::string_view name = option.substr(0, option.find(' '));
     const bool is_given = std::ranges::any_of(
         provenance.options, [&](const auto& given) { return given.first == name; });
     if (is_given || std::ranges::find(said, option) != said.end()) return;
     said.emplace_back(option);
-    html += Paragraph(why) + CommandBlock(WithOption(command, option));
+    html += Paragraph(why) + CommandBlock(fmt::format("{} {}", command, option));
   };
   const FitResult& fit = report.fit;
   if (IsJudged(report) && fit.adequacy.verdict != AdequacyVerdict::kAdequate) {
@@ -168,10 +153,7 @@ std::string NextSection(const Report& report, const Provenance& provenance) {
     }
   }
   for (const NextCommand& row : kNextCommands) {
-    if (fit.FindFinding(row.finding) == nullptr) continue;
-    std::string why(row.why);
-    why.front() = static_cast<char>(why.front() - 'a' + 'A');
-    add(why + ":", row.option);
+    if (fit.FindFinding(row.finding) != nullptr) add(row.why, row.option);
   }
   return html.empty() ? "" : SubHeading("What to try next") + html;
 }

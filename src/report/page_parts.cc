@@ -11,6 +11,18 @@ namespace mindahl::report {
 
 using io::HtmlText;
 
+std::string_view CssClass(Judgement judgement) {
+  switch (judgement) {
+    case Judgement::kGood:
+      return "good";
+    case Judgement::kPoor:
+      return "poor";
+    case Judgement::kBad:
+      break;
+  }
+  return "bad";
+}
+
 std::string Paragraph(std::string_view text, std::string_view css_class) {
   if (text.empty()) return "";
   return css_class.empty() ? fmt::format("<p>{}</p>\n", HtmlText(text))

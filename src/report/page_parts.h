@@ -6,9 +6,13 @@
 #include <vector>
 
 #include "mindahl/report/page.h"
+#include "report/statements.h"
 
 // Pieces of a page of HTML. Text is escaped here, and nowhere else.
 namespace mindahl::report {
+
+/// "good", "poor" or "bad": its class of the page's style.
+std::string_view CssClass(Judgement judgement);
 
 /// <p>, with a class where one is given.
 std::string Paragraph(std::string_view text, std::string_view css_class = {});

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "core/normal_quantile.h"
+
 namespace mindahl::report {
 
 using identification::AdequacyVerdict;
@@ -23,7 +25,6 @@ namespace {
 
 constexpr double kDataShade = 0.3;  // of what is measured, where it is of one kind
 constexpr std::size_t kMostGroups = 8;
-constexpr double kQuantile95 = 1.959963984540054;  // of the normal distribution
 
 /// How often the prefixed unit goes into the plain one: 10⁶ of µm, to the last bit.
 double Per(const ScaledUnit& unit) {
@@ -428,7 +429,7 @@ std::optional<PlotPanel> ResidualAutocorrelation(const Report& report) {
     correlation.x.push_back(static_cast<double>(lag));
     correlation.y.push_back(products / squares);
   }
-  const double limit = kQuantile95 / std::sqrt(static_cast<double>(samples));
+  const double limit = kNormalQuantile95 / std::sqrt(static_cast<double>(samples));
   const std::vector<double> ends = {0.0, static_cast<double>(lags)};
   PlotSeries white{"white noise, 95 %", ends, {0.0, 0.0}, PlotStyle::kBand};
   white.lower = {-limit, -limit};

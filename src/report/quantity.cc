@@ -80,6 +80,10 @@ ScaledUnit UnitFor(std::string_view unit, double magnitude) {
   return {suiting.factor, fmt::format("{}{}", suiting.name, unit)};
 }
 
+std::string WithUnit(std::string_view name, std::string_view unit) {
+  return unit.empty() || unit == "-" ? std::string(name) : fmt::format("{} [{}]", name, unit);
+}
+
 std::string Quantity(double value, std::string_view unit, int digits) {
   const ScaledUnit scaled = UnitFor(unit, value);
   const double number = value / scaled.factor;

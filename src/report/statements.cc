@@ -64,16 +64,29 @@ std::string_view TestVerdict(double p_value) {
 
 }  // namespace
 
+std::string NameOf(std::span<const std::string> files) {
+  const std::string first = std::filesystem::path(files.front()).filename().string();
+  return files.size() > 1 ? fmt::format("{} and {} more", first, files.size() - 1) : first;
+}
+
 std::string TitleOf(const Report& report) {
-  std::string name = std::filesystem::path(report.files.front()).filename().string();
-  if (report.files.size() > 1) name += fmt::format(" and {} more", report.files.size() - 1);
-  return fmt::format("{}: {}", name, VerdictWord(report));
+  return fmt::format("{}: {}", NameOf(report.files), VerdictWord(report));
 }
 
 std::string_view VerdictWord(const Report& report) {
   if (report.failed()) return "failed";
   if (!report.fit.converged) return "not converged";
   return IsJudged(report) ? Name(report.fit.adequacy.verdict) : "not judged";
+}
+
+Judgement JudgementOf(std::string_view verdict) {
+  if (verdict == "adequate") return Judgement::kGood;
+  return verdict == "doubtful" || verdict == "not judged" ? Judgement::kPoor : Judgement::kBad;
+}
+
+Judgement JudgementOf(const ParameterEstimate& estimate) {
+  if (estimate.is_known()) return Judgement::kGood;
+  return WhatIsShown(estimate) == Shown::kNothing ? Judgement::kBad : Judgement::kPoor;
 }
 
 Shown WhatIsShown(const ParameterEstimate& estimate) {
@@ -89,9 +102,9 @@ std::string VerdictWords(const ParameterEstimate& estimate) {
   return Words(estimate.identifiability) + (is_free ? "" : ", at bound");
 }
 
-std::string ChanceText(double p_value) {
+std::string ChanceText(double p_value, int digits) {
   constexpr double kLeast = 1e-12;
-  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.3g}", p_value);
+  return p_value < kLeast ? "p < 1e-12" : fmt::format("p = {:.{}g}", p_value, digits);
 }
 
 bool IsIdentified(const Report& report, const ContactField& field, const PropagatedValue& value) {

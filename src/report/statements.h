@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,11 +12,20 @@
 // What the text and the page both say of a fit, in words and without an end of line.
 namespace mindahl::report {
 
-/// The names of the files, without their directories, and the verdict: "loop.csv: adequate".
+/// Several files by the name of the first, without its directory: "loop.csv and 2 more".
+std::string NameOf(std::span<const std::string> files);
+
+/// The files and the verdict: "loop.csv: adequate".
 std::string TitleOf(const Report& report);
 
 /// "adequate", "doubtful", "inadequate", "not judged", "not converged" or "failed".
 std::string_view VerdictWord(const Report& report);
+
+/// How good what is said is, for its colour.
+enum class Judgement { kGood, kPoor, kBad };
+/// @param verdict  as VerdictWord()
+Judgement JudgementOf(std::string_view verdict);
+Judgement JudgementOf(const identification::ParameterEstimate& estimate);
 
 /// What may be said of a parameter: no number of what the record does not give.
 enum class Shown {
@@ -29,8 +39,8 @@ Shown WhatIsShown(const identification::ParameterEstimate& estimate);
 /// "identifiable, at bound", "fixed" …
 std::string VerdictWords(const identification::ParameterEstimate& estimate);
 
-/// "p = 0.012"; no p-value is 0.
-std::string ChanceText(double p_value);
+/// "p = 0.012" of two digits; no p-value is 0.
+std::string ChanceText(double p_value, int digits = 3);
 
 /// Whether a quantity of the contact follows from what the loop tells: of what it leaves open
 /// nothing follows, whatever the error is.

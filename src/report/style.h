@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "report/statements.h"
+
 namespace mindahl::report {
 
 /// Colours of a terminal, or none.
@@ -12,14 +14,12 @@ class Style {
  public:
   explicit Style(bool has_colours) : has_colours_(has_colours) {}
 
-  [[nodiscard]] std::string Good(std::string_view text) const {
-    return Of(fmt::fg(fmt::terminal_color::green), text);
-  }
-  [[nodiscard]] std::string Caution(std::string_view text) const {
-    return Of(fmt::fg(fmt::terminal_color::yellow), text);
-  }
-  [[nodiscard]] std::string Bad(std::string_view text) const {
-    return Of(fmt::fg(fmt::terminal_color::red), text);
+  [[nodiscard]] std::string Judged(Judgement judgement, std::string_view text) const {
+    using enum fmt::terminal_color;
+    const auto colour = judgement == Judgement::kGood   ? green
+                        : judgement == Judgement::kPoor ? yellow
+                                                        : red;
+    return Of(fmt::fg(colour), text);
   }
   [[nodiscard]] std::string Strong(std::string_view text) const {
     return Of(fmt::emphasis::bold, text);

@@ -9,7 +9,6 @@
 #include <optional>
 #include <string_view>
 
-#include "mindahl/identification/trend.h"
 #include "mindahl/report/quantity.h"
 #include "report/adequacy.h"
 #include "report/contact_text.h"
@@ -22,9 +21,7 @@
 
 namespace mindahl::report {
 
-using contact::PropagatedValue;
 using identification::FitResult;
-using identification::Identifiability;
 using identification::ParameterEstimate;
 using identification::ParameterStatus;
 using identification::RecordFit;
@@ -37,12 +34,16 @@ struct ParameterWords {
   std::string interval;
 };
 
+/// Of one that is fitted.
 ParameterWords InWords(const ParameterEstimate& estimate) {
-  // A number beside "not identifiable" would be read as one all the same.
-  if (estimate.identifiability == Identifiability::kNotIdentifiable) return {"-", "-"};
-  if (estimate.identifiability == Identifiability::kBoundedBelow) {
-    return {"> " + (estimate.lower95 ? Quantity(*estimate.lower95, estimate.unit, 5) : "open"),
-            "-"};
+  switch (WhatIsShown(estimate)) {
+    case Shown::kNothing:
+      return {"-", "-"};
+    case Shown::kLowerLimit:
+      return {"> " + (estimate.lower95 ? Quantity(*estimate.lower95, estimate.unit) : "open"), "-"};
+    case Shown::kHeld:
+    case Shown::kValue:
+      break;
   }
   const double error = estimate.standard_error.value_or(0.0);
   const ScaledUnit unit = UnitFor(estimate.unit, std::max(std::abs(estimate.value), error));
@@ -52,14 +53,6 @@ ParameterWords InWords(const ParameterEstimate& estimate) {
   };
   return {QuantityWithError(estimate.value, error, estimate.unit),
           fmt::format("{} … {}", limit(estimate.lower95), limit(estimate.upper95))};
-}
-
-std::string VerdictText(const ParameterEstimate& estimate, const Style& style) {
-  std::string verdict = Words(estimate.identifiability);
-  if (estimate.status != ParameterStatus::kFree) verdict += ", at bound";
-  if (estimate.identifiability == Identifiability::kIdentifiable) return style.Good(verdict);
-  return estimate.identifiability == Identifiability::kNotIdentifiable ? style.Bad(verdict)
-                                                                       : style.Caution(verdict);
 }
 
 std::string ParameterTable(const FitResult& fit, const Style& style) {
@@ -75,7 +68,7 @@ std::string ParameterTable(const FitResult& fit, const Style& style) {
     }
     const ParameterWords words = InWords(estimate);
     text += fmt::format("{:<22} {:<27} {:<24} {}\n", estimate.name, words.value, words.interval,
-                        VerdictText(estimate, style));
+                        style.Judged(JudgementOf(estimate), VerdictWords(estimate)));
   }
   if (held.empty()) return text;
   return text + Wrapped(fmt::format("held, not fitted: {}", fmt::join(held, ", ")), 2);
@@ -148,18 +141,8 @@ std::string MeasuredText(const Report& report) {
 /// The verdict's own word at the start of its sentence.
 std::string Coloured(const std::string& sentence, const Report& report, const Style& style) {
   if (!IsJudged(report)) return sentence;
-  const std::size_t end = sentence.find(':');
-  const std::string word = sentence.substr(0, end);
-  const std::string rest = sentence.substr(end);
-  switch (report.fit.adequacy.verdict) {
-    case identification::AdequacyVerdict::kAdequate:
-      return style.Good(word) + rest;
-    case identification::AdequacyVerdict::kDoubtful:
-      return style.Caution(word) + rest;
-    case identification::AdequacyVerdict::kInadequate:
-      break;
-  }
-  return style.Bad(word) + rest;
+  const std::string_view word = Name(report.fit.adequacy.verdict);
+  return style.Judged(JudgementOf(word), word) + sentence.substr(word.size());
 }
 
 /// The verdict, and the causes that explain most besides the best.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/normal_quantile.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/stages.h"
 
@@ -78,7 +79,7 @@ TEST(Distributions, AreThoseOfClosedForms) {
   // χ² of two degrees of freedom is exponential.
   EXPECT_NEAR(ChiSquaredQuantile(2.0, 1e-6), -2 * std::log(1e-6), 1e-10);
   // Half a normal law within q: P(|z| < q) = 95 %.
-  EXPECT_NEAR(std::erf(kOneSidedQuantile95 / std::sqrt(2.0)), 0.95, kRounding);
+  EXPECT_NEAR(std::erf(kNormalQuantile95 / std::sqrt(2.0)), 0.95, kRounding);
 }
 
 }  // namespace

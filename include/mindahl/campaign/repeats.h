@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace mindahl::campaign {
 
@@ -14,6 +15,11 @@ struct Repeats {
   double stated_error = 0.0;        ///< root of the mean square of their standard errors
   /// Of Σ((x − x̄)/e)² by χ², x̄ weighted: that the stated errors make such a scatter.
   double p_value = 1.0;
+
+  /// Is the scatter more than the stated errors make, at a chance of one in a hundred?
+  [[nodiscard]] bool exceed_errors() const { return p_value < 0.01; }
+  /// "as the errors say, p 0.43".
+  [[nodiscard]] std::string InWords() const;
 };
 
 /// @param values  of one quantity, one a test

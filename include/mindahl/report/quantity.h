@@ -15,6 +15,9 @@ struct ScaledUnit {
 /// @param unit  one that the reports use, as "m", "N/m" or "N m"; of another the factor is 1
 ScaledUnit UnitFor(std::string_view unit, double magnitude);
 
+/// "sigma [N/µm]"; the name alone of a unit that is empty or "-".
+std::string WithUnit(std::string_view name, std::string_view unit);
+
 /// "48.1 N/µm" of 4.814e7 N/m: significant digits, in the unit that suits it.
 std::string Quantity(double value, std::string_view unit, int digits = 5);
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "identification/diagnosis/diagnosis.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -105,8 +107,7 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
 }
 
 std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds) {
-  const double force = std::min(result.law.slip_force, result.PeakForce());
-  if (!(result.residuals.rms >= thresholds.poor_misfit * force)) return std::nullopt;
+  if (!(MisfitOf(result) > thresholds.poor_misfit)) return std::nullopt;
   const double correlation = 1 - result.residuals.durbin_watson / 2;
   if (!(correlation > 0)) return std::nullopt;
   const RecordFit& widest = result.WidestRecord();

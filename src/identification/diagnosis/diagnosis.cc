@@ -127,14 +127,16 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   return findings;
 }
 
-std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
-  // Where the slip force is open it says nothing of how well the loop is followed.
+double MisfitOf(const FitResult& result) {
   const double force = std::min(result.law.slip_force, result.PeakForce());
-  if (!(force > 0)) return std::nullopt;
-  // What a robust loss has weighed down is not the model's.
+  if (!(force > 0)) return 0.0;
   const double rms = result.outliers > 0 ? std::hypot(result.adequacy.misfit, result.force_noise)
                                          : result.residuals.rms;
-  const double misfit = rms / force;
+  return rms / force;
+}
+
+std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
+  const double misfit = MisfitOf(result);
   if (!(misfit > thresholds.poor_misfit)) return std::nullopt;
   const bool fails = misfit > thresholds.failing_misfit;
   for (const RecordFit& record : result.records) {

@@ -29,6 +29,11 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
 /// Intervals too wide to call a parameter known, of those that no other finding names.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 
+/// rms of the residuals over min(Tc, T*) [-], without what a robust loss has weighed down; 0 where
+/// there is no force. Where the slip force is open it says nothing of how well the loop is
+/// followed.
+double MisfitOf(const FitResult& result);
+
 /// Residuals that come back at the same place of every stroke, and are more than noise could
 /// explain: where they are, and what kind of friction or rig leaves such a trace.
 std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds);

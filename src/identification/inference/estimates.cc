@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/normal_quantile.h"
 #include "identification/inference/evidence.h"
 
 namespace mindahl::identification {
@@ -97,7 +98,7 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   double upper = 0.0;
   if (side != BoundSide::kInside) {
     // Half the normal law lies beyond the bound: the interval is one-sided, from the bound.
-    const double reach = (side == BoundSide::kLower ? 1 : -1) * kOneSidedQuantile95 * error;
+    const double reach = (side == BoundSide::kLower ? 1 : -1) * kNormalQuantile95 * error;
     lower = estimate.value;
     upper = parameter.ToValue(theta + reach);
   } else {

@@ -50,7 +50,4 @@ double ChiSquaredQuantile(double degrees_of_freedom, double chance);
 /// Half width of a two-sided 95 % interval in standard errors, by Student.
 double StudentQuantile95(double degrees_of_freedom);
 
-/// Half a normal law lies within this many standard deviations with 95 %: Φ⁻¹(0.975).
-inline constexpr double kOneSidedQuantile95 = 1.959963984540054;
-
 }  // namespace mindahl::identification
