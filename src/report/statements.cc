@@ -254,9 +254,10 @@ std::vector<std::string> ExponentStatements(const Report& report) {
                                       "series: the record does not tell which",
                                       Quantity(*mindlin->rig_stiffness, "N/m", 4))
                                 : "";
-    statements.push_back(fmt::format(
-        "likelihood ratio of α = 1/3: {:.3g}, p = {:.3g}: Mindlin's exponent is {}{}",
-        mindlin->likelihood_ratio, mindlin->p_value, TestVerdict(mindlin->p_value), rig));
+    statements.push_back(
+        fmt::format("likelihood ratio of α = 1/3: {:.3g}, {}: Mindlin's exponent is {}{}",
+                    mindlin->likelihood_ratio, ChanceText(mindlin->p_value),
+                    TestVerdict(mindlin->p_value), rig));
   }
   const std::string shapes = BranchShapesStatement(report.fit);
   if (!shapes.empty()) statements.push_back(shapes);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "report/made_report.h"
 #include "report/wrapped.h"
@@ -62,6 +63,15 @@ TEST(Text, SaysInOneLineWhatWouldTellMoreOfTheContact) {
   const std::string text = ToText(MakeReport(MadeInput()));
   EXPECT_THAT(text, HasSubstr("with the normal load, E and ν of both bodies given, more would be "
                               "known: friction coefficient"));
+}
+
+TEST(Text, HasNoChanceThatIsZero) {
+  ReportInput input = MadeInput();
+  identification::MindlinTest& test = input.fit.mindlin_test.emplace();
+  test.likelihood_ratio = 5340.0;
+  test.p_value = 0.0;
+  EXPECT_THAT(ToText(MakeReport(std::move(input))),
+              HasSubstr("likelihood ratio of α = 1/3: 5.34e+03, p < 1e-12"));
 }
 
 TEST(Text, HasColoursOnlyWhereAskedFor) {
