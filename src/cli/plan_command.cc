@@ -47,6 +47,8 @@ struct PlanOptions {
   double displacement_noise = 0.0;
   double autocorrelation = 0.0;
   std::vector<double> amplitudes;
+  std::vector<double> load_ratios;
+  std::optional<double> load_exponent;
   std::size_t samples_per_cycle = 200;
   double cycles = 3.0;
   std::string initial_state = "both";
@@ -189,6 +191,12 @@ Expectation ExpectationOf(const PlanOptions& options, Console& console) {
   if (options.displacement_noise > 0) expected.displacement_noise = options.displacement_noise;
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;
   expected.autocorrelation = options.autocorrelation;
+  if (options.load_exponent) {
+    if (options.load_ratios.empty()) {
+      throw InputError("--load-exponent needs --load-ratio: of one load it says nothing");
+    }
+    expected.load_exponent = *options.load_exponent;
+  }
   const bool fits_rig = std::ranges::find(options.with, "rig_stiffness") != options.with.end();
   if (fits_rig && std::isinf(expected.rig.stiffness)) {
     throw InputError("--with rig_stiffness needs --rig-stiffness: what it is expected to be [N/m]");
@@ -205,19 +213,43 @@ std::vector<double> AmplitudesOf(const PlanOptions& options, double slip) {
   return amplitudes;
 }
 
-/// Over the value where that scales the parameter; beyond 1 the bound says only that little is
-/// known.
-std::optional<double> RelativeError(const ParameterEstimate& estimate) {
+/// What the table and the picture show of a fit.
+struct Shown {
+  std::string_view parameter;
+  std::string_view name;
+  bool is_exponent;  // its error as it is; of the others over the value
+};
+
+constexpr std::array<Shown, 5> kShown = {{{"sigma", "sigma", false},
+                                          {"alpha", "alpha", true},
+                                          {"slip_force", "Tc", false},
+                                          {"load_exponent", "p", true},
+                                          {"rig_stiffness", "rig", false}}};
+
+std::vector<Shown> ShownOf(const ExpectedFit& fit) {
+  std::vector<Shown> shown;
+  for (const Shown& each : kShown) {
+    const ParameterEstimate* estimate = fit.Find(each.parameter);
+    if (estimate != nullptr && estimate->status != identification::ParameterStatus::kFixed) {
+      shown.push_back(each);
+    }
+  }
+  return shown;
+}
+
+/// As it is shown; beyond 1 the bound says only that little is known.
+std::optional<double> ErrorOf(const ExpectedFit& fit, const Shown& shown) {
+  const ParameterEstimate& estimate = *fit.Find(shown.parameter);
   if (!estimate.standard_error) return std::nullopt;
-  const double error = estimate.name == "alpha" ? *estimate.standard_error
-                                                : *estimate.standard_error / estimate.value;
+  const double error =
+      shown.is_exponent ? *estimate.standard_error : *estimate.standard_error / estimate.value;
   return error < 1 ? std::optional(error) : std::nullopt;
 }
 
-std::string Cell(const ExpectedFit& fit, std::string_view name) {
-  const std::optional<double> error = RelativeError(*fit.Find(name));
+std::string Cell(const ExpectedFit& fit, const Shown& shown) {
+  const std::optional<double> error = ErrorOf(fit, shown);
   if (!error) return "-";
-  return name == "alpha" ? fmt::format("{:.2g}", *error) : fmt::format("{:.2g} %", 100 * *error);
+  return shown.is_exponent ? fmt::format("{:.2g}", *error) : fmt::format("{:.2g} %", 100 * *error);
 }
 
 bool IsLawDecided(const ExpectedFit& fit) {
@@ -247,11 +279,22 @@ void PrintPlan(const PlanOptions& options, const Expectation& expected, double s
           ? fmt::format(", autocorrelated by {:g} from one to the next", expected.autocorrelation)
           : "",
       options.cycles, options.samples_per_cycle);
+  if (!options.load_ratios.empty()) {
+    out << fmt::format("at {:g} times the load of this contact, sigma as the load to {:.4g}\n\n",
+                       fmt::join(options.load_ratios, ", "), expected.load_exponent);
+  }
+  const std::vector<Shown> shown = ShownOf(columns.front().loops.front());
+  constexpr std::size_t kCell = 9;
+  constexpr std::size_t kLaw = 8;
   out << fmt::format("standard errors      ");
-  for (const Column& column : columns) out << fmt::format("| {:<35} ", column.name);
+  for (const Column& column : columns) {
+    out << fmt::format("| {:<{}} ", column.name, shown.size() * kCell + kLaw);
+  }
   out << fmt::format("\n{:<12}{:<9}", "X [m]", "X/slip");
   for ([[maybe_unused]] const Column& column : columns) {
-    out << fmt::format("| {:<9}{:<9}{:<9}{:<8} ", "sigma", "alpha", "Tc", "law");
+    out << "| ";
+    for (const Shown& each : shown) out << fmt::format("{:<{}}", each.name, kCell);
+    out << fmt::format("{:<{}} ", "law", kLaw);
   }
   out << '\n';
   for (std::size_t i = 0; i < columns.front().loops.size(); ++i) {
@@ -259,16 +302,18 @@ void PrintPlan(const PlanOptions& options, const Expectation& expected, double s
     out << fmt::format("{:<12.4g}{:<9.3g}", amplitude, amplitude / slip);
     for (const Column& column : columns) {
       const ExpectedFit& fit = column.loops[i];
-      out << fmt::format("| {:<9}{:<9}{:<9}{:<8} ", Cell(fit, "sigma"), Cell(fit, "alpha"),
-                         Cell(fit, "slip_force"), IsLawDecided(fit) ? "decided" : "open");
+      out << "| ";
+      for (const Shown& each : shown) out << fmt::format("{:<{}}", Cell(fit, each), kCell);
+      out << fmt::format("{:<{}} ", IsLawDecided(fit) ? "decided" : "open", kLaw);
     }
     out << '\n';
   }
   out << fmt::format(
       "  -: larger than the value, nothing is known of it; law: is this loop expected to tell "
       "Mindlin's\n  rules from Dahl's (2 ln likelihood ratio above {:g})? Slip begins at {:.4g} "
-      "m.\n",
-      identification::Thresholds().rival_past, slip);
+      "m{}.\n",
+      identification::Thresholds().rival_past, slip,
+      options.load_ratios.empty() ? "" : " at that load");
   if (wanted.empty()) return;
   out << fmt::format("\nwanted: {}\n", InWords(wanted));
   for (const Column& column : columns) {
@@ -298,8 +343,13 @@ nlohmann::ordered_json ToJson(const PlanOptions& options, const Expectation& exp
                       {"force_noise", expected.force_noise},
                       {"displacement_noise", expected.displacement_noise},
                       {"autocorrelation", expected.autocorrelation},
+                      {"load_exponent", options.load_ratios.empty()
+                                            ? nlohmann::ordered_json(nullptr)
+                                            : nlohmann::ordered_json(expected.load_exponent)},
                       {"gross_slip_displacement", slip}};
-  json["protocol"] = {{"cycles", options.cycles}, {"samples_per_cycle", options.samples_per_cycle}};
+  json["protocol"] = {{"cycles", options.cycles},
+                      {"samples_per_cycle", options.samples_per_cycle},
+                      {"load_ratios", options.load_ratios}};
   json["loops"] = nlohmann::ordered_json::array();
   for (const Column& column : columns) {
     for (const ExpectedFit& fit : column.loops) {
@@ -337,7 +387,15 @@ nlohmann::ordered_json ToJson(const PlanOptions& options, const Expectation& exp
   return json;
 }
 
-/// Errors of σ, α and Tc against the amplitude, a panel each past.
+/// The loops of the options, but for their amplitude.
+Protocol ProtocolOf(const PlanOptions& options, InitialState state) {
+  return {.cycles = options.cycles,
+          .samples_per_cycle = options.samples_per_cycle,
+          .initial_state = state,
+          .loads = options.load_ratios};
+}
+
+/// What is fitted, against the amplitude, a panel each past.
 io::Plot ErrorPlot(const Expectation& expected, const PlanOptions& options, double slip) {
   constexpr int kPoints = 60;
   io::Plot plot{.title = "Standard errors that a loop of amplitude X would give", .panels = {}};
@@ -352,30 +410,31 @@ io::Plot ErrorPlot(const Expectation& expected, const PlanOptions& options, doub
     panel.log_x = true;
     panel.log_y = true;
     panel.title = name;
-    io::PlotSeries sigma{.label = "sigma, relative", .x = {}, .y = {}};
-    io::PlotSeries alpha{.label = "alpha", .x = {}, .y = {}};
-    io::PlotSeries slip_force{.label = "Tc, relative", .x = {}, .y = {}};
+    Protocol protocol = ProtocolOf(options, state);
+    std::vector<Shown> shown;
+    std::vector<io::PlotSeries> series;
     for (int i = 0; i <= kPoints; ++i) {
       const double share = kLeast * std::pow(kMost / kLeast, static_cast<double>(i) / kPoints);
-      const ExpectedFit fit =
-          identification::ExpectFit(expected,
-                                    {.amplitude = share * slip,
-                                     .cycles = options.cycles,
-                                     .samples_per_cycle = options.samples_per_cycle,
-                                     .initial_state = state},
-                                    fit_options);
-      const auto add = [&](io::PlotSeries& series, std::string_view parameter) {
-        const std::optional<double> error = RelativeError(*fit.Find(parameter));
-        if (!error || *error <= 0) return;
-        series.x.push_back(share);
-        series.y.push_back(*error);
-      };
-      add(sigma, "sigma");
-      add(alpha, "alpha");
-      add(slip_force, "slip_force");
+      protocol.amplitude = share * slip;
+      const ExpectedFit fit = identification::ExpectFit(expected, protocol, fit_options);
+      if (i == 0) {
+        shown = ShownOf(fit);
+        for (const Shown& each : shown) {
+          series.push_back(
+              {.label = fmt::format("{}{}", each.name, each.is_exponent ? "" : ", relative"),
+               .x = {},
+               .y = {}});
+        }
+      }
+      for (std::size_t k = 0; k < shown.size(); ++k) {
+        const std::optional<double> error = ErrorOf(fit, shown[k]);
+        if (!error || *error <= 0) continue;
+        series[k].x.push_back(share);
+        series[k].y.push_back(*error);
+      }
     }
-    for (io::PlotSeries* series : {&sigma, &alpha, &slip_force}) {
-      if (!series->x.empty()) panel.series.push_back(std::move(*series));
+    for (io::PlotSeries& each : series) {
+      if (!each.x.empty()) panel.series.push_back(std::move(each));
     }
     if (!panel.series.empty()) plot.panels.push_back(std::move(panel));
   }
@@ -410,9 +469,7 @@ void RunPlan(const PlanOptions& options, Console& console) {
     Column& column = columns.emplace_back();
     column.state = state;
     column.name = name;
-    Protocol protocol{.cycles = options.cycles,
-                      .samples_per_cycle = options.samples_per_cycle,
-                      .initial_state = state};
+    Protocol protocol = ProtocolOf(options, state);
     for (const double amplitude : AmplitudesOf(options, slip)) {
       protocol.amplitude = amplitude;
       column.loops.push_back(identification::ExpectFit(expected, protocol, fit_options));
@@ -443,7 +500,8 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   AddExamples(
       *command, app,
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
-       "mindahl plan --record loop.csv --cycles 10 --json plan.json"});
+       "mindahl plan --record loop.csv --cycles 10 --json plan.json",
+       "mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2"});
   AddLawOptions(*command, options->law);
   const std::string expected = "What is expected";
   command
@@ -467,11 +525,20 @@ void AddPlanCommand(CLI::App& app, Console& console) {
                    "of the force noise between samples, in [0, 1) [-]; default 0")
       ->type_name("RHO")
       ->group(expected);
+  AddOptional(*command, "--load-exponent", options->load_exponent,
+              "p of sigma ~ N^p between these loads [-]; default 1/3, Hertz's", "P")
+      ->group(expected);
   const std::string loop = "The loop";
   command
       ->add_option("--amplitude", options->amplitudes,
                    "amplitude X [m], repeatable; default 13 about slip")
       ->type_name("X")
+      ->group(loop);
+  command
+      ->add_option("--load-ratio", options->load_ratios,
+                   "loads over this contact's own [-], a loop at each: 0.5,1,2")
+      ->type_name("R")
+      ->delimiter(',')
       ->group(loop);
   command->add_option("--cycles", options->cycles, "cycles of the sine, >= 1")
       ->capture_default_str()

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "identification/inference/displacement_errors.h"
@@ -45,12 +46,14 @@ void RequireTerms(const FitOptions& options) {
 void Require(const Expectation& expected, const Protocol& protocol, const FitOptions& options) {
   models::Validate(expected.law);
   models::Validate(expected.rig);
+  RequireFinite("load exponent [-]", expected.load_exponent);
   RequirePositive("force noise [N]", expected.force_noise);
   RequireNonNegative("displacement noise [m]", expected.displacement_noise);
   if (!(expected.autocorrelation >= 0 && expected.autocorrelation < 1)) {
     ThrowInvalid("autocorrelation of the noise [-]", expected.autocorrelation, "must be in [0, 1)");
   }
   RequirePositive("amplitude [m]", protocol.amplitude);
+  for (const double load : protocol.loads) RequirePositive("load over that of the law [-]", load);
   if (!(protocol.cycles >= 1)) ThrowInvalid("cycles [-]", protocol.cycles, "must be >= 1");
   if (options.model == nullptr || options.model->memory != models::Memory::kReturnPoint) {
     throw InvalidArgument("the model of a plan must have Masing's rules: mindlin-dahl, mindlin");
@@ -60,8 +63,26 @@ void Require(const Expectation& expected, const Protocol& protocol, const FitOpt
 
 bool IsRigid(const models::SeriesSpring& rig) { return std::isinf(rig.stiffness); }
 
-/// The loop as it would be measured without noise.
-loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
+/// At a load over the one of the law: σ ∝ N^p, Tc ∝ N.
+models::BranchLaw AtLoad(const Expectation& expected, double load) {
+  models::BranchLaw law = expected.law;
+  law.tangential_stiffness *= std::pow(load, expected.load_exponent);
+  law.slip_force *= load;
+  return law;
+}
+
+std::vector<double> LoadsOf(const Protocol& protocol) {
+  return protocol.loads.empty() ? std::vector{1.0} : protocol.loads;
+}
+
+double MeanLoad(const Protocol& protocol) {
+  const std::vector<double> loads = LoadsOf(protocol);
+  return std::accumulate(loads.begin(), loads.end(), 0.0) / static_cast<double>(loads.size());
+}
+
+/// The loop of a law as it would be measured without noise.
+loop::Record LoopOf(const models::BranchLaw& law, const models::SeriesSpring& rig,
+                    const Protocol& protocol) {
   models::Excitation excitation =
       models::MakeExcitation({.amplitude = protocol.amplitude,
                               .cycles = protocol.cycles,
@@ -74,26 +95,38 @@ loop::Record LoopOf(const Expectation& expected, const Protocol& protocol) {
   const models::LoadingPath path = models::MakeLoadingPath(
       record.displacement, reversals, masing.memory, {.state = protocol.initial_state});
   record.force.resize(record.size());
-  models::EvaluateForce(masing, expected.law, path, record.displacement, record.force,
-                        expected.rig);
+  models::EvaluateForce(masing, law, path, record.displacement, record.force, rig);
   return record;
 }
 
-/// θ of what is expected; terms that are fitted beside the law are expected to be nothing.
-Solution SolutionAt(const Expectation& expected, const Parameters& parameters) {
+/// One a load.
+std::vector<loop::Record> LoopsOf(const Expectation& expected, const Protocol& protocol) {
+  std::vector<loop::Record> records;
+  for (const double load : LoadsOf(protocol)) {
+    records.push_back(LoopOf(AtLoad(expected, load), expected.rig, protocol));
+  }
+  return records;
+}
+
+/// θ of what is expected, the law being that at the mean load; terms that are fitted beside it are
+/// expected to be nothing.
+Solution SolutionAt(const Expectation& expected, const models::BranchLaw& law,
+                    const Parameters& parameters) {
   Solution solution;
   solution.converged = true;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const Parameter& parameter = parameters[p];
     double theta = parameter.theta;
     if (p == kStiffness) {
-      theta = parameter.ToTheta(expected.law.tangential_stiffness);
+      theta = parameter.ToTheta(law.tangential_stiffness);
     } else if (p == kShape) {
-      theta = parameter.ToTheta(expected.law.shape_exponent);
+      theta = parameter.ToTheta(law.shape_exponent);
     } else if (p == kSlipForce) {
-      theta = parameter.ToTheta(expected.law.slip_force);
+      theta = parameter.ToTheta(law.slip_force);
     } else if (p == kRig && parameters.has_rig()) {
       theta = parameter.ToTheta(expected.rig.stiffness);
+    } else if (p == kLoadExponent && !parameter.absent) {
+      theta = parameter.ToTheta(expected.load_exponent);
     } else if (!parameter.fixed && !parameter.term->positive) {
       theta = parameter.ToTheta(0.0);
     }
@@ -115,23 +148,27 @@ Autocorrelation FirstOrder(double correlation) {
   return result;
 }
 
-/// 2 ln Λ of the loop fitted by Dahl's own law: Σ(T_Dahl − T)² over the variance of the noise,
+/// 2 ln Λ of the loops fitted by Dahl's own law: Σ(T_Dahl − T)² over the variance of the noise,
 /// errors of the displacement acting as force noise by the slope of the loop.
-double LawEvidence(const loop::Record& record, const Expectation& expected,
+double LawEvidence(const std::vector<loop::Record>& records, const Expectation& expected,
                    const Protocol& protocol) {
   if (protocol.initial_state == InitialState::kSteady) return 0.0;
   FitOptions options;
   options.model = models::FindFrictionModel("dahl");
   options.initial_state = protocol.initial_state;
+  options.normal_loads = protocol.loads;
   if (!IsRigid(expected.rig)) options.fixed["rig_stiffness"] = expected.rig.stiffness;
-  const FitResult other = Fit({&record, 1}, options, Depth::kEstimate);
+  const FitResult other = Fit(records, options, Depth::kEstimate);
   double slopes = 0.0;  // Σ(dT/dδ)²
-  for (std::size_t i = 1; i < record.size(); ++i) {
-    const double step = record.displacement[i] - record.displacement[i - 1];
-    const double rise = record.force[i] - record.force[i - 1];
-    if (step != 0) slopes += (rise / step) * (rise / step);
+  double samples = 0.0;
+  for (const loop::Record& record : records) {
+    for (std::size_t i = 1; i < record.size(); ++i) {
+      const double step = record.displacement[i] - record.displacement[i - 1];
+      const double rise = record.force[i] - record.force[i - 1];
+      if (step != 0) slopes += (rise / step) * (rise / step);
+    }
+    samples += static_cast<double>(record.size());
   }
-  const auto samples = static_cast<double>(record.size());
   const double of_force = expected.force_noise * expected.force_noise;
   const double of_displacement = expected.displacement_noise * expected.displacement_noise;
   const double variance = of_force + slopes / samples * of_displacement;
@@ -149,8 +186,9 @@ const ParameterEstimate* ExpectedFit::Find(std::string_view name) const {
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
                       const FitOptions& given) {
   Require(expected, protocol, given);
-  const loop::Record record = LoopOf(expected, protocol);
+  const std::vector<loop::Record> records = LoopsOf(expected, protocol);
   FitOptions options = given;
+  options.normal_loads = protocol.loads;
   options.initial_state = protocol.initial_state;
   options.force_noise = expected.force_noise;
   options.preparation.force_sense = 1;
@@ -160,12 +198,18 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
   }
   Arena arena;
-  const loop::RecordView view(record);
-  const loop::PreparedRecords prepared = loop::Prepare({&view, 1}, options.preparation, &arena);
+  const std::vector<loop::RecordView> views(records.begin(), records.end());
+  const loop::PreparedRecords prepared = loop::Prepare(views, options.preparation, &arena);
   ScaledRecords data = Scale(prepared, options, &arena);
+  if (records.size() > 1 && !data.is_load_series) {
+    throw InvalidArgument(
+        fmt::format("loads are one load: the largest must exceed the least by more than {:g} %",
+                    100 * options.thresholds.load_difference));
+  }
   const Problem problem{&data, options.model, protocol.initial_state,
                         Parameters(data, options, protocol.initial_state, &arena)};
-  Solution solution = SolutionAt(expected, problem.parameters);
+  Solution solution =
+      SolutionAt(expected, AtLoad(expected, MeanLoad(protocol)), problem.parameters);
   const DisplacementErrors errors(prepared, data);
   Response response;
   Noise noise;
@@ -183,8 +227,10 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
                             options.thresholds, response);
   ExpectedFit result;
   result.protocol = protocol;
-  for (const double force : record.force) {
-    result.peak_force = std::max(result.peak_force, std::abs(force));
+  for (const loop::Record& record : records) {
+    for (const double force : record.force) {
+      result.peak_force = std::max(result.peak_force, std::abs(force));
+    }
   }
   for (const std::size_t p : problem.parameters.reported()) {
     const Parameter& parameter = problem.parameters[p];
@@ -195,7 +241,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
     estimate.status = StatusOf(parameter, solution.side[p]);
     estimates.Fill(p, estimate);
   }
-  result.law_evidence = LawEvidence(record, expected, protocol);
+  result.law_evidence = LawEvidence(records, expected, protocol);
   return result;
 }
 

@@ -43,8 +43,19 @@ double ErrorOf(const ExpectedFit& fit, std::string_view name) {
   return estimate != nullptr && estimate->standard_error ? *estimate->standard_error : NAN;
 }
 
-/// Standard deviations of σ, α and Tc over fits of simulated loops, by the public interface alone.
-std::array<double, 3> Scatter(const Expectation& expected, const Protocol& protocol, int loops) {
+/// The law at a load over the one it is of: σ ∝ N^p, Tc ∝ N.
+BranchLaw AtLoad(const Expectation& expected, double load) {
+  return {expected.law.tangential_stiffness * std::pow(load, expected.load_exponent),
+          expected.law.shape_exponent, expected.law.slip_force * load};
+}
+
+/// What Scatter looks at: the load exponent is 1 where there is one load.
+constexpr std::array kFitted = {"sigma", "alpha", "slip_force", "load_exponent"};
+using Deviations = std::array<double, kFitted.size()>;
+
+/// Standard deviations over fits of simulated loops, by the public interface alone.
+Deviations Scatter(const Expectation& expected, const Protocol& protocol, int loops,
+                   const std::vector<std::string>& terms = {}) {
   const models::Excitation sine =
       models::MakeExcitation({.amplitude = protocol.amplitude,
                               .cycles = protocol.cycles,
@@ -57,39 +68,48 @@ std::array<double, 3> Scatter(const Expectation& expected, const Protocol& proto
   const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
   const models::LoadingPath path = models::MakeLoadingPath(
       sine.displacement, reversals, model.memory, {.state = protocol.initial_state});
-  std::vector<double> force(sine.displacement.size());
-  models::EvaluateForce(model, expected.law, path, sine.displacement, force, expected.rig);
+  std::vector<std::vector<double>> forces;
+  for (const double load : protocol.loads.empty() ? std::vector{1.0} : protocol.loads) {
+    std::vector<double>& force = forces.emplace_back(sine.displacement.size());
+    models::EvaluateForce(model, AtLoad(expected, load), path, sine.displacement, force,
+                          expected.rig);
+  }
   FitOptions options;
+  options.normal_loads = protocol.loads;
+  options.terms = terms;
   options.initial_state = protocol.initial_state;
   options.preparation.displacement_noise = expected.displacement_noise;
   options.force_noise = expected.force_noise;
-  if (std::isfinite(expected.rig.stiffness))
+  if (std::isfinite(expected.rig.stiffness) && terms.empty())
     options.fixed["rig_stiffness"] = expected.rig.stiffness;
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal;
-  std::array<double, 3> sums{};
-  std::array<double, 3> squares{};
+  Deviations sums{};
+  Deviations squares{};
   for (int k = 0; k < loops; ++k) {
-    Record record;
-    record.time = sine.time;
-    double noise = normal(generator);
-    for (std::size_t i = 0; i < force.size(); ++i) {
-      record.displacement.push_back(sine.displacement[i] +
-                                    expected.displacement_noise * normal(generator));
-      record.force.push_back(force[i] + expected.force_noise * noise);
-      const double rho = expected.autocorrelation;
-      noise = rho * noise + std::sqrt(1 - rho * rho) * normal(generator);
+    std::vector<Record> records;
+    for (const std::vector<double>& force : forces) {
+      Record& record = records.emplace_back();
+      record.time = sine.time;
+      double noise = normal(generator);
+      for (std::size_t i = 0; i < force.size(); ++i) {
+        record.displacement.push_back(sine.displacement[i] +
+                                      expected.displacement_noise * normal(generator));
+        record.force.push_back(force[i] + expected.force_noise * noise);
+        const double rho = expected.autocorrelation;
+        noise = rho * noise + std::sqrt(1 - rho * rho) * normal(generator);
+      }
     }
-    const FitResult fit = Fit({&record, 1}, options, Depth::kEstimate);
-    const std::array<double, 3> values = {fit.law.tangential_stiffness, fit.law.shape_exponent,
-                                          fit.law.slip_force};
-    for (std::size_t j = 0; j < 3; ++j) {
-      sums[j] += values[j];
-      squares[j] += values[j] * values[j];
+    const FitResult fit = Fit(records, options, Depth::kEstimate);
+    for (std::size_t j = 0; j < kFitted.size(); ++j) {
+      const ParameterEstimate* estimate = fit.Find(kFitted[j]);
+      const double value = estimate != nullptr ? estimate->value : 1.0;
+      sums[j] += value;
+      squares[j] += value * value;
     }
   }
-  std::array<double, 3> deviations{};
-  for (std::size_t j = 0; j < 3; ++j) {
+  Deviations deviations{};
+  for (std::size_t j = 0; j < kFitted.size(); ++j) {
     deviations[j] = std::sqrt((squares[j] - sums[j] * sums[j] / loops) / (loops - 1));
   }
   return deviations;
@@ -118,11 +138,54 @@ TEST(Plan, ExpectedErrorsAreTheScatterOfSimulatedFits) {
     expected.rig.stiffness = c.rig_stiffness;
     const Protocol protocol = Loop(c.lambda, c.state);
     const ExpectedFit fit = ExpectFit(expected, protocol);
-    const std::array<double, 3> scatter = Scatter(expected, protocol, kLoops);
+    const Deviations scatter = Scatter(expected, protocol, kLoops);
     EXPECT_NEAR(ErrorOf(fit, "sigma") / scatter[0], 1.0, kTolerance) << c.lambda;
     EXPECT_NEAR(ErrorOf(fit, "alpha") / scatter[1], 1.0, kTolerance) << c.lambda;
     EXPECT_NEAR(ErrorOf(fit, "slip_force") / scatter[2], 1.0, kTolerance) << c.lambda;
   }
+}
+
+TEST(Plan, ExpectedErrorsOfALoadSeriesAreTheScatterOfItsFits) {
+  constexpr int kLoops = 300;
+  constexpr double kTolerance = 0.12;  // three standard deviations, as above
+  Expectation expected = Quiet();
+  expected.rig.stiffness = 8e7;
+  expected.load_exponent = 0.5;
+  Protocol protocol = Loop(2.0);
+  protocol.loads = {0.5, 1.0, 2.0};
+  FitOptions with_rig;
+  with_rig.terms = {"rig_stiffness"};
+  const ExpectedFit fit = ExpectFit(expected, protocol, with_rig);
+  const Deviations scatter = Scatter(expected, protocol, kLoops, with_rig.terms);
+  for (std::size_t j = 0; j < kFitted.size(); ++j) {
+    EXPECT_NEAR(ErrorOf(fit, kFitted[j]) / scatter[j], 1.0, kTolerance) << kFitted[j];
+  }
+  EXPECT_NEAR(fit.Find("load_exponent")->value, 0.5, 1e-12);
+}
+
+TEST(Plan, ALoadSeriesTellsTheRigFromTheContact) {
+  Expectation expected = Quiet();
+  expected.rig.stiffness = 8e7;
+  FitOptions with_rig;
+  with_rig.terms = {"rig_stiffness"};
+  Protocol once = Loop(2.0, InitialState::kSteady);
+  once.cycles *= 3;  // as many samples as the series has
+  Protocol series = Loop(2.0, InitialState::kSteady);
+  series.loads = {0.5, 1.0, 2.0};
+  EXPECT_LT(2 * ErrorOf(ExpectFit(expected, series, with_rig), "rig_stiffness"),
+            ErrorOf(ExpectFit(expected, once, with_rig), "rig_stiffness"));
+}
+
+TEST(Plan, OneLoadOfItsOwnIsNoSeries) {
+  Protocol one = Loop(1.2);
+  one.loads = {1.0};
+  const ExpectedFit with = ExpectFit(Quiet(), one);
+  const ExpectedFit without = ExpectFit(Quiet(), Loop(1.2));
+  EXPECT_EQ(with.Find("load_exponent"), nullptr);
+  EXPECT_EQ(ErrorOf(with, "sigma"), ErrorOf(without, "sigma"));
+  // At twice the load it is the contact with twice the slip force.
+  one.loads = {2.0};
+  EXPECT_NEAR(ExpectFit(Quiet(), one).Find("slip_force")->value, 2 * kLaw.slip_force, 1e-12);
 }
 
 TEST(Plan, ErrorsAreInProportionToTheNoiseAndFallWithTheRootOfTheCycles) {
@@ -203,6 +266,11 @@ TEST(Plan, RefusesWhatMeansNothing) {
   FitOptions late;
   late.terms = {"lag"};
   EXPECT_THROW(ExpectFit(Quiet(), Loop(1.0), late), InvalidArgument);
+  Protocol alike = Loop(1.0);
+  alike.loads = {1.0, 1.001};
+  EXPECT_THROW(ExpectFit(Quiet(), alike), InvalidArgument);
+  alike.loads = {1.0, 0.0};
+  EXPECT_THROW(ExpectFit(Quiet(), alike), InvalidArgument);
   const ExpectedFit fit = ExpectFit(Quiet(), Loop(1.0));
   EXPECT_THROW(CyclesFactor(fit, {{"beta", {.value = 1}}}), InvalidArgument);
   EXPECT_THROW(CyclesFactor(fit, {{"alpha", {.value = 0}}}), InvalidArgument);
