@@ -1,10 +1,12 @@
 #include "mindahl/campaign/cycle_table.h"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <array>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -91,14 +93,16 @@ std::string CycleTableHeader(bool is_torsional) {
 
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
   CycleFit values = fit;
-  std::string row = fmt::format("{},{},{}", fit.number, fit.first_line, fit.samples);
+  fmt::memory_buffer row;
+  const auto end = std::back_inserter(row);
+  fmt::format_to(end, "{},{},{}", fit.number, fit.first_line, fit.samples);
   for (const CycleNumber& column : kNumbers) {
-    row += ',';
-    if (const Number& number = column.of(values)) row += fmt::format("{}", *number);
+    row.push_back(',');
+    if (const Number& number = column.of(values)) fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
-  row += ',';
-  if (fit.slips_grossly) row += *fit.slips_grossly ? kGross : kPartial;
-  return row + fmt::format(",{},{}\n", accumulated_energy, fmt::join(fit.flags, " "));
+  const std::string_view regime = !fit.slips_grossly ? "" : *fit.slips_grossly ? kGross : kPartial;
+  fmt::format_to(end, ",{},{},{}\n", regime, accumulated_energy, fmt::join(fit.flags, " "));
+  return fmt::to_string(row);
 }
 
 CycleTableEntry ReadCycleTableRow(std::string_view line) {

@@ -24,6 +24,9 @@ namespace {
 
 constexpr std::size_t kPiece = 1 << 20;  // bytes read at a time
 
+/// Of the first rows: what columns hold is judged from these.
+constexpr std::size_t kJudged = kPiece / 8;
+
 /// A line longer than that is no row of a record.
 constexpr std::size_t kLongestLine = 16 * kPiece;
 
@@ -127,7 +130,7 @@ struct RecordStream::State {
   std::string refusal;  // of a row that is reached next
 };
 
-/// Finds out from the first piece what the file holds.
+/// Finds out from the header and the first rows what the file holds.
 void RecordStream::State::Open(std::string_view text, const RecordColumns& columns) {
   if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
   const bool is_text = !text.empty() && text.find('\0') == std::string_view::npos;
@@ -135,7 +138,8 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
   const CsvLayout found = FindCsvLayout(text, name);
   first = text.substr(found.data_offset);
   line = found.data_line - 1;
-  const CsvTable table = ParseCsvTable(WholeRows(text, found), name);
+  const std::size_t judged = text.find('\n', found.data_offset + kJudged);
+  const CsvTable table = ParseCsvTable(WholeRows(text.substr(0, judged), found), name);
   layout = RecordOf(table, columns);
   const auto add = [&](const ChosenColumn& column, const std::optional<Unit>& unit,
                        std::vector<double> Samples::*values, std::string_view what) {

@@ -29,11 +29,12 @@ enum class BrokenRows { kRefuse, kSkip };
 /// A record read piece by piece, in memory that does not depend on its length.
 ///
 /// Delimiter, decimal mark, header, columns and units are found as ReadRecord() finds them, from
-/// the first mebibyte; every row is then read by the same rules, but that a quoted cell ends with
-/// its line. Lines end in LF or CRLF. Covariates are not read.
+/// the header, in the first mebibyte, and the first 128 kibibytes of rows; every row is then read
+/// by the same rules, but that a quoted cell ends with its line. Lines end in LF or CRLF.
+/// Covariates are not read.
 class RecordStream {
  public:
-  /// @throws InputError as ReadRecord() does of a file that ends with that mebibyte
+  /// @throws InputError as ReadRecord() does of a file that ends with these rows
   RecordStream(const std::filesystem::path& path, const RecordColumns& columns, BrokenRows broken);
   ~RecordStream();
   RecordStream(const RecordStream&) = delete;
