@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace mindahl::campaign {
 namespace {
 
-constexpr std::size_t kMostStretches = 6;
-constexpr std::size_t kLeastBins = 4;  // of a stretch: two beyond a line
+constexpr std::size_t kMostChanges = 8;
+constexpr std::size_t kFewChanges = 4;  // without one of which there are none
+constexpr std::size_t kLeastBins = 4;   // of a stretch: two beyond a line
+constexpr std::size_t kLeastSettling = 2 * kLeastBins;
+constexpr double kTimeConstantStep = 1.2;  // from one that is tried to the next
 constexpr double kChiSquared95 = 3.841458820694124;
 
 /// A line through bins: y = level + slope (x − x₀).
@@ -23,6 +28,19 @@ struct Line {
   double squares = 0.0;  // Σw(y − line)²
 
   [[nodiscard]] double At(double x) const { return level + slope * (x - x0); }
+};
+
+/// A course that settles: y = level + fall·e, e = exp(−(x − x₁)/τ), x₁ the first bin's.
+struct Settling {
+  double x1 = 0.0;
+  double level = 0.0;
+  double fall = 0.0;
+  double time_constant = 0.0;  // τ, cycles
+  double squares = 0.0;        // Σw(y − curve)²
+
+  [[nodiscard]] double At(double x) const {
+    return level + fall * std::exp(-(x - x1) / time_constant);
+  }
 };
 
 /// Least-squares lines through any run of bins from sums up to each, weights over their mean.
@@ -78,44 +96,161 @@ class Lines {
   double y_centre_ = 0.0;
 };
 
-/// The best cut into k stretches, k = 1 …: where each begins, and the squares that are left.
-struct Cut {
-  std::vector<std::size_t> begins;
-  double squares = 0.0;
+/// Least-squares curves of one τ through the first bins, however many, from sums up to each.
+class SettlingCurves {
+ public:
+  SettlingCurves(std::span<const Course::Bin> bins, double time_constant)
+      : x1_(bins.front().cycle), time_constant_(time_constant), sums_(bins.size() + 1) {
+    double total = 0.0;
+    for (const Course::Bin& bin : bins) {
+      total += bin.weight;
+      y_centre_ += bin.value / static_cast<double>(bins.size());
+    }
+    const double mean_weight = total / static_cast<double>(bins.size());
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+      const long double w = bins[i].weight / mean_weight;
+      const long double e = std::exp(-(bins[i].cycle - x1_) / time_constant);
+      const long double y = bins[i].value - y_centre_;
+      const Sums& s = sums_[i];
+      sums_[i + 1] = {s.w + w,          s.e + w * e,      s.y + w * y,
+                      s.ee + w * e * e, s.ey + w * e * y, s.yy + w * y * y};
+    }
+  }
+
+  [[nodiscard]] double time_constant() const { return time_constant_; }
+
+  [[nodiscard]] Settling Of(std::size_t end) const {
+    const Sums& s = sums_[end];
+    const long double e = s.e / s.w;
+    const long double y = s.y / s.w;
+    const long double ee = s.ee - s.w * e * e;
+    const long double ey = s.ey - s.w * e * y;
+    const long double yy = s.yy - s.w * y * y;
+    const long double fall = ee > 0 ? ey / ee : 0;
+    return {.x1 = x1_,
+            .level = static_cast<double>(y - fall * e) + y_centre_,
+            .fall = static_cast<double>(fall),
+            .time_constant = time_constant_,
+            .squares = std::max(0.0, static_cast<double>(yy - fall * ey))};
+  }
+
+ private:
+  struct Sums {
+    long double w, e, y, ee, ey, yy;
+  };
+  double x1_;
+  double time_constant_;
+  double y_centre_ = 0.0;
+  std::vector<Sums> sums_;
 };
 
-std::vector<Cut> BestCuts(const Lines& lines, std::size_t bins) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  const std::size_t most = std::clamp<std::size_t>(bins / (2 * kLeastBins), 1, kMostStretches);
-  // Of k + 1 stretches up to before bin j: the least squares, and where the last begins.
-  std::vector<std::vector<double>> squares(most, std::vector<double>(bins + 1, kNone));
-  std::vector<std::vector<std::size_t>> last(most, std::vector<std::size_t>(bins + 1, 0));
-  for (std::size_t j = 1; j <= bins; ++j) {
-    squares[0][j] = lines.Of(0, j).squares;
-    // The line over [i, j) is the last stretch of cuts into any number.
-    for (std::size_t i = kLeastBins; i + kLeastBins <= j; ++i) {
-      const double of_line = lines.Of(i, j).squares;
-      for (std::size_t k = 1; k < most && k * kLeastBins <= i; ++k) {
-        const double sum = squares[k - 1][i] + of_line;
-        if (sum < squares[k][j]) {
-          squares[k][j] = sum;
-          last[k][j] = i;
-        }
+/// The course's time constants, from that of a single bin to all of it, in steps of a fifth.
+std::vector<SettlingCurves> CurvesThrough(std::span<const Course::Bin> bins) {
+  std::vector<SettlingCurves> curves;
+  const double longest = bins.back().cycle - bins.front().cycle;
+  for (double tau = bins[1].cycle - bins[0].cycle; tau <= longest; tau *= kTimeConstantStep) {
+    curves.emplace_back(bins, tau);
+  }
+  return curves;
+}
+
+/// A cut into stretches: the bins of each, and the squares that are left. The bin within which
+/// something changes is of neither side, and may be left out between two.
+struct Cut {
+  struct Part {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+  std::vector<Part> parts;
+  double squares = 0.0;
+  std::optional<Settling> settling = std::nullopt;  ///< in place of the first part's line
+};
+
+/// The best cut for every number of what it is made of: places, bins left out, a curve, each of
+/// which counts for one.
+class BestCuts {
+ public:
+  /// @param of_curve  squares of a curve through the first bins, up to before each
+  /// @param changes   what a cut is made of at the most
+  BestCuts(const Lines& lines, std::size_t bins, std::span<const double> of_curve,
+           std::size_t changes)
+      : most_(std::clamp<std::size_t>(bins / (2 * kLeastBins), 1, changes + 1)), best_(bins + 1) {
+    for (std::size_t j = 1; j <= bins; ++j) {
+      Best& best = best_[j];
+      best.squares[0] = lines.Of(0, j).squares;
+      best.squares[1] = most_ > 1 ? of_curve[j] : kNone;
+      // The line over [i, j) is the last part of cuts that are made of any number.
+      for (std::size_t i = kLeastBins; i + kLeastBins <= j; ++i) {
+        const double of_line = lines.Of(i, j).squares;
+        Improve<0>(best, i, of_line);
+        if (i > kLeastBins) Improve<1>(best, i, of_line);
       }
     }
   }
-  std::vector<Cut> cuts;
-  for (std::size_t k = 0; k < most; ++k) {
-    Cut& cut = cuts.emplace_back(Cut{.begins = {}, .squares = squares[k][bins]});
-    std::size_t end = bins;
-    for (std::size_t stretch = k; stretch > 0; --stretch) {
-      end = last[stretch][end];
-      cut.begins.insert(cut.begins.begin(), end);
+
+  [[nodiscard]] std::vector<Cut> All() const {
+    std::vector<Cut> cuts;
+    for (std::size_t k = 0; k < most_ && best_.back().squares[k] < kNone; ++k) {
+      cuts.push_back(MadeOf(k));
     }
-    cut.begins.insert(cut.begins.begin(), 0);
+    return cuts;
   }
-  return cuts;
-}
+
+ private:
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  /// Up to before a bin, by what it is made of.
+  struct Best {
+    Best() { squares.fill(kNone); }
+    std::array<double, kMostChanges + 1> squares;
+    std::array<std::size_t, kMostChanges + 1> begin{};  // of the last part; 0: it is the first
+    std::array<std::size_t, kMostChanges + 1> left_out{};
+  };
+
+  template <std::size_t kLeftOut>
+  void Improve(Best& best, std::size_t i, double of_line) const {
+    const std::array<double, kMostChanges + 1>& before = best_[i - kLeftOut].squares;
+    constexpr std::size_t kMadeOf = 1 + kLeftOut;
+    for (std::size_t k = kMadeOf; k < most_; ++k) {
+      const double squares = before[k - kMadeOf] + of_line;
+      if (!(squares < best.squares[k])) continue;
+      best.squares[k] = squares;
+      best.begin[k] = i;
+      best.left_out[k] = kLeftOut;
+    }
+  }
+
+  [[nodiscard]] Cut MadeOf(std::size_t number) const {
+    Cut cut{.parts = {}, .squares = best_.back().squares[number]};
+    std::size_t end = best_.size() - 1;
+    for (;;) {
+      const Best& best = best_[end];
+      cut.parts.insert(cut.parts.begin(), {best.begin[number], end});
+      if (best.begin[number] == 0) break;
+      end = best.begin[number] - best.left_out[number];
+      number -= 1 + best.left_out[number];
+    }
+    if (number > 0) cut.settling.emplace();  // whichever it is
+    return cut;
+  }
+
+  std::size_t most_;
+  std::vector<Best> best_;
+};
+
+/// The line, or the curve, of a part of a cut.
+class PieceOf {
+ public:
+  PieceOf(const Lines& lines, const Cut& cut, std::size_t k)
+      : line_(lines.Of(cut.parts[k].begin, cut.parts[k].end)),
+        settling_(k == 0 ? cut.settling : std::nullopt) {}
+
+  [[nodiscard]] double At(double x) const { return settling_ ? settling_->At(x) : line_.At(x); }
+
+ private:
+  Line line_;
+  std::optional<Settling> settling_;
+};
 
 /// n bins tell as much as n (1 − φ)/(1 + φ) independent ones, φ the residuals' lag-one correlation.
 /// Lines take of it about as many nths as they have parameters and places, three a stretch, and the
@@ -123,12 +258,11 @@ std::vector<Cut> BestCuts(const Lines& lines, std::size_t bins) {
 double ShareOfIndependent(std::span<const Course::Bin> bins, const Lines& lines, const Cut& cut) {
   double squares = 0.0;
   double products = 0.0;
-  for (std::size_t k = 0; k < cut.begins.size(); ++k) {
-    const std::size_t end = k + 1 < cut.begins.size() ? cut.begins[k + 1] : bins.size();
-    const Line line = lines.Of(cut.begins[k], end);
+  for (std::size_t k = 0; k < cut.parts.size(); ++k) {
+    const PieceOf piece(lines, cut, k);
     double before = 0.0;
-    for (std::size_t i = cut.begins[k]; i < end; ++i) {
-      const double residual = std::sqrt(bins[i].weight) * (bins[i].value - line.At(bins[i].cycle));
+    for (std::size_t i = cut.parts[k].begin; i < cut.parts[k].end; ++i) {
+      const double residual = std::sqrt(bins[i].weight) * (bins[i].value - piece.At(bins[i].cycle));
       squares += residual * residual;
       products += before * residual;
       before = residual;
@@ -137,8 +271,8 @@ double ShareOfIndependent(std::span<const Course::Bin> bins, const Lines& lines,
   constexpr double kMostCorrelated = 0.95;
   if (!(squares > 0)) return 1.0;
   const double seen = products / squares;
-  const double taken = (3 * static_cast<double>(cut.begins.size()) + 1 + 3 * seen) /
-                       static_cast<double>(bins.size());
+  const double taken =
+      (3 * static_cast<double>(cut.parts.size()) + 1 + 3 * seen) / static_cast<double>(bins.size());
   const double phi = std::clamp(seen + taken, 0.0, kMostCorrelated);
   return (1 - phi) / (1 + phi);
 }
@@ -149,33 +283,75 @@ double NormalPValue(double z) { return std::erfc(std::abs(z) / std::numbers::sqr
 class Describer {
  public:
   Describer(std::span<const Course::Bin> bins, const ChangeThresholds& thresholds)
-      : bins_(bins), thresholds_(thresholds), lines_(bins) {}
+      : bins_(bins), thresholds_(thresholds), lines_(bins), curves_(CurvesThrough(bins)) {}
 
   CourseDescription Describe() {
-    const std::vector<Cut> cuts = BestCuts(lines_, bins_.size());
     // What rounding leaves of the squares tells nothing.
     constexpr double kRounding = 1e-24;
     floor_ = kRounding * lines_.total_squares() + std::numeric_limits<double>::min();
-    const Cut& best = cuts[NumberOfChanges(cuts)];
+    Cut best = BestCut(kFewChanges);
+    if (best.parts.size() > 1 || best.settling) {
+      // The time constant that was found lies between those that were tried.
+      if (best.settling) curves_.emplace_back(bins_, best.settling->time_constant);
+      best = BestCut(kMostChanges);
+    }
     CourseDescription description;
-    for (std::size_t k = 0; k < best.begins.size(); ++k) {
+    for (std::size_t k = 0; k < best.parts.size(); ++k) {
       description.stretches.push_back(StretchOf(best, k));
     }
-    for (std::size_t k = 1; k < best.begins.size(); ++k) {
+    for (std::size_t k = 1; k < best.parts.size(); ++k) {
       description.changes.push_back(ChangeAt(best, k));
     }
     NameKinds(description);
+    if (best.settling) DivideWhereItHasSettled(best, description);
     return description;
   }
 
  private:
-  /// One change more, or two, which only together may be better, as long as they are beyond chance.
+  /// The least squares of a curve through the first bins, of the time constants that are tried.
+  [[nodiscard]] double SquaresOfCurve(std::size_t end) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const SettlingCurves& curves : curves_) least = std::min(least, curves.Of(end).squares);
+    return least;
+  }
+
+  [[nodiscard]] Settling BestCurve(std::size_t end) const {
+    const auto nearest = std::ranges::min_element(
+        curves_, {}, [end](const SettlingCurves& curves) { return curves.Of(end).squares; });
+    const double centre = std::log(nearest->time_constant());
+    constexpr int kBits = 20;  // half the digits: a minimum is no better known
+    const auto squares_at = [&](double log_tau) {
+      return SettlingCurves(bins_.first(end), std::exp(log_tau)).Of(end).squares;
+    };
+    const double step = std::log(kTimeConstantStep);
+    const double log_tau =
+        boost::math::tools::brent_find_minima(squares_at, centre - step, centre + step, kBits)
+            .first;
+    return SettlingCurves(bins_, std::exp(log_tau)).Of(end);
+  }
+
+  /// The best cut of as many changes as are beyond chance, up to a number.
+  Cut BestCut(std::size_t most) {
+    std::vector<double> of_curve(bins_.size() + 1, std::numeric_limits<double>::infinity());
+    for (std::size_t j = kLeastSettling; j <= bins_.size(); ++j) of_curve[j] = SquaresOfCurve(j);
+    std::vector<Cut> cuts = BestCuts(lines_, bins_.size(), of_curve, most).All();
+    for (Cut& cut : cuts) {
+      if (!cut.settling) continue;
+      const std::size_t end = cut.parts.front().end;
+      cut.settling = BestCurve(end);
+      cut.squares += cut.settling->squares - of_curve[end];
+    }
+    return cuts[NumberOfChanges(cuts)];
+  }
+
+  /// Any number of changes more, as long as they are beyond chance: of a course that bends, two
+  /// may be worth nothing where three are worth much.
   std::size_t NumberOfChanges(const std::vector<Cut>& cuts) {
     const auto bins = static_cast<double>(bins_.size());
     const double penalty = 2 * std::log(bins / thresholds_.chance);
     std::size_t changes = 0;
     effective_ = bins * ShareOfIndependent(bins_, lines_, cuts.front());
-    for (std::size_t next = 1; next < cuts.size() && next <= changes + 2; ++next) {
+    for (std::size_t next = 1; next < cuts.size(); ++next) {
       const double effective = bins * ShareOfIndependent(bins_, lines_, cuts[next]);
       const double ratio =
           effective * std::log((cuts[changes].squares + floor_) / (cuts[next].squares + floor_));
@@ -190,23 +366,28 @@ class Describer {
     return effective_ * std::log(squares + floor_);
   }
 
-  [[nodiscard]] std::size_t EndOf(const Cut& cut, std::size_t k) const {
-    return k + 1 < cut.begins.size() ? cut.begins[k + 1] : bins_.size();
+  /// Within what single values of the bins have been: the ends of a line through what is not
+  /// straight may lie beyond.
+  [[nodiscard]] double Within(std::size_t begin, std::size_t end, double value) const {
+    const auto bins = bins_.subspan(begin, end - begin);
+    return std::clamp(value, std::ranges::min(bins, {}, &Course::Bin::least).least,
+                      std::ranges::max(bins, {}, &Course::Bin::greatest).greatest);
   }
 
-  [[nodiscard]] Stretch StretchOf(const Cut& cut, std::size_t k) const {
-    const std::size_t begin = cut.begins[k];
-    const std::size_t end = EndOf(cut, k);
+  /// Bins in a row, with what runs through them.
+  template <typename Piece>
+  [[nodiscard]] Stretch StretchOver(std::size_t begin, std::size_t end, const Piece& piece,
+                                    const Cut& cut) const {
     const Line line = lines_.Of(begin, end);
     const Course::Bin& first = bins_[begin];
     const Course::Bin& last = bins_[end - 1];
     Stretch stretch{.first_cycle = first.first_cycle,
                     .last_cycle = last.last_cycle,
-                    .at_start = line.At(first.cycle),
-                    .at_end = line.At(last.cycle),
+                    .at_start = Within(begin, end, piece.At(first.cycle)),
+                    .at_end = Within(begin, end, piece.At(last.cycle)),
                     .slope = line.slope};
     const auto bins = static_cast<double>(bins_.size());
-    const double free = bins - 2 * static_cast<double>(cut.begins.size());
+    const double free = bins - 2 * static_cast<double>(cut.parts.size());
     if (free > 0 && line.spread > 0) {
       const double variance = (cut.squares + floor_) / free * (bins / effective_);
       stretch.slope_p_value = NormalPValue(line.slope / std::sqrt(variance / line.spread));
@@ -217,34 +398,115 @@ class Describer {
     return stretch;
   }
 
+  [[nodiscard]] Stretch StretchOf(const Cut& cut, std::size_t k) const {
+    const Cut::Part& part = cut.parts[k];
+    Stretch stretch = StretchOver(part.begin, part.end, PieceOf(lines_, cut, k), cut);
+    if (k == 0 && cut.settling) stretch.time_constant = cut.settling->time_constant;
+    return stretch;
+  }
+
   [[nodiscard]] Change ChangeAt(const Cut& cut, std::size_t k) const {
-    const std::size_t begin = cut.begins[k - 1];
-    const std::size_t place = cut.begins[k];
-    const std::size_t end = EndOf(cut, k);
-    const auto squares_with = [&](std::size_t i) {
-      return lines_.Of(begin, i).squares + lines_.Of(i, end).squares;
+    const std::size_t begin = cut.parts[k - 1].begin;
+    const std::size_t before = cut.parts[k - 1].end;
+    const std::size_t after = cut.parts[k].begin;
+    const std::size_t end = cut.parts[k].end;
+    const std::size_t left_out = after - before;
+    const bool settles = k == 1 && cut.settling;
+    std::optional<SettlingCurves> curves;
+    if (settles) curves.emplace(bins_, cut.settling->time_constant);
+    const auto squares_before = [&](std::size_t i) {
+      return settles ? curves->Of(i).squares : lines_.Of(begin, i).squares;
     };
-    const double here = squares_with(place);
+    const auto squares_with = [&](std::size_t i) {
+      return squares_before(i) + lines_.Of(i + left_out, end).squares;
+    };
+    const double here = squares_with(before);
     const auto ratio = [&](double instead) {
       return LogLikelihoodScale(cut.squares - here + instead) - LogLikelihoodScale(cut.squares);
     };
-    std::size_t lower = place;
-    std::size_t upper = place;
-    for (std::size_t i = begin + 2; i + 2 <= end; ++i) {
+    std::size_t lower = before;
+    std::size_t upper = before;
+    for (std::size_t i = begin + 2; i + left_out + 2 <= end; ++i) {
       if (ratio(squares_with(i)) > kChiSquared95) continue;
       lower = std::min(lower, i);
       upper = std::max(upper, i);
     }
-    const double without = ratio(lines_.Of(begin, end).squares);
+    const double without =
+        ratio(settles ? std::min(squares_before(end), SquaresOfCurve(end)) : squares_before(end));
     const auto places = static_cast<double>(bins_.size());
-    const double x = static_cast<double>(bins_[place].first_cycle);
-    return {.kind = ChangeKind::kBend,
-            .cycle = bins_[place].first_cycle,
-            .lower95 = bins_[lower].first_cycle,
-            .upper95 = bins_[upper].first_cycle,
-            .before = lines_.Of(begin, place).At(x),
-            .after = lines_.Of(place, end).At(x),
-            .p_value = std::min(1.0, places * std::exp(-without / 2))};
+    const double x = static_cast<double>(bins_[after].first_cycle);
+    Change change{
+        .cycle = bins_[after].first_cycle,
+        // Within a bin of several cycles, on either side where none is left out.
+        .lower95 = left_out > 0 ? bins_[lower].first_cycle : bins_[lower - 1].first_cycle + 1,
+        .upper95 = left_out > 0 ? bins_[upper].last_cycle + 1 : bins_[upper].last_cycle,
+        .before = Within(begin, before, PieceOf(lines_, cut, k - 1).At(x)),
+        .after = Within(after, end, lines_.Of(after, end).At(x)),
+        .p_value = std::min(1.0, places * std::exp(-without / 2))};
+    if (left_out > 0) change.cycle = FirstAfter(bins_[before], change);
+    return change;
+  }
+
+  /// Of a bin within which a step is: its mean says how many of its cycles come after it.
+  static std::size_t FirstAfter(const Course::Bin& bin, const Change& change) {
+    const double step = change.after - change.before;
+    const double share = step == 0 ? 0.0 : std::clamp((bin.value - change.before) / step, 0.0, 1.0);
+    const double cycles = static_cast<double>(bin.last_cycle - bin.first_cycle + 1);
+    return bin.last_cycle + 1 - static_cast<std::size_t>(std::lround(share * cycles));
+  }
+
+  /// The first cycle at which the rate of a curve has fallen to what counts as settled.
+  [[nodiscard]] double SettledCycle(double time_constant) const {
+    return static_cast<double>(bins_.front().first_cycle) -
+           time_constant * std::log(thresholds_.settled);
+  }
+
+  /// Where a curve has settled before its stretch ends, that is a change.
+  void DivideWhereItHasSettled(const Cut& cut, CourseDescription& description) const {
+    const std::size_t end = cut.parts.front().end;
+    const Settling& curve = *cut.settling;
+    const double last = static_cast<double>(bins_[end - 1].last_cycle);
+    const double settled_at = SettledCycle(curve.time_constant);
+    const auto place = static_cast<std::size_t>(
+        std::ranges::find_if(bins_,
+                             [&](const Course::Bin& bin) {
+                               return static_cast<double>(bin.first_cycle) >= settled_at;
+                             }) -
+        bins_.begin());
+    if (place >= end) return;
+    const double others = cut.squares - curve.squares;
+    const auto ratio = [&](double instead) {
+      return LogLikelihoodScale(others + instead) - LogLikelihoodScale(cut.squares);
+    };
+    double lower = settled_at;
+    double upper = settled_at;
+    constexpr double kLeastStep = 0.003;  // of ln τ
+    constexpr double kGrowth = 1.1;
+    constexpr double kFarthest = 3.0;
+    for (const int sense : {-1, 1}) {
+      for (double step = kLeastStep; step < kFarthest; step *= kGrowth) {
+        const double tau = curve.time_constant * std::exp(sense * step);
+        if (ratio(SettlingCurves(bins_, tau).Of(end).squares) > kChiSquared95) break;
+        lower = std::min(lower, SettledCycle(tau));
+        upper = std::clamp(SettledCycle(tau), upper, last);
+      }
+    }
+    const auto places = static_cast<double>(bins_.size());
+    const double without = ratio(lines_.Of(0, end).squares);
+    const double value = Within(0, end, curve.At(settled_at));
+    description.changes.insert(description.changes.begin(),
+                               {.kind = ChangeKind::kEndOfRunningIn,
+                                .cycle = static_cast<std::size_t>(std::ceil(settled_at)),
+                                .lower95 = static_cast<std::size_t>(std::floor(lower)),
+                                .upper95 = static_cast<std::size_t>(std::ceil(upper)),
+                                .before = value,
+                                .after = value,
+                                .p_value = std::min(1.0, places * std::exp(-without / 2))});
+    Stretch running_in = StretchOver(0, place, curve, cut);
+    Stretch settled = StretchOver(place, end, curve, cut);
+    running_in.time_constant = settled.time_constant = curve.time_constant;
+    description.stretches.front() = settled;
+    description.stretches.insert(description.stretches.begin(), running_in);
   }
 
   void NameKinds(CourseDescription& description) const {
@@ -255,6 +517,7 @@ class Describer {
         change.kind = ChangeKind::kTransition;
       }
     }
+    if (stretches.front().time_constant) return;  // it is told by its curve
     // A running-in goes on, ever slower, until it has settled.
     for (std::size_t k = 0; k < changes.size() && stretches[k].trends; ++k) {
       const bool slows = std::abs(stretches[k + 1].slope) < std::abs(stretches[k].slope);
@@ -270,11 +533,23 @@ class Describer {
   std::span<const Course::Bin> bins_;
   const ChangeThresholds& thresholds_;
   Lines lines_;
+  std::vector<SettlingCurves> curves_;
   double effective_ = 0.0;
   double floor_ = 0.0;
 };
 
 }  // namespace
+
+/// The curve that has the values at the ends and the time constant between them.
+double Stretch::At(double cycle) const {
+  const double way = static_cast<double>(last_cycle) - static_cast<double>(first_cycle);
+  if (!(way > 0)) return at_start;
+  const double on = cycle - static_cast<double>(first_cycle);
+  const double share = time_constant
+                           ? std::expm1(-on / *time_constant) / std::expm1(-way / *time_constant)
+                           : on / way;
+  return at_start + share * (at_end - at_start);
+}
 
 void Course::Add(std::size_t cycle, double value, double weight) {
   if (bins_.empty() || bins_.back().count == width_) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/normal_quantile.h"
 #include "mindahl/core/error.h"
@@ -51,11 +52,16 @@ io::PlotPanel PanelOf(const Evolution& evolution) {
   panel.series.push_back(std::move(course));
   for (std::size_t k = 0; k < evolution.description.stretches.size(); ++k) {
     const Stretch& stretch = evolution.description.stretches[k];
-    panel.series.push_back(
-        {k == 0 ? "straight stretches" : "",
-         {static_cast<double>(stretch.first_cycle), static_cast<double>(stretch.last_cycle)},
-         {stretch.at_start / unit.factor, stretch.at_end / unit.factor},
-         io::PlotStyle::kLine});
+    io::PlotSeries line{k == 0 ? "stretches" : "", {}, {}, io::PlotStyle::kLine};
+    constexpr int kStepsOfCurve = 40;
+    const int steps = stretch.time_constant ? kStepsOfCurve : 1;
+    const auto first = static_cast<double>(stretch.first_cycle);
+    const double way = static_cast<double>(stretch.last_cycle) - first;
+    for (int step = 0; step <= steps; ++step) {
+      line.x.push_back(first + way * step / steps);
+      line.y.push_back(stretch.At(line.x.back()) / unit.factor);
+    }
+    panel.series.push_back(std::move(line));
   }
   for (const Change& change : evolution.description.changes) {
     panel.marks.push_back({.x = static_cast<double>(change.cycle),

@@ -117,7 +117,7 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
       "{} cycles of {} samples, {} fits; {} dissipated in all; {} samples at the ends are part of "
       "no whole cycle.",
       test.cycles, test.samples, test.fits, Quantity(test.dissipated, "J"), test.unused_samples));
-  Table courses("by the straight stretches of each course", {"quantity", "at first", "at last"});
+  Table courses("by the stretches of each course", {"quantity", "at first", "at last"});
   for (const Evolution& evolution : test.evolutions) {
     const auto& stretches = evolution.description.stretches;
     if (stretches.empty()) continue;

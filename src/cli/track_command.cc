@@ -511,13 +511,16 @@ nlohmann::ordered_json Run::Json() const {
     if (course.stretches.empty()) continue;
     nlohmann::ordered_json stretches = nlohmann::ordered_json::array();
     for (const campaign::Stretch& stretch : course.stretches) {
-      stretches.push_back({{"first_cycle", stretch.first_cycle},
-                           {"last_cycle", stretch.last_cycle},
-                           {"at_start", stretch.at_start},
-                           {"at_end", stretch.at_end},
-                           {"slope", stretch.slope},
-                           {"slope_p_value", stretch.slope_p_value},
-                           {"trends", stretch.trends}});
+      stretches.push_back(
+          {{"first_cycle", stretch.first_cycle},
+           {"last_cycle", stretch.last_cycle},
+           {"at_start", stretch.at_start},
+           {"at_end", stretch.at_end},
+           {"slope", stretch.slope},
+           {"slope_p_value", stretch.slope_p_value},
+           {"trends", stretch.trends},
+           {"time_constant", stretch.time_constant ? nlohmann::ordered_json(*stretch.time_constant)
+                                                   : nlohmann::ordered_json(nullptr)}});
     }
     nlohmann::ordered_json changes = nlohmann::ordered_json::array();
     for (const campaign::Change& change : course.changes) {

@@ -127,8 +127,7 @@ TEST(Changes, FindAStepWhereItIs) {
     EXPECT_NEAR(change.before, kLevel, 0.3);
     EXPECT_NEAR(change.after, 0.97 * kLevel, 0.3);
     EXPECT_LT(change.p_value, 1e-10);
-    // Bins are of two cycles.
-    covered += change.lower95 <= kStep && kStep <= change.upper95 + 1 ? 1 : 0;
+    covered += change.lower95 <= kStep && kStep <= change.upper95 ? 1 : 0;
   }
   EXPECT_GE(covered, 89);  // 95, less 2.5 of their scatter
   EXPECT_LE(more, 4);      // one in a hundred by chance
@@ -173,6 +172,118 @@ TEST(Changes, FindTheOnsetOfWear) {
   EXPECT_FALSE(description.stretches[0].trends);
   EXPECT_TRUE(description.stretches[1].trends);
   EXPECT_NEAR(description.stretches[1].slope, -0.02, 1e-3);
+}
+
+// From 50 to 60 with a time constant of 60 cycles, then 3 % less.
+constexpr double kTimeConstant = 60.0;
+constexpr std::size_t kStepAt = 700;
+
+double RunningInAndStep(std::size_t cycle) {
+  return kLevel - 10 * std::exp(-static_cast<double>(cycle) / kTimeConstant) -
+         (cycle < kStepAt ? 0.0 : 0.03 * kLevel);
+}
+
+class PreciseChanges : public ::testing::TestWithParam<double> {};  // noise over the level
+
+TEST_P(PreciseChanges, FindAStepBesideARunningIn) {
+  int covered = 0;
+  int plain = 0;
+  constexpr int kCampaigns = 40;
+  for (int k = 0; k < kCampaigns; ++k) {
+    const double noise = GetParam() * kLevel;
+    const CourseDescription description =
+        FindChanges(CourseOf(1000, static_cast<std::uint64_t>(k), RunningInAndStep, 0.0, noise));
+    ASSERT_GE(description.changes.size(), 2U) << k;
+    const Change& settled = description.changes.front();
+    const Change& step = description.changes.back();
+    plain += description.changes.size() == 2 ? 1 : 0;
+    EXPECT_EQ(settled.kind, ChangeKind::kEndOfRunningIn);
+    EXPECT_EQ(step.kind, ChangeKind::kTransition);
+    // The rate is a fifth of the first after ln 5 time constants.
+    const double end = 1 + kTimeConstant * std::log(5.0);
+    covered +=
+        static_cast<double>(settled.lower95) <= end && end <= static_cast<double>(settled.upper95)
+            ? 1
+            : 0;
+    EXPECT_LE(step.lower95, kStepAt);
+    EXPECT_GE(step.upper95, kStepAt);
+    // A line or a curve is known better than a cycle.
+    EXPECT_NEAR(step.before, kLevel, noise);
+    EXPECT_NEAR(step.after, 0.97 * kLevel, noise);
+    EXPECT_NEAR(*description.stretches.front().time_constant, kTimeConstant, 0.1 * kTimeConstant);
+  }
+  EXPECT_GE(covered, 34);  // of 40 38, less three of their scatter
+  EXPECT_GE(plain, 37);    // another change by chance in one of a hundred
+}
+
+TEST_P(PreciseChanges, FindWearAfterAStep) {
+  constexpr std::size_t kWearFrom = 600;
+  const auto truth = [](std::size_t cycle) {
+    return kLevel - (cycle < 400 ? 0.0 : 3.0) -
+           0.01 * (cycle > kWearFrom ? static_cast<double>(cycle - kWearFrom) : 0.0);
+  };
+  const double noise = GetParam() * kLevel;
+  const CourseDescription description = FindChanges(CourseOf(1000, 7, truth, 0.0, noise));
+  ASSERT_EQ(description.changes.size(), 2U);
+  const Change& step = description.changes.front();
+  EXPECT_EQ(step.kind, ChangeKind::kTransition);
+  EXPECT_LE(step.lower95, 400U);
+  EXPECT_GE(step.upper95, 400U);
+  const Change& wear = description.changes.back();
+  EXPECT_EQ(wear.kind, ChangeKind::kBend);
+  EXPECT_LE(wear.lower95, kWearFrom);
+  EXPECT_GE(wear.upper95 + 15, kWearFrom);  // the bend is not a step: it is as good before it
+  EXPECT_NEAR(description.stretches.back().slope, -0.01, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Noise, PreciseChanges, ::testing::Values(8e-3, 8e-4, 8e-5));
+
+TEST(Changes, SayNoValueThatNoCycleHad) {
+  // Neither straight nor exponential: lines through it end beyond it.
+  const auto truth = [](std::size_t cycle) {
+    return kLevel + 10 / std::sqrt(static_cast<double>(cycle));
+  };
+  const CourseDescription description = FindChanges(CourseOf(1000, 8, truth, 0.0, 1e-3));
+  ASSERT_FALSE(description.changes.empty());
+  constexpr double kFiveDeviations = 5e-3;
+  for (const Stretch& stretch : description.stretches) {
+    for (const double value : {stretch.at_start, stretch.at_end}) {
+      EXPECT_LE(value, truth(stretch.first_cycle) + kFiveDeviations);
+      EXPECT_GE(value, truth(stretch.last_cycle) - kFiveDeviations);
+    }
+  }
+  for (std::size_t k = 0; k < description.changes.size(); ++k) {
+    const Stretch& before = description.stretches[k];
+    const Stretch& after = description.stretches[k + 1];
+    const Change& change = description.changes[k];
+    EXPECT_GE(change.before, truth(after.last_cycle) - kFiveDeviations);
+    EXPECT_LE(change.before, truth(before.first_cycle) + kFiveDeviations);
+    EXPECT_GE(change.after, truth(after.last_cycle) - kFiveDeviations);
+    EXPECT_LE(change.after, truth(before.first_cycle) + kFiveDeviations);
+  }
+}
+
+TEST(Changes, TellTheCycleWithinABinOfSeveral) {
+  // Bins of eight cycles, a step in the middle of one: the mean of that says where.
+  for (const std::size_t step : {2043U, 2045U, 2047U}) {
+    const CourseDescription description = FindChanges(CourseOf(
+        4000, 3, [step](std::size_t cycle) { return cycle < step ? kLevel : 0.9 * kLevel; }, 0.0,
+        1e-3 * kLevel));
+    ASSERT_EQ(description.changes.size(), 1U) << step;
+    EXPECT_EQ(description.changes.front().cycle, step);
+  }
+}
+
+TEST(Stretches, PassThroughTheirEnds) {
+  Stretch stretch{.first_cycle = 11, .last_cycle = 31, .at_start = 5.0, .at_end = 3.0};
+  EXPECT_DOUBLE_EQ(stretch.At(11), 5.0);
+  EXPECT_DOUBLE_EQ(stretch.At(31), 3.0);
+  EXPECT_DOUBLE_EQ(stretch.At(21), 4.0);
+  stretch.time_constant = 10.0;
+  EXPECT_DOUBLE_EQ(stretch.At(11), 5.0);
+  EXPECT_DOUBLE_EQ(stretch.At(31), 3.0);
+  // a + b·e^(−n/τ): b = 2/(1 − e⁻²), one time constant on.
+  EXPECT_NEAR(stretch.At(21), 5 - 2 * (1 - std::exp(-1.0)) / (1 - std::exp(-2.0)), 1e-14);
 }
 
 TEST(Changes, DoNotDependOnTheUnit) {
