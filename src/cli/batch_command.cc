@@ -54,6 +54,7 @@ struct BatchCommandOptions {
   std::string output;
   std::string json_path;
   std::string report_directory;
+  bool overwrite = false;
 };
 
 /// What became of a file.
@@ -353,6 +354,7 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
   read.insert(read.end(), request.files.begin(), request.files.end());
   RequireOutputPaths(
       {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}}, read);
+  if (!options.overwrite) RequireNotThere({"--output", options.output}, "--overwrite");
   MakeFitOptions(request);  // what is wrong with the options is no fault of a file
   RequireReportDirectory(options.report_directory);
   std::vector<FileFit> fits;
@@ -413,6 +415,8 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       ->add_option("--threads", options->threads,
                    "that fit; the results do not depend on it; default one a core")
       ->check(WholeNumber(1, 1024))
+      ->group(group);
+  command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
       ->group(group);
   command
       ->add_flag("--strict", options->strict,

@@ -80,4 +80,10 @@ void RequireDistinctFiles(std::span<const std::string> files) {
   }
 }
 
+void RequireNotThere(const OutputPath& output, std::string_view remedy) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(output.path, ignored)) return;  // a device loses nothing
+  throw InputError(fmt::format("{}: {} exists: add {}", output.option, output.path, remedy));
+}
+
 }  // namespace mindahl::cli

@@ -25,4 +25,9 @@ void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
 /// @throws InputError naming both
 void RequireDistinctFiles(std::span<const std::string> files);
 
+/// A table is the work of hours: it is written over only where that is asked for.
+/// @param remedy  what to add, for the message
+/// @throws InputError where a file is there
+void RequireNotThere(const OutputPath& output, std::string_view remedy);
+
 }  // namespace mindahl::cli

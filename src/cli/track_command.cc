@@ -142,12 +142,8 @@ void RequireOptions(const TrackCommandOptions& options) {
   if (options.resume && options.overwrite) {
     throw InputError("--resume and --overwrite contradict each other: give one of the two");
   }
-  std::error_code error;
-  const bool is_there = std::filesystem::exists(options.output, error);
-  if (is_there && !options.resume && !options.overwrite) {
-    throw InputError(fmt::format(
-        "--output: {} exists: add --resume to go on with it, or --overwrite", options.output));
-  }
+  if (options.resume || options.overwrite) return;
+  RequireNotThere({"--output", options.output}, "--resume to go on with it, or --overwrite");
 }
 
 class Run {

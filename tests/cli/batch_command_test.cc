@@ -59,6 +59,20 @@ class BatchCommand : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
+TEST_F(BatchCommand, WritesOverNothingUnasked) {
+  const std::string record = Repeat(1);
+  ASSERT_EQ(Batch({record}).status, 0);
+  const std::vector<std::vector<std::string>> before = Table();
+  const Outcome refused = Batch({record, Repeat(2)});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_EQ(refused.Errors().size(), 1U) << refused.err;
+  EXPECT_NE(refused.err.find("table.csv exists: add --overwrite"), std::string::npos)
+      << refused.err;
+  EXPECT_EQ(Table(), before);
+  EXPECT_EQ(Batch({record, Repeat(2), "--overwrite"}).status, 0);
+  EXPECT_EQ(Table().size(), 3U);
+}
+
 TEST_F(BatchCommand, SaysOfEachFileWhatFitSays) {
   const std::vector<std::string> files = {Repeat(1), Repeat(2)};
   const Outcome outcome = Batch({files[0], files[1], "--normal-load", "50", "--json", "-"});
@@ -113,7 +127,7 @@ TEST_F(BatchCommand, GoesOnPastAFileThatFails) {
 TEST_F(BatchCommand, WritesTheSameWithAnyNumberOfThreads) {
   const std::vector<std::string> files = {Repeat(1), Repeat(2), Repeat(3)};
   const auto content = [&](const std::string& threads) {
-    Batch({files[0], files[1], files[2], "--threads", threads});
+    Batch({files[0], files[1], files[2], "--overwrite", "--threads", threads});
     std::ifstream file(Path("table.csv"));
     std::ostringstream text;
     text << file.rdbuf();
@@ -150,7 +164,7 @@ TEST_F(BatchCommand, FailsAFileThatIsNotEstablishedWhereStrict) {
   RunCommand({"simulate", "--sigma", "5e7", "--slip-force", "15", "--lambda", "0.05",
               "--noise-force", "0.05", "--cycles", "3", "-o", small});
   EXPECT_EQ(Batch({small}).status, 0);
-  EXPECT_EQ(Batch({small, "--strict"}).status, 3);
+  EXPECT_EQ(Batch({small, "--strict", "--overwrite"}).status, 3);
   EXPECT_EQ(Cell(Table(), 1, "done"), "no");
 }
 
