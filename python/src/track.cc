@@ -13,6 +13,7 @@
 
 #include "bindings.h"
 #include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/dissipated_energy.h"
 #include "mindahl/campaign/reading.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
@@ -40,7 +41,7 @@ struct TrackRequest {
 struct Tracked {
   std::vector<CycleFit> fits;
   bool is_torsional = false;
-  double energy_per_row = 1.0;  // cycles that a row stands for
+  std::size_t cycles_per_row = 1;
   std::vector<std::string> warnings;
 };
 
@@ -51,7 +52,7 @@ class Run {
       : request_(request), fit_(request::MakeCycleFitOptions(request.fit)) {
     if (request.normal_load) RequirePositive("--normal-load [N]", *request.normal_load);
     if (request.normal_load) fit_.normal_loads = {*request.normal_load};
-    tracked_.energy_per_row = static_cast<double>(request.together * request.every);
+    tracked_.cycles_per_row = request.together * request.every;
   }
 
   [[nodiscard]] bool has_begun() const { return tracker_.has_value(); }
@@ -188,9 +189,10 @@ std::tuple<py::dict, py::dict, std::vector<std::string>> ColumnsOf(Tracked track
   }
   py::list regimes;
   py::list flags;
-  double sum = 0.0;
+  campaign::DissipatedEnergy energy(tracked.cycles_per_row);
   columns["accumulated_energy"] = ColumnOf<double>(tracked.fits, [&](const CycleFit& fit) {
-    return sum += fit.energy.value_or(0.0) * tracked.energy_per_row;
+    energy.Add(fit);
+    return energy.total();
   });
   units["accumulated_energy"] = "J";
   for (const CycleFit& fit : tracked.fits) {

@@ -23,7 +23,7 @@ constexpr std::array kFlags = {
     CycleFlag{"alpha_open", "the cycle does not determine alpha"},
     CycleFlag{"slip_force_open", "the cycle does not determine Tc"},
     CycleFlag{"not_closed", "the cycle does not end where it began, to 5 % of its width"},
-    CycleFlag{"no_loop", "the cycle has no facts: it does not close, or dissipates nothing"},
+    CycleFlag{"no_loop", "the cycle has no facts: it dissipates nothing"},
     CycleFlag{"glitches", "spikes, dropouts or held values were left out"},
 };
 
@@ -43,6 +43,9 @@ loop::LoopFacts FactsOf(const loop::Record& record, const FitResult& result) {
 }
 
 void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
+  if (!std::ranges::all_of(facts.cycles, &loop::CycleFacts::returns)) {
+    fit.flags.emplace_back("not_closed");
+  }
   if (!facts.closed || !(facts.energy_per_cycle > 0)) {
     fit.flags.emplace_back("no_loop");
     return;
@@ -56,9 +59,6 @@ void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
   fit.slope_after_reversal = facts.slope_after_reversal;
   if (fit.normal_load) {
     fit.energy_friction_coefficient = loop::EnergyFrictionCoefficient(facts, *fit.normal_load);
-  }
-  if (!std::ranges::all_of(facts.cycles, &loop::CycleFacts::returns)) {
-    fit.flags.emplace_back("not_closed");
   }
 }
 

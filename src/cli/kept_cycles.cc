@@ -26,20 +26,16 @@ KeptCycles ReadKeptCycles(const std::string& path, std::string_view header,
   }
   KeptCycles kept;
   kept.bytes = header.size();
-  double accumulated_energy = 0.0;
   std::vector<std::string> batch;
   // What was being written when a run was killed is no row: it has no line feed.
   while (std::getline(file, line) && !file.eof()) {
     batch.push_back(line);
     if (batch.size() < campaign::kBatch) continue;
-    kept.energy_before_last_batch = accumulated_energy;
     kept.last_batch.clear();
     for (const std::string& row : batch) {
       ++kept.fits;
       try {
-        const campaign::CycleTableEntry entry = campaign::ReadCycleTableRow(row);
-        visit(entry);
-        accumulated_energy = entry.accumulated_energy;
+        visit(campaign::ReadCycleTableRow(row));
       } catch (const InputError& error) {
         throw InputError(fmt::format("--resume: {}:{}: {}: give another --output, or --overwrite",
                                      path, kept.fits + 1, error.what()));

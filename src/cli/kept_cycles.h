@@ -13,9 +13,8 @@ namespace mindahl::cli {
 /// What a table of cycles on disk holds of a run that is to go on: its whole batches.
 struct KeptCycles {
   std::size_t fits = 0;
-  std::uintmax_t bytes = 0;               ///< of the header and these
-  std::string last_batch;                 ///< its rows, to compare with
-  double energy_before_last_batch = 0.0;  ///< [J]
+  std::uintmax_t bytes = 0;  ///< of the header and these
+  std::string last_batch;    ///< its rows, to compare with
 };
 
 /// @param header  of the table that is to be written

@@ -78,8 +78,8 @@ report::Provenance ProvenanceOf(const CLI::App& command, const Console& console,
 
 report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& console,
                                       const std::string& file) {
-  constexpr std::array<std::string_view, 5> kOfBatch = {"--output", "--json", "--report",
-                                                        "--threads", "--strict"};
+  constexpr std::array<std::string_view, 6> kOfBatch = {"--output", "--overwrite", "--json",
+                                                        "--report", "--threads",   "--strict"};
   report::Provenance provenance = OptionsAndInputs(batch, console, {&file, 1});
   std::erase_if(provenance.options, [&](const auto& option) {
     return std::ranges::find(kOfBatch, option.first) != kOfBatch.end();

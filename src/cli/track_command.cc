@@ -29,8 +29,10 @@
 #include "cli/whole_number.h"
 #include "mindahl/campaign/changes.h"
 #include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/dissipated_energy.h"
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/pages.h"
+#include "mindahl/campaign/pooled_value.h"
 #include "mindahl/campaign/reading.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
@@ -49,6 +51,9 @@ namespace {
 using campaign::CycleFit;
 using identification::FitOptions;
 
+constexpr std::string_view kOwnAlpha = "cycle";
+constexpr std::string_view kSharedAlpha = "shared";
+
 struct TrackCommandOptions {
   FitRequest request;
   std::optional<double> normal_load;
@@ -56,6 +61,7 @@ struct TrackCommandOptions {
   std::size_t every = 1;
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string broken_rows = "refuse";
+  std::string alpha = std::string(kOwnAlpha);
   std::string output;
   std::string json_path;
   std::string plot_path;
@@ -110,7 +116,6 @@ struct Totals {
   std::size_t fits = 0;
   std::size_t flagged = 0;
   std::map<std::string, std::size_t> flags;
-  double energy = 0.0;  // J
   std::array<campaign::Course, kTracked.size()> courses;
 
   void Add(const CycleFit& fit) {
@@ -136,24 +141,60 @@ struct WhatWasRead {
   campaign::Reading of_head;
 };
 
+/// Two passes, over files that are there twice, with an alpha that is free.
+void RequireThatAlphaCanBeShared(const TrackCommandOptions& options) {
+  const FitOptions fit = request::MakeCycleFitOptions(options.request);
+  if (fit.model->shape_exponent || fit.fixed.contains("alpha")) {
+    throw InputError(
+        fmt::format("--alpha shared: alpha is not fitted: {} it",
+                    fit.fixed.contains("alpha") ? "--fix holds" : "--model prescribes"));
+  }
+  for (const std::string& file : options.request.files) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) continue;
+    throw InputError(fmt::format(
+        "--alpha shared: {} can be read only once, and two passes are needed: write it to a file",
+        file));
+  }
+}
+
 void RequireOptions(const TrackCommandOptions& options) {
   request::MakeCycleFitOptions(options.request);
   if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
+  if (options.alpha == kSharedAlpha) RequireThatAlphaCanBeShared(options);
   if (options.resume && options.overwrite) {
     throw InputError("--resume and --overwrite contradict each other: give one of the two");
+  }
+  std::error_code error;
+  const auto status = std::filesystem::status(options.output, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError(
+        fmt::format("--output: {} is no file: rows are appended to the table, give the name of one",
+                    options.output));
   }
   if (options.resume || options.overwrite) return;
   RequireNotThere({"--output", options.output}, "--resume to go on with it, or --overwrite");
 }
 
+io::BrokenRows BrokenRowsOf(const TrackCommandOptions& options) {
+  return options.broken_rows == "skip" ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
+}
+
 class Run {
  public:
   Run(const TrackCommandOptions& options, const CLI::App& command, Console& console)
-      : options_(options), command_(command), console_(console), messages_{console.err, "track"} {}
+      : options_(options),
+        command_(command),
+        console_(console),
+        messages_{console.err, "track"},
+        energy_(options.average * options.every) {}
 
   void Go();
 
  private:
+  void PoolAlpha();
+  [[nodiscard]] FitOptions OptionsFor(const io::Samples& head, campaign::Reading& reading) const;
   void Begin(io::RecordStream& stream, const io::Samples& head);
   void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
   void SayReading() const;
@@ -179,6 +220,8 @@ class Run {
   bool is_torsional_ = false;
   WhatWasRead reading_;
   Totals totals_;
+  campaign::DissipatedEnergy energy_;
+  std::optional<campaign::PooledValue> shared_alpha_;
   std::optional<KeptCycles> kept_;  // until its last batch was made again
   std::size_t resumed_ = 0;         // fits that were there
   std::optional<io::AppendedFile> output_;
@@ -191,21 +234,72 @@ class Run {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+FitOptions Run::OptionsFor(const io::Samples& head, campaign::Reading& reading) const {
+  FitOptions fit = request::MakeCycleFitOptions(options_.request);
+  if (options_.normal_load) fit.normal_loads = {*options_.normal_load};
+  reading = campaign::ChooseReading(campaign::ViewOf(head), fit);
+  return fit;
+}
+
+/// Fits every cycle with an alpha of its own, for what they have in common.
+void Run::PoolAlpha() {
+  campaign::PooledValue alpha;
+  std::optional<campaign::Tracker> tracker;
+  Progress progress(console_.err, "fitting alpha, the first of two passes");
+  for (const std::string& file : options_.request.files) {
+    io::RecordStream stream(file, options_.request.columns, BrokenRowsOf(options_));
+    io::Samples piece;
+    if (!tracker) {
+      piece = campaign::ReadHead(stream);
+      campaign::Reading reading;
+      tracker.emplace(campaign::TrackOptions{.fit = OptionsFor(piece, reading),
+                                             .together = options_.average,
+                                             .every = options_.every,
+                                             .threads = options_.threads},
+                      [&](std::span<const CycleFit> fits) {
+                        for (const CycleFit& fit : fits) {
+                          const bool is_known =
+                              !HasFlag(fit, "not_converged") && !HasFlag(fit, "alpha_open");
+                          const campaign::FittedValue& own = fit.alpha;
+                          if (!is_known || !own.value || !own.standard_error) continue;
+                          if (*own.standard_error > 0) alpha.Add(*own.value, *own.standard_error);
+                        }
+                      });
+    } else {
+      stream.Next(piece);
+    }
+    while (piece.size() > 0) {
+      tracker->Add(campaign::ViewOf(piece), piece.lines);
+      if (!stream.Next(piece)) break;
+    }
+    tracker->NextFile();
+  }
+  tracker->Finish();
+  if (alpha.count() == 0) {
+    throw InputError(
+        "--alpha shared: no cycle determines alpha: --fix alpha=VALUE holds it at one that is "
+        "known");
+  }
+  shared_alpha_ = alpha;
+}
+
 void Run::Begin(io::RecordStream& stream, const io::Samples& head) {
   is_torsional_ = stream.layout().is_torsional;
-  fit_ = request::MakeCycleFitOptions(options_.request);
-  if (options_.normal_load) fit_.normal_loads = {*options_.normal_load};
-  reading_.of_head = campaign::ChooseReading(campaign::ViewOf(head), fit_);
+  fit_ = OptionsFor(head, reading_.of_head);
+  if (shared_alpha_) fit_.fixed["alpha"] = shared_alpha_->mean();
   SayReading();
   const std::string header = campaign::CycleTableHeader(is_torsional_);
   std::error_code error;
   if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
-    kept_ = ReadKeptCycles(options_.output, header,
-                           [&](const campaign::CycleTableEntry& entry) { totals_.Add(entry.fit); });
+    campaign::DissipatedEnergy energy = energy_;
+    kept_ = ReadKeptCycles(options_.output, header, [&](const campaign::CycleTableEntry& entry) {
+      if (totals_.fits % campaign::kBatch == 0) energy_ = energy;  // before the last batch
+      energy.Add(entry.fit);
+      totals_.Add(entry.fit);
+    });
     resumed_ = kept_->fits;
     if (kept_->fits == 0) kept_.reset();
   }
-  if (kept_) totals_.energy = kept_->energy_before_last_batch;
   tracker_.emplace(campaign::TrackOptions{.fit = fit_,
                                           .together = options_.average,
                                           .every = options_.every,
@@ -231,10 +325,9 @@ void Run::SayReading() const {
 /// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
 void Run::Take(std::span<const CycleFit> fits) {
   std::string rows;
-  const auto stands_for = static_cast<double>(options_.average * options_.every);
   for (const CycleFit& fit : fits) {
-    totals_.energy += fit.energy.value_or(0.0) * stands_for;
-    rows += campaign::CycleTableRow(fit, totals_.energy);
+    energy_.Add(fit);
+    rows += campaign::CycleTableRow(fit, energy_.total());
   }
   if (kept_) {
     if (rows != kept_->last_batch) ThrowOther();
@@ -294,8 +387,8 @@ void Run::Go() {
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error) bytes_ += size;
   }
-  const io::BrokenRows broken =
-      options_.broken_rows == "skip" ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
+  const io::BrokenRows broken = BrokenRowsOf(options_);
+  if (options_.alpha == kSharedAlpha) PoolAlpha();
   try {
     for (const std::string& file : files) {
       io::RecordStream stream(file, options_.request.columns, broken);
@@ -408,7 +501,7 @@ campaign::TestSummary Run::Summary() const {
                              .samples = reading_.samples,
                              .fits = totals_.fits,
                              .unused_samples = reading_.unused_samples,
-                             .dissipated = totals_.energy,
+                             .dissipated = energy_.total(),
                              .evolutions = Evolutions()};
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
     const auto found = totals_.flags.find(std::string(flag.name));
@@ -442,6 +535,23 @@ void Run::Draw() {
   }
 }
 
+/// What of a sum was not measured; nothing where all was.
+std::string TextOf(const campaign::EnergyCounts& counts) {
+  std::vector<std::string> parts;
+  if (counts.replaced > 0) {
+    parts.push_back(fmt::format("{} that do not close by those before them", counts.replaced));
+  }
+  if (counts.left_out > 0) parts.push_back(fmt::format("{} by nothing", counts.left_out));
+  return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));
+}
+
+std::string TextOf(const campaign::PooledValue& alpha) {
+  return fmt::format(
+      "alpha {:.6g} ± {:.2g} shared, of {} cycles that scatter by {:.2g} beyond their errors, {}\n",
+      alpha.mean(), alpha.standard_error(), alpha.count(), alpha.scatter(),
+      ChanceText(alpha.p_value()));
+}
+
 void Run::WriteSummary() {
   std::string text = fmt::format("{} cycles of {} samples, {} fits in {}\n", reading_.cycles,
                                  reading_.samples, totals_.fits, options_.output);
@@ -450,7 +560,8 @@ void Run::WriteSummary() {
     text +=
         fmt::format("{} samples at the ends are part of no whole cycle\n", reading_.unused_samples);
   }
-  text += fmt::format("{:.6g} J dissipated in all\n", totals_.energy);
+  text += fmt::format("{:.6g} J dissipated in all{}\n", energy_.total(), TextOf(energy_.counts()));
+  if (shared_alpha_) text += TextOf(*shared_alpha_);
   if (totals_.flagged > 0) {
     text += fmt::format("\n{} {} a flag:\n", totals_.flagged,
                         totals_.flagged == 1 ? "cycle has" : "cycles have");
@@ -500,7 +611,18 @@ nlohmann::ordered_json Run::Json() const {
     flags[std::string(flag.name)] = found == totals_.flags.end() ? 0 : found->second;
   }
   json["flags"] = flags;
-  json["accumulated_energy"] = totals_.energy;
+  json["accumulated_energy"] = energy_.total();
+  const campaign::EnergyCounts& counts = energy_.counts();
+  json["energy_counts"] = {
+      {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
+  json["shared_alpha"] = nullptr;
+  if (shared_alpha_) {
+    json["shared_alpha"] = {{"value", shared_alpha_->mean()},
+                            {"standard_error", shared_alpha_->standard_error()},
+                            {"cycles", shared_alpha_->count()},
+                            {"scatter", shared_alpha_->scatter()},
+                            {"p_value", shared_alpha_->p_value()}};
+  }
   nlohmann::ordered_json quantities = nlohmann::ordered_json::object();
   for (std::size_t k = 0; k < kTracked.size(); ++k) {
     const campaign::CourseDescription& course = courses_[k];
@@ -579,6 +701,13 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   command->add_option("--every", options->every, "fit one cycle of so many")
       ->capture_default_str()
       ->check(WholeNumber(1, 1'000'000'000))
+      ->group(cycles);
+  command
+      ->add_option("--alpha", options->alpha,
+                   "cycle: each has its own; shared: all have one, the mean by errors of a\n"
+                   "first pass, and a second one fits sigma and Tc")
+      ->capture_default_str()
+      ->check(CLI::IsMember({std::string(kOwnAlpha), std::string(kSharedAlpha)}))
       ->group(cycles);
   command
       ->add_option("--broken-rows", options->broken_rows,

@@ -294,6 +294,109 @@ TEST_F(TrackCommand, StandsForTheCyclesThatItLeavesOut) {
   EXPECT_NEAR(energy({"--average", "5"}), whole, 1e-3 * whole);
 }
 
+TEST_F(TrackCommand, RefusesATableThatIsNoFile) {
+  const Outcome outcome = RunCommand({"track", record_, "--output", "/dev/null"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("/dev/null is no file"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.Errors().size(), 1U);
+}
+
+// A spike of the displacement turns it, and makes two pieces of a cycle.
+TEST_F(TrackCommand, CountsPiecesOfACycleForThatCycle) {
+  const std::vector<std::string> clean = Lines(ContentOf(record_));
+  const auto energy_of = [&](const std::vector<std::string>& lines) {
+    const std::string file = Write("spiked.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+    const Outcome outcome = RunCommand(
+        {"track", file, "--output", Path("spiked_table.csv"), "--overwrite", "--json", "-"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.Json();
+  };
+  const nlohmann::json whole = energy_of(clean);
+  EXPECT_EQ(whole["energy_counts"]["measured"], kCycles);
+  EXPECT_EQ(whole["energy_counts"]["replaced"], 0);
+  const std::vector<std::string> rows = Lines(Whole());
+  std::vector<std::string> spiked = clean;
+  for (const std::size_t cycle : {40U, 90U, 150U}) {
+    const std::size_t line = std::stoul(Cells(rows[cycle])[1]) - 1 + testing::kCycleSamples / 3;
+    const std::vector<std::string> cells = Cells(spiked[line]);
+    spiked[line] = fmt::format("{},{},{}", cells[0], 5 * testing::kCycleReach, cells[2]);
+  }
+  const nlohmann::json json = energy_of(spiked);
+  EXPECT_EQ(json["energy_counts"]["replaced"], 6);
+  // Two of 200 cycles would be one per cent.
+  EXPECT_NEAR(json["accumulated_energy"].get<double>(), whole["accumulated_energy"].get<double>(),
+              1e-3 * whole["accumulated_energy"].get<double>());
+  // The last nine before a batch are had from the table, too.
+  const std::string table = ContentOf(Path("spiked_table.csv"));
+  for (const double share : {0.4, 0.7, 0.9}) {
+    Write("part.csv",
+          table.substr(0, static_cast<std::size_t>(share * static_cast<double>(table.size()))));
+    ASSERT_EQ(
+        RunCommand({"track", Path("spiked.csv"), "--output", Path("part.csv"), "--resume"}).status,
+        0);
+    EXPECT_EQ(ContentOf(Path("part.csv")), table) << share;
+  }
+}
+
+TEST_F(TrackCommand, SharesAlphaOverTheTest) {
+  const Outcome outcome = RunCommand(
+      {"track", record_, "--output", Path("shared.csv"), "--alpha", "shared", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json shared = outcome.Json()["shared_alpha"];
+  const auto error = shared["standard_error"].get<double>();
+  EXPECT_EQ(shared["cycles"], kCycles);
+  EXPECT_NEAR(shared["value"].get<double>(), testing::kCycleLaw.shape_exponent, 4 * error);
+  const std::string table = ContentOf(Path("shared.csv"));
+  const std::vector<std::string> rows = Lines(table);
+  const std::vector<std::string> own = Lines(Whole());
+  ASSERT_EQ(rows.size(), own.size());
+  double weights = 0.0;
+  double values = 0.0;
+  for (std::size_t k = 1; k < own.size(); ++k) {
+    const std::vector<std::string> cells = Cells(own[k]);
+    const double weight = 1 / (std::stod(cells[16]) * std::stod(cells[16]));
+    weights += weight;
+    values += weight * std::stod(cells[15]);
+  }
+  constexpr double kRounding = 1e-13;
+  std::size_t better_sigma = 0;
+  std::size_t better_slip_force = 0;
+  EXPECT_NEAR(shared["value"].get<double>(), values / weights, kRounding);
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const std::vector<std::string> cells = Cells(rows[k]);
+    EXPECT_EQ(std::stod(cells[15]), shared["value"].get<double>());
+    EXPECT_TRUE(cells[16].empty());
+    // Alpha known, sigma and Tc are known better, but where residuals seem more correlated.
+    better_sigma += std::stod(cells[14]) < std::stod(Cells(own[k])[14]) ? 1 : 0;
+    better_slip_force += std::stod(cells[18]) < std::stod(Cells(own[k])[18]) ? 1 : 0;
+  }
+  EXPECT_GT(better_sigma, 9 * kCycles / 10);
+  EXPECT_GT(better_slip_force, 9 * kCycles / 10);
+  EXPECT_EQ(RunCommand({"track", record_, "--output", Path("two.csv"), "--alpha", "shared",
+                        "--threads", "2"})
+                .status,
+            0);
+  EXPECT_EQ(ContentOf(Path("two.csv")), table);
+  Write("part.csv", table.substr(0, 2 * table.size() / 3));
+  EXPECT_EQ(
+      RunCommand({"track", record_, "--output", Path("part.csv"), "--alpha", "shared", "--resume"})
+          .status,
+      0);
+  EXPECT_EQ(ContentOf(Path("part.csv")), table);
+}
+
+TEST_F(TrackCommand, SharesNoAlphaThatNoCycleDetermines) {
+  loop::Record far = TestRecord(5);
+  for (double& x : far.displacement) x *= 0.02;
+  for (double& force : far.force) force *= 0.02;
+  const Outcome outcome =
+      RunCommand({"track", Write("far.csv", TextOf(far)), "--output", Path("far_table.csv"),
+                  "--alpha", "shared", "--bound", "alpha=0.2:0.2000001"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("no cycle determines alpha"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(Path("far_table.csv")));
+}
+
 TEST_F(TrackCommand, RefusesWhatItCannotDo) {
   struct Case {
     std::vector<std::string> words;
@@ -306,6 +409,9 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
         Case{{record_, "--resume", "--overwrite"}, "contradict"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},
+        Case{{record_, "--alpha", "shared", "--fix", "alpha=0.3"}, "--fix holds it"},
+        Case{{record_, "--alpha", "shared", "--model", "mindlin"}, "--model prescribes it"},
+        Case{{"/dev/null", "--alpha", "shared"}, "can be read only once"},
         Case{{Path("nowhere.csv")}, "nowhere.csv"}}) {
     std::vector<std::string> words = {"track", "--output", Path("refused.csv")};
     words.insert(words.end(), refused.words.begin(), refused.words.end());

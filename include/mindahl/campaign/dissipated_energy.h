@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+
+#include "mindahl/campaign/cycle_fit.h"
+
+namespace mindahl::campaign {
+
+/// Of how many fits a sum of energies has what.
+struct EnergyCounts {
+  std::size_t measured = 0;  ///< their own, those with glitches as mended
+  std::size_t replaced = 0;  ///< by what the measured before them dissipate in as many samples
+  std::size_t left_out = 0;  ///< nothing: no energy is known of them, or they dissipate none
+};
+
+/// Energy [J] dissipated over a test, from fits in their order.
+///
+/// A cycle that does not end where it began is no loop, and what is between its ends is no energy
+/// dissipated: a spike of the displacement, which turns it, makes two of one cycle with ten times
+/// its energy. Such count for W = n·median(Wₖ/nₖ) of the last nine measured ones, n the steps
+/// between samples, so that the parts of a cycle count for it together; before any was measured
+/// they are left out. A glitch of the force is mended by a straight line, and costs a few per cent.
+class DissipatedEnergy {
+ public:
+  /// @param cycles  that a fit stands for, >= 1
+  explicit DissipatedEnergy(std::size_t cycles) : cycles_(static_cast<double>(cycles)) {}
+
+  void Add(const CycleFit& fit);
+
+  [[nodiscard]] double total() const { return total_; }
+  [[nodiscard]] const EnergyCounts& counts() const { return counts_; }
+
+ private:
+  double cycles_;
+  double total_ = 0.0;
+  EnergyCounts counts_;
+  std::deque<double> of_a_step_;  // [J], of the last that were measured
+};
+
+}  // namespace mindahl::campaign

@@ -1,0 +1,31 @@
+#include "mindahl/campaign/dissipated_energy.h"
+
+#include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
+#include <vector>
+
+namespace mindahl::campaign {
+namespace {
+
+constexpr std::size_t kNeighbours = 9;
+
+}  // namespace
+
+void DissipatedEnergy::Add(const CycleFit& fit) {
+  const double steps = fit.samples > 1 ? static_cast<double>(fit.samples - 1) : 0.0;
+  const bool is_open = std::ranges::find(fit.flags, "not_closed") != fit.flags.end();
+  if (is_open && !of_a_step_.empty()) {
+    std::vector<double> neighbours(of_a_step_.begin(), of_a_step_.end());
+    total_ += cycles_ * steps * boost::math::statistics::median(neighbours);
+    ++counts_.replaced;
+  } else if (is_open || !fit.energy) {
+    ++counts_.left_out;
+  } else {
+    total_ += cycles_ * *fit.energy;
+    ++counts_.measured;
+    if (of_a_step_.size() == kNeighbours) of_a_step_.pop_front();
+    of_a_step_.push_back(*fit.energy / steps);
+  }
+}
+
+}  // namespace mindahl::campaign
