@@ -3,8 +3,9 @@
 
     bench/peers/campaign.py [--build build/release] [--cycles 10000] [--rounds 5]
 
-Everything runs in turn on one core; a ratio is that of one round, the table has the median and the
-range. Then time against threads. docs/performance.md has the tables; scaling.py goes on to long records. Needs pandas and lmfit: scripts/install-dependencies.sh --peers
+Everything runs in turn on one core; the table has the ratio of the least times of all rounds, which
+others on the machine disturb least, and the median and the range of the ratios of each round. Then
+time against threads. docs/performance.md has the tables; scaling.py goes on to long records. Needs pandas and lmfit: scripts/install-dependencies.sh --peers
 """
 
 import argparse
@@ -85,12 +86,13 @@ def main():
                 times.setdefault(name, []).append(microseconds)
         print(f"{cycles} cycles of 200 samples, {os.path.getsize(record) / cycles / 1e3:.1f} kB "
               f"each, {arguments.rounds} rounds on one core\n")
-        print("| what | time a cycle over pandas' | range | this run [µs a cycle] |")
-        print("|---|---|---|---|")
+        print("| what | least time a cycle over pandas' | median of rounds | range | least [µs] |")
+        print("|---|---|---|---|---|")
+        peers = times["pandas, reading"]
         for name, values in times.items():
-            ratios = [own / peer for own, peer in zip(values, times["pandas, reading"])]
-            print(f"| {name} | {statistics.median(ratios):.3g} | {min(ratios):.3g} … "
-                  f"{max(ratios):.3g} | {statistics.median(values):.3g} |")
+            ratios = [own / peer for own, peer in zip(values, peers)]
+            print(f"| {name} | {min(values) / min(peers):.3g} | {statistics.median(ratios):.3g} | "
+                  f"{min(ratios):.3g} … {max(ratios):.3g} | {min(values):.3g} |")
 
         os.sched_setaffinity(0, cores)
         print("\n| threads | time over one thread's |")

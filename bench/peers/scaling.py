@@ -17,7 +17,7 @@ import time
 
 from campaign import CONTACT
 
-PIECE = 1000  # cycles that are repeated
+PIECE = 100  # cycles that are repeated
 
 FIGURE = """
 set terminal svg size 900,360 font "sans,12" background rgb "white"

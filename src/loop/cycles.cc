@@ -197,10 +197,12 @@ std::vector<double> CycleEnergies(const RecordView& record,
 }
 
 LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals) {
+  Validate(record);
   return MeasureLoop(record, reversals, std::pmr::get_default_resource());
 }
 
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals) {
+  Validate(record);
   return ForceSense(record, reversals, std::pmr::get_default_resource());
 }
 
@@ -212,7 +214,6 @@ LoopMeasures InSense(LoopMeasures measures, int force_sense) {
 
 LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals,
                          std::pmr::memory_resource* scratch) {
-  Validate(record);
   if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
   const std::span<const double> x = record.displacement;
   LoopMeasures measures;
@@ -245,7 +246,6 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
                std::pmr::memory_resource* scratch) {
-  Validate(record);
   if (record.size() == 0) return 0;
   constexpr double kThin = 0.01;  // energy over that of the rectangle round the loop, 4XT*
   const auto displacement = std::ranges::minmax(record.displacement);

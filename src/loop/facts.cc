@@ -382,13 +382,9 @@ std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double n
   return facts.energy_per_cycle / (4 * normal_load * *facts.sliding_amplitude);
 }
 
-LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
-                       int force_sense) {
-  Validate(record);
-  if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
-  if (force_sense != 1 && force_sense != -1) {
-    ThrowInvalid("force sense [-]", force_sense, "must be +1 or -1");
-  }
+namespace {
+
+LoopFacts MeasureValid(const RecordView& record, Points reversals, int force_sense) {
   if (force_sense == 1) return MeasureInSense(record, reversals);
   std::vector<double> turned(record.force.begin(), record.force.end());
   for (double& force : turned) force = -force;
@@ -397,10 +393,26 @@ LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> re
   return MeasureInSense(in_sense, reversals);
 }
 
+void RequireSense(int force_sense) {
+  if (force_sense == 1 || force_sense == -1) return;
+  ThrowInvalid("force sense [-]", force_sense, "must be +1 or -1");
+}
+
+}  // namespace
+
+LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
+                       int force_sense) {
+  Validate(record);
+  if (record.size() == 0) throw InvalidArgument("the record is empty: must have samples");
+  RequireSense(force_sense);
+  return MeasureValid(record, reversals, force_sense);
+}
+
 LoopFacts MeasureFacts(const PreparedRecord& prepared, int force_sense) {
+  RequireSense(force_sense);
   RecordView record = prepared.readings();
   record.displacement = prepared.displacement();
-  return MeasureFacts(record, prepared.reversals, force_sense);
+  return MeasureValid(record, prepared.reversals, force_sense);
 }
 
 }  // namespace mindahl::loop

@@ -12,7 +12,7 @@
 #include "mindahl/loop/reversals.h"
 
 /// The public functions of this module with their scratch, and what they return, in a memory that
-/// the caller gives: for stages that are run again and again.
+/// the caller gives: for stages that are run again and again. The record is valid.
 namespace mindahl::loop {
 
 void FindReversals(std::span<const double> displacement, double gate,

@@ -98,6 +98,7 @@ std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best,
   const double critical = estimates.quantile() * estimates.quantile();
   SolverOptions search = SolverOptionsOf(options);
   // Of the cost at the ends, by the parabola.
+  search.predicts_last = true;
   search.last_step = last_gain * noise.variance / (best.sum_of_squares + critical * noise.variance);
   HeldParameter held(problem, kSlipForce, best, noise, estimates, search, buffers);
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);

@@ -497,6 +497,13 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
       solution.termination = "No parameter moves by more than the parameter tolerance.";
       break;
     }
+    if (last && options.predicts_last) {
+      std::ranges::copy(trial_, u.begin());
+      cost = std::max(cost - predicted, 0.0);
+      solution.converged = true;
+      solution.termination = "No step can lower the cost by more than the function tolerance.";
+      break;
+    }
     const double trial_cost = Evaluate(trial_, /*with_gradient=*/!last);
     const bool better = trial_cost < cost;
     at_u = better;

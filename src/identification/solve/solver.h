@@ -16,6 +16,8 @@ struct SolverOptions {
   int max_iterations = 500;
   /// Of the cost: a full step from where no more can be gained is the last.
   double last_step = 1e-6;
+  /// By the parabola's word: the cost where it ends is not looked at, though it is moved to.
+  bool predicts_last = false;
 };
 
 struct Solution {
