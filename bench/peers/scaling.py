@@ -32,6 +32,7 @@ set logscale y
 set ylabel "time [s]"
 plot {times}
 unset logscale y
+set key right bottom
 set yrange [0:*]
 set ylabel "greatest memory [MB]"
 plot {memories}

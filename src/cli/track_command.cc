@@ -275,6 +275,7 @@ void Run::PoolAlpha() {
     tracker->NextFile();
   }
   tracker->Finish();
+  if (tracker->cycles() == 0) return;  // as the second pass will say
   if (alpha.count() == 0) {
     throw InputError(
         "--alpha shared: no cycle determines alpha: --fix alpha=VALUE holds it at one that is "

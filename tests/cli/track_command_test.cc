@@ -409,6 +409,7 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
         Case{{record_, "--resume", "--overwrite"}, "contradict"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},
+        Case{{one_stroke, "--alpha", "shared"}, "no whole cycle"},
         Case{{record_, "--alpha", "shared", "--fix", "alpha=0.3"}, "--fix holds it"},
         Case{{record_, "--alpha", "shared", "--model", "mindlin"}, "--model prescribes it"},
         Case{{"/dev/null", "--alpha", "shared"}, "can be read only once"},
