@@ -34,13 +34,14 @@ struct SlipForceProfile {
 
 /// F of the best fit against those with Tc at the lower and the upper end of the parabola's 95 %
 /// interval, over the critical one: 1 where the parabola is right. Tc is determined.
-/// @param last_gain  of F: a step that gains less is the last of a search. The searches start from
-///   the parabola's own minima, and leave less than a tenth of it
+/// @param last_gain  of F: a step that gains less is the last of a search, and its gain is taken as
+///   predicted. The searches start from the parabola's own minima, and are off by less than a fifth
+///   of it
 std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best, const Noise& noise,
                                    const Estimates& estimates, const FitOptions& options,
                                    double last_gain, SearchBuffers& buffers);
 
-/// What that is asked with: it leaves a thousandth of the critical F.
+/// What that is asked with: off by a thousandth of the critical F.
 inline constexpr double kLastGainAtEnds = 0.02;
 
 /// May the parabola be wrong along Tc? It is asked where the loop stays away from slip, where Tc is
