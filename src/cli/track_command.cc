@@ -117,6 +117,7 @@ struct Totals {
   std::size_t flagged = 0;
   std::map<std::string, std::size_t> flags;
   std::array<campaign::Course, kTracked.size()> courses;
+  std::array<bool, kTracked.size()> have_errors{};  // what is held has none
 
   void Add(const CycleFit& fit) {
     ++fits;
@@ -127,7 +128,9 @@ struct Totals {
       if (!value || HasFlag(fit, "not_converged") || HasFlag(fit, kTracked[k].open_flag)) continue;
       // What has no error is exact, held or without noise: then all are alike.
       const std::optional<double> error = kTracked[k].error(fit);
-      courses[k].Add(fit.number, *value, error && *error > 0 ? 1 / (*error * *error) : 1.0);
+      const bool has_error = error && *error > 0;
+      courses[k].Add(fit.number, *value, has_error ? 1 / (*error * *error) : 1.0);
+      have_errors[k] = have_errors[k] || has_error;
     }
   }
 };
@@ -489,7 +492,7 @@ std::vector<campaign::Evolution> Run::Evolutions() const {
     if (quantity.name == "slip_force" && is_known("friction_coefficient")) continue;
     evolutions.push_back({.name = std::string(quantity.name),
                           .unit = std::string(UnitOf(quantity.unit)),
-                          .has_errors = quantity.has_standard_error,
+                          .has_errors = quantity.has_standard_error && totals_.have_errors[k],
                           .course = totals_.courses[k],
                           .description = courses_[k]});
   }

@@ -385,6 +385,18 @@ TEST_F(TrackCommand, SharesAlphaOverTheTest) {
   EXPECT_EQ(ContentOf(Path("part.csv")), table);
 }
 
+TEST_F(TrackCommand, DrawsNoBandAroundWhatIsHeld) {
+  ASSERT_EQ(RunCommand({"track", record_, "--output", Path("held.csv"), "--alpha", "shared",
+                        "--report", Path("held.html")})
+                .status,
+            0);
+  const std::string page = ContentOf(Path("held.html"));
+  const std::string figure = page.substr(page.find("<h3>alpha"));
+  const std::string alpha = figure.substr(0, figure.find("</figure>"));
+  EXPECT_EQ(alpha.find("95 % of one"), std::string::npos);
+  EXPECT_NE(page.find("95 % of one"), std::string::npos);
+}
+
 TEST_F(TrackCommand, SharesNoAlphaThatNoCycleDetermines) {
   loop::Record far = TestRecord(5);
   for (double& x : far.displacement) x *= 0.02;
