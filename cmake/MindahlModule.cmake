@@ -24,13 +24,16 @@ if(MINDAHL_SANITIZE)
   target_link_options(mindahl_build_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
-# mindahl_add_module(NAME SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [PRECOMPILE headers...])
+separate_arguments(cold_options UNIX_COMMAND "${MINDAHL_COLD_COMPILE_OPTIONS}")
+
+# mindahl_add_module(NAME [COLD] SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [PRECOMPILE headers...])
 # One static library a module, mindahl::NAME, whose public headers are include/mindahl/NAME/*.h.
+# COLD: no part of the time that it takes to run is spent in it.
 # PRECOMPILE: headers of others that take most of the time to compile its sources.
 # What is all headers is asked of nobody who links the library.
 set(header_only Eigen3::Eigen Boost::headers nlohmann_json::nlohmann_json CLI11::CLI11)
 function(mindahl_add_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 MODULE "" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE")
+  cmake_parse_arguments(PARSE_ARGV 1 MODULE "COLD" "" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE")
   add_library(mindahl_${name} STATIC ${MODULE_SOURCES})
   add_library(mindahl::${name} ALIAS mindahl_${name})
   target_compile_features(mindahl_${name} PUBLIC cxx_std_20)
@@ -51,6 +54,9 @@ function(mindahl_add_module name)
   target_link_libraries(mindahl_${name}
     PUBLIC ${MODULE_PUBLIC}
     PRIVATE ${private_libraries} $<BUILD_INTERFACE:mindahl_build_flags>)
+  if(MODULE_COLD)
+    target_compile_options(mindahl_${name} PRIVATE ${cold_options})
+  endif()
   set_property(GLOBAL APPEND PROPERTY MINDAHL_MODULES ${name})
   if(MINDAHL_PRECOMPILE_HEADERS AND MODULE_PRECOMPILE)
     target_precompile_headers(mindahl_${name} PRIVATE ${MODULE_PRECOMPILE})
