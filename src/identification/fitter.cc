@@ -660,6 +660,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   Noise noise;
   bool settled = true;
   std::optional<TurningPointFit> turned;
+  bool fits_turns = false;
   if (std::isfinite(best->solution->sum_of_squares)) {
     if (is_weighted) {
       const auto fit_with_weights = [&] {
@@ -685,15 +686,22 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
       const bool has_lag = best->problem.parameters.has_lag();
       // Nor under a load that varies: the way between the samples is not the displacement's alone.
       if (best->solution->converged && !gated && !has_lag && !data.load_varies) {
-        turned = FitTurningPointsIfNeeded(best->problem, *best->solution, given, buffers.response);
+        turned = FitTurningPointsIfNeeded(best->problem, *best->solution, given, buffers);
       }
       if (turned) {
         best->problem.data = &turned->records->data;
         *best->solution = turned->solution;
+        fits_turns = turned->records->data.turns_are_fitted;
+        if (rival && !fits_turns) {
+          rival->problem.data = &turned->records->data;
+          buffers.solver.Bind(rival->problem, buffers.response);
+          const std::vector<double> start = rival->solution->theta;
+          buffers.solver.Solve(start, SolverOptionsOf(given), *rival->solution);
+        }
       }
       noise = PlainNoise(*best->problem.data, given, best->solution->sum_of_squares,
                          best->problem.parameters.free().size() +
-                             (turned ? turned->records->overshoot.size() : 0));
+                             (fits_turns ? turned->records->overshoot.size() : 0));
     }
   }
   const Solution& solution = *best->solution;
@@ -727,7 +735,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     Predict(best->problem, solution.theta, buffers.response, force);
     FillForces(attempt, best->problem, force, result);
   }
-  if (turned) {
+  if (fits_turns) {
     std::size_t k = 0;
     double longest = 0.0;
     for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -741,7 +749,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   if (is_judged) {
     Infer(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
-          rival && !turned ? &*rival : nullptr, result);
+          rival && !fits_turns ? &*rival : nullptr, result);
   } else if (depth == Depth::kErrors) {
     InferErrors(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
                 result);

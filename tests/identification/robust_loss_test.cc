@@ -36,7 +36,8 @@ constexpr std::array kParameters = {"sigma", "alpha", "slip_force"};
 
 Record NoisyLoop(std::uint64_t seed) {
   Generator generator(seed);
-  const History displacement = Cycling(Wave::kSine, 3e-6, 3.0, 150);  // twice gross slip
+  // Twice gross slip, its turns on samples: those between them are looked for without a loss only.
+  const History displacement = Cycling(Wave::kSine, 3e-6, 3.0, 152);
   return WithForceNoise(
       MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), kNoise,
       generator);

@@ -313,19 +313,52 @@ bool RepeatsByChance(const Thresholds& thresholds, double chance) {
   return fit.records[0].structure.repeatable_share > 0;
 }
 
-/// A loop whose extremes fall between samples, under noise of some size.
+/// A loop without the outermost sample of every turn, which puts the motion's own turning points in
+/// the wrong place, under noise of some size.
 bool TurnsAreFitted(const Thresholds& thresholds, double noise) {
   const Record dense = LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 3.0, 400));
   Record record;
   Generator generator(5);
   for (std::size_t i = 1; i < dense.size(); i += 8) {
+    if (i % 200 == 97 || i % 200 == 105) continue;  // turns are at 100 and 300
     record.displacement.push_back(dense.displacement[i]);
     record.force.push_back(dense.force[i] + noise * Normal(generator));
   }
   Stages stages(record, Virgin(thresholds));
   const Solution best = stages.Solve();
-  return FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers.response)
-      .has_value();
+  const auto turned =
+      FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers);
+  return turned && turned->records->data.turns_are_fitted;
+}
+
+/// Are turning points looked for that may move a parameter by so many standard errors?
+bool TurnsAreTried(const Thresholds& thresholds, double shift) {
+  const Record dense = LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 3.0, 400));
+  const auto largest_shift = [&](double noise, const Thresholds& tried) {
+    Record record;
+    Generator generator(5);
+    for (std::size_t i = 2; i < dense.size(); i += 8) {
+      record.displacement.push_back(dense.displacement[i]);
+      record.force.push_back(dense.force[i] + noise * Normal(generator));
+    }
+    Stages stages(record, Virgin(tried));
+    const Solution best = stages.Solve();
+    const ScaledRecord& data = stages.data.records[0];
+    double longest = 0.0;
+    for (std::size_t k = 0; k < data.reversals.size(); ++k) {
+      longest = std::max(longest, OvershootOfMotion(data, k));
+    }
+    // As if the whole record were as stiff as its virgin branch begins.
+    const double count = static_cast<double>(data.size());
+    const double rms = std::sqrt(best.sum_of_squares / count);
+    const double said = std::sqrt(count) * std::exp(best.theta[kStiffness]) * longest / rms;
+    const bool is_tried =
+        FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers).has_value();
+    return std::pair(said, is_tried);
+  };
+  const double noise = ZeroOf(
+      1e-2, 1e4, [&](double trial) { return largest_shift(trial, Thresholds()).first - shift; });
+  return largest_shift(noise, thresholds).second;
 }
 
 bool TurnsByChance(const Thresholds& thresholds, double chance) {
@@ -701,6 +734,10 @@ const std::map<std::string_view, Case>& Cases() {
       {"turning_point_chance",
        [](const Thresholds& t) {
          return TurnsByChance(t, kBelow * 1e-6) && !TurnsByChance(t, kAbove * 1e-6);
+       }},
+      {"turning_point_shift",
+       [](const Thresholds& t) {
+         return !TurnsAreTried(t, kBelow * 0.2) && TurnsAreTried(t, kAbove * 0.2);
        }},
       {"force_noise_share", NoiseIsToldByItsOwnSamples},
       {"most_absorbed", AbsorbsToOneHalf},

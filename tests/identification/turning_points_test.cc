@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -24,6 +25,7 @@ using testing::Model;
 using testing::Respond;
 using testing::Stages;
 using testing::Wave;
+using testing::WithForceNoise;
 
 constexpr BranchLaw kLaw{4e7, 0.4, 40.0};
 constexpr double kReach = 1.4e-6;  // [m]
@@ -85,8 +87,7 @@ TEST(TurningPoints, ColumnsAreTheDerivativesByTheOvershoots) {
         return values;
       };
       const auto turned = PutInTurningPoints(stages.data, overshoot);
-      EXPECT_TRUE(HasTurningPoints(turned->data));
-      EXPECT_FALSE(HasTurningPoints(stages.data));
+      EXPECT_EQ(turned->data.records[0].size(), stages.data.records[0].size() + overshoot.size());
       stages.problem.data = &turned->data;
       Response response;
       response.Bind(stages.problem);
@@ -110,6 +111,64 @@ TEST(TurningPoints, ColumnsAreTheDerivativesByTheOvershoots) {
       columns.ProjectOut(explained);
       EXPECT_LT(explained.norm(), 1e-7);
     }
+  }
+}
+
+/// How far beyond the outermost sample of a motion its turning points are said to lie, on average
+/// over those of a record of 10 cycles whose extremes fall anywhere between samples, less the
+/// truth.
+double LargestErrorOfOvershoot(Wave wave, int samples_a_cycle) {
+  constexpr int kFine = 64;
+  constexpr double kCycles = 10.0;
+  double largest = 0.0;
+  for (std::size_t begin = 0; begin < kFine; begin += 5) {
+    const auto displacement = Cycling(wave, kReach, kCycles, samples_a_cycle * kFine);
+    const Record record = Sparse(
+        MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), begin, kFine);
+    const Stages stages(record);
+    const ScaledRecord& scaled = stages.data.records[0];
+    const auto [least, greatest] = std::ranges::minmax(displacement);
+    for (std::size_t k = 0; k < scaled.reversals.size(); ++k) {
+      const double sample = record.displacement[scaled.reversals[k]];
+      const double truth = sample > 0 ? greatest - sample : sample - least;
+      const double said = OvershootOfMotion(scaled, k) * stages.data.length;
+      largest = std::max(largest, std::abs(said - truth) / kReach);
+    }
+  }
+  return largest;
+}
+
+TEST(TurningPoints, OfASmoothMotionAreThoseOfThePolynomialThroughFiveSamples) {
+  for (const int samples : {12, 25, 50}) {
+    const double step = 2 * M_PI / samples;
+    EXPECT_LT(LargestErrorOfOvershoot(Wave::kSine, samples), std::pow(step, 6) / 200) << samples;
+  }
+}
+
+TEST(TurningPoints, OfASharpMotionAreWhereItsLinesMeet) {
+  constexpr double kRounding = 1e-9;  // of differences of samples over small differences of slopes
+  EXPECT_LT(LargestErrorOfOvershoot(Wave::kTriangle, 24), kRounding);
+}
+
+TEST(TurningPoints, BetweenSamplesLeaveIntervalsTheirCoverage) {
+  // 25 samples a cycle, 1 % noise: the outermost samples for turning points would leave Tc's
+  // intervals 48 to 90 % (0.3 and 1 % noise). 95 % of 200, less three standard deviations.
+  constexpr int kLoops = 200;
+  constexpr double kLeast = 0.95 - 3 * 0.0154;
+  const auto dense = Cycling(Wave::kSine, kReach, 3.0, 25 * 64);
+  const Record exact =
+      Sparse(MakeRecord(dense, Respond(Model("mindlin-dahl"), kLaw, dense)), 0, 64);
+  for (const double noise : {0.003, 0.01}) {
+    Generator generator(3);
+    int covered = 0;
+    Fitter fitter;
+    for (int k = 0; k < kLoops; ++k) {
+      const Record record = WithForceNoise(exact, noise * kLaw.slip_force, generator);
+      const ParameterEstimate& estimate =
+          *fitter.Fit(RecordView(record), Depth::kErrors).Find("slip_force");
+      if (estimate.lower95 <= kLaw.slip_force && kLaw.slip_force <= estimate.upper95) ++covered;
+    }
+    EXPECT_GE(covered, kLeast * kLoops) << noise;
   }
 }
 
@@ -148,9 +207,9 @@ TEST(TurningPoints, NeedTwoSamplesThatCountAParameter) {
     Thresholds anything;
     anything.turning_point_chance = 0.9;
     stages.options.thresholds = anything;
-    const bool fitted =
-        FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers.response)
-            .has_value();
+    const auto turned =
+        FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers);
+    const bool fitted = turned && turned->records->data.turns_are_fitted;
     if (counting < 22) {
       EXPECT_FALSE(fitted);
     } else if (counting >= 40) {
@@ -169,10 +228,11 @@ TEST(TurningPoints, ThatWouldLieInsideAreRefusedAfterAll) {
   }
   Stages stages(record);
   const Solution best = stages.Solve();
-  const TurningPointStep step = StepTurningPoints(stages.problem, best, stages.buffers.response);
+  const std::vector<double> at_samples(LongestOvershoots(stages.data).size(), 0.0);
+  const TurningPointStep step =
+      StepTurningPoints(stages.problem, best, at_samples, stages.buffers.response);
   EXPECT_LT(step.left.squaredNorm(), 0.5 * best.sum_of_squares) << "the step is tempting";
-  EXPECT_FALSE(
-      FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers.response));
+  EXPECT_FALSE(FitTurningPointsIfNeeded(stages.problem, best, stages.options, stages.buffers));
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ struct Thresholds {
   double parabola_mobilised = 0.9;
   double rigid_error = 0.3;
   double turning_point_chance = 1e-6;
+  double turning_point_shift = 0.2;
   double force_noise_share = 0.8;
   double most_absorbed = 0.5;
   double redundant_gain = 0.01;

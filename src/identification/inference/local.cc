@@ -62,7 +62,7 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
                           {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
   at.residual = at.force;
   TakeOffMeasured(problem, {at.residual.data(), samples});
-  if (HasTurningPoints(*problem.data)) {
+  if (FitsTurningPoints(*problem.data)) {
     const TurningPointColumns turning(problem, theta, response);
     for (Eigen::Index c = 0; c < at.jacobian.cols(); ++c) turning.ProjectOut(at.jacobian.col(c));
   }

@@ -31,44 +31,94 @@ double LongestOvershoot(const ScaledRecords& data) {
   return longest;
 }
 
+/// The most that turning points where the motion has them move a parameter, in standard errors: as
+/// if every sample lay on the steepest part of its branch.
+double LargestShift(const Problem& problem, const Solution& best) {
+  double longest = 0.0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      longest = std::max(longest, OvershootOfMotion(record, k));
+    }
+  }
+  const auto counted = static_cast<double>(problem.data->counted);
+  return counted * std::exp(best.theta[kStiffness]) * longest / std::sqrt(best.sum_of_squares);
+}
+
+/// The fit with turning points where the motion has them; empty where that hardly matters, or the
+/// record tells that its outermost samples are better.
+std::optional<TurningPointFit> FitTurnedAsTheMotion(const Problem& problem, const Solution& best,
+                                                    const FitOptions& options,
+                                                    SearchBuffers& buffers) {
+  if (!(LargestShift(problem, best) > options.thresholds.turning_point_shift)) return {};
+  std::vector<double> overshoot;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      overshoot.push_back(OvershootOfMotion(record, k));
+    }
+  }
+  TurningPointFit fit{PutInTurningPoints(*problem.data, overshoot), best};
+  Problem turned = problem;
+  turned.data = &fit.records->data;
+  buffers.solver.Bind(turned, buffers.response);
+  buffers.solver.Solve(best.theta, SolverOptionsOf(options), fit.solution);
+  if (!fit.solution.converged) return {};
+  if (fit.solution.sum_of_squares <= best.sum_of_squares) return fit;
+  // Of two that the record does not tell apart, the one that does not take a sample for a turn.
+  std::vector<double> residual(problem.size());
+  EvaluateResidual(problem, best.theta, buffers.response, residual);
+  const Evidence evidence(problem.data->counted, EffectiveSamples(*problem.data, residual));
+  const double loss = evidence.LikelihoodRatio(fit.solution.sum_of_squares, best.sum_of_squares);
+  if (loss > options.thresholds.indistinguishable) return {};
+  return fit;
+}
+
 }  // namespace
 
 std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
                                                         const Solution& best,
                                                         const FitOptions& options,
-                                                        Response& response) {
+                                                        SearchBuffers& buffers) {
   const ScaledRecords& data = *problem.data;
   std::size_t reversals = 0;
   for (const ScaledRecord& record : data.records) reversals += record.reversals.size();
-  const std::size_t parameters = problem.parameters.free().size() + reversals;
-  if (reversals == 0 || 2 * parameters > data.counted) return {};
+  if (reversals == 0) return {};
   const auto count = static_cast<double>(data.counted);
   // Residuals of rounding size have nothing left to explain.
-  const double variance = best.sum_of_squares / count;
-  if (std::sqrt(variance) < kRoundingRms) return {};
-  // Nor have missed extremes that no sample could show: σ·overshoot is the most they may do.
+  const auto is_rounding = [&](const Solution& solution) {
+    return std::sqrt(solution.sum_of_squares / count) < kRoundingRms;
+  };
+  if (is_rounding(best)) return {};
+  std::optional<TurningPointFit> of_motion = FitTurnedAsTheMotion(problem, best, options, buffers);
+  const Solution& start = of_motion ? of_motion->solution : best;
+  const double least = start.sum_of_squares;
+  if (is_rounding(start)) return of_motion;
+
+  const std::size_t parameters = problem.parameters.free().size() + reversals;
+  if (2 * parameters > data.counted) return of_motion;
+  // Missed extremes explain nothing that no sample could show: σ·overshoot is the most they may do.
   const double most = std::exp(best.theta[kStiffness]) * LongestOvershoot(data);
-  if (count * most * most / variance < 2 * static_cast<double>(reversals)) return {};
+  if (count * count * most * most / least < 2 * static_cast<double>(reversals)) return of_motion;
 
   const double needed =
       ChiSquaredQuantile(static_cast<double>(reversals), options.thresholds.turning_point_chance);
-  TurningPointStep step = StepTurningPoints(problem, best, response);
+  const std::vector<double> overshoot =
+      of_motion ? of_motion->records->overshoot : std::vector<double>(reversals, 0.0);
+  TurningPointStep step = StepTurningPoints(problem, start, overshoot, buffers.response);
   const std::unique_ptr<TurnedRecords> turned = PutInTurningPoints(data, step.overshoot);
   const double left = EffectiveSamples(turned->data, {step.left.data(), turned->data.samples()});
-  if (!(Evidence(data.counted, left).LikelihoodRatio(best.sum_of_squares, step.left.squaredNorm()) >
-        needed)) {
-    return {};
+  if (!(Evidence(data.counted, left).LikelihoodRatio(least, step.left.squaredNorm()) > needed)) {
+    return of_motion;
   }
-  TurningPointFit fit = FitTurningPoints(problem, best, std::move(step.overshoot),
-                                         SolverOptionsOf(options), response);
+  TurningPointFit fit = FitTurningPoints(problem, start, std::move(step.overshoot),
+                                         SolverOptionsOf(options), buffers.response);
   Problem refitted = problem;
   refitted.data = &fit.records->data;
   std::vector<double> residual(refitted.size());
-  EvaluateResidual(refitted, fit.solution.theta, response, residual);
+  EvaluateResidual(refitted, fit.solution.theta, buffers.response, residual);
   const Evidence evidence(data.counted, EffectiveSamples(*refitted.data, residual));
   const double price = 2 * static_cast<double>(reversals);
-  const double gain = evidence.LikelihoodRatio(best.sum_of_squares, fit.solution.sum_of_squares);
-  if (!fit.solution.converged || !(gain > std::max(price, needed))) return {};
+  const double gain = evidence.LikelihoodRatio(least, fit.solution.sum_of_squares);
+  if (!fit.solution.converged || !(gain > std::max(price, needed))) return of_motion;
   return fit;
 }
 

@@ -2,14 +2,18 @@
 
 #include <optional>
 
+#include "identification/solve/search.h"
 #include "identification/solve/turning_points.h"
 #include "mindahl/identification/fit_options.h"
 
 namespace mindahl::identification {
 
-/// Fits again with a free overshoot a reversal where the record shows it to be needed.
+/// Fits again with turning points between the samples where the record shows that to be better.
 ///
-/// A linear step in all parameters says what overshoots would gain; where that is far beyond chance
+/// At first where the motion itself has them, by the samples about each reversal, without a
+/// parameter more: if they may move one by more than `turning_point_shift` standard errors, unless
+/// the record tells the outermost samples to be better. Then with a free overshoot a reversal. A
+/// linear step in all parameters says what overshoots would gain; where that is far beyond chance
 /// (2 ln Λ on the effective samples of what it leaves, χ² on as many degrees of freedom as
 /// reversals), they are fitted. The step is not taken where even the longest overshoots would be
 /// lost in the noise.
@@ -17,6 +21,6 @@ namespace mindahl::identification {
 std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
                                                         const Solution& best,
                                                         const FitOptions& options,
-                                                        Response& response);
+                                                        SearchBuffers& buffers);
 
 }  // namespace mindahl::identification

@@ -91,6 +91,10 @@ constexpr std::array kTable = {
     ThresholdRow{"turning_point_chance", &Thresholds::turning_point_chance, "p",
                  "chance at which turning points between samples are fitted for nothing",
                  "they cost a parameter a reversal; a record that needs them shows it by far"},
+    ThresholdRow{"turning_point_shift", &Thresholds::turning_point_shift, "standard errors",
+                 "turning points where the motion has them are tried where they may move a "
+                 "parameter by more",
+                 "a bias of that size leaves a 95 % interval 94.5 %"},
     ThresholdRow{"force_noise_share", &Thresholds::force_noise_share, "of a residual's variance",
                  "samples with less are left out of the model of the force's noise",
                  "where the displacement's noise prevails, residuals are as autocorrelated as its "

@@ -101,6 +101,7 @@ struct ScaledRecords {
   double reference_load = 0.0;         // [N]: the mean of these; 0 where they are not known
   bool is_load_series = false;         // do these differ?
   bool load_varies = false;            // within a record, and the law knows it
+  bool turns_are_fitted = false;       // are turning points between samples parameters of the fit?
 
   [[nodiscard]] std::size_t samples() const;
   /// Units, loads and covariates without records, and none that counts.

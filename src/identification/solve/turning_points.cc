@@ -1,8 +1,10 @@
 #include "identification/solve/turning_points.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 namespace mindahl::identification {
@@ -102,23 +104,96 @@ std::vector<BranchMotion> MotionOf(const models::LoadingPath& path, const Scaled
 
 }  // namespace
 
-bool HasTurningPoints(const ScaledRecords& data) {
-  return std::ranges::any_of(data.records,
-                             [](const ScaledRecord& record) { return !record.inserted.empty(); });
+bool FitsTurningPoints(const ScaledRecords& data) { return data.turns_are_fitted; }
+
+namespace {
+
+/// The longer of the steps beside a sample.
+double LongestStep(std::span<const double> x, std::size_t i) {
+  return std::max(std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i]));
+}
+
+/// Extremum beyond x₀ of the polynomial through samples first … last about it; from three samples
+/// the parabola's. Newton's form, and his method from the middle.
+double SmoothOvershoot(std::span<const double> x, std::span<const double> t, std::size_t i,
+                       std::size_t first, std::size_t last) {
+  constexpr std::size_t kMost = 5;
+  constexpr int kSteps = 6;  // a parabola takes one, a quartic about a turn three or four
+  std::array<double, kMost> c{};
+  const std::size_t count = last - first + 1;
+  std::copy_n(x.begin() + static_cast<std::ptrdiff_t>(first), count, c.begin());
+  for (std::size_t order = 1; order < count; ++order) {
+    for (std::size_t k = count - 1; k >= order; --k) {
+      c[k] = (c[k] - c[k - 1]) / (t[first + k] - t[first + k - order]);
+    }
+  }
+  const auto evaluate = [&](double at) {
+    std::array<double, 3> p{};  // value, first derivative, half the second
+    for (std::size_t k = count; k-- > 0;) {
+      const double step = at - t[first + k];
+      p[2] = p[2] * step + p[1];
+      p[1] = p[1] * step + p[0];
+      p[0] = p[0] * step + c[k];
+    }
+    return p;
+  };
+  double at = t[i];
+  for (int k = 0; k < kSteps; ++k) {
+    const auto p = evaluate(at);
+    at = std::clamp(at - p[1] / (2 * p[2]), t[i - 1], t[i + 1]);
+  }
+  return std::abs(evaluate(at)[0] - x[i]);
+}
+
+/// On which side of its outermost sample the motion turns: where the neighbour is the nearer one.
+bool TurnsBefore(std::span<const double> x, std::size_t i, double sense) {
+  return sense * (x[i - 1] - x[i + 1]) > 0;
+}
+
+/// Beyond x₀ of where the lines through two samples before the turn and two after it meet; empty
+/// where the turn is not sharp.
+std::optional<double> SharpOvershoot(std::span<const double> x, std::span<const double> t,
+                                     std::size_t i, double sense) {
+  const std::size_t a = TurnsBefore(x, i, sense) ? i - 1 : i;  // the last before the turn
+  const std::size_t b = a + 1;
+  if (a < 2 || b + 2 >= x.size()) return {};
+  const auto velocity = [&](std::size_t k) { return (x[k + 1] - x[k]) / (t[k + 1] - t[k]); };
+  const double rising = velocity(a - 1);
+  const double falling = velocity(b);
+  const double at_turn = std::abs(rising - falling);
+  const double beside = std::abs(rising - velocity(a - 2)) + std::abs(velocity(b + 1) - falling);
+  // Of a parabola they are equal, of a triangle there is nothing beside the turn.
+  if (!(beside < at_turn / 2)) return {};
+  const double since = (x[b] - x[a] - falling * (t[b] - t[a])) / (rising - falling);
+  return sense * (x[a] + rising * since - x[i]);
+}
+
+}  // namespace
+
+double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal) {
+  const std::size_t i = record.reversals[reversal];
+  const std::span<const double> x = record.displacement;
+  const std::span<const double> t = record.time;
+  const std::optional<double> sharp = SharpOvershoot(x, t, i, SenseOfTurn(record, reversal));
+  // Five samples where they lie on the two strokes that meet here.
+  const std::size_t before = reversal > 0 ? record.reversals[reversal - 1] : 0;
+  const bool is_last = reversal + 1 == record.reversals.size();
+  const std::size_t after = is_last ? x.size() - 1 : record.reversals[reversal + 1];
+  const std::size_t reach = i >= before + 2 && i + 2 <= after ? 2 : 1;
+  const double overshoot = sharp ? *sharp : SmoothOvershoot(x, t, i, i - reach, i + reach);
+  return std::clamp(std::isfinite(overshoot) ? overshoot : 0.0, 0.0, LongestStep(x, i));
 }
 
 std::vector<double> LongestOvershoots(const ScaledRecords& data) {
   std::vector<double> longest;
   for (const ScaledRecord& record : data.records) {
-    const auto& x = record.displacement;
     for (const std::size_t i : record.reversals) {
-      longest.push_back(std::max(std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i])));
+      longest.push_back(LongestStep(record.displacement, i));
     }
   }
   return longest;
 }
 
-/// The motion turns on that side of the outermost sample on which its neighbour is the nearer one.
 std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
                                                   std::span<const double> overshoot) {
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
@@ -141,8 +216,7 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
     for (std::size_t k = 0; k < record.reversals.size(); ++k) {
       const std::size_t i = record.reversals[k];
       const double sense = SenseOfTurn(record, k);
-      const bool turns_before = sense * (x[i - 1] - x[i + 1]) > 0;
-      copy_until(turns_before ? i : i + 1);
+      copy_until(TurnsBefore(x, i, sense) ? i : i + 1);
       turned->reversals[r].push_back(target.size());
       target.Append(record, i);
       target.displacement.back() = x[i] + sense * overshoot[next_overshoot++];
@@ -284,10 +358,9 @@ double CostAt(const Problem& problem, std::span<const double> theta, Response& r
 }  // namespace
 
 TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solution,
-                                   Response& response) {
+                                   std::span<const double> overshoot, Response& response) {
   const std::vector<double> longest = LongestOvershoots(*problem.data);
-  const std::unique_ptr<TurnedRecords> turned =
-      PutInTurningPoints(*problem.data, std::vector<double>(longest.size(), 0.0));
+  const std::unique_ptr<TurnedRecords> turned = PutInTurningPoints(*problem.data, overshoot);
   Problem at_samples = problem;
   at_samples.data = &turned->data;
   const ArrowSystem system = Linearise(at_samples, solution.theta, response);
@@ -298,7 +371,7 @@ TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solut
   result.left = system.residual + system.jacobian * step.dense + system.overshoots * step.sparse;
   for (std::size_t k = 0; k < longest.size(); ++k) {
     result.overshoot.push_back(
-        std::clamp(step.sparse[static_cast<Eigen::Index>(k)], 0.0, longest[k]));
+        std::clamp(overshoot[k] + step.sparse[static_cast<Eigen::Index>(k)], 0.0, longest[k]));
   }
   return result;
 }
@@ -399,6 +472,7 @@ TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
   for (const std::size_t p : problem.parameters.free()) {
     fit.solution.side[p] = SideOf(problem.parameters[p], fit.solution.theta[p]);
   }
+  fit.records->data.turns_are_fitted = true;
   return fit;
 }
 

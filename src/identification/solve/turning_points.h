@@ -26,7 +26,16 @@ struct TurnedRecords {
 std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
                                                   std::span<const double> overshoot);
 
-bool HasTurningPoints(const ScaledRecords& data);
+/// Are turning points fitted, so that what they explain is nothing that a parameter does?
+bool FitsTurningPoints(const ScaledRecords& data);
+
+/// How far the motion turns beyond a reversal's sample, by the samples about it alone: >= 0, at
+/// most the longer of the steps beside it. It turns where the lines through the two samples before
+/// and the two after meet if its velocity changes there and hardly beside it, as that of a triangle
+/// does; else at the extremum of the polynomial through the outermost sample and two on each side
+/// (one, where the strokes are short). Of a sine of n samples a cycle that is off by at most
+/// (2π/n)⁶/200 of the amplitude.
+double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 
 /// How far a turning point may lie beyond its sample: the longer of the steps beside it.
 std::vector<double> LongestOvershoots(const ScaledRecords& data);
@@ -49,13 +58,15 @@ class TurningPointColumns {
 };
 
 /// What all parameters and overshoots together leave of the residuals after one linear step from
-/// the solution, and the overshoots of that step.
+/// the solution with some overshoots, and the overshoots after that step.
 struct TurningPointStep {
   Eigen::VectorXd left;
   std::vector<double> overshoot;
 };
+/// @param problem    of the samples alone
+/// @param overshoot  to start from
 TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solution,
-                                   Response& response);
+                                   std::span<const double> overshoot, Response& response);
 
 struct TurningPointFit {
   std::unique_ptr<TurnedRecords> records;
