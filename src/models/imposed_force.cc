@@ -10,24 +10,11 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/loading_path.h"
+#include "models/reduced_displacement.h"
 #include "models/scaled_branches.h"
 
 namespace mindahl::models {
 namespace {
-
-/// y(φ), the inverse of the branch law (docs/theory.md §4): no form subtracts what cancels.
-/// @param share      φ in [0, 1)
-/// @param remaining  u = 1 − φ > 0, with digits of its own next to slip
-double ReducedDisplacement(double shape_exponent, double share, double remaining) {
-  if (shape_exponent == 0) return share;
-  if (shape_exponent == 1.0 / 3) {
-    const double root = std::cbrt(remaining);
-    return 1.5 * share * (1 + root) / (1 + root + root * root);
-  }
-  const double log_remaining = share < 0.5 ? std::log1p(-share) : std::log(remaining);
-  const double exponent = (1 - shape_exponent) * log_remaining;
-  return exponent == 0 ? -log_remaining : -log_remaining * (std::expm1(exponent) / exponent);
-}
 
 /// A branch as the force runs along it.
 struct CompliantBranch {
