@@ -47,3 +47,14 @@ loop --lambda 2 --cycles 6 --seed 15 --noise-displacement 1e-9 --frequency 5 | a
     gsub(/[.]/, ",", line)
     print line
   }' >"$folder/raw_rig_record.csv"
+
+# The force is imposed, to 0.9 of the slip force, and exact; the noise is in the displacement.
+forces=$(mktemp)
+trap 'rm -f "$forces"' EXIT
+awk 'BEGIN {
+  print "force [N]"
+  for (i = 0; i <= 600; ++i) printf "%.9e\n", 13.5 * sin(6.283185307179586 * (i % 200) / 200)
+}' >"$forces"
+# shellcheck disable=SC2086
+"$mindahl" simulate $contact --force-path "$forces" --noise-displacement 2e-9 --seed 16 \
+  >"$folder/imposed_force.csv"

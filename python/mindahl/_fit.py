@@ -27,11 +27,13 @@ def request_of(
     *, model: str, initial_state: str, force_sign: str, offsets: Union[bool, str],
     terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
     starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
+    noise_in: str = "force",
 ) -> _mindahl.FitRequest:
     request = _mindahl.FitRequest()
     request.model = model
     request.initial_state = initial_state
     request.force_sign = force_sign
+    request.noise_in = noise_in
     request.offsets = on_off("offsets", offsets)
     request.covariates = covariate_texts(covariate)
     request.fix = assignments("fix", fix)
@@ -58,7 +60,7 @@ def fit(
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
-    offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
+    noise_in: str = "force", offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
     drift: bool = False, covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
@@ -89,9 +91,11 @@ def fit(
     The model
         model: "mindlin-dahl", "mindlin" (alpha = 1/3), "dahl", "jenkins" (alpha = 0), "auto".
         initial_state: "auto", "virgin", "steady". force_sign: "auto", "same", "opposite".
+        noise_in: "force", or "displacement" where the force is imposed and taken as exact: the
+            displacement is fitted, and residuals are in [m].
         offsets: of force [N] and displacement [m], fitted unless False.
         rig_stiffness [N/m], viscous [N s/m], lag [s]: a known value, or "fit".
-        plateau_slope [N/m], drift [N/s]: fitted where True.
+        plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
         fix, start: parameter to value; bound: parameter to (low, high); SI units.
@@ -114,7 +118,8 @@ def fit(
     Other threads run while it fits. Cost: the library's fit and a millisecond.
     """
     request = request_of(
-        model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,
+        model=model, initial_state=initial_state, force_sign=force_sign, noise_in=noise_in,
+        offsets=offsets,
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
                "lag": lag, "drift": drift},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,

@@ -72,6 +72,7 @@ class FitRequest:
     model: str
     initial_state: str
     force_sign: str
+    noise_in: str
     offsets: str
     covariates: list[str]
     load_window: str

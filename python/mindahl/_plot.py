@@ -14,7 +14,9 @@ def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
         name = "" if len(records) == 1 else f" {record.name}"
         points = axes[0].plot(record.displacement, record.force, ".", markersize=3,
                               label=f"measured{name}")[0]
-        axes[0].plot(record.displacement, record.fitted_force, "-", linewidth=1.2,
+        is_forced = record.fitted_displacement is not None
+        at = record.fitted_displacement if is_forced else record.displacement
+        axes[0].plot(at, record.fitted_force, "-", linewidth=1.2,
                      color="black" if len(records) == 1 else points.get_color(),
                      label=f"fitted{name}")
         if len(axes) > 1:
@@ -25,7 +27,8 @@ def draw(records: Sequence[Any], units: tuple[str, str], ax: Any) -> Any:
     axes[0].legend()
     if len(axes) > 1:
         axes[1].axhline(0.0, linewidth=0.8, color="black")
-        axes[1].set_ylabel(f"residual [{units[1]}]")
+        of_displacement = any(record.fitted_displacement is not None for record in records)
+        axes[1].set_ylabel(f"residual [{units[0 if of_displacement else 1]}]")
     return ax if ax is not None else axes
 
 

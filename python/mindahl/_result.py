@@ -83,7 +83,9 @@ class Message:
 class FittedRecord:
     """A record that was fitted, [m], [N], [s] or [rad], [N m], [s]; arrays are read-only.
 
-    fitted_force and residual = fitted - measured are None where the fit failed.
+    fitted_force and residual = fitted - measured are None where the fit failed. With noise_in =
+    "displacement" the residual is that of fitted_displacement, which is None otherwise, and
+    fitted_force is the measured one.
     """
 
     name: str
@@ -91,6 +93,7 @@ class FittedRecord:
     force: Floats
     time: Optional[Floats]
     fitted_force: Optional[Floats]
+    fitted_displacement: Optional[Floats]
     residual: Optional[Floats]
 
 
@@ -176,8 +179,14 @@ class FitResult:
         return self._one_or_all("fitted_force")
 
     @property
+    def fitted_displacement(self) -> Any:
+        """With noise_in = "displacement" the fitted one [m]; of several records a list of arrays."""
+        return self._one_or_all("fitted_displacement")
+
+    @property
     def residual(self) -> Any:
-        """Fitted less measured force [N] of every sample; of several records a list of arrays."""
+        """Fitted less measured [N], or [m] with noise_in = "displacement", of every sample; of several
+        records a list of arrays."""
         return self._one_or_all("residual")
 
     def _one_or_all(self, name: str) -> Any:

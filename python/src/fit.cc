@@ -67,9 +67,14 @@ py::list RecordsOf(const py::object& self) {
     arrays["force"] = ViewOf(record.force, self);
     arrays["time"] = record.time.empty() ? py::object(py::none()) : ViewOf(record.time, self);
     arrays["fitted_force"] = py::none();
+    arrays["fitted_displacement"] = py::none();
     arrays["residual"] = py::none();
     if (!fitted.report.failed()) {
       arrays["fitted_force"] = ViewOf(fitted.report.fit.records[r].fitted_force, self);
+      if (!fitted.report.fit.records[r].fitted_displacement.empty()) {
+        arrays["fitted_displacement"] =
+            ViewOf(fitted.report.fit.records[r].fitted_displacement, self);
+      }
       arrays["residual"] = ViewOf(fitted.report.fit.records[r].residual, self);
     }
     records.append(arrays);
@@ -95,6 +100,7 @@ void AddFit(py::module_& module) {
       .def_readwrite("model", &FitRequest::model)
       .def_readwrite("initial_state", &FitRequest::initial_state)
       .def_readwrite("force_sign", &FitRequest::force_sign)
+      .def_readwrite("noise_in", &FitRequest::noise_in)
       .def_readwrite("offsets", &FitRequest::offsets)
       .def_readwrite("covariates", &FitRequest::covariates)
       .def_readwrite("load_window", &FitRequest::load_window)

@@ -150,6 +150,13 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       ->capture_default_str()
       ->check(OneOf(request::kForceSigns))
       ->group(group);
+  command
+      .add_option("--noise-in", options.noise_in,
+                  "the channel that is fitted, and whose noise the residuals are: the\n"
+                  "displacement where a force is imposed, which is taken as exact")
+      ->capture_default_str()
+      ->check(OneOf(request::kNoiseIn))
+      ->group(group);
   command.add_option("--offsets", options.offsets, "fit offsets of force and displacement")
       ->capture_default_str()
       ->check(OneOf(request::kOnOff))

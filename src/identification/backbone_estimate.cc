@@ -378,15 +378,15 @@ bool HasBackbone(const FitResult& fit) {
       std::ranges::none_of(fit.records, [](const RecordFit& record) { return record.load_varies; });
   const ParameterEstimate* const lag = fit.Find("lag");
   return !fit.parameters.empty() && is_of_one_load && lag == nullptr &&
-         fit.model->memory == models::Memory::kReturnPoint;
+         fit.model->memory == models::Memory::kReturnPoint && fit.response == loop::Channel::kForce;
 }
 
 BackboneEstimate EstimateBackbone(std::span<const loop::RecordView> records,
                                   const FitOptions& options, const FitResult& fit) {
   if (!HasBackbone(fit)) {
     throw InvalidArgument(
-        "the backbone is that of a law of Masing's memory, of records under one load, without a "
-        "lag");
+        "the backbone is that of a law of Masing's memory, fitted to forces of records under one "
+        "load, without a lag");
   }
   std::pmr::monotonic_buffer_resource memory;
   const loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &memory);

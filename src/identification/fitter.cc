@@ -46,11 +46,46 @@ namespace {
 using loop::RecordView;
 using models::InitialState;
 
+/// What is beside a contact's force has no place in a fit of its displacement, and the other way
+/// round.
+void RequireTermsOfResponse(const FitOptions& options) {
+  const bool fits_force = options.response() == loop::Channel::kForce;
+  const auto refuse = [&](std::string_view what) {
+    throw InvalidArgument(
+        fmt::format("{} has no place in a fit of the {}: leave it out, or fit the {}", what,
+                    fits_force ? "force" : "displacement", fits_force ? "displacement" : "force"));
+  };
+  const auto require = [&](const std::string& name) {
+    const Term* term = FindTerm(TermNameOf(name), options.response());
+    if (term != nullptr && term->presence == Presence::kNever) refuse(name);
+  };
+  for (const std::string& name : options.terms) require(name);
+  for (const auto& [name, value] : options.fixed) require(name);
+  if (fits_force) return;
+  if (!options.covariates.empty()) refuse("a covariate");
+  if (options.force_noise) refuse("noise of the force, which is imposed and taken as exact,");
+  if (options.response_noise()) {
+    RequirePositive("displacement noise [m]", *options.response_noise());
+  }
+}
+
+/// The displacement of an imposed force is that of one load.
+void RequireOneLoad(const ScaledRecords& data) {
+  if (data.excitation == loop::Channel::kDisplacement) return;
+  const bool varies = std::ranges::any_of(
+      data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
+  if (!data.is_load_series && !data.load_varies && !varies) return;
+  throw InvalidArgument(
+      "the normal load differs or varies, of which a fit of the displacement has no account: fit "
+      "the records of one load, or fit the force");
+}
+
 void RequireOptions(const FitOptions& options) {
   if (options.model == nullptr || options.model->scaled_by_peak) {
     throw InvalidArgument("the model cannot be fitted: it must be told the amplitude");
   }
   if (options.force_noise) RequirePositive("force noise [N]", *options.force_noise);
+  RequireTermsOfResponse(options);
   if (options.max_iterations < 1) {
     ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
   }
@@ -60,10 +95,13 @@ void RequireOptions(const FitOptions& options) {
 /// Beyond it squares overflow; it is a unit that is meant otherwise.
 void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
   constexpr double kLargest = 1e100;  // in half ranges of the force
-  if (!options.force_noise || *options.force_noise / data.force < kLargest) return;
+  const std::optional<double> noise = options.response_noise();
+  if (!noise || *noise / data.response_unit() < kLargest) return;
+  const bool is_force = data.excitation == loop::Channel::kDisplacement;
   ThrowInvalid(
-      "force noise [N]", *options.force_noise,
-      fmt::format("must be below 1e100 times half the range of the force, {:.4g} N", data.force));
+      is_force ? "force noise [N]" : "displacement noise [m]", *noise,
+      fmt::format("must be below 1e100 times half the range of the {}, {:.4g} {}",
+                  is_force ? "force" : "displacement", data.response_unit(), is_force ? "N" : "m"));
 }
 
 /// How many samples are left out for what: "; of 12 that were read 8 are left out: 2 glitches, …".
@@ -112,8 +150,8 @@ struct Attempt {
 /// The past that the options name; nothing where both have to be tried.
 std::optional<InitialState> GivenState(const Attempt& attempt) {
   if (attempt.options.initial_state) return attempt.options.initial_state;
-  const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [](const auto& fixed) {
-    return fixed.first.starts_with("displacement_offset");
+  const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
+    return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
   });
   if (unloaded_is_given) return InitialState::kVirgin;
   const bool any_reversal = std::ranges::any_of(
@@ -185,26 +223,32 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   return is_virgin ? std::move(virgin) : std::move(steady);
 }
 
-/// Fitted forces and residuals as the files have them, of every sample, and their rms.
-/// @param force  of the model, of every sample
-void FillForces(const Attempt& attempt, const Problem& problem, std::span<const double> force,
+/// The fitted response and residuals as the files have them, of every sample, and their rms.
+/// @param predicted  of the model, of every sample
+void FillFitted(const Attempt& attempt, const Problem& problem, std::span<const double> predicted,
                 FitResult& result) {
   const ScaledRecords& data = *problem.data;
   double squares = 0.0;
   std::size_t k = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const ScaledRecord& record = data.records[r];
-    const std::span<const double> measured = attempt.prepared.records[r].record.force;
+    const RecordView& view = attempt.prepared.records[r].record;
     RecordFit& fit = result.records[r];
+    const bool is_forced = data.excitation == loop::Channel::kForce;
+    const std::span<const double> measured = is_forced ? view.displacement : view.force;
+    const double unit = is_forced ? data.length : data.sense * data.force;
+    const std::span<const double> response = record.response();
+    std::vector<double>& fitted = is_forced ? fit.fitted_displacement : fit.fitted_force;
+    if (is_forced) fit.fitted_force.assign(view.force.begin(), view.force.end());
     fit.residual.resize(measured.size());
-    fit.fitted_force.resize(measured.size());
+    fitted.resize(measured.size());
     std::size_t sample = 0;
     for (std::size_t i = 0; i < record.size(); ++i, ++k) {
       if (!record.inserted.empty() && record.inserted[i] != 0) continue;
       // The difference in units of the data: offsets of the file would cost its digits.
-      const double residual = data.sense * data.force * (force[k] - record.force[i]);
+      const double residual = unit * (predicted[k] - response[i]);
       fit.residual[sample] = residual;
-      fit.fitted_force[sample] = measured[sample] + residual;
+      fitted[sample] = measured[sample] + residual;
       if (record.counts[i] != 0) squares += residual * residual;
       ++sample;
     }
@@ -235,6 +279,7 @@ void FillRecords(const Attempt& attempt, Depth depth, FitResult& result) {
     fit.alone.reset();
     fit.structure = {};
     fit.fitted_force.clear();
+    fit.fitted_displacement.clear();
     fit.residual.clear();
   }
 }
@@ -263,19 +308,23 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
 /// Statistics of the residuals that count, as the files have them.
 void DescribeFit(const Problem& problem, const Noise& noise, FitResult& result) {
   std::vector<std::vector<double>> residuals;
-  std::vector<std::vector<double>> forces;
+  std::vector<std::vector<double>> measured;
+  const bool is_forced = result.response == loop::Channel::kDisplacement;
   for (const RecordFit& fit : result.records) {
     std::vector<double>& residual = residuals.emplace_back();
-    std::vector<double>& force = forces.emplace_back();
+    std::vector<double>& of_record = measured.emplace_back();
+    const std::vector<double>& fitted = is_forced ? fit.fitted_displacement : fit.fitted_force;
     residual.reserve(fit.residual.size());
-    force.reserve(fit.residual.size());
+    of_record.reserve(fit.residual.size());
     for (std::size_t i = 0; i < fit.residual.size(); ++i) {
       if (fit.counts[i] == 0) continue;
       residual.push_back(fit.residual[i]);
-      force.push_back(fit.fitted_force[i] - fit.residual[i]);
+      of_record.push_back(fitted[i] - fit.residual[i]);
     }
   }
-  result.residuals = DescribeResiduals(residuals, forces, result.law.slip_force);
+  const double scale =
+      is_forced ? result.law.slip_force / result.law.tangential_stiffness : result.law.slip_force;
+  result.residuals = DescribeResiduals(residuals, measured, scale);
   result.residuals.effective_samples = noise.effective_samples();
   Noise of_residuals = noise;
   of_residuals.is_known = false;
@@ -291,11 +340,11 @@ double DescribeStructures(const Problem& problem, std::span<const double> residu
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     RecordFit& fit = result.records[r];
-    std::vector<double> newtons(record.size());
+    std::vector<double> in_si(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
-      newtons[i] = residual[begin + i] * problem.data->force;
+      in_si[i] = residual[begin + i] * problem.data->response_unit();
     }
-    fit.structure = DescribeStructure(record.displacement, record.reversals, newtons, record.counts,
+    fit.structure = DescribeStructure(record.excitation(), record.reversals, in_si, record.counts,
                                       {thresholds.main_stroke, thresholds.repeat_chance});
     widening = std::max(widening, fit.structure.Widening());
     begin += record.size();
@@ -315,7 +364,8 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   AdequacyTest test =
       TestAdequacy(problem, solution, noise, displacement, estimates, thresholds, buffers.response);
   // A load that varies would have to be read as late.
-  if (IsDoubtful(test, thresholds) && !problem.data->load_varies) {
+  const bool fits_force = problem.data->excitation == loop::Channel::kDisplacement;
+  if (IsDoubtful(test, thresholds) && !problem.data->load_varies && fits_force) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
   }
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
@@ -464,11 +514,13 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
         result.mindlin_test->rig_stiffness = rig->rig_stiffness;
         result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
       }
-      if (problem.data->load_varies &&
+      const bool fits_force = problem.data->excitation == loop::Channel::kDisplacement;
+      if ((problem.data->load_varies || !fits_force) &&
           WantsRig(problem, solution, *result.mindlin_test, options.thresholds)) {
         result.findings.push_back({.code = "rig_not_tried",
                                    .parameters = {"sigma", "alpha"},
-                                   .numbers = {{"alpha", result.law.shape_exponent}}});
+                                   .numbers = {{"alpha", result.law.shape_exponent}},
+                                   .kind = fits_force ? "varying_load" : "imposed_force"});
       }
     }
   }
@@ -486,6 +538,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   if (!options.initial_state) {
     Append(result.findings, FindUnknownPast(problem, solution, options.thresholds));
   }
+  Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, options.thresholds));
   Append(result.findings, FindFewPlaces(problem, options.thresholds));
   Append(result.findings, FindShapeLimitedByLoad(problem, solution));
   Append(result.findings, FindExtrapolated(result, options.thresholds));
@@ -511,7 +564,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
 
 void ReportStarts(const Problem& problem, const std::vector<Descent>& descents, FitResult& result) {
   const auto rms = [&](double sum_of_squares) {
-    return problem.data->force *
+    return problem.data->response_unit() *
            std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted));
   };
   for (const Descent& descent : descents) {
@@ -614,6 +667,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   result.termination.assign("not run");
   result.iterations = 0;
   result.model = given.model;
+  result.response = given.response();
   result.law = {};
   result.rig = {};
   result.normal_load.reset();
@@ -641,6 +695,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
   const ScaledRecords thin = Thin(data, thin_reversals, &arena);
   const Attempt attempt{given, prepared, data, thin, buffers, &arena};
+  RequireOneLoad(data);
   RequireRigStifferThanLoop(given, prepared);
   RequireNoise(given, data);
   result.force_sense = prepared.force_sense;
@@ -649,7 +704,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
 
   const bool is_judged = depth >= Depth::kIntervals;
   if (is_judged) {
-    result.findings = FindInRecords(result.records, given.thresholds);
+    result.findings = FindInRecords(result.records, given.thresholds, data.excitation);
     for (Finding& finding : FindVaryingLoads(data)) result.findings.push_back(std::move(finding));
   }
   std::vector<Descent>* const recorded = is_judged ? &descents : nullptr;
@@ -685,7 +740,9 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
       // Turning points are not looked for beside a lag, which moves the samples off them.
       const bool has_lag = best->problem.parameters.has_lag();
       // Nor under a load that varies: the way between the samples is not the displacement's alone.
-      if (best->solution->converged && !gated && !has_lag && !data.load_varies) {
+      // An imposed force is taken as it was sampled.
+      const bool is_driven = data.excitation == loop::Channel::kDisplacement;
+      if (best->solution->converged && !gated && !has_lag && !data.load_varies && is_driven) {
         turned = FitTurningPointsIfNeeded(best->problem, *best->solution, given, buffers);
       }
       if (turned) {
@@ -721,19 +778,23 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     result.termination.assign("The weights of the samples did not settle.");
     result.findings.push_back({.code = "weights_not_settled"});
   }
-  result.force_noise = noise.force * data.force;
+  if (data.excitation == loop::Channel::kDisplacement) {
+    result.force_noise = noise.force * data.force;
+  } else {
+    for (RecordFit& fit : result.records) fit.displacement_noise = noise.force * data.length;
+  }
   result.outliers = noise.outliers;
   FillParameters(best->problem, solution, result);
   Linearization at;
   if (depth >= Depth::kErrors) {
     at = LinearizeAt(best->problem, solution.theta, buffers.response,
                      best->problem.parameters.free());
-    FillForces(attempt, best->problem, {at.force.data(), best->problem.size()}, result);
+    FillFitted(attempt, best->problem, {at.response.data(), best->problem.size()}, result);
   } else {
-    std::pmr::vector<double> force(best->problem.size(), &arena);
+    std::pmr::vector<double> predicted(best->problem.size(), &arena);
     buffers.response.Bind(best->problem);
-    Predict(best->problem, solution.theta, buffers.response, force);
-    FillForces(attempt, best->problem, force, result);
+    Predict(best->problem, solution.theta, buffers.response, predicted);
+    FillFitted(attempt, best->problem, predicted, result);
   }
   if (fits_turns) {
     std::size_t k = 0;
@@ -772,7 +833,7 @@ void Fitter::State::Continue(const RecordView& record, Depth depth) {
   if (MayContinue()) {
     for (const ParameterEstimate& estimate : result.parameters) {
       if (estimate.status == ParameterStatus::kFixed) continue;
-      const Term& term = *FindTerm(TermNameOf(estimate.name));
+      const Term& term = *FindTerm(TermNameOf(estimate.name), options.response());
       if (term.entry == Entry::kLaw || estimate.name == "slip_force") {
         continued.start[estimate.name] = estimate.value;
       }
@@ -829,6 +890,11 @@ models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
       .tangential_stiffness = law.tangential_stiffness * std::pow(record.load_ratio, load_exponent),
       .shape_exponent = law.shape_exponent,
       .slip_force = law.slip_force * record.load_ratio};
+}
+
+double FitResult::ResponseNoise() const {
+  if (response == loop::Channel::kForce) return force_noise;
+  return records.empty() ? 0.0 : records.front().displacement_noise;
 }
 
 double FitResult::PeakForce() const {

@@ -414,6 +414,9 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
     ThrowInvalid("folds [-]", static_cast<double>(selection.folds), "must be >= 2");
   }
   RequireNonNegative("largest ΔAICc [-]", options.thresholds.indistinguishable);
+  if (options.response() != loop::Channel::kForce) {
+    throw InvalidArgument("models are chosen by fits of the force: name one for a displacement");
+  }
 
   ModelSelection result;
   result.scores = ListCandidates(options);

@@ -38,6 +38,7 @@ void RequireOptions(std::size_t records, const PreparationOptions& options) {
 /// How far noise that is known spreads [m]: normal noise of n samples reaches √(2 ln n) standard
 /// deviations to either side, and must not make a reversal.
 double ReachOfNoise(const RecordView& record, const PreparationOptions& options) {
+  if (options.excitation == Channel::kForce) return 0.0;
   const double deviations = std::sqrt(2 * std::log(static_cast<double>(record.size())));
   return 2 * deviations * options.displacement_noise.value_or(0.0);
 }
@@ -47,6 +48,7 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
                          std::pmr::memory_resource* memory) {
   // The rounding of a file, or of a fine encoder, is not worth it.
   constexpr double kCoarse = 1e-3;  // of half the range
+  if (options.excitation == Channel::kForce) return 0.0;
   if (options.displacement_noise) return *options.displacement_noise;
   const std::span<const double> displacement = prepared.readings().displacement;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
@@ -82,12 +84,14 @@ void LeaveOutGlitches(PreparedRecord& prepared, const PreparationOptions& option
 
 void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
                std::pmr::memory_resource* memory) {
-  const std::span<const double> displacement = prepared.readings().displacement;
+  const RecordView readings = prepared.readings();
+  const std::span<const double> excitation =
+      options.excitation == Channel::kForce ? readings.force : readings.displacement;
   ReversalGate& choice = prepared.gate_choice;
-  if (!options.reversal_gate) choice = ChooseReversalGate(displacement, {}, memory);
+  if (!options.reversal_gate) choice = ChooseReversalGate(excitation, {}, memory);
   prepared.reversal_gate =
       options.reversal_gate.value_or(std::max(choice.gate, ReachOfNoise(prepared.record, options)));
-  FindReversals(displacement, prepared.reversal_gate, prepared.reversals);
+  FindReversals(excitation, prepared.reversal_gate, prepared.reversals);
   choice.gate = prepared.reversal_gate;
   choice.count = prepared.reversals.size();
   if (!choice.certain) return;
@@ -189,6 +193,7 @@ PreparedRecords Prepare(std::span<const RecordView> records, const PreparationOp
   RequireOptions(records.size(), options);
   for (const RecordView& record : records) Validate(record);
   PreparedRecords result(memory);
+  result.excitation = options.excitation;
   result.records.reserve(records.size());
   int votes = 0;
   for (const RecordView& record : records) {

@@ -26,9 +26,10 @@ struct CauseRow {
   const char* negative;  // likewise of a negative size; null where the sign is shown
   const char* remedy;    // where no option takes it into account
   double whole = std::numeric_limits<double>::infinity();  // a size from which on it is all
+  const char* remedy_of_displacement = nullptr;            // where that is fitted; null: the same
 };
 
-constexpr std::array<CauseRow, 22> kCauses = {{
+constexpr std::array<CauseRow, 23> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
@@ -39,13 +40,18 @@ constexpr std::array<CauseRow, 22> kCauses = {{
     {"force_drift", "a force that drifts by {}", nullptr, "give --drift"},
     {"normal_load", "a force that follows the measured load, which varies, to {}", nullptr,
      "keep to one load with --load-window"},
-    {"shape_of_law", "branches of another shape than the law's", nullptr,
-     "compare the laws with --model auto"},
+    {.code = "shape_of_law",
+     .looks = "branches of another shape than the law's",
+     .negative = nullptr,
+     .remedy = "compare the laws with --model auto",
+     .remedy_of_displacement = "fit another law, --model mindlin-dahl or dahl, and compare"},
     {"guide_friction", "a friction of {} beside the contact's that turns at once with the motion",
      "a friction whose jump at each turn is {} too small",
      "look for a guide or a seal that rubs, and measure it without the contact"},
     {"rig_in_series", "a rig in series that gives way by {}",
-     "a rig in series that gives way by {} less than was taken off", "give --rig-stiffness fit"},
+     "a rig in series that gives way by {} less than was taken off", "give --rig-stiffness fit",
+     std::numeric_limits<double>::infinity(),
+     "measure the rig's stiffness and take its part off the displacement"},
     {"backlash", "a backlash of {} after each reversal", "an overtravel of {} after each reversal",
      "look for play between the contact and the displacement sensor"},
     {"displacement_sensor", "a displacement that is not read linearly", nullptr,
@@ -79,8 +85,9 @@ constexpr std::array<CauseRow, 22> kCauses = {{
     {"amplitude_dependence", "a friction that grows by {} from the narrowest stroke to the widest",
      "a friction that falls by {} from the narrowest stroke to the widest",
      "fit each amplitude alone"},
-    {"heavy_tails", "readings of the force, {} of all, that are far off their neighbours", nullptr,
-     "look for disturbances of the force's channel"},
+    {"displacement_drift", "a displacement that drifts by {}", nullptr, "give --drift"},
+    {"heavy_tails", "readings, {} of all, that are far off their neighbours", nullptr,
+     "look for disturbances of the channel"},
     {"stick_slip", "stick-slip, drops of {} that recur while the contact slides", nullptr,
      "stiffen the rig or change the speed; slip_force is that of the mean between the drops"},
 }};
@@ -109,11 +116,12 @@ std::string Looks(const Cause& cause) {
 
 /// Units by sample of a record without a time, and over that of a column, of a force and of a
 /// torque.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kOthersOfForce = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOthersOfForce = {{
     {"N/sample", "N m/sample"},
     {"N samples/m", "N m samples/rad"},
     {"N samples²/m", "N m samples²/rad"},
     {"N/unit", "N m/unit"},
+    {"m/sample", "rad/sample"},
 }};
 
 }  // namespace
@@ -136,11 +144,15 @@ void AdaptCauses(const Units& units, bool has_time, std::vector<Cause>& causes) 
   }
 }
 
-std::string Sentence(const Cause& cause) {
+std::string Sentence(const Cause& cause, loop::Channel response) {
+  const CauseRow& row = RowOf(cause);
+  const bool is_other =
+      response == loop::Channel::kDisplacement && row.remedy_of_displacement != nullptr;
   return fmt::format("{}, which explains {:.0f} % of the residuals' variance: {}", Looks(cause),
                      100 * cause.explains,
-                     cause.option.empty() ? std::string(RowOf(cause).remedy)
-                                          : fmt::format("give {}", cause.option));
+                     cause.option.empty()
+                         ? std::string(is_other ? row.remedy_of_displacement : row.remedy)
+                         : fmt::format("give {}", cause.option));
 }
 
 std::vector<std::string_view> CauseCodes() {
@@ -169,7 +181,7 @@ std::string VerdictSentence(const Report& report) {
       break;
   }
   if (adequacy.causes.empty()) return found + ", nor like anything else that was tried";
-  return found + ". It looks like " + Sentence(adequacy.causes.front());
+  return found + ". It looks like " + Sentence(adequacy.causes.front(), report.fit.response);
 }
 
 }  // namespace mindahl::report

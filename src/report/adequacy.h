@@ -23,8 +23,10 @@ void AdaptCauses(const Units& units, bool has_time, std::vector<identification::
 
 /// A cause in words, without an end of line: what it looks like with its size, how much it
 /// explains, and the option that takes it into account or, where there is none, what to look at.
+/// @param response  the channel that is fitted
 /// @throws std::logic_error for a code without a row
-std::string Sentence(const identification::Cause& cause);
+std::string Sentence(const identification::Cause& cause,
+                     loop::Channel response = loop::Channel::kForce);
 
 /// Every code that has a sentence.
 std::vector<std::string_view> CauseCodes();

@@ -134,7 +134,7 @@ void AddInputFields(FieldTable& table) {
          for (const RecordFit& record : report.fit.records) left_out += record.left_out;
          return Count(left_out);
        }},
-      {"input.reversal_gate", "m", "one a file: excursions up to it are noise",
+      {"input.reversal_gate", kOfExcitation, "one a file: excursions up to it are noise",
        OneARecord([](const RecordFit& record) { return record.gate.gate; })},
       {"input.displacement_noise", "m", "one a file: standard deviation, given or estimated",
        OneARecord([](const RecordFit& record) { return record.displacement_noise; })},
@@ -149,7 +149,7 @@ void AddInputFields(FieldTable& table) {
        Sum([](const RecordFit& record) { return record.glitches.held; })},
       {"reversals.count", "", "turning points of the motion in the widest record",
        [](const Report& report) { return Count(report.fit.WidestRecord().reversals.size()); }},
-      {"reversals.gate", "m", "excursions up to it are noise",
+      {"reversals.gate", kOfExcitation, "excursions up to it are noise",
        OfGate([](const ReversalGate& gate) { return Number(gate.gate); })},
       {"reversals.certain", "", "whether no other gate has as good a claim",
        OfGate([](const ReversalGate& gate) { return Flag(gate.certain); })},
@@ -157,7 +157,7 @@ void AddInputFields(FieldTable& table) {
        OfGate([](const ReversalGate& gate) {
          return gate.certain ? Value{} : Count(gate.other_count);
        })},
-      {"reversals.other_gate", "m", "the other gate; absent where certain",
+      {"reversals.other_gate", kOfExcitation, "the other gate; absent where certain",
        OfGate([](const ReversalGate& gate) {
          return gate.certain ? Value{} : Number(gate.other_gate);
        })},

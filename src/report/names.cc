@@ -45,6 +45,10 @@ std::string_view Name(models::InitialState state) {
   return state == models::InitialState::kVirgin ? "virgin" : "steady";
 }
 
+std::string_view Name(loop::Channel channel) {
+  return channel == loop::Channel::kForce ? "force" : "displacement";
+}
+
 std::string_view Name(SlipRegime regime) {
   return regime == SlipRegime::kGross ? "gross" : "partial";
 }

@@ -14,6 +14,7 @@ std::string_view Name(identification::Identifiability identifiability);
 /// The name with blanks, for people.
 std::string Words(identification::Identifiability identifiability);
 std::string_view Name(models::InitialState state);
+std::string_view Name(loop::Channel channel);
 std::string_view Name(SlipRegime regime);
 std::string_view Name(identification::AdequacyVerdict verdict);
 std::string_view Name(identification::MemoryVerdict verdict);

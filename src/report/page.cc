@@ -73,7 +73,7 @@ std::string VerdictSection(const Report& report) {
   if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return html;
   std::vector<std::string> others;
   for (std::size_t i = 1; i < adequacy.causes.size(); ++i) {
-    others.push_back(Sentence(adequacy.causes[i]));
+    others.push_back(Sentence(adequacy.causes[i], report.fit.response));
   }
   if (!others.empty()) html += Paragraph("It may be as well:") + SentenceList(others);
   return html;
@@ -153,6 +153,8 @@ std::string NextSection(const Report& report, const Provenance& provenance) {
     }
   }
   for (const NextCommand& row : kNextCommands) {
+    // Models and rigs are tried on forces.
+    if (fit.response == loop::Channel::kDisplacement) break;
     if (fit.FindFinding(row.finding) != nullptr) add(row.why, row.option);
   }
   return html.empty() ? "" : SubHeading("What to try next") + html;

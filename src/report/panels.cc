@@ -133,7 +133,13 @@ PlotSeries Range(const Group& group, const std::vector<double>& x, double per_x,
   return series;
 }
 
-/// The fitted force of a record; of one that is too long to be drawn whole, of its last cycle.
+/// Of the fitted loop: that which was fitted, or which was measured under the fitted force.
+const std::vector<double>& FittedDisplacement(const Report& report, std::size_t r) {
+  const std::vector<double>& fitted = report.fit.records[r].fitted_displacement;
+  return fitted.empty() ? report.records[r].record.displacement : fitted;
+}
+
+/// The fitted loop of a record; of one that is too long to be drawn whole, of its last cycle.
 PlotSeries FittedLine(const Report& report, std::size_t r, const PanelUnits& units,
                       std::string suffix) {
   constexpr std::size_t kMostSamples = 4000;
@@ -145,7 +151,7 @@ PlotSeries FittedLine(const Report& report, std::size_t r, const PanelUnits& uni
     range.end = reversals.back() + 1;
     range.label += ", last cycle";
   }
-  PlotSeries series = Range(range, report.records[r].record.displacement, Per(units.displacement),
+  PlotSeries series = Range(range, FittedDisplacement(report, r), Per(units.displacement),
                             fit.fitted_force, Per(units.force));
   series.style = PlotStyle::kLine;
   series.shade.reset();
@@ -237,9 +243,11 @@ PanelUnits PlainUnits(const Report& report) {
   for (const RecordFit& fit : report.fit.records) {
     extent = std::max(extent, std::abs(fit.measures.centre) + fit.measures.amplitude);
   }
-  return {.displacement = UnitFor(report.units.displacement, extent),
-          .force = {.factor = 1.0, .name = std::string(report.units.force)},
-          .residual = {.factor = 1.0, .name = std::string(report.units.force)}};
+  const ScaledUnit displacement = UnitFor(report.units.displacement, extent);
+  const ScaledUnit force{.factor = 1.0, .name = std::string(report.units.force)};
+  const bool is_of_force = report.fit.response == loop::Channel::kForce;
+  return {
+      .displacement = displacement, .force = force, .residual = is_of_force ? force : displacement};
 }
 
 PanelUnits PrefixedUnits(const Report& report) {
@@ -251,7 +259,7 @@ PanelUnits PrefixedUnits(const Report& report) {
     for (const double value : fit.residual) residual = std::max(residual, std::abs(value));
   }
   units.force = UnitFor(report.units.force, force);
-  units.residual = UnitFor(report.units.force, residual);
+  units.residual = UnitFor(report.units.response, residual);
   return units;
 }
 
@@ -287,9 +295,9 @@ PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours c
       const std::vector<double> x = scaled(record.displacement, per_displacement);
       panel.series.push_back(
           {"measured" + suffix, x, scaled(record.force, per_force), PlotStyle::kPoints});
-      panel.series.push_back({"fitted" + suffix, x,
-                              scaled(report.fit.records[r].fitted_force, per_force),
-                              PlotStyle::kLine});
+      panel.series.push_back(
+          {"fitted" + suffix, scaled(FittedDisplacement(report, r), per_displacement),
+           scaled(report.fit.records[r].fitted_force, per_force), PlotStyle::kLine});
     }
   }
   PlotSeries reversals = Reversals(report, units);

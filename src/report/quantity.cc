@@ -44,9 +44,10 @@ constexpr std::array<Prefix, 4> kCompliances = {{
 }};
 
 /// Those that take a prefix before their first letter.
-constexpr std::array<std::string_view, 14> kPrefixed = {
-    "N",   "m",     "J",       "Pa",    "s",         "rad",      "N m",
-    "N/s", "N m/s", "N m/rad", "N s/m", "N m s/rad", "N/sample", "N m/sample"};
+constexpr std::array<std::string_view, 18> kPrefixed = {
+    "N",        "m",          "J",     "Pa",       "s",     "rad",
+    "N m",      "N/s",        "N m/s", "N m/rad",  "N s/m", "N m s/rad",
+    "N/sample", "N m/sample", "m/s",   "m/sample", "rad/s", "rad/sample"};
 
 const Prefix& Suiting(std::span<const Prefix> prefixes, double magnitude) {
   // What rounds to 1000 at four digits is read as 1 of the next.

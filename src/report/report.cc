@@ -99,6 +99,10 @@ Report MakeReport(ReportInput input) {
     }
     report.fit.mindlin_test.reset();
   }
+  if (report.fit.response == loop::Channel::kDisplacement) {
+    report.units.response = report.units.displacement;
+    report.units.excitation = report.units.force;
+  }
   AdaptCauses(report.units, !report.records.front().record.time.empty(),
               report.fit.adequacy.causes);
   SayFindings(report);

@@ -1,4 +1,6 @@
+#include "mindahl/report/units.h"
 #include "report/field_table.h"
+#include "report/names.h"
 
 namespace mindahl::report {
 
@@ -23,8 +25,9 @@ const std::vector<Field<StrokeBin>>& BinFields() {
   static const std::vector<Field<StrokeBin>> fields = {
       {"position", "-", "middle of the part, as a share of the way between reversals",
        [](const StrokeBin& bin) { return Number(bin.position); }},
-      {"mean", "N", "mean residual there", [](const StrokeBin& bin) { return Number(bin.mean); }},
-      {"standard_error", "N", "of the mean, from the scatter between strokes",
+      {"mean", kOfResponse, "mean residual there",
+       [](const StrokeBin& bin) { return Number(bin.mean); }},
+      {"standard_error", kOfResponse, "of the mean, from the scatter between strokes",
        [](const StrokeBin& bin) { return Number(bin.standard_error); }},
   };
   return fields;
@@ -37,8 +40,8 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
        [](const Item& item) { return Text(item.direction > 0 ? "up" : "down"); }},
       {"strokes", "", "strokes that count, those at least three quarters as long as the longest",
        [](const Item& item) { return Count(item.strokes); }},
-      {"mean", "N", "mean residual", [](const Item& item) { return Number(item.mean); }},
-      {"rms", "N", "root mean square of the residual",
+      {"mean", kOfResponse, "mean residual", [](const Item& item) { return Number(item.mean); }},
+      {"rms", kOfResponse, "root mean square of the residual",
        [](const Item& item) { return Number(item.rms); }},
       {"along_stroke", "", "parts of the stroke",
        [](const Item& item) { return List(BinFields(), item.bins); }},
@@ -64,10 +67,12 @@ const std::vector<Field<RecordFit>>& StructureFields() {
 
 void AddResidualFields(FieldTable& table) {
   table.Add({
-      Residual("rms", "N", "root mean square of fitted − measured", &ResidualStatistics::rms),
-      Residual("max_abs", "N", "largest residual", &ResidualStatistics::max_abs),
-      Residual("normalized_rms", "-", "rms over Tc", &ResidualStatistics::normalized_rms),
-      Residual("r_squared", "-", "share of the force's variance that the fit explains",
+      Residual("rms", kOfResponse, "root mean square of fitted − measured",
+               &ResidualStatistics::rms),
+      Residual("max_abs", kOfResponse, "largest residual", &ResidualStatistics::max_abs),
+      Residual("normalized_rms", "-", "rms over Tc, or over Tc/σ of a displacement",
+               &ResidualStatistics::normalized_rms),
+      Residual("r_squared", "-", "share of the variance of what is fitted that the fit explains",
                &ResidualStatistics::r_squared),
       Residual("durbin_watson", "-",
                "2 where residuals are white, near 0 where they are autocorrelated",
@@ -76,7 +81,10 @@ void AddResidualFields(FieldTable& table) {
                &ResidualStatistics::effective_samples),
       Residual("degrees_of_freedom", "-", "degrees of freedom of errors and tests",
                &ResidualStatistics::degrees_of_freedom),
-      {"residuals.force_noise", "N", "standard deviation of the force, given or estimated",
+      {"residuals.channel", "", "the one that is fitted, whose unit residuals have",
+       [](const Report& report) { return Text(Name(report.fit.response)); }},
+      {"residuals.force_noise", "N",
+       "standard deviation of the force, given or estimated; 0 where it is imposed",
        [](const Report& report) {
          return report.failed() ? Missing() : Number(report.fit.force_noise);
        }},

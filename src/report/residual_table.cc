@@ -17,6 +17,7 @@ std::string ResidualsCsv(const Report& report) {
   std::vector<double> time;
   std::vector<double> displacement;
   std::vector<double> force;
+  const bool is_of_force = report.fit.response == loop::Channel::kForce;
   std::vector<double> fitted;
   std::vector<double> residual;
   const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
@@ -28,7 +29,8 @@ std::string ResidualsCsv(const Report& report) {
     append(time, record.time);
     append(displacement, record.displacement);
     append(force, record.force);
-    append(fitted, report.fit.records[r].fitted_force);
+    const identification::RecordFit& fit = report.fit.records[r];
+    append(fitted, is_of_force ? fit.fitted_force : fit.fitted_displacement);
     append(residual, report.fit.records[r].residual);
   }
   const bool timed = std::ranges::none_of(
@@ -41,8 +43,9 @@ std::string ResidualsCsv(const Report& report) {
   };
   columns.push_back({named("displacement", report.units.displacement), displacement});
   columns.push_back({named("force", report.units.force), force});
-  columns.push_back({named("fitted_force", report.units.force), fitted});
-  columns.push_back({named("residual", report.units.force), residual});
+  columns.push_back(
+      {named(is_of_force ? "fitted_force" : "fitted_displacement", report.units.response), fitted});
+  columns.push_back({named("residual", report.units.response), residual});
   return io::CsvText(columns);
 }
 

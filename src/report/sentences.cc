@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mindahl/report/quantity.h"
+#include "report/names.h"
 
 namespace mindahl::report {
 
@@ -44,8 +45,8 @@ std::string ReversalsUncertain(const Finding& finding, const FitResult&, const U
       "{}the reversals are not certain: {:.0f} where excursions up to {} are noise, which is "
       "taken, and {:.0f} where those up to {} are; look at the plot and give --reversal-gate",
       WhichRecord(finding), Needed(finding, "count"),
-      Quantity(Needed(finding, "gate"), units.displacement, 3), Needed(finding, "other_count"),
-      Quantity(Needed(finding, "other_gate"), units.displacement, 3));
+      Quantity(Needed(finding, "gate"), units.excitation, 3), Needed(finding, "other_count"),
+      Quantity(Needed(finding, "other_gate"), units.excitation, 3));
 }
 
 std::string GlitchesLeftOut(const Finding& finding, const FitResult&, const Units&) {
@@ -276,10 +277,12 @@ std::string MemoryContradictsLaw(const Finding& finding, const FitResult&, const
 struct MisfitKind {
   std::string_view kind;
   const char* words;
+  std::string_view of_displacement = {};  // where that is fitted; empty: the same
 };
 
 constexpr std::array<MisfitKind, 5> kMisfitKinds = {{
-    {"same_on_return", "the same on the way back: a force that depends on the position"},
+    {"same_on_return", "the same on the way back: a force that depends on the position",
+     "the same on the way back: a spring in series that is not linear"},
     {"mirrored_early",
      "mirrored on the way back, after each reversal: backlash, or a stiffness that is not the "
      "contact's"},
@@ -290,31 +293,34 @@ constexpr std::array<MisfitKind, 5> kMisfitKinds = {{
     {"asymmetric", "unlike in the two directions: friction that is not symmetric"},
 }};
 
-std::string WhereItRepeats(const Finding& finding, const Units& units) {
+std::string WhereItRepeats(const Finding& finding, const FitResult& fit, const Units& units) {
+  const bool is_of_force = fit.response == loop::Channel::kForce;
   for (const MisfitKind& kind : kMisfitKinds) {
     if (kind.kind != finding.kind) continue;
     return fmt::format(
         "{:.0f} % of the residuals' variance is repeatable: it comes back in every stroke, up to "
         "{} {:.0f} % of the way {}; {}",
         100 * Needed(finding, "repeatable_share"),
-        Quantity(std::abs(Needed(finding, "largest")), units.force, 3),
+        Quantity(std::abs(Needed(finding, "largest")), units.response, 3),
         100 * Needed(finding, "position"), Needed(finding, "direction") > 0 ? "up" : "down",
-        kind.words);
+        is_of_force || kind.of_displacement.empty() ? kind.words : kind.of_displacement);
   }
   ThrowKind(finding);
 }
 
 std::string NoModelFits(const Finding& finding, const FitResult& fit, const Units& units) {
-  return fmt::format("no parameters of {} follow this record (rms {:.3g} % of the force): {}",
-                     fit.model->name, 100 * Needed(finding, "misfit"),
-                     WhereItRepeats(finding, units));
+  return fmt::format("no parameters of {} follow this record (rms {:.3g} % of the {}): {}",
+                     fit.model->name, 100 * Needed(finding, "misfit"), Name(fit.response),
+                     WhereItRepeats(finding, fit, units));
 }
 
 std::string SystematicResidual(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
-      "{} leaves a repeatable residual (rms {:.3g} % of the force): {}. Intervals are widened for "
-      "it; compare with --model auto",
-      fit.model->name, 100 * Needed(finding, "misfit"), WhereItRepeats(finding, units));
+      "{} leaves a repeatable residual (rms {:.3g} % of the {}): {}. Intervals are widened for "
+      "it{}",
+      fit.model->name, 100 * Needed(finding, "misfit"), Name(fit.response),
+      WhereItRepeats(finding, fit, units),
+      fit.response == loop::Channel::kForce ? "; compare with --model auto" : "");
 }
 
 std::string SlowResiduals(const Finding& finding, const FitResult&, const Units&) {
@@ -354,11 +360,22 @@ std::string LoadNotFollowed(const Finding& finding, const FitResult& fit, const 
 }
 
 std::string RigNotTried(const Finding& finding, const FitResult&, const Units&) {
+  const bool is_forced = finding.kind == "imposed_force";
   return fmt::format(
       "alpha = {:.3g} may be that of Mindlin's contact, 1/3, in a rig that gives way, which cannot "
-      "be tried under a load that varies: sigma and alpha are those of contact and rig together; "
-      "keep to one load with --load-window, or measure the rig's stiffness",
-      Needed(finding, "alpha"));
+      "be tried {}: sigma and alpha are those of contact and rig together; {}",
+      Needed(finding, "alpha"),
+      is_forced ? "in a fit of the displacement" : "under a load that varies",
+      is_forced ? "measure the rig's stiffness and take its part off the displacement"
+                : "keep to one load with --load-window, or measure the rig's stiffness");
+}
+
+std::string NoiseInDisplacement(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "the displacement is the noisier channel, {:.2g} % of X against {:.2g} % of T*, and the "
+      "contact stays below slip: the displacement can be fitted in place of the force, with "
+      "--noise-in displacement, as where the force is imposed",
+      100 * Needed(finding, "of_displacement"), 100 * Needed(finding, "of_force"));
 }
 
 std::string AlphaLimitedByLoad(const Finding& finding, const FitResult&, const Units&) {
@@ -385,7 +402,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 32> kSentences = {{
+constexpr std::array<Row, 33> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -412,6 +429,7 @@ constexpr std::array<Row, 32> kSentences = {{
     {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
     {"slow_residuals", SlowResiduals},
+    {"noise_in_displacement", NoiseInDisplacement},
     {"rig_not_tried", RigNotTried},
     {"load_followed", LoadFollowed},
     {"load_not_followed", LoadNotFollowed},

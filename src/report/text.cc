@@ -154,7 +154,7 @@ std::string AdequacyText(const Report& report, const Style& style) {
   }
   constexpr std::size_t kMost = 3;
   for (std::size_t i = 1; i < std::min(kMost, adequacy.causes.size()); ++i) {
-    text += Wrapped("  or " + Sentence(adequacy.causes[i]), 5);
+    text += Wrapped("  or " + Sentence(adequacy.causes[i], report.fit.response), 5);
   }
   if (adequacy.causes.size() > kMost) {
     const std::size_t more = adequacy.causes.size() - kMost;
@@ -199,7 +199,7 @@ std::string FitText(const Report& report) {
           "force and displacement",
           fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
           samples, left_out > 0 ? fmt::format(", {} of them left out", left_out) : "", reversals,
-          Quantity(fit.WidestRecord().gate.gate, report.units.displacement, 3), cycles,
+          Quantity(fit.WidestRecord().gate.gate, report.units.excitation, 3), cycles,
           fit.force_sense > 0 ? "same sign" : "opposite signs"),
       2);
   if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
@@ -210,10 +210,12 @@ std::string ResidualText(const Report& report) {
   const FitResult& fit = report.fit;
   const Units& units = report.units;
   const identification::ResidualStatistics& residuals = fit.residuals;
+  const bool is_of_force = fit.response == loop::Channel::kForce;
   // A share of what is not known would say it all the same.
   const ParameterEstimate* slip_force = fit.Find("slip_force");
   const std::string share = slip_force != nullptr && slip_force->is_known()
-                                ? fmt::format(" ({:.3g} % of Tc)", 100 * residuals.normalized_rms)
+                                ? fmt::format(" ({:.3g} % of {})", 100 * residuals.normalized_rms,
+                                              is_of_force ? "Tc" : "Tc/σ")
                                 : "";
   std::size_t samples = 0;
   double repeatable = 0.0;
@@ -222,15 +224,17 @@ std::string ResidualText(const Report& report) {
     repeatable = std::max(repeatable, record.structure.repeatable_share);
   }
   std::string text = fmt::format(
-      "residuals: rms {}{}, largest {}, R² {:.6f}, Durbin-Watson {:.2f}, {:.0f} effective samples "
+      "residuals{}: rms {}{}, largest {}, R² {:.6f}, Durbin-Watson {:.2f}, {:.0f} effective "
+      "samples "
       "of {}",
-      Quantity(residuals.rms, units.force, 4), share, Quantity(residuals.max_abs, units.force, 4),
-      residuals.r_squared, residuals.durbin_watson, residuals.effective_samples, samples);
+      is_of_force ? "" : " of the displacement", Quantity(residuals.rms, units.response, 4), share,
+      Quantity(residuals.max_abs, units.response, 4), residuals.r_squared, residuals.durbin_watson,
+      residuals.effective_samples, samples);
   if (repeatable > 0) {
     text += fmt::format("; {:.0f} % of their variance is repeatable, the same in every stroke",
                         100 * repeatable);
   }
-  if (const double noise = fit.WidestRecord().displacement_noise; noise > 0) {
+  if (const double noise = fit.WidestRecord().displacement_noise; noise > 0 && is_of_force) {
     text += fmt::format("; noise of the displacement {}, weighed in",
                         Quantity(noise, units.displacement, 3));
   }

@@ -91,20 +91,24 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   }
 }
 
-/// A gate is in metres, as every option: one that is wider than the motion leaves no turning point.
+/// A gate is in SI units, as every option: one that is wider than the motion, or the force where
+/// that is imposed, leaves no turning point.
 void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   if (!request.reversal_gate) return;
+  const bool is_forced = request.noise_in == "displacement";
   double widest = 0.0;
   for (const RecordFile& input : inputs) {
-    const auto [least, greatest] = std::ranges::minmax(input.record.displacement);
+    const auto [least, greatest] =
+        std::ranges::minmax(is_forced ? input.record.force : input.record.displacement);
     widest = std::max(widest, greatest - least);
   }
   if (*request.reversal_gate < widest) return;
-  const char* unit = inputs.front().is_torsional ? "rad" : "m";
+  const bool is_torsional = inputs.front().is_torsional;
+  const char* unit = is_forced ? (is_torsional ? "N m" : "N") : (is_torsional ? "rad" : "m");
   throw InputError(fmt::format(
-      "--reversal-gate {}: the whole motion is {:.4g} {} wide, so that it would have no turning "
+      "--reversal-gate {}: the whole {} is {:.4g} {} wide, so that it would have no turning "
       "point: give the gate in {}, below that",
-      *request.reversal_gate, widest, unit, unit));
+      *request.reversal_gate, is_forced ? "force" : "motion", widest, unit, unit));
 }
 
 /// A unit of what no file has would be taken without a word; and a joint fit is of one kind.

@@ -21,6 +21,10 @@ using identification::Term;
 
 namespace {
 
+// --drift is of the channel that is fitted.
+constexpr std::string_view kDriftOfForce = "force_drift";
+constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
+
 double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
   double value = 0.0;
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
@@ -151,6 +155,28 @@ loop::CountRange ParseCountRange(std::string_view text, std::string_view option)
       fmt::format("{}: '{}' is empty: the first number must not be the larger", option, text));
 }
 
+/// What has no place in a fit of the displacement, by the names of options.
+void RequireOptionsOfDisplacement(const FitRequest& request) {
+  const auto refuse = [](std::string_view option, std::string_view why) {
+    throw InputError(
+        fmt::format("{} has no place beside --noise-in displacement: {}", option, why));
+  };
+  constexpr std::string_view kBeside = "it is of a force that is fitted; leave one of the two out";
+  for (const auto& [name, text] : request.terms) {
+    if (name != kDriftOfForce) refuse(identification::FindTerm(name)->option, kBeside);
+  }
+  if (!request.covariates.empty()) refuse("--covariate", kBeside);
+  if (request.model == kAutomatic) {
+    refuse("--model auto", "models are chosen by fits of the force; name one");
+  }
+  if (request.force_noise) {
+    refuse("--force-noise", "the force is taken as exact; give --displacement-noise");
+  }
+  if (request.displacement_noise) {
+    RequirePositive("--displacement-noise [m]", *request.displacement_noise);
+  }
+}
+
 /// A start or a bound of what the fit does not move would be taken without a word.
 void RequireFitted(std::string_view option, const std::string& name, bool is_automatic,
                    const FitOptions& fit) {
@@ -167,13 +193,19 @@ void RequireFitted(std::string_view option, const std::string& name, bool is_aut
   if (term->presence == identification::Presence::kOffsets && !fit.offsets) {
     refuse("--offsets off holds it at 0; use --offsets on");
   }
-  if (term->name == "displacement_offset" && fit.initial_state == models::InitialState::kSteady) {
+  const std::string_view origin =
+      fit.response() == loop::Channel::kForce ? "displacement_offset" : "force_offset";
+  if (term->name == origin && fit.initial_state == models::InitialState::kSteady) {
     refuse("that of a steady loop is its centre; use --initial-state virgin");
   }
-  if (term->option.empty()) return;
+  if (term->option.empty() && term->name != kDriftOfDisplacement) return;
   if (term->of_column) return;  // the fit knows the columns
   const bool is_tried = is_automatic && term->name == "rig_stiffness";
   if (is_tried || std::ranges::find(fit.terms, term->name) != fit.terms.end()) return;
+  if (term->name == kDriftOfDisplacement) {
+    refuse(fit.response() == loop::Channel::kForce ? "add --drift --noise-in displacement"
+                                                   : "add --drift");
+  }
   refuse(fmt::format("add {}{}", term->option, term->argument.empty() ? "" : " fit"));
 }
 
@@ -207,6 +239,7 @@ void RequireKnownChoices(const FitRequest& request) {
   RequireOneOf("--model", request.model, ModelNames());
   RequireOneOf("--initial-state", request.initial_state, kInitialStates);
   RequireOneOf("--force-sign", request.force_sign, kForceSigns);
+  RequireOneOf("--noise-in", request.noise_in, kNoiseIn);
   RequireOneOf("--offsets", request.offsets, kOnOff);
   RequireOneOf("--loss", request.loss, kLosses);
 }
@@ -231,6 +264,10 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   loop::PreparationOptions& preparation = fit.preparation;
   if (options.force_sign == "same") preparation.force_sense = 1;
   if (options.force_sign == "opposite") preparation.force_sense = -1;
+  if (options.noise_in == "displacement") {
+    RequireOptionsOfDisplacement(options);
+    preparation.excitation = loop::Channel::kForce;
+  }
   fit.offsets = options.offsets == "on";
   for (const contact::UncertainValue& load : options.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
@@ -253,7 +290,10 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   preparation.reversal_gate = options.reversal_gate;
   fit.fixed = ParseAssignments(options.fix, "--fix");
   for (const auto& [name, text] : options.terms) {
-    ApplyTerm(*identification::FindTerm(name), text, fit);
+    const bool is_of_displacement =
+        name == kDriftOfForce && fit.response() == loop::Channel::kDisplacement;
+    ApplyTerm(*identification::FindTerm(is_of_displacement ? kDriftOfDisplacement : name), text,
+              fit);
   }
   ApplyCovariates(options.covariates, fit);
   if (!options.cycles.empty()) preparation.cycles = ParseCountRange(options.cycles, "--cycles");
@@ -277,6 +317,10 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
   }
   if (!request.covariates.empty()) {
     throw InputError("--covariate is not read by track: fit a part of the record with fit");
+  }
+  if (request.noise_in == "displacement") {
+    throw InputError(
+        "--noise-in displacement is not read by track: fit a part of the record with fit");
   }
   return MakeFitOptions(request);
 }

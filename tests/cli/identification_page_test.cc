@@ -47,6 +47,8 @@ std::string Words(const Term& term) {
       return fmt::format("`{}`", term.option);
     case Presence::kLoadSeries:
       return "loads that differ";
+    case Presence::kNever:
+      return "`--drift` beside `--noise-in displacement`";
   }
   return "";
 }

@@ -87,7 +87,7 @@ class Stages {
     for (const identification::ScaledRecord& record : problem.data->records) {
       for (std::size_t i = 0; i < record.size(); ++i, ++k) {
         residual[k] =
-            record.root_weight[i] * (force[static_cast<std::size_t>(k)] - record.force[i]);
+            record.root_weight[i] * (force[static_cast<std::size_t>(k)] - record.response()[i]);
       }
     }
     return residual;

@@ -351,3 +351,16 @@ def test_results_of_fits_at_once_are_those_of_one_after_the_other(sphere):
     for thread in threads:
         thread.join()
     assert results == [expected, expected]
+
+
+def test_a_loop_of_an_imposed_force_is_fitted_by_its_displacement():
+    loop = DATA / "imposed_force.csv"
+    result = mindahl.fit(loop, noise_in="displacement")
+    assert without_files(result.to_dict()) == without_files(
+        program_json("fit", loop, "--noise-in", "displacement"))
+    record = result.records[0]
+    np.testing.assert_array_equal(record.fitted_force, record.force)
+    # Either difference rounds once, of displacements ten times as large as a residual.
+    np.testing.assert_allclose(record.fitted_displacement - record.displacement, record.residual,
+                               atol=1e-15 * np.ptp(record.displacement))
+    assert result.residuals.channel == "displacement"

@@ -70,6 +70,8 @@ Finding Complete(std::string_view code, std::string_view kind = "") {
                      {"variation", 0.055},
                      {"bound", 0.99},
                      {"strokes", 2.5},
+                     {"of_displacement", 0.045},
+                     {"of_force", 0.005},
                      {"p_value", 0.0035},
                      {"dahl_p_value", 0.25}};
   return finding;
@@ -139,6 +141,8 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
        {"Masing's law", "ΔAICc = -31.5", "of Dahl's memory", "0.25", "0.0035"}},
       {"memory_contradicts_law", "dahl", {"Dahl's own law", "of Masing's memory"}},
       {"rig_not_tried", "", {"alpha = 0.0625", "--load-window"}},
+      {"rig_not_tried", "imposed_force", {"alpha = 0.0625", "take its part off"}},
+      {"noise_in_displacement", "", {"4.5 % of X", "0.5 % of T*", "--noise-in displacement"}},
       {"load_followed", "", {"record 2: ", "±5.5 %", "the law follows it"}},
       {"load_not_followed", "", {"record 2: ", "±5.5 %", "jenkins", "--load-window"}},
       {"alpha_limited_by_load", "", {"0.99 or more", "--load-window"}},
@@ -263,7 +267,7 @@ TEST(FindingCodes, HaveAVerdictUnlessTheyAreOfNoParameter) {
   for (const char* of_the_whole_fit :
        {"fit_failed", "weights_not_settled", "reversals_uncertain", "glitches_left_out",
         "path_too_long", "no_closed_cycle", "load_followed", "load_not_followed",
-        "memory_contradicts_law", "slow_residuals"}) {
+        "memory_contradicts_law", "slow_residuals", "noise_in_displacement"}) {
     EXPECT_EQ(of_parameters.erase(of_the_whole_fit), 1U) << of_the_whole_fit;
   }
   const std::string judge = Content(std::filesystem::path(MINDAHL_SOURCE_DIR) / "src" /

@@ -9,6 +9,7 @@
 
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
+#include "mindahl/models/imposed_force.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 #include "mindahl/models/variable_load.h"
@@ -101,7 +102,28 @@ void AddBeside(const Scenario& scenario, Record& record) {
   if (scenario.beside == Beside::kCovariate) record.covariates.push_back(std::move(column));
 }
 
-Record CleanRecord(const Scenario& scenario, double load) {
+bool IsForced(const Scenario& scenario) { return scenario.peak_share > 0; }
+
+/// Of an imposed force.
+Record ForcedRecord(const Scenario& scenario) {
+  const BranchLaw law = LawOf(scenario);
+  Record record;
+  record.force = models::MakeExcitation({.amplitude = scenario.peak_share * law.slip_force,
+                                         .cycles = static_cast<double>(scenario.cycles),
+                                         .samples_per_cycle = scenario.samples_per_cycle})
+                     .displacement;
+  record.displacement.resize(record.force.size());
+  models::EvaluateDisplacement(*models::FindFrictionModel(scenario.model), law, record.force,
+                               record.displacement);
+  if (!scenario.is_steady) return record;
+  const auto first = static_cast<std::ptrdiff_t>(scenario.samples_per_cycle);
+  for (std::vector<double>* column : {&record.force, &record.displacement}) {
+    column->erase(column->begin(), column->begin() + first);
+  }
+  return record;
+}
+
+Record DrivenRecord(const Scenario& scenario, double load) {
   const BranchLaw law = LawOf(scenario, load);
   Record record;
   record.displacement =
@@ -130,6 +152,11 @@ Record CleanRecord(const Scenario& scenario, double load) {
     record.force = ForceOn(law, record.displacement);
   }
   if (scenario.beside != Beside::kNothing) AddBeside(scenario, record);
+  return record;
+}
+
+Record CleanRecord(const Scenario& scenario, double load) {
+  Record record = IsForced(scenario) ? ForcedRecord(scenario) : DrivenRecord(scenario, load);
   for (double& force : record.force) force += kForceOffset;
   for (double& displacement : record.displacement) displacement += kDisplacementOffset;
   return record;
@@ -141,7 +168,17 @@ std::vector<Record> CleanRecords(const Scenario& scenario) {
   return records;
 }
 
+/// Half the way of the motion [m].
+double Amplitude(const Scenario& scenario) {
+  if (!IsForced(scenario)) return scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
+  Scenario steady = scenario;
+  steady.is_steady = true;
+  const auto [low, high] = std::ranges::minmax(ForcedRecord(steady).displacement);
+  return (high - low) / 2;
+}
+
 double ForceNoise(const Scenario& scenario) {
+  if (IsForced(scenario)) return 0.0;
   const BranchLaw law = LawOf(scenario);
   return scenario.force_noise *
          models::SteadyPeakForce(*models::FindFrictionModel("mindlin-dahl"), law,
@@ -152,8 +189,7 @@ Record NoisyRecord(const Scenario& scenario, const Record& clean, Normal& normal
   constexpr double kCorrelation = 0.9;
   Record record = clean;
   const double force_noise = ForceNoise(scenario);
-  const double amplitude = scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
-  const double displacement_noise = scenario.displacement_noise * amplitude;
+  const double displacement_noise = scenario.displacement_noise * Amplitude(scenario);
   double correlated = force_noise * normal();
   double error = 0.0;                     // of the displacement
   const double phase = normal.Uniform();  // of the encoder
@@ -166,6 +202,7 @@ Record NoisyRecord(const Scenario& scenario, const Record& clean, Normal& normal
       record.force[i] += white;
     }
     double& displacement = record.displacement[i];
+    if (scenario.noise == Noise::kAnswer) displacement += displacement_noise * normal();
     if (scenario.noise == Noise::kDisplacement) {
       if (i % scenario.dwell == 0) error = displacement_noise * normal();
       displacement += error;
@@ -180,13 +217,17 @@ Record NoisyRecord(const Scenario& scenario, const Record& clean, Normal& normal
 
 FitOptions OptionsOf(const Scenario& scenario) {
   FitOptions options;
-  options.initial_state = models::InitialState::kVirgin;
+  options.initial_state =
+      scenario.is_steady ? models::InitialState::kSteady : models::InitialState::kVirgin;
+  options.model = models::FindFrictionModel(scenario.model);
+  if (IsForced(scenario) && !scenario.fits_force) {
+    options.preparation.excitation = loop::Channel::kForce;
+  }
   if (scenario.loads.size() > 1) {
     for (const double load : scenario.loads) options.normal_loads.push_back(kMeanLoad * load);
   }
   if (scenario.noise == Noise::kDisplacement && scenario.noise_is_known) {
-    options.preparation.displacement_noise =
-        scenario.displacement_noise * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
+    options.preparation.displacement_noise = scenario.displacement_noise * Amplitude(scenario);
   }
   if (scenario.beside == Beside::kLag) options.terms.emplace_back("lag");
   if (scenario.beside == Beside::kViscous) options.terms.emplace_back("viscous");
@@ -298,6 +339,54 @@ std::vector<Scenario> Scenarios() {
        .beside = Beside::kCovariate,
        .lowest_coverage = kWhiteLow,
        .highest_coverage = kWhiteHigh},
+      {.name = "imposed force to 0.95 Tc, displacement noise 1 %",
+       .noise = Noise::kAnswer,
+       .displacement_noise = 0.01,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .peak_share = 0.95},
+      {.name = "imposed force to 0.95 Tc, steady, displacement noise 1 %",
+       .noise = Noise::kAnswer,
+       .displacement_noise = 0.01,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .peak_share = 0.95,
+       .is_steady = true},
+      // What --noise-in displacement is there for: nothing is promised.
+      {.name = "imposed force to 0.95 Tc, displacement noise 1 %, but the force is fitted",
+       .noise = Noise::kAnswer,
+       .displacement_noise = 0.01,
+       .lowest_coverage = 0.0,
+       .peak_share = 0.95,
+       .fits_force = true},
+      {.name = "imposed force to 0.95 Tc, steady, displacement noise 1 %, but the force is fitted",
+       .noise = Noise::kAnswer,
+       .displacement_noise = 0.01,
+       .lowest_coverage = 0.0,
+       .peak_share = 0.95,
+       .is_steady = true,
+       .fits_force = true},
+      {.name = "imposed force to 0.8 Tc, displacement noise 0.3 %",
+       .noise = Noise::kAnswer,
+       .displacement_noise = 0.003,
+       .lowest_coverage = kPartialSlipLow,
+       .highest_coverage = kWhiteHigh,
+       .peak_share = 0.8},
+      {.name = "imposed force to 0.95 Tc, Dahl's own law, displacement noise 1 %",
+       .noise = Noise::kAnswer,
+       .displacement_noise = 0.01,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .peak_share = 0.95,
+       .model = "dahl"},
+      {.name = "imposed force to 0.95 Tc, Dahl's own law, steady, displacement noise 1 %",
+       .noise = Noise::kAnswer,
+       .displacement_noise = 0.01,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .peak_share = 0.95,
+       .is_steady = true,
+       .model = "dahl"},
   };
 }
 
@@ -309,11 +398,16 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   const std::vector<Record> clean = CleanRecords(scenario);
   const FitOptions options = OptionsOf(scenario);
 
-  // The bound of Cramér and Rao for white noise of the force: the parabola at the truth.
+  // The bound of Cramér and Rao for white noise of what is fitted: the parabola at the truth.
   std::array<double, Coverage::kParameters> bound{};
   FitOptions known = options;
   known.preparation.displacement_noise.reset();
-  known.force_noise = ForceNoise(scenario);
+  if (IsForced(scenario)) {
+    known.preparation.excitation = loop::Channel::kForce;
+    known.preparation.displacement_noise = scenario.displacement_noise * Amplitude(scenario);
+  } else {
+    known.force_noise = ForceNoise(scenario);
+  }
   const identification::FitResult at_truth = identification::Fit(clean, known);
   for (std::size_t k = 0; k < parameters; ++k) {
     bound[k] = at_truth.Find(kNames[k])->standard_error.value_or(0.0);

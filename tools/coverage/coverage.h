@@ -17,6 +17,7 @@ enum class Noise {
   kAutoregressive,  ///< of the force, AR(1) with ρ = 0.9
   kDisplacement,    ///< of both channels
   kQuantised,       ///< the displacement by an encoder, the force white
+  kAnswer,          ///< white, of the displacement that answers an imposed force, which is exact
 };
 
 /// What the record has beside the contact, and the fit a term for.
@@ -50,6 +51,10 @@ struct Scenario {
   std::vector<double> loads = {1.0};
   double load_exponent = 1.0 / 3;
   double load_swing = 0.0;  ///< of the load about its mean, at twice the drive's frequency
+  double peak_share = 0.0;  ///< T*/Tc where the force is imposed, in the place of λ
+  bool is_steady = false;   ///< without its first cycle
+  bool fits_force = false;  ///< of an imposed force all the same
+  std::string model = "mindlin-dahl";
 };
 
 /// The scenarios of docs/coverage.md.

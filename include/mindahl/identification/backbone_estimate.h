@@ -45,7 +45,7 @@ struct BackboneEstimate {
   bool reaches_plateau = false;
 };
 
-/// Does a fit have a backbone: one load, no lag, a law of Masing's memory?
+/// Does a fit have a backbone: of forces, under one load, no lag, a law of Masing's memory?
 bool HasBackbone(const FitResult& fit);
 
 /// The backbone F(x) = Σ wₖ·pₖ(x) + w∞·x, wₖ ≥ 0, of which the records' forces are

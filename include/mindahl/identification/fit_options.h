@@ -49,7 +49,8 @@ struct FitOptions {
   /// mean of the records' loads.
   std::vector<double> normal_loads;
 
-  /// Known standard deviation of the force noise [N]; empty: from the residuals.
+  /// Known standard deviation of the force noise [N]; empty: from the residuals. Not of a force
+  /// that is imposed, which is taken as exact.
   std::optional<double> force_noise;
 
   /// Its scale comes from the residuals, or is the known noise.
@@ -73,6 +74,13 @@ struct FitOptions {
   std::uint64_t seed = 1;  ///< of those
 
   Thresholds thresholds;
+
+  /// The channel that is fitted, whose noise the residuals are: that which is not imposed.
+  [[nodiscard]] loop::Channel response() const { return loop::Other(preparation.excitation); }
+  /// Known standard deviation of its noise [N or m]; empty: from the residuals.
+  [[nodiscard]] std::optional<double> response_noise() const {
+    return response() == loop::Channel::kForce ? force_noise : preparation.displacement_noise;
+  }
 };
 
 }  // namespace mindahl::identification

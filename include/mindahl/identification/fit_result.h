@@ -13,6 +13,7 @@
 #include "mindahl/identification/memory.h"
 #include "mindahl/identification/residual_statistics.h"
 #include "mindahl/identification/residual_structure.h"
+#include "mindahl/loop/channel.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/facts.h"
 #include "mindahl/loop/glitches.h"
@@ -85,9 +86,9 @@ struct MindlinTest {
 struct StartReport {
   bool drawn = false;  ///< at random, not from the look at the plane
   models::BranchLaw start;
-  double initial_rms = 0.0;  ///< [N]
+  double initial_rms = 0.0;  ///< [N or m]
   models::BranchLaw reached;
-  double final_rms = 0.0;  ///< [N]
+  double final_rms = 0.0;  ///< [N or m]
   bool converged = false;
 };
 
@@ -106,9 +107,12 @@ struct RecordFit {
   /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
   /// record is sampled so coarsely that it had to be fitted.
   std::vector<double> overshoot;
-  loop::LoopMeasures measures;        ///< with the force in the displacement's sense
-  loop::LoopFacts facts;              ///< likewise, cycle by cycle; from depth kErrors on
-  double displacement_noise = 0.0;    ///< [m] of the readings; 0 where they count as exact
+  loop::LoopMeasures measures;      ///< with the force in the displacement's sense
+  loop::LoopFacts facts;            ///< likewise, cycle by cycle; from depth kErrors on
+  double displacement_noise = 0.0;  ///< [m] of the readings; 0 where they count as exact
+  /// [m], in a fit of the displacement: where the law has the contact under the force that was
+  /// measured, offsets included; else empty.
+  std::vector<double> fitted_displacement;
   std::vector<unsigned char> counts;  ///< of each sample, 1 where it counts, else 0
   std::size_t left_out = 0;           ///< samples that do not count
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
@@ -116,9 +120,10 @@ struct RecordFit {
   bool load_varies = false;           ///< within the record, as the law was told
   /// Of a load series, from Depth::kFull on; empty where the record by itself is no fit.
   std::optional<RecordAlone> alone;
-  ResidualStructure structure;       ///< of the residuals, in the displacement's sense
-  std::vector<double> fitted_force;  ///< [N], in the file's sense, offsets included
-  std::vector<double> residual;      ///< fitted − measured [N]
+  ResidualStructure structure;  ///< of the residuals, in the displacement's sense
+  /// [N], in the file's sense, offsets included; in a fit of the displacement as measured.
+  std::vector<double> fitted_force;
+  std::vector<double> residual;  ///< fitted − measured [unit of the response]
 };
 
 /// Pessimistic by default: a result that nobody filled in has not converged. What a depth does not
@@ -129,6 +134,8 @@ struct FitResult {
   std::string termination = "not run";
   int iterations = 0;
   const models::FrictionModel* model = nullptr;
+  /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
+  loop::Channel response = loop::Channel::kForce;
   models::InitialState initial_state = models::InitialState::kVirgin;
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc
@@ -137,8 +144,8 @@ struct FitResult {
   /// not all are known.
   std::optional<double> normal_load;
   double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, and nothing's, where the records have one load
-  double rms = 0.0;            ///< [N] of the residuals that count, unweighted
-  double force_noise = 0.0;    ///< [N], known or estimated
+  double rms = 0.0;            ///< [N or m] of the residuals that count, unweighted
+  double force_noise = 0.0;    ///< [N], known or estimated; 0 in a fit of the displacement
   std::size_t outliers = 0;    ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
   std::vector<BranchShape> branch_shapes;  ///< α of each branch on its own; empty where it is held
@@ -147,8 +154,8 @@ struct FitResult {
   std::optional<LawChoice> law_choice;
   /// At Depth::kThorough, whether the record is of Masing's memory, of whatever shape: also where
   /// the model is inadequate. Empty where the motion does not turn, where σ or Tc is held or
-  /// bounded, and under loads that differ or vary or a lag, where branches are no copies of each
-  /// other.
+  /// bounded, under loads that differ or vary or a lag, where branches are no copies of each
+  /// other, and in a fit of the displacement.
   std::optional<MemoryTest> memory;
   /// From Depth::kFull on, and at kErrors; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
@@ -173,6 +180,9 @@ struct FitResult {
 
   /// The law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
   [[nodiscard]] models::BranchLaw LawOf(const RecordFit& record) const;
+
+  /// Standard deviation of the noise of the channel that was fitted [N or m], known or estimated.
+  [[nodiscard]] double ResponseNoise() const;
 
   /// The largest force [N] of the widest record, as it would be at the mean load of all.
   [[nodiscard]] double PeakForce() const;

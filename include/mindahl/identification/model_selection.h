@@ -77,7 +77,8 @@ struct ModelSelection {
 /// @param options  of every fit; `model` and the term rig_stiffness are set here. A fixed rig
 ///                 stiffness belongs to all candidates; a fixed α leaves out models that prescribe
 ///                 another
-/// @throws InvalidArgument as Fit does, for folds < 2, or a largest ΔAICc that is negative
+/// @throws InvalidArgument as Fit does, for folds < 2, a largest ΔAICc that is negative, or a fit
+///   of the displacement
 /// Deterministic. Cost: 8 fits at Depth::kIntervals, 8 a fold at Depth::kEstimate from where these
 /// are, and the chosen one at Depth::kThorough.
 ModelSelection SelectModel(std::span<const loop::RecordView> records, const FitOptions& options,

@@ -4,15 +4,17 @@
 #include <string>
 #include <string_view>
 
+#include "mindahl/loop/channel.h"
+
 namespace mindahl::identification {
 
 /// Whose a parameter is: the contact's, shared by all records, or a record's own, numbered from 1
 /// where there are several (force_offset_2).
 enum class Scope { kContact, kRecord };
 
-/// How a parameter enters the force.
+/// How a parameter enters the response, the channel that is fitted.
 enum class Entry {
-  kLaw,     ///< through the law or the path: the force is not linear in it
+  kLaw,     ///< through the law or the path: the response is not linear in it
   kLinear,  ///< as the factor of a column that the record gives
 };
 
@@ -23,6 +25,7 @@ enum class Presence {
   kReported,    ///< where asked for; held at 0 otherwise, and reported
   kOnDemand,    ///< where asked for or fixed; otherwise not there
   kLoadSeries,  ///< where the records are under loads that differ; otherwise not there
+  kNever,       ///< it is of fits of the other channel
 };
 
 /// The units in which a fit works, for the records' numbers to be of order one.
@@ -70,11 +73,15 @@ struct Term {
   std::string_view help = {};
 };
 
-/// All parameters, in the order in which they are reported: the contact's, then a record's.
-std::span<const Term> Terms();
+/// All parameters of a fit of `response`, in the order in which they are reported: the contact's,
+/// then a record's. They are the same, in the same places, for either response: of a displacement
+/// that answers an imposed force the compliance 1/σ is the linear one and Tc enters the law, where
+/// the contact is unloaded is the offset of the force, and what is beside the contact's force has
+/// no place.
+std::span<const Term> Terms(loop::Channel response = loop::Channel::kForce);
 
 /// nullptr when there is none of that name, which is without a record's number.
-const Term* FindTerm(std::string_view name);
+const Term* FindTerm(std::string_view name, loop::Channel response = loop::Channel::kForce);
 
 /// The name without a record's number: force_offset for force_offset_2.
 std::string_view TermNameOf(std::string_view parameter);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "mindahl/loop/channel.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/displacement_noise.h"
 #include "mindahl/loop/glitches.h"
@@ -28,8 +29,13 @@ struct CountRange {
 
 /// How records are read before any model is asked.
 struct PreparationOptions {
-  /// Excursions up to this [m] are noise and make no reversal. Empty: ChooseReversalGate, and at
-  /// least what a known displacement noise reaches, 2√(2 ln n) standard deviations.
+  /// The channel that is imposed, and taken as exact: its turns are the reversals. Of a force that
+  /// is imposed the displacement is neither smoothed nor given a gate.
+  Channel excitation = Channel::kDisplacement;
+
+  /// Excursions up to this [unit of the excitation] are noise and make no reversal. Empty:
+  /// ChooseReversalGate, and at least what a known displacement noise reaches, 2√(2 ln n) standard
+  /// deviations.
   std::optional<double> reversal_gate;
 
   /// Spikes, dropouts and held values (FindGlitches) do not count, and make no history.
@@ -40,7 +46,8 @@ struct PreparationOptions {
   std::optional<int> force_sense;
 
   /// Known standard deviation of the displacement noise [m], white. Empty: estimated where the
-  /// record shows it by its gate or by an encoder's steps of 1e-3 of its half range, else 0. A
+  /// record shows it by its gate or by an encoder's steps of 1e-3 of its half range, else 0. Under
+  /// an imposed force it makes no gate, and the displacement is not smoothed. A
   /// noisy displacement is smoothed (DisplacementSmoother), since noise in the argument of a curved
   /// law is a bias.
   std::optional<double> displacement_noise;
@@ -78,12 +85,12 @@ struct PreparedRecord {
   GlitchCount glitches;                          ///< that are left out
   std::pmr::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
   std::pmr::vector<double> mended_force;         ///< [N]; likewise
-  double reversal_gate = 0.0;                    ///< [m]
+  double reversal_gate = 0.0;                    ///< [unit of the excitation]
   ReversalGate gate_choice;                 ///< how sure the gate is; `certain` where it was given
   std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   LoopMeasures measures;                    ///< with the force in the displacement's sense
   double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
-  double displacement_noise = 0.0;          ///< [m]; 0 where readings count as exact
+  double displacement_noise = 0.0;          ///< [m]; 0 where readings are not smoothed
   std::pmr::vector<unsigned char> counts;   ///< of each sample, 1 where it counts, else 0
   std::size_t left_out = 0;                 ///< samples that do not count
   std::pmr::vector<double> smoothed;        ///< [m]; empty where readings count as exact
@@ -110,6 +117,7 @@ struct PreparedRecords {
   explicit PreparedRecords(std::pmr::memory_resource* memory) : records(memory) {}
 
   std::pmr::vector<PreparedRecord> records;
+  Channel excitation = Channel::kDisplacement;
   int force_sense = 1;  ///< ±1, of all records
 
   [[nodiscard]] std::size_t samples() const;

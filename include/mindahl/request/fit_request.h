@@ -26,6 +26,7 @@ inline constexpr std::string_view kFitIt = "fit";
 // What these options may say, the default first.
 inline constexpr std::array<std::string_view, 3> kInitialStates = {"auto", "virgin", "steady"};
 inline constexpr std::array<std::string_view, 3> kForceSigns = {"auto", "same", "opposite"};
+inline constexpr std::array<std::string_view, 2> kNoiseIn = {"force", "displacement"};
 inline constexpr std::array<std::string_view, 2> kOnOff = {"on", "off"};
 inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "cauchy", "tukey"};
 
@@ -41,6 +42,7 @@ struct FitRequest {
   std::string model = "mindlin-dahl";
   std::string initial_state = "auto";
   std::string force_sign = "auto";
+  std::string noise_in = "force";
   std::string offsets = "on";
   std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
   std::vector<std::string> covariates;

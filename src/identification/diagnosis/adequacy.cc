@@ -23,6 +23,10 @@ double ChanceOfNoise(const AdequacyTest& test) {
 /// What to type: a covariate's has its name, quoted where it has blanks.
 std::string OptionOf(const Problem& problem, const DepartureFit& fit) {
   const Departure& departure = Departures()[fit.departure];
+  if (problem.data->excitation == loop::Channel::kForce) {
+    // What is beside a force has no place in a fit of the displacement.
+    return departure.term == "displacement_drift" ? std::string(departure.option) : "";
+  }
   if (!fit.covariate) return std::string(departure.option);
   const std::string_view name = problem.data->covariates[*fit.covariate].name;
   const char* const quote = name.find(' ') == std::string_view::npos ? "" : "'";
@@ -58,7 +62,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
                        std::span<const ParameterEstimate> estimates) {
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
-  adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->force;
+  adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->response_unit();
   adequacy.p_value = ChanceOfNoise(test);
   adequacy.tried = test.fits.size();
   const auto& reported = problem.parameters.reported();
@@ -120,9 +124,8 @@ std::optional<Finding> FindSlowResiduals(const FitResult& result, const Threshol
 
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
-  const double force = std::min(result.law.slip_force, result.PeakForce());
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         result.adequacy.misfit > thresholds.failing_misfit * force;
+         result.adequacy.misfit > thresholds.failing_misfit * SizeOfResponse(result);
 }
 
 }  // namespace mindahl::identification

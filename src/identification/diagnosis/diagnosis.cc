@@ -127,12 +127,20 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   return findings;
 }
 
+double SizeOfResponse(const FitResult& result) {
+  if (result.response == loop::Channel::kForce) {
+    return std::min(result.law.slip_force, result.PeakForce());
+  }
+  return result.WidestRecord().measures.amplitude;
+}
+
 double MisfitOf(const FitResult& result) {
-  const double force = std::min(result.law.slip_force, result.PeakForce());
-  if (!(force > 0)) return 0.0;
-  const double rms = result.outliers > 0 ? std::hypot(result.adequacy.misfit, result.force_noise)
-                                         : result.residuals.rms;
-  return rms / force;
+  const double size = SizeOfResponse(result);
+  if (!(size > 0)) return 0.0;
+  const double rms = result.outliers > 0
+                         ? std::hypot(result.adequacy.misfit, result.ResponseNoise())
+                         : result.residuals.rms;
+  return rms / size;
 }
 
 std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
@@ -178,12 +186,12 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     if (record.reversals.size() >= 2) return std::nullopt;
-    const std::size_t offset = problem.parameters.PositionOf("displacement_offset", r);
+    const std::size_t offset = problem.parameters.PositionOfOrigin(r);
     is_assumed = is_assumed || problem.parameters[offset].assumed;
     if (problem.parameters[offset].assumed) continue;
     const double unloaded = solution.theta[offset];
-    const auto [lowest, highest] = std::ranges::minmax(record.displacement);
-    const double away = std::abs(record.displacement.front() - unloaded);
+    const auto [lowest, highest] = std::ranges::minmax(record.excitation());
+    const double away = std::abs(record.excitation().front() - unloaded);
     const bool starts_unloaded = problem.state == models::InitialState::kVirgin &&
                                  away <= thresholds.starts_unloaded * (highest - lowest) / 2;
     if (starts_unloaded) return std::nullopt;
@@ -222,8 +230,8 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
       const std::size_t end =
           turn < record.reversals.size() ? record.reversals[turn] : record.size() - 1;
       const std::size_t begin = turn > 0 ? record.reversals[turn - 1] : 0;
-      ways[record.displacement[end] > record.displacement[begin] ? 1 : 0].push_back(
-          record.displacement[i]);
+      const std::span<const double> excitation = record.excitation();
+      ways[excitation[end] > excitation[begin] ? 1 : 0].push_back(excitation[i]);
       ++samples;
     }
     for (std::vector<double>& way : ways) {

@@ -29,8 +29,11 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
 /// Intervals too wide to call a parameter known, of those that no other finding names.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 
-/// rms of the residuals over min(Tc, T*) [-], without what a robust loss has weighed down; 0 where
-/// there is no force. Where the slip force is open it says nothing of how well the loop is
+/// What a misfit is held against [N or m]: min(Tc, T*), or the amplitude of a displacement.
+double SizeOfResponse(const FitResult& result);
+
+/// rms of the residuals over that [-], without what a robust loss has weighed down; 0 where
+/// there is none. Where the slip force is open it says nothing of how well the loop is
 /// followed.
 double MisfitOf(const FitResult& result);
 

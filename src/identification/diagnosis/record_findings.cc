@@ -9,6 +9,7 @@
 
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/trend.h"
+#include "mindahl/loop/displacement_noise.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -78,8 +79,8 @@ bool ClaimsAnAnswer(const FitResult& result) {
 
 }  // namespace
 
-std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
-                                   const Thresholds& thresholds) {
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
+                                   loop::Channel excitation) {
   std::vector<Finding> findings;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const RecordFit& record = records[r];
@@ -90,7 +91,9 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
       findings.push_back(std::move(finding));
     };
     if (!record.gate.certain) append(UncertainReversals(record));
-    if (record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
+    // Of a displacement that answers the noise is no part of the path.
+    const bool is_driven = excitation == loop::Channel::kDisplacement;
+    if (is_driven && record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
       append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
     }
     if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
@@ -147,13 +150,50 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   if (!(difference > thresholds.energy_difference * std::max(std::abs(*measured), model))) {
     return std::nullopt;
   }
-  // ∮ T dδ sums forces over a way of 4X.
-  const double error = 4 * amplitude * result.force_noise /
+  // ∮ T dδ sums forces over a way of 4X, or displacements over one of 4T*.
+  const double way = result.response == loop::Channel::kForce ? amplitude : record.facts.peak_force;
+  const double error = 4 * way * result.ResponseNoise() /
                        std::sqrt(std::max(1.0, result.residuals.effective_samples));
   if (!(difference > thresholds.energy_errors * error)) return std::nullopt;
   return Finding{.code = "energy_contradiction",
                  .parameters = {"sigma", "alpha", "slip_force"},
                  .numbers = {{"measured", *measured}, {"model", model}, {"amplitude", amplitude}}};
+}
+
+bool NoiseIsInDisplacement(double share_of_displacement, double share_of_force,
+                           const Thresholds& thresholds) {
+  return share_of_displacement > thresholds.visible_noise &&
+         share_of_displacement > thresholds.noisier_displacement * share_of_force;
+}
+
+std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& records,
+                                               const FitResult& result,
+                                               const Thresholds& thresholds) {
+  if (result.response != loop::Channel::kForce || result.is_load_series()) return std::nullopt;
+  // Of the loop that just comes to slip, docs/theory.md §8.
+  const double alpha = result.law.shape_exponent;
+  const double ratio_at_slip = alpha < 1 ? alpha / (2 - alpha) : 1.0;
+  const bool stays_below_slip = std::ranges::all_of(result.records, [&](const RecordFit& record) {
+    return record.facts.closed && record.facts.energy_ratio < ratio_at_slip;
+  });
+  if (!stays_below_slip) return std::nullopt;
+  double of_displacement = 0.0;
+  double of_force = 0.0;
+  for (const loop::PreparedRecord& record : records.records) {
+    const loop::RecordView readings = record.readings();
+    const loop::LoopMeasures& measures = record.measures;
+    if (record.encoder_step > 0 || !(measures.amplitude > 0 && measures.peak_force > 0)) {
+      return std::nullopt;
+    }
+    const double noise = loop::EstimateDisplacementNoise(readings.displacement);
+    of_displacement = std::max(of_displacement, noise / measures.amplitude);
+    of_force =
+        std::max(of_force, loop::EstimateDisplacementNoise(readings.force) / measures.peak_force);
+  }
+  if (!NoiseIsInDisplacement(of_displacement, of_force, thresholds)) return std::nullopt;
+  return Finding{.code = "noise_in_displacement",
+                 .severity = Severity::kNote,
+                 .numbers = {{"of_displacement", of_displacement}, {"of_force", of_force}}};
 }
 
 bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds) {

@@ -8,15 +8,28 @@
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
+#include "mindahl/loop/preparation.h"
 
 /// What is to be said of the records themselves, and of a model that they contradict, as data: pure
 /// functions of a result.
 namespace mindahl::identification {
 
 /// Reversals that are not certain, glitches that are left out, a way that is longer than the
-/// strokes, and that no cycle is closed: whatever is fitted. Numbers of a record count from 1.
-std::vector<Finding> FindInRecords(std::span<const RecordFit> records,
-                                   const Thresholds& thresholds);
+/// strokes of a motion that is imposed, and that no cycle is closed: whatever is fitted. Numbers of
+/// a record count from 1.
+std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
+                                   loop::Channel excitation = loop::Channel::kDisplacement);
+
+/// Is the noise in the displacement, by the shares that the channels' noise has of X and of T*?
+bool NoiseIsInDisplacement(double share_of_displacement, double share_of_force,
+                           const Thresholds& thresholds);
+
+/// A fit of the force to a record whose noise is in the displacement, by the white noise of both
+/// channels, and whose contact stays below slip, by the loop's energy ratio: the displacement is
+/// what could be fitted. Nothing of an encoder's readings, whose errors are no noise.
+std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& records,
+                                               const FitResult& result,
+                                               const Thresholds& thresholds);
 
 /// Energy of the widest steady cycles that count against that of the fitted law at their amplitude,
 /// where the fit claims to know a parameter of the law, and no viscous force takes part of it.

@@ -48,6 +48,7 @@ std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& r
 void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
   ParameterEstimate& slip_force = result.parameters[kSlipForce];
   const RecordFit& widest = result.WidestRecord();
+  if (result.response == loop::Channel::kDisplacement) return;  // of a contact that never slips
   const bool slips = result.PeakForce() >= thresholds.mobilised_by_asymptote * slip_force.value;
   if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
   const double half_gap = *widest.facts.half_gap / widest.load_ratio;

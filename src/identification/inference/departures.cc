@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <ranges>
 
 #include "identification/inference/branch_places.h"
+#include "identification/inference/displacement_departures.h"
+#include "identification/inference/sampled_time.h"
 
 namespace mindahl::identification {
 namespace {
@@ -77,7 +78,7 @@ enum Row : std::size_t {
 };
 
 // Sizes are of the first column; where there are several, the meaning says what the others are.
-constexpr std::array<Departure, 20> kDepartures = {{
+constexpr std::array<Departure, 21> kDepartures = {{
     {.code = "channel_lag",
      .meaning = "by which the force's channel is late",
      .unit = "s",
@@ -170,6 +171,12 @@ constexpr std::array<Departure, 20> kDepartures = {{
      .unit = "-",
      .option = "",
      .apart = 0.5},
+    {.code = "displacement_drift",
+     .meaning = "of a displacement that is fitted, as the file has it",
+     .unit = "m/s",
+     .option = "--drift",
+     .term = "displacement_drift",
+     .unit_by_sample = "m/sample"},
 }};
 
 /// How far the branch has come, of the way to slip.
@@ -225,84 +232,6 @@ constexpr std::array<Column, 26> kColumns = {{
     {kHeld, Along::kBranch, [](const Place& at) { return at.slope * at.missed; }},
     {kAmplitude, Along::kForce, [](const Place& at) { return at.force * at.amplitude; }},
 }};
-
-/// Samples that a derivative at one of them may look at: turning points that were put in between
-/// have no time of their own.
-struct Neighbours {
-  std::vector<std::size_t> samples;        // that were measured
-  std::vector<unsigned char> turns_after;  // of each: the motion turns there or before the next one
-  std::vector<unsigned char> turned;       // of each: it turned between it and the one before
-};
-
-Neighbours NeighboursOf(const ScaledRecord& record) {
-  Neighbours neighbours;
-  std::size_t next = 0;
-  bool turned = false;
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    const bool turns = next < record.reversals.size() && record.reversals[next] == i;
-    if (turns) ++next;
-    if (!record.inserted.empty() && record.inserted[i] != 0) {
-      turned = turns;
-      if (turns && !neighbours.samples.empty()) neighbours.turns_after.back() = 1;
-      continue;
-    }
-    neighbours.samples.push_back(i);
-    neighbours.turned.push_back(turned ? 1 : 0);
-    neighbours.turns_after.push_back(turns ? 1 : 0);
-    turned = false;
-  }
-  return neighbours;
-}
-
-/// When each sample was read, from the middle of its record, in a unit that all records share.
-struct Clock {
-  bool timed = true;  // else by sample
-  double unit = 1.0;  // [s], or samples
-  std::vector<std::vector<double>> time;
-};
-
-Clock ClockOf(const ScaledRecords& data, std::span<const Neighbours> neighbours) {
-  Clock clock;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
-    const auto grows = [&](std::size_t one, std::size_t next) {
-      return record.time[next] > record.time[one];
-    };
-    const auto& samples = neighbours[r].samples;
-    clock.timed = clock.timed && !record.velocity.empty() &&
-                  std::ranges::adjacent_find(samples, std::not_fn(grows)) == samples.end();
-  }
-  const double first = static_cast<double>(neighbours[0].samples.size()) - 1;
-  clock.unit = clock.timed ? data.records[0].units.half_duration : std::max(first, 1.0) / 2;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const ScaledRecord& record = data.records[r];
-    std::vector<double>& time = clock.time.emplace_back(record.size());
-    const auto& samples = neighbours[r].samples;
-    const double middle = (static_cast<double>(samples.size()) - 1) / 2;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      const std::size_t i = samples[k];
-      time[i] = clock.timed ? record.time[i] * record.units.half_duration / clock.unit
-                            : (static_cast<double>(k) - middle) / clock.unit;
-    }
-  }
-  return clock;
-}
-
-/// Derivative by time, by differences to both sides.
-/// @param within_strokes  never beyond a turn; a turn is the stroke's that ends there
-void Derive(std::span<const double> values, std::span<const double> time,
-            const Neighbours& neighbours, bool within_strokes, std::span<double> rate) {
-  const auto& samples = neighbours.samples;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const bool looks_back = k > 0 && !(within_strokes && neighbours.turned[k] != 0);
-    const bool looks_on =
-        k + 1 < samples.size() && !(within_strokes && neighbours.turns_after[k] != 0 && k > 0);
-    const std::size_t before = samples[looks_back ? k - 1 : k];
-    const std::size_t after = samples[looks_on ? k + 1 : k];
-    const double step = time[after] - time[before];
-    rate[samples[k]] = step > 0 ? (values[after] - values[before]) / step : 0.0;
-  }
-}
 
 /// Second derivative by time, of the parabola through every other sample: one between neighbours
 /// would see four times as much of the displacement's noise.
@@ -512,6 +441,9 @@ std::span<const Departure> Departures() { return kDepartures; }
 
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      Response& response, std::size_t most) {
+  if (problem.data->excitation == loop::Channel::kForce) {
+    return ColumnsOfDisplacementDepartures(problem, theta, response, most);
+  }
   const double slip_force = std::exp(theta[kSlipForce]);
   const std::pmr::vector<ScaledRecord>& records = problem.data->records;
   std::vector<Neighbours> neighbours;

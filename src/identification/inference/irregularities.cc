@@ -77,7 +77,10 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
     found.push_back(std::move(*fit));
   };
   if (!robust) add(kHeavyTails, FindHeavyTails(samples, evidence));
-  add(kStickSlip, FindStickSlip(samples));
+  // A force that is imposed drops by itself.
+  if (problem.data->excitation == loop::Channel::kDisplacement) {
+    add(kStickSlip, FindStickSlip(samples));
+  }
   return found;
 }
 

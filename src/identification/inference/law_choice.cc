@@ -109,8 +109,8 @@ double CriterionOf(const Evidence& evidence, const Problem& problem, const Solut
 
 /// Does a record start within the way of its strokes? Then it may be virgin.
 bool StartsInside(const ScaledRecord& record) {
-  const auto [low, high] = std::ranges::minmax(record.displacement);
-  const double start = record.displacement.front();
+  const auto [low, high] = std::ranges::minmax(record.excitation());
+  const double start = record.excitation().front();
   constexpr double kInside = 0.1;  // of the range: what is nearer has turned there
   return std::min(start - low, high - start) > kInside * (high - low);
 }
@@ -123,7 +123,7 @@ bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds) {
   double longest_end = 0.0;
   for (const ScaledRecord& record : problem.data->records) {
     const auto at = [&](std::size_t reversal) {
-      return record.displacement[record.reversals[reversal]];
+      return record.excitation()[record.reversals[reversal]];
     };
     if (record.reversals.empty()) return false;
     for (std::size_t j = 1; j < record.reversals.size(); ++j) {
@@ -132,8 +132,8 @@ bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds) {
       narrowest = std::min(narrowest, swing);
     }
     longest_end =
-        std::max({longest_end, std::abs(at(0) - record.displacement.front()),
-                  std::abs(record.displacement.back() - at(record.reversals.size() - 1))});
+        std::max({longest_end, std::abs(at(0) - record.excitation().front()),
+                  std::abs(record.excitation().back() - at(record.reversals.size() - 1))});
   }
   const double wider = (1 + thresholds.one_amplitude) * narrowest;
   return widest <= wider && longest_end <= wider;
@@ -164,8 +164,8 @@ LawComparison CompareLaws(const Problem& problem, const Solution& best, const Fi
   if (!same_curve) states.push_back(problem.state);
   if (maybe_virgin) states.push_back(InitialState::kVirgin);
   // A record that starts at an extreme passes for virgin as well, without a virgin branch.
-  const bool is_origin_given = std::ranges::any_of(options.fixed, [](const auto& fixed) {
-    return fixed.first.starts_with("displacement_offset");
+  const bool is_origin_given = std::ranges::any_of(options.fixed, [&](const auto& fixed) {
+    return fixed.first.starts_with(OriginTerm(problem.data->excitation));
   });
   if (problem.state == InitialState::kVirgin && !options.initial_state && !is_origin_given) {
     states.push_back(InitialState::kSteady);

@@ -56,11 +56,11 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   const auto rows = static_cast<Eigen::Index>(samples);
   Linearization at{.jacobian = Eigen::MatrixXd(rows, static_cast<Eigen::Index>(columns.size())),
                    .residual = {},
-                   .force = Eigen::VectorXd(rows)};
+                   .response = Eigen::VectorXd(rows)};
   response.Bind(problem);
-  PredictAndDifferentiate(problem, theta, response, columns, {at.force.data(), samples},
+  PredictAndDifferentiate(problem, theta, response, columns, {at.response.data(), samples},
                           {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
-  at.residual = at.force;
+  at.residual = at.response;
   TakeOffMeasured(problem, {at.residual.data(), samples});
   if (FitsTurningPoints(*problem.data)) {
     const TurningPointColumns turning(problem, theta, response);

@@ -104,8 +104,8 @@ class Memory {
 }  // namespace
 
 bool CanCompareBranches(const Problem& problem) {
-  return !problem.data->load_varies && !problem.parameters.has_lag() &&
-         !problem.parameters.is_load_series();
+  return problem.data->excitation == loop::Channel::kDisplacement && !problem.data->load_varies &&
+         !problem.parameters.has_lag() && !problem.parameters.is_load_series();
 }
 
 MemoryVerdict VerdictOf(double p_value, double dahl_p_value, const Thresholds& thresholds) {

@@ -4,6 +4,7 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -70,7 +71,7 @@ class Weighting {
     std::vector<double> from_displacement(residual.size(), 0.0);  // variance
     std::size_t i = 0;
     for (const ScaledRecord& record : data_.records) {
-      for (const double force : record.force) residual[i++] -= force;
+      for (const double measured : record.response()) residual[i++] -= measured;
     }
     if (errors_.any()) {
       const Eigen::MatrixXd drawn = errors_.ForceErrors(problem_, theta);
@@ -81,9 +82,10 @@ class Weighting {
     }
     Noise noise;
     noise.samples = data_.counted;
-    noise.is_known = options_.force_noise.has_value();
-    noise.force = options_.force_noise ? *options_.force_noise / data_.force
-                                       : ForceNoise(residual, from_displacement, loss);
+    const std::optional<double> known = options_.response_noise();
+    noise.is_known = known.has_value();
+    noise.force =
+        known ? *known / data_.response_unit() : ForceNoise(residual, from_displacement, loss);
     // Weighted residuals have the variance of those where the loop is flat.
     const double unit = std::max(noise.force, kRoundingRms);
     std::vector<double> standardised;
@@ -94,7 +96,7 @@ class Weighting {
       if (counts_[k] != 0) standardised.push_back(residual[k]);
     }
     // Where more than half of the samples are met to the last bit, rounding is their noise.
-    const double scale = loss == Loss::kNone || options_.force_noise
+    const double scale = loss == Loss::kNone || known
                              ? 1.0
                              : std::max(RobustScale(standardised), kRoundingRms / unit);
     SetWeights(residual, from_displacement, scale, loss, unit, noise);
@@ -185,7 +187,7 @@ class Weighting {
     // Huber (1981) §7.6: σ²·[Σψ²/(n − p)]/[Σψ'/n]²·(JᵀJ)⁻¹, where JᵀWJ is JᵀJ times the mean
     // weight.
     const auto count = static_cast<double>(data_.counted);
-    if (loss == Loss::kNone && (options_.force_noise || errors_.any())) {
+    if (loss == Loss::kNone && (options_.response_noise() || errors_.any())) {
       noise.variance = unit * unit;
       return;
     }
@@ -220,8 +222,8 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
                  std::size_t parameters) {
   Noise noise;
   noise.samples = data.counted;
-  noise.is_known = options.force_noise.has_value();
-  const double known = options.force_noise.value_or(0.0) / data.force;
+  noise.is_known = options.response_noise().has_value();
+  const double known = options.response_noise().value_or(0.0) / data.response_unit();
   noise.variance =
       std::max(noise.is_known ? known * known : sum_of_squares / DegreesOfFreedom(data, parameters),
                kRoundingRms * kRoundingRms);

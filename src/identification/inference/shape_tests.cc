@@ -74,9 +74,10 @@ std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords
                                      const Solution& best, const MindlinTest& test,
                                      const Noise& noise, const Estimates& estimates,
                                      const FitOptions& options, SearchBuffers& buffers) {
-  // The law of a load that varies has none.
+  // The law of a load that varies has none, nor has that of an imposed force.
   const bool is_wanted = WantsRig(problem, best, test, options.thresholds);
-  if (!is_wanted || problem.data->load_varies) return std::nullopt;
+  const bool fits_force = problem.data->excitation == loop::Channel::kDisplacement;
+  if (!is_wanted || problem.data->load_varies || !fits_force) return std::nullopt;
   FitOptions with_rig = options;
   with_rig.terms.emplace_back("rig_stiffness");
   with_rig.fixed["alpha"] = kMindlin;

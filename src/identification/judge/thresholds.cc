@@ -165,6 +165,14 @@ constexpr std::array kTable = {
                  "amplitude of a sine of the load's standard deviation, white noise of its "
                  "readings taken off, from which on the law follows the load",
                  "the force differs by as much where the contact slips"},
+    ThresholdRow{"visible_noise", &Thresholds::visible_noise, "of X",
+                 "noise of the displacement from which on the channels are compared",
+                 "the third differences of a clean sine of 31 samples a cycle are as large"},
+    ThresholdRow{"noisier_displacement", &Thresholds::noisier_displacement, "of the force's share",
+                 "a displacement whose noise over X is so many times that of the force over T* is "
+                 "the channel to fit",
+                 "along the loop's diagonal the force then makes 1/(1 + 5²) = 4 % of the "
+                 "residuals' variance"},
 };
 
 }  // namespace

@@ -50,7 +50,7 @@ void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& 
   if (BeginsAtZero(data, options)) {
     Hold(parameter, 0.0);
   } else if (parameter.term->entry != Entry::kLinear) {
-    parameter.theta = data.displacement.front();
+    parameter.theta = data.excitation().front();
     parameter.fixed = parameter.assumed = true;
   }
 }
@@ -81,6 +81,9 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
       break;
     case Presence::kLoadSeries:
       parameter.fixed = parameter.absent = !all.is_load_series;
+      break;
+    case Presence::kNever:
+      parameter.fixed = parameter.absent = true;
       break;
   }
   return parameter;
@@ -129,9 +132,11 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
       free_(memory),
       reported_(memory),
       records_(data.records.size()),
+      origin_term_(OriginTerm(data.excitation)),
       state_(state) {
-  parameters_.reserve(Terms().size() * records_ + options.covariates.size());
-  for (const Term& term : Terms()) {
+  const std::span<const Term> terms = Terms(loop::Other(data.excitation));
+  parameters_.reserve(terms.size() * records_ + options.covariates.size());
+  for (const Term& term : terms) {
     if (term.scope != Scope::kContact) continue;
     if (term.of_column) {
       for (std::size_t c = 0; c < options.covariates.size(); ++c) {
@@ -143,10 +148,10 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   }
   if (options.model->shape_exponent) Hold(parameters_[kShape], *options.model->shape_exponent);
   for (std::size_t r = 0; r < records_; ++r) {
-    for (const Term& term : Terms()) {
+    for (const Term& term : terms) {
       if (term.scope != Scope::kRecord) continue;
       Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
-      if (term.name == "displacement_offset" && state == models::InitialState::kSteady) {
+      if (term.name == origin_term_ && state == models::InitialState::kSteady) {
         Hold(parameter, parameter.reference);  // the centre of the loop
       }
     }
@@ -170,6 +175,7 @@ Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memor
       free_(other.free_, memory),
       reported_(other.reported_, memory),
       records_(other.records_),
+      origin_term_(other.origin_term_),
       state_(other.state_) {}
 
 /// Under a load that varies slip must be complete at a finite displacement.
@@ -209,6 +215,10 @@ std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) co
     if (parameter.term->scope == Scope::kContact || parameter.record == record) return i;
   }
   return parameters_.size();
+}
+
+std::size_t Parameters::PositionOfOrigin(std::size_t record) const {
+  return PositionOf(origin_term_, record);
 }
 
 void Parameters::NameOf(std::size_t i, std::string& name) const {
@@ -251,17 +261,24 @@ Parameter& Parameters::Find(std::string_view name) {
           "than 1 %; give --normal-load N1,N2,...",
           name));
     }
+    if (parameters_[i].term->presence == Presence::kNever) {
+      throw InvalidArgument(fmt::format(
+          "{} has no place in a fit of the {}", name,
+          origin_term_ == OriginTerm(loop::Channel::kForce) ? "displacement" : "force"));
+    }
     return parameters_[i];
   }
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < parameters_.size(); ++i) names.push_back(NameOf(i));
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    if (parameters_[i].term->presence != Presence::kNever) names.push_back(NameOf(i));
+  }
   throw InvalidArgument(
       fmt::format("parameter '{}' is unknown: must be one of {}", name, fmt::join(names, ", ")));
 }
 
 void Parameters::ApplyOptions(const FitOptions& options) {
   for (const std::string& name : options.terms) {
-    const Term* term = FindTerm(name);
+    const Term* term = FindTerm(name, options.response());
     if (term == nullptr ||
         (term->presence != Presence::kOnDemand && term->presence != Presence::kReported) ||
         term->of_column) {
@@ -294,7 +311,7 @@ void Parameters::ApplyOptions(const FitOptions& options) {
           "alpha cannot be fixed at {}: the model '{}' prescribes alpha = {}; use mindlin-dahl",
           value, options.model->name, *options.model->shape_exponent));
     }
-    if (parameter.term->name == "displacement_offset" && state_ == models::InitialState::kSteady) {
+    if (parameter.term->name == origin_term_ && state_ == models::InitialState::kSteady) {
       throw InvalidArgument(
           fmt::format("{} cannot be fixed: that of a steady contact is the centre of its loop; fix "
                       "it for a virgin contact",

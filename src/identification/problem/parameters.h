@@ -60,6 +60,11 @@ inline constexpr std::size_t kLoadExponent = 4;
 /// hundred times Tc/σ, and its law that of no record.
 inline constexpr double kHighestShapeUnderLoad = 0.99;
 
+/// The term of where a contact is unloaded: the offset of the channel that is imposed.
+constexpr std::string_view OriginTerm(loop::Channel excitation) {
+  return excitation == loop::Channel::kForce ? "force_offset" : "displacement_offset";
+}
+
 /// All parameters of a fit: the contact's in the order of Terms(), then each record's.
 class Parameters {
  public:
@@ -79,6 +84,8 @@ class Parameters {
   [[nodiscard]] const std::pmr::vector<std::size_t>& free() const { return free_; }
   /// Positions of those that a result reports.
   [[nodiscard]] const std::pmr::vector<std::size_t>& reported() const { return reported_; }
+  /// Of where a record's contact is unloaded, in the channel that is imposed.
+  [[nodiscard]] std::size_t PositionOfOrigin(std::size_t record) const;
   /// Of a record's term; size() where there is no such term.
   [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
@@ -120,6 +127,7 @@ class Parameters {
   std::pmr::vector<std::size_t> free_;
   std::pmr::vector<std::size_t> reported_;
   std::size_t records_ = 1;
+  std::string_view origin_term_;
   models::InitialState state_;
 };
 

@@ -3,15 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 namespace mindahl::identification {
 
 LawPoint PointAt(const Problem& problem, std::span<const double> theta) {
-  return {.log_rate = theta[kStiffness] - theta[kSlipForce],
+  const bool is_forced = problem.data->excitation == loop::Channel::kForce;
+  return {.log_rate = (is_forced ? 0.0 : theta[kStiffness]) - theta[kSlipForce],
           .shape = theta[kShape],
           .log_travel = problem.parameters.has_rig() ? theta[kSlipForce] - theta[kRig] : 0.0,
           .load_exponent = problem.parameters.LoadExponentAt(theta),
           .theta = theta};
+}
+
+double LogScaleAt(const Problem& problem, std::span<const double> theta) {
+  const bool is_forced = problem.data->excitation == loop::Channel::kForce;
+  return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
 }
 
 models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
@@ -29,7 +37,7 @@ void Response::Bind(const Problem& problem) {
   for (CachedPath& cached : paths_) cached.valid = false;
   unloaded_.resize(records);
   for (std::size_t r = 0; r < records; ++r) {
-    unloaded_[r] = problem.parameters.PositionOf("displacement_offset", r);
+    unloaded_[r] = problem.parameters.PositionOfOrigin(r);
   }
   if (problem.data->load_varies) histories_.resize(records);
   for (std::size_t r = 0; r < records; ++r) {
@@ -77,7 +85,7 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
   const models::InitialContact initial = InitialOf(r, theta);
   if (!cached.valid || initial.unloaded_displacement != cached.unloaded) {
     const ScaledRecord& record = problem_->data->records[r];
-    models::MakeLoadingPath(record.displacement, record.reversals, problem_->model->memory, initial,
+    models::MakeLoadingPath(record.excitation(), record.reversals, problem_->model->memory, initial,
                             cached.path);
     cached.unloaded = initial.unloaded_displacement;
     cached.valid = true;
@@ -111,13 +119,16 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
 void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<double> t,
                                    const ResponseColumns& columns) {
   const ScaledRecord& record = problem_->data->records[r];
+  if (record.imposed == loop::Channel::kForce) {
+    DifferentiateForced(at, r, t, columns);
+    return;
+  }
   const models::NormalizedLaw law = LawUnder(*problem_, at, record);
   const bool wants_any = !columns.log_rate.empty() || !columns.shape_exponent.empty() ||
-                         !columns.unloaded_displacement.empty() ||
-                         !columns.log_spring_travel.empty();
+                         !columns.unloaded.empty() || !columns.log_spring_travel.empty();
   const models::NormalizedGradient gradient{.log_rate = columns.log_rate,
                                             .shape_exponent = columns.shape_exponent,
-                                            .unloaded_displacement = columns.unloaded_displacement,
+                                            .unloaded_displacement = columns.unloaded,
                                             .log_spring_travel = columns.log_spring_travel};
   if (!record.load_ratio.empty()) {
     const double unloaded = at.theta[unloaded_[r]];
@@ -134,13 +145,29 @@ void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<
   }
 }
 
+/// Of one record whose force is imposed.
+void Response::DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
+                                   const ResponseColumns& columns) {
+  const models::ForcedLaw law{.slip_force = std::exp(-at.log_rate), .shape_exponent = at.shape};
+  const bool is_below_slip = displacement_.Differentiate(*problem_->model, law, PathOf(r, at.theta),
+                                                         problem_->data->records[r].excitation(), t,
+                                                         {.log_slip_force = columns.log_rate,
+                                                          .shape_exponent = columns.shape_exponent,
+                                                          .unloaded_force = columns.unloaded});
+  if (!is_below_slip) {
+    std::ranges::fill(t, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  for (double& value : columns.log_rate) value = -value;
+}
+
 void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<double> t,
                                    const ResponseColumns& columns) {
   const models::NormalizedLaw law = LawUnder(*problem_, at, problem_->data->records[r]);
   const LaggedMotion& motion = MotionOf(r, at.theta);
   const std::size_t size = motion.displacement().size();
-  const std::array wanted = {columns.log_rate, columns.shape_exponent,
-                             columns.unloaded_displacement, columns.log_spring_travel};
+  const std::array wanted = {columns.log_rate, columns.shape_exponent, columns.unloaded,
+                             columns.log_spring_travel};
   moved_.resize((1 + wanted.size()) * size);
   const auto moved = [&](std::size_t column) {
     return std::span(moved_).subspan(column * size, size);
@@ -187,7 +214,7 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
     };
     const ResponseColumns parts{.log_rate = part(columns.log_rate),
                                 .shape_exponent = part(columns.shape_exponent),
-                                .unloaded_displacement = part(columns.unloaded_displacement),
+                                .unloaded = part(columns.unloaded),
                                 .log_spring_travel = part(columns.log_spring_travel),
                                 .lag = part(columns.lag)};
     const std::span<double> values = part(t);
@@ -197,9 +224,8 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
       DifferentiateRecord(at, r, values, parts);
     }
     if (record.load != 1) {
-      for (const std::span<double> column :
-           {values, parts.log_rate, parts.shape_exponent, parts.unloaded_displacement,
-            parts.log_spring_travel, parts.lag}) {
+      for (const std::span<double> column : {values, parts.log_rate, parts.shape_exponent,
+                                             parts.unloaded, parts.log_spring_travel, parts.lag}) {
         for (double& value : column) value *= record.load;
       }
     }
@@ -225,17 +251,17 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r, dou
 
 namespace {
 
-/// Adds what is linear in its parameters to Tc·t.
-void Complete(const Problem& problem, std::span<const double> theta, std::span<double> force) {
-  const double slip_force = std::exp(theta[kSlipForce]);
-  for (double& value : force) value *= slip_force;
+/// Adds what is linear in its parameters to the scaled t.
+void Complete(const Problem& problem, std::span<const double> theta, std::span<double> predicted) {
+  const double scale = std::exp(LogScaleAt(problem, theta));
+  for (double& value : predicted) value *= scale;
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     const Parameter& parameter = problem.parameters[p];
     if (parameter.term->column == nullptr || theta[p] == 0) continue;
     std::size_t begin = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const std::size_t count = problem.data->records[r].size();
-      AddColumn(problem, p, r, theta[p], force.subspan(begin, count));
+      AddColumn(problem, p, r, theta[p], predicted.subspan(begin, count));
       begin += count;
     }
   }
@@ -243,19 +269,20 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
 
 }  // namespace
 
-void TakeOffMeasured(const Problem& problem, std::span<double> force) {
+void TakeOffMeasured(const Problem& problem, std::span<double> predicted) {
   std::size_t k = 0;
   for (const ScaledRecord& record : problem.data->records) {
+    const std::span<const double> measured = record.response();
     for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      force[k] = record.root_weight[i] * (force[k] - record.force[i]);
+      predicted[k] = record.root_weight[i] * (predicted[k] - measured[i]);
     }
   }
 }
 
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
-             std::span<double> force) {
-  response.Evaluate(PointAt(problem, theta), force);
-  Complete(problem, theta, force);
+             std::span<double> predicted) {
+  response.Evaluate(PointAt(problem, theta), predicted);
+  Complete(problem, theta, predicted);
 }
 
 void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
@@ -267,7 +294,7 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
 
 void PredictAndDifferentiate(const Problem& problem, std::span<const double> theta,
                              Response& response, std::span<const std::size_t> columns,
-                             std::span<double> force, std::span<double> jacobian) {
+                             std::span<double> predicted, std::span<double> jacobian) {
   const std::size_t samples = problem.size();
   const Parameters& parameters = problem.parameters;
   const auto asks = [&](std::size_t p) { return std::ranges::find(columns, p) != columns.end(); };
@@ -275,8 +302,10 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
     return std::ranges::any_of(columns,
                                [&](std::size_t p) { return parameters[p].term->name == term; });
   };
-  const bool by_rate = asks(kStiffness) || asks(kSlipForce) || asks(kLoadExponent);
+  const bool is_forced = problem.data->excitation == loop::Channel::kForce;
+  const bool by_rate = (asks(kStiffness) && !is_forced) || asks(kSlipForce) || asks(kLoadExponent);
   const bool by_travel = parameters.has_rig() && (asks(kSlipForce) || asks(kRig));
+  const std::string_view origin = OriginTerm(problem.data->excitation);
   constexpr std::size_t kMostDerivatives = 5;
   const std::span<double> scratch = response.Scratch(kMostDerivatives * samples);
   std::size_t used = 0;
@@ -285,15 +314,15 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
   };
   const ResponseColumns gradient{.log_rate = part_if(by_rate),
                                  .shape_exponent = part_if(asks(kShape)),
-                                 .unloaded_displacement = part_if(asks_term("displacement_offset")),
+                                 .unloaded = part_if(asks_term(origin)),
                                  .log_spring_travel = part_if(by_travel),
                                  .lag = part_if(parameters.has_lag() && asks_term("lag"))};
-  response.Differentiate(PointAt(problem, theta), force, gradient);
-  const double slip_force = std::exp(theta[kSlipForce]);
+  response.Differentiate(PointAt(problem, theta), predicted, gradient);
+  const double scale = std::exp(LogScaleAt(problem, theta));
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::size_t p = columns[c];
     const Parameter& parameter = parameters[p];
-    const bool is_unloaded = parameter.term->name == "displacement_offset";
+    const bool is_unloaded = parameter.term->name == origin;
     const bool is_lag = parameter.term->name == "lag";
     std::size_t k = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
@@ -309,26 +338,28 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
         for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * derivative[begin + i];
       };
       if (p == kStiffness) {
-        add(gradient.log_rate, slip_force);
+        // Of a displacement it is the factor's alone.
+        add(is_forced ? std::span<const double>(predicted) : gradient.log_rate,
+            is_forced ? -scale : scale);
       } else if (p == kShape) {
-        add(gradient.shape_exponent, slip_force);
+        add(gradient.shape_exponent, scale);
       } else if (p == kSlipForce) {
-        add(force, slip_force);
-        add(gradient.log_rate, -slip_force);
-        add(gradient.log_spring_travel, slip_force);
+        add(predicted, scale);
+        add(gradient.log_rate, -scale);
+        add(gradient.log_spring_travel, scale);
       } else if (p == kRig) {
-        add(gradient.log_spring_travel, -slip_force);
+        add(gradient.log_spring_travel, -scale);
       } else if (p == kLoadExponent) {
-        add(gradient.log_rate, slip_force * record.log_load);
+        add(gradient.log_rate, scale * record.log_load);
       } else if (is_unloaded) {
-        add(gradient.unloaded_displacement, slip_force);
+        add(gradient.unloaded, scale);
       } else if (is_lag) {
-        add(gradient.lag, slip_force);
+        add(gradient.lag, scale);
       }
       for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }
   }
-  Complete(problem, theta, force);
+  Complete(problem, theta, predicted);
 }
 
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,

@@ -11,6 +11,7 @@
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loaded_response.h"
 #include "mindahl/models/loading_path.h"
+#include "mindahl/models/normalized_displacement.h"
 #include "mindahl/models/normalized_response.h"
 
 namespace mindahl::identification {
@@ -31,9 +32,9 @@ struct Problem {
   }
 };
 
-/// What the normalized response t depends on, in units of the data.
+/// What the normalized response t depends on, in units of the data: all but its factor.
 struct LawPoint {
-  double log_rate = 0.0;       // ln(σ/Tc)
+  double log_rate = 0.0;       // ln(σ/Tc); of an imposed force −ln Tc
   double shape = 0.0;          // α
   double log_travel = 0.0;     // ln(Tc/k) of the rig; ignored without one
   double load_exponent = 1.0;  // p; 1 where the records are under one load
@@ -44,6 +45,9 @@ struct LawPoint {
 /// The point of the law at θ.
 LawPoint PointAt(const Problem& problem, std::span<const double> theta);
 
+/// What the response is t times of: ln Tc, or ln(Tc/σ) of a displacement.
+double LogScaleAt(const Problem& problem, std::span<const double> theta);
+
 /// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
 models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
                                const ScaledRecord& record);
@@ -52,15 +56,16 @@ models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
 struct ResponseColumns {
   std::span<double> log_rate;
   std::span<double> shape_exponent;
-  std::span<double> unloaded_displacement;
+  std::span<double> unloaded;  // where the contact is unloaded, in the channel that is imposed
   std::span<double> log_spring_travel;
   std::span<double> lag;  // by θ of the lag; where the problem has one
 };
 
 /// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
-/// where a record is under one load, by the elements' (models/variable_load.h) where it varies.
-/// Keeps the loading paths, which depend on the point only where a contact is unloaded and by its
-/// lag, and its buffers.
+/// where a record is under one load, by the elements' (models/variable_load.h) where it varies. Of
+/// a contact whose force is imposed t = σδ/Tc by the branch law's inverse, NaN of a whole record
+/// that has a force beyond slip. Keeps the loading paths, which depend on the point only where a
+/// contact is unloaded and by its lag, and its buffers.
 class Response {
  public:
   void Bind(const Problem& problem);
@@ -85,6 +90,8 @@ class Response {
   /// In the scaled time of a record.
   [[nodiscard]] double LagOf(std::size_t record, std::span<const double> theta) const;
   const LaggedMotion& MotionOf(std::size_t record, std::span<const double> theta);
+  void DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
+                           const ResponseColumns& columns);
   void DifferentiateLagged(const LawPoint& at, std::size_t record, std::span<double> t,
                            const ResponseColumns& columns);
 
@@ -96,8 +103,9 @@ class Response {
 
   const Problem* problem_ = nullptr;
   std::vector<CachedPath> paths_;
-  std::vector<std::size_t> unloaded_;  // position of each record's displacement_offset
+  std::vector<std::size_t> unloaded_;  // position of each record's origin
   models::NormalizedResponse response_;
+  models::NormalizedDisplacement displacement_;
   std::vector<double> scratch_;
   // Of a problem with a lag:
   std::size_t lag_ = 0;  // its position
@@ -109,9 +117,9 @@ class Response {
   models::NormalizedLoadedResponse loaded_response_;
 };
 
-/// The forces of the whole model at θ, of every sample [units of the data]; no weight.
+/// The response of the whole model at θ, of every sample [units of the data]; no weight.
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
-             std::span<double> force);
+             std::span<double> predicted);
 
 /// Weighted residuals, model − measured, of every sample; binds the response to the problem.
 void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
@@ -123,18 +131,18 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
 void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record, double factor,
                std::span<double> to);
 
-/// Puts weighted residuals, model − measured, in the place of the model's forces.
-void TakeOffMeasured(const Problem& problem, std::span<double> force);
+/// Puts weighted residuals, model − measured, in the place of the model's response.
+void TakeOffMeasured(const Problem& problem, std::span<double> predicted);
 
-/// The forces of the whole model, without weights, and the derivatives of the weighted residuals by
-/// the parameters at `columns`. The response is bound to the problem.
-/// @param force     size() values
-/// @param jacobian  column-major, size() × columns.size()
+/// The response of the whole model, without weights, and the derivatives of the weighted residuals
+/// by the parameters at `columns`. The response is bound to the problem.
+/// @param predicted  size() values
+/// @param jacobian   column-major, size() × columns.size()
 void PredictAndDifferentiate(const Problem& problem, std::span<const double> theta,
                              Response& response, std::span<const std::size_t> columns,
-                             std::span<double> force, std::span<double> jacobian);
+                             std::span<double> predicted, std::span<double> jacobian);
 
-/// The same with the weighted residuals in the place of the forces.
+/// The same with the weighted residuals in the place of the response.
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
                    std::span<const std::size_t> columns, std::span<double> residual,
                    std::span<double> jacobian);

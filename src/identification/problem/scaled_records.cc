@@ -203,6 +203,7 @@ void ForEachColumn(ScaledRecord& to, const ScaledRecord& from, Visit visit) {
 
 ScaledRecord ScaledRecord::WithoutSamples(std::pmr::memory_resource* memory) const {
   ScaledRecord record(memory);
+  record.imposed = imposed;
   record.units = units;
   record.load = load;
   record.log_load = log_load;
@@ -236,6 +237,7 @@ ScaledRecords ScaledRecords::WithoutRecords(std::pmr::memory_resource* memory) c
   scaled.covariates.assign(covariates.begin(), covariates.end());
   scaled.length = length;
   scaled.force = force;
+  scaled.excitation = excitation;
   scaled.sense = sense;
   scaled.mean_load.assign(mean_load.begin(), mean_load.end());
   scaled.reference_load = reference_load;
@@ -253,6 +255,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
                     std::pmr::memory_resource* memory) {
   ScaledRecords scaled(memory);
   scaled.sense = records.force_sense;
+  scaled.excitation = records.excitation;
   scaled.length = 0.0;
   scaled.force = 0.0;
   scaled.counted = records.counted();
@@ -276,6 +279,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     const std::span<const double> time = prepared.record.time;
     const std::size_t size = prepared.size();
     ScaledRecord& target = scaled.records.emplace_back(memory);
+    target.imposed = records.excitation;
     target.reversals = prepared.reversals;
     const double first = time.empty() ? 0.0 : time.front();
     const double last = time.empty() ? static_cast<double>(size - 1) : time.back();

@@ -44,6 +44,8 @@ struct ScaledRecord {
   std::pmr::vector<double> clock;
   /// Those of ScaledRecords::covariates, over half their range; empty where there are none.
   std::pmr::vector<std::pmr::vector<double>> covariates;
+  /// The channel that is imposed, of those two; the other one answers, and is fitted.
+  loop::Channel imposed = loop::Channel::kDisplacement;
   std::span<const std::size_t> reversals;  // samples
   /// The record that this one has some samples of, where a lag needs its motion; else null.
   const ScaledRecord* whole = nullptr;
@@ -66,6 +68,12 @@ struct ScaledRecord {
   /// Likewise from `begin` to before `end`.
   void Append(const ScaledRecord& from, std::size_t begin, std::size_t end);
 
+  [[nodiscard]] std::span<const double> excitation() const {
+    return imposed == loop::Channel::kForce ? force : displacement;
+  }
+  [[nodiscard]] std::span<const double> response() const {
+    return imposed == loop::Channel::kForce ? displacement : force;
+  }
   [[nodiscard]] std::size_t size() const { return force.size(); }
   [[nodiscard]] TermSample SampleAt(std::size_t i) const {
     return {displacement[i], time[i], velocity.empty() ? 0.0 : velocity[i]};
@@ -95,6 +103,7 @@ struct ScaledRecords {
   std::pmr::vector<CovariateColumn> covariates;  // first those that are fitted
   double length = 1.0;                           // [m]: largest half range of displacement
   double force = 1.0;                            // [N]: largest half range of force
+  loop::Channel excitation = loop::Channel::kDisplacement;
   int sense = 1;
   std::size_t counted = 0;             // samples that count
   std::pmr::vector<double> mean_load;  // [N] of each record; empty unless all are known
@@ -103,6 +112,10 @@ struct ScaledRecords {
   bool load_varies = false;            // within a record, and the law knows it
   bool turns_are_fitted = false;       // are turning points between samples parameters of the fit?
 
+  /// Of the channel that is fitted [N or m].
+  [[nodiscard]] double response_unit() const {
+    return excitation == loop::Channel::kForce ? length : force;
+  }
   [[nodiscard]] std::size_t samples() const;
   /// Units, loads and covariates without records, and none that counts.
   [[nodiscard]] ScaledRecords WithoutRecords(std::pmr::memory_resource* memory) const;

@@ -162,15 +162,54 @@ constexpr std::array kTerms = {
          .column = [](const TermSample& sample) { return sample.time; },
          .option = "--drift",
          .help = "fit a force drift linear in time [N/s]"},
+    Term{.name = "displacement_drift",
+         .unit = "m/s",
+         .meaning = "linear in time, of a displacement that is fitted; m a sample where the record "
+                    "has no time",
+         .scope = Scope::kRecord,
+         .entry = Entry::kLinear,
+         .presence = Presence::kNever,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = [](const TermUnits& units) { return units.length / units.half_duration; },
+         .column = [](const TermSample& sample) { return sample.time; },
+         .unit_by_sample = "m/sample"},
 };
+
+/// The same of a displacement that answers an imposed force.
+constexpr auto kTermsOfDisplacement = [] {
+  auto terms = kTerms;
+  for (Term& term : terms) {
+    if (term.name == "sigma") {
+      term.entry = Entry::kLinear;
+    } else if (term.name == "slip_force") {
+      term.entry = Entry::kLaw;
+    } else if (term.name == "force_offset") {
+      term.entry = Entry::kLaw;
+      term.column = nullptr;
+    } else if (term.name == "displacement_offset") {
+      term.entry = Entry::kLinear;
+      term.column = [](const TermSample& /*sample*/) { return 1.0; };
+    } else if (term.name == "displacement_drift") {
+      term.presence = Presence::kReported;
+    } else if (term.name != "alpha" && term.name != "load_exponent") {
+      term.presence = Presence::kNever;
+    }
+  }
+  return terms;
+}();
 
 }  // namespace
 
-std::span<const Term> Terms() { return kTerms; }
+std::span<const Term> Terms(loop::Channel response) {
+  if (response == loop::Channel::kForce) return kTerms;
+  return kTermsOfDisplacement;
+}
 
-const Term* FindTerm(std::string_view name) {
-  const auto term = std::ranges::find(kTerms, name, &Term::name);
-  return term == kTerms.end() ? nullptr : &*term;
+const Term* FindTerm(std::string_view name, loop::Channel response) {
+  const std::span<const Term> terms = Terms(response);
+  const auto term = std::ranges::find(terms, name, &Term::name);
+  return term == terms.end() ? nullptr : &*term;
 }
 
 std::string_view TermNameOf(std::string_view parameter) {

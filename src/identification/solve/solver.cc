@@ -40,6 +40,19 @@ bool SolveCholesky(std::span<double> a, std::span<double> x) {
   return true;
 }
 
+/// Below it the forces of a steady loop, whose middle is known, are beyond slip.
+double LeastLogSlipForce(const Problem& problem) {
+  constexpr double kShortOfSlip = 1e-9;
+  if (problem.state != models::InitialState::kSteady)
+    return -std::numeric_limits<double>::infinity();
+  double largest = 0.0;
+  for (const ScaledRecord& record : problem.data->records) {
+    const auto [low, high] = std::ranges::minmax(record.excitation());
+    largest = std::max(largest, (high - low) / 2);
+  }
+  return std::log(largest) + kShortOfSlip;
+}
+
 }  // namespace
 
 void Solver::Bind(const Problem& problem, Response& response) {
@@ -80,8 +93,21 @@ void Solver::ChooseSearched() {
     return parameter.fixed || parameter.bounded_by_user;
   };
   searched_.clear();
-  slip_force_is_linear_ = !slip_force.fixed && !is_tied(stiffness) && !(has_rig && is_tied(rig));
-  if (slip_force_is_linear_) {
+  if (is_forced()) {
+    scale_is_linear_ = !is_tied(stiffness);
+    if (!stiffness.fixed && !scale_is_linear_) {
+      searched_.push_back({Role::kLogStiffness, kStiffness, stiffness.lower, stiffness.upper});
+    }
+    if (!slip_force.fixed) {
+      searched_.push_back({Role::kLogSlipForce, kSlipForce,
+                           std::max(slip_force.lower, LeastLogSlipForce(*problem_)),
+                           slip_force.upper});
+    }
+    SearchTheOthers();
+    return;
+  }
+  scale_is_linear_ = !slip_force.fixed && !is_tied(stiffness) && !(has_rig && is_tied(rig));
+  if (scale_is_linear_) {
     searched_.push_back({Role::kLogRate, kStiffness, kLowestLogRate, kHighestLogRate});
     if (has_rig) {
       searched_.push_back({Role::kLogTravel, kRig, kLowestLogTravel, kHighestLogTravel});
@@ -95,6 +121,12 @@ void Solver::ChooseSearched() {
     }
     if (has_rig && !rig.fixed) searched_.push_back({Role::kLogRig, kRig, rig.lower, rig.upper});
   }
+  SearchTheOthers();
+}
+
+/// What is searched in either response: the shape and what is of the path.
+void Solver::SearchTheOthers() {
+  const Parameters& parameters = problem_->parameters;
   for (const std::size_t p : parameters.free()) {
     const Parameter& parameter = parameters[p];
     if (p == kShape) {
@@ -114,9 +146,10 @@ void Solver::OrthogonaliseColumns() {
   const ScaledRecords& data = *problem_->data;
   std::size_t row = 0;
   for (const ScaledRecord& record : data.records) {
+    const std::span<const double> measured = record.response();
     for (std::size_t i = 0; i < record.size(); ++i, ++row) {
       weight_[row] = record.root_weight[i];
-      measured_[row] = record.force[i];
+      measured_[row] = measured[i];
     }
   }
   columns_.clear();
@@ -136,7 +169,7 @@ void Solver::OrthogonaliseColumns() {
         basis_.resize(columns_.size() * samples_);
       }
       if (!is_held) std::ranges::fill(Basis(place), 0.0);
-      // What is held is taken off the measured force as it is, which is weighted with the rest.
+      // What is held is taken off what was measured as it is, which is weighted with the rest.
       const std::span<double> to = is_held ? std::span(measured_) : Basis(place);
       const double factor = is_held ? -held_theta_[p] : 1.0;
       std::size_t k = 0;
@@ -217,8 +250,12 @@ LawPoint Solver::PointOf(std::span<const double> u) const {
         break;
     }
   }
-  point.log_rate = slip_force_is_linear_ ? log_rate : log_stiffness - log_slip_force;
-  point.log_travel = slip_force_is_linear_ ? log_travel : log_slip_force - log_rig;
+  if (is_forced()) {
+    point.log_rate = -log_slip_force;
+    return point;
+  }
+  point.log_rate = scale_is_linear_ ? log_rate : log_stiffness - log_slip_force;
+  point.log_travel = scale_is_linear_ ? log_travel : log_slip_force - log_rig;
   return point;
 }
 
@@ -233,7 +270,16 @@ void Solver::Load(std::span<const double> theta, std::span<double> u) {
 }
 
 void Solver::Store(std::span<const double> u, std::span<double> theta) const {
-  const double log_slip_force = std::log(slip_force_);
+  if (is_forced()) {
+    for (const std::size_t p : {kStiffness, kSlipForce}) {
+      if (problem_->parameters[p].fixed) theta[p] = held_theta_[p];
+    }
+    for (std::size_t j = 0; j < searched_.size(); ++j) theta[searched_[j].parameter] = u[j];
+    if (scale_is_linear_) theta[kStiffness] = theta[kSlipForce] - std::log(scale_);
+    StoreLinear(scale_, theta);
+    return;
+  }
+  const double log_slip_force = std::log(scale_);
   theta[kSlipForce] =
       problem_->parameters[kSlipForce].fixed ? held_theta_[kSlipForce] : log_slip_force;
   for (std::size_t j = 0; j < searched_.size(); ++j) {
@@ -242,14 +288,14 @@ void Solver::Store(std::span<const double> u, std::span<double> theta) const {
                          : s.role == Role::kLogTravel ? log_slip_force - u[j]
                                                       : u[j];
   }
-  StoreLinear(slip_force_, theta);
+  StoreLinear(scale_, theta);
 }
 
-/// R·b = Qᵀ(y − Tc·t)
-void Solver::StoreLinear(double slip_force, std::span<double> theta) const {
+/// R·b = Qᵀ(y − scale·t)
+void Solver::StoreLinear(double scale, std::span<double> theta) const {
   const std::size_t count = columns_.size();
   for (std::size_t j = count; j-- > 0;) {
-    double right = measured_projections_[j] - slip_force * response_projections_[j];
+    double right = measured_projections_[j] - scale * response_projections_[j];
     for (std::size_t k = j + 1; k < count; ++k) {
       right -= triangle_[j * count + k] * theta[columns_[k].parameter];
     }
@@ -257,9 +303,19 @@ void Solver::StoreLinear(double slip_force, std::span<double> theta) const {
   }
 }
 
-/// From t, which is there without weights: projections, Tc and the residual.
-/// @returns the sum of squares
-double Solver::Regress(bool free_slip_force, double held_slip_force) {
+/// Of the factor of t, by those of Tc, or of a displacement by those of σ.
+std::pair<double, double> Solver::BoundsOfScale(double log_rate) const {
+  if (is_forced()) {
+    const Parameter& stiffness = problem_->parameters[kStiffness];
+    return {std::exp(-log_rate - stiffness.upper), std::exp(-log_rate - stiffness.lower)};
+  }
+  const Parameter& slip_force = problem_->parameters[kSlipForce];
+  return {std::exp(slip_force.lower), std::exp(slip_force.upper)};
+}
+
+/// From t, which is there without weights: projections, its factor and the residual.
+/// @returns the sum of squares; infinity where t is that of no displacement
+double Solver::Regress(double log_rate, bool is_free, double held_scale) {
   Weigh(response_values_, 1.0, weight_);
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     const std::size_t begin = columns_[j].begin;
@@ -267,18 +323,19 @@ double Solver::Regress(bool free_slip_force, double held_slip_force) {
     response_projections_[j] =
         TakeOut(std::span(response_values_).subspan(begin, count), Basis(j).subspan(begin, count));
   }
-  slip_force_ = held_slip_force;
-  slip_force_is_free_ = false;
-  if (free_slip_force) {
-    const Parameter& parameter = problem_->parameters[kSlipForce];
+  scale_ = held_scale;
+  scale_is_free_ = false;
+  if (is_free) {
+    const auto [lower, upper] = BoundsOfScale(log_rate);
     const double square = Dot(response_values_, response_values_);
     const double best = square > 0 ? Dot(response_values_, measured_) / square : 0.0;
-    slip_force_ = std::clamp(best, std::exp(parameter.lower), std::exp(parameter.upper));
-    slip_force_is_free_ = slip_force_ == best;
-    if (!(best > 0)) slip_force_ = std::exp(parameter.lower);
+    scale_ = std::clamp(best, lower, upper);
+    scale_is_free_ = scale_ == best;
+    if (!(best > 0)) scale_ = lower;
   }
-  Subtract(slip_force_, response_values_, measured_, residual_);
-  return Dot(residual_, residual_);
+  Subtract(scale_, response_values_, measured_, residual_);
+  const double cost = Dot(residual_, residual_);
+  return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
 /// A record's origin moves its own samples only.
@@ -319,13 +376,19 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
   const LawPoint point = PointOf(u);
   const bool has_rig = problem_->parameters.has_rig();
   double log_slip_force = held_theta_[kSlipForce];
+  double log_stiffness = held_theta_[kStiffness];
   for (std::size_t j = 0; j < u.size(); ++j) {
     if (searched_[j].role == Role::kLogSlipForce) log_slip_force = u[j];
+    if (searched_[j].role == Role::kLogStiffness) log_stiffness = u[j];
   }
-  const double held = std::exp(log_slip_force);
+  const double held = std::exp(is_forced() ? log_slip_force - log_stiffness : log_slip_force);
   if (!with_gradient) {
     response_->Evaluate(point, response_values_);
-    return Regress(slip_force_is_linear_, held);
+    return Regress(point.log_rate, scale_is_linear_, held);
+  }
+  if (is_forced()) {
+    DifferentiateForced(point);
+    return Regress(point.log_rate, scale_is_linear_, held);
   }
   // The derivatives of t first, each in the place of one that needs it.
   ResponseColumns columns;
@@ -335,7 +398,7 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
     }
     return std::span<double>();
   };
-  const bool natural = !slip_force_is_linear_;
+  const bool natural = !scale_is_linear_;
   columns.log_rate = natural ? wants(Role::kLogStiffness) : wants(Role::kLogRate);
   columns.shape_exponent = wants(Role::kShapeExponent);
   columns.log_spring_travel = natural ? wants(Role::kLogRig) : wants(Role::kLogTravel);
@@ -354,8 +417,8 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
     }
   }
   for (std::size_t j = 0; j < searched_.size(); ++j) {
-    if (searched_[j].role == Role::kUnloaded && columns.unloaded_displacement.empty()) {
-      columns.unloaded_displacement = Derivative(j);
+    if (searched_[j].role == Role::kUnloaded && columns.unloaded.empty()) {
+      columns.unloaded = Derivative(j);
     }
   }
   columns.lag = wants(Role::kLag);
@@ -371,17 +434,39 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
   if (natural && Searches(Role::kLogRig)) {
     for (double& value : wants(Role::kLogRig)) value = -value;
   }
-  if (!columns.unloaded_displacement.empty()) SplitByRecord(columns.unloaded_displacement);
-  return Regress(slip_force_is_linear_, held);
+  if (!columns.unloaded.empty()) SplitByRecord(columns.unloaded);
+  return Regress(point.log_rate, scale_is_linear_, held);
+}
+
+/// d and its derivatives by what is searched, over the scale: Tc is in the rate, and beside a σ
+/// that is not eliminated in the scale too.
+void Solver::DifferentiateForced(const LawPoint& point) {
+  ResponseColumns columns;
+  for (std::size_t j = 0; j < searched_.size(); ++j) {
+    const Role role = searched_[j].role;
+    if (role == Role::kLogSlipForce) columns.log_rate = Derivative(j);
+    if (role == Role::kShapeExponent) columns.shape_exponent = Derivative(j);
+    if (role == Role::kUnloaded && columns.unloaded.empty()) columns.unloaded = Derivative(j);
+  }
+  response_->Differentiate(point, response_values_, columns);
+  for (std::size_t i = 0; i < columns.log_rate.size(); ++i) {
+    columns.log_rate[i] = (scale_is_linear_ ? 0.0 : response_values_[i]) - columns.log_rate[i];
+  }
+  for (std::size_t j = 0; j < searched_.size(); ++j) {
+    if (searched_[j].role != Role::kLogStiffness) continue;
+    const std::span<double> column = Derivative(j);
+    for (std::size_t i = 0; i < samples_; ++i) column[i] = -response_values_[i];
+  }
+  if (!columns.unloaded.empty()) SplitByRecord(columns.unloaded);
 }
 
 /// JᵀJ and Jᵀr of the derivatives of the projected residual.
 void Solver::Linearise(std::span<const double> u) {
   const std::size_t count = u.size();
-  const double square = slip_force_is_free_ ? Dot(response_values_, response_values_) : 0.0;
+  const double square = scale_is_free_ ? Dot(response_values_, response_values_) : 0.0;
   for (std::size_t j = 0; j < count; ++j) {
     const std::span<double> column = Derivative(j);
-    Weigh(column, slip_force_, weight_);
+    Weigh(column, scale_, weight_);
     ProjectOut(column);
     if (square > 0) {
       AddMultiple(column, -Dot(response_values_, column) / square, response_values_);
@@ -449,6 +534,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
   solution.termination = "The solver made its maximum number of iterations.";
   if (!std::isfinite(cost)) {
     solution.termination = "The residuals at the start are not finite.";
+    solution.sum_of_squares = cost;
     return;
   }
   double damping = kFirstDamping;
@@ -554,13 +640,14 @@ void Solver::MarkSides(std::span<const double> u, Solution& solution) const {
   const Parameters& parameters = problem_->parameters;
   solution.side.assign(parameters.size(), BoundSide::kInside);
   for (const std::size_t p : parameters.free()) {
-    const bool by_search = slip_force_is_linear_ && (p == kStiffness || p == kRig);
+    const bool by_search = scale_is_linear_ && !is_forced() && (p == kStiffness || p == kRig);
     if (!by_search) solution.side[p] = SideOf(parameters[p], solution.theta[p]);
   }
-  if (!slip_force_is_linear_) return;
+  if (!scale_is_linear_ && !is_forced()) return;
   for (std::size_t j = 0; j < u.size(); ++j) {
     const Searched& s = searched_[j];
     const BoundSide side = SideOf(u[j], s.lower, s.upper);
+    if (s.role == Role::kLogSlipForce) solution.side[kSlipForce] = side;
     if (s.role == Role::kLogRate && side == BoundSide::kUpper) solution.side[kStiffness] = side;
     if (s.role == Role::kLogRate && side == BoundSide::kLower) {
       solution.side[kSlipForce] = BoundSide::kUpper;  // a straight line
@@ -580,11 +667,15 @@ double Solver::CostAt(std::span<double> theta) {
 
 double Solver::CostAt(const LawPoint& at, std::span<double> theta) {
   response_->Evaluate(at, response_values_);
-  const bool fixed = problem_->parameters[kSlipForce].fixed;
-  const double cost = Regress(!fixed, std::exp(held_theta_[kSlipForce]));
-  if (!fixed && !slip_force_is_free_) return std::numeric_limits<double>::infinity();
-  theta[kSlipForce] = std::log(slip_force_);
-  StoreLinear(slip_force_, theta);
+  const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
+  const bool fixed = problem_->parameters[of_scale].fixed;
+  const double held =
+      is_forced() ? -at.log_rate - held_theta_[kStiffness] : held_theta_[kSlipForce];
+  const double cost = Regress(at.log_rate, !fixed, std::exp(held));
+  if (!fixed && !scale_is_free_) return std::numeric_limits<double>::infinity();
+  if (is_forced()) theta[kSlipForce] = -at.log_rate;
+  theta[of_scale] = is_forced() ? -at.log_rate - std::log(scale_) : std::log(scale_);
+  StoreLinear(scale_, theta);
   return cost;
 }
 

@@ -35,8 +35,9 @@ struct Solution {
 /// freed from what the eliminated columns explain.
 ///
 /// Tc is eliminated where t is searched over σ/Tc (and Tc/k of a rig). Where the user holds or
-/// bounds σ or k themselves, these and Tc are searched instead. A bound on an eliminated column's
-/// factor holds it there once it is passed.
+/// bounds σ or k themselves, these and Tc are searched instead. Of a displacement Tc is searched
+/// and its factor Tc/σ eliminated, unless the user holds or bounds σ. A bound on an eliminated
+/// column's factor holds it there once it is passed.
 ///
 /// Keeps its buffers; nothing is allocated once they are large enough.
 class Solver {
@@ -52,8 +53,9 @@ class Solver {
   /// @returns Σ of the squared weighted residuals
   double CostAt(std::span<double> theta);
 
-  /// The same with Tc eliminated whatever is held, for looks at the plane of σ/Tc and α.
-  /// @returns infinity where the regression has the wrong sign; else Tc in θ
+  /// The same with the factor of t eliminated whatever is held, for looks at the plane of σ/Tc, or
+  /// of a displacement of Tc, and α.
+  /// @returns infinity where the regression has the wrong sign; else σ or Tc in θ
   double CostAt(const LawPoint& at, std::span<double> theta);
 
   /// @param start  θ, moved into the bounds
@@ -85,6 +87,7 @@ class Solver {
   };
 
   void ChooseSearched();
+  void SearchTheOthers();
   void OrthogonaliseColumns();
   [[nodiscard]] bool Searches(Role role) const;
   /// Does the response read it from θ, not from the point of the law?
@@ -94,10 +97,12 @@ class Solver {
   [[nodiscard]] LawPoint PointOf(std::span<const double> u) const;
   void Load(std::span<const double> theta, std::span<double> u);
   void Store(std::span<const double> u, std::span<double> theta) const;
-  void StoreLinear(double slip_force, std::span<double> theta) const;
-  double Regress(bool free_slip_force, double held_slip_force);
+  void StoreLinear(double scale, std::span<double> theta) const;
+  [[nodiscard]] std::pair<double, double> BoundsOfScale(double log_rate) const;
+  double Regress(double log_rate, bool is_free, double held_scale);
   void Linearise(std::span<const double> u);
   double Evaluate(std::span<const double> u, bool with_gradient);
+  void DifferentiateForced(const LawPoint& point);
   void SplitByRecord(std::span<const double> all);
   void FillLoadExponent(std::span<const double> by_log_rate);
   [[nodiscard]] std::pair<std::size_t, std::size_t> RowsOf(std::size_t record) const;
@@ -113,6 +118,10 @@ class Solver {
   }
   std::span<double> Derivative(std::size_t k) {
     return {derivatives_.data() + k * samples_, samples_};
+  }
+
+  [[nodiscard]] bool is_forced() const {
+    return problem_->data->excitation == loop::Channel::kForce;
   }
 
   const Problem* problem_ = nullptr;
@@ -131,9 +140,9 @@ class Solver {
   std::vector<double> response_projections_;
   std::vector<double> residual_;     // projected
   std::vector<double> derivatives_;  // of the residual by what is searched, projected
-  double slip_force_ = 0.0;
-  bool slip_force_is_free_ = false;  // of its bounds
-  bool slip_force_is_linear_ = false;
+  double scale_ = 0.0;               // of t: Tc, or Tc/σ of a displacement
+  bool scale_is_free_ = false;       // of its bounds
+  bool scale_is_linear_ = false;
   std::vector<double> hessian_;
   std::vector<double> gradient_;
   mutable std::vector<double> matrix_;

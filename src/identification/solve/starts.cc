@@ -23,9 +23,14 @@ constexpr std::array kRows = {
     Row{1.0 / 3.0, 10, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 150.}},
     Row{0.0, 8, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}}, Row{1.0, 5, {0.5, 1.5, 4.0, 12., 60.}},
     Row{2.5, 4, {0.7, 3.0, 12., 60.}}};
+/// Of an imposed force, which stays below slip: T*/Tc, closer where loops differ.
+constexpr std::array<Row, 4> kMobilisedRows = {
+    Row{1.0 / 3.0, 7, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}}, Row{0.0, 2, {0.5, 0.99}},
+    Row{1.0, 6, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}}, Row{2.5, 6, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
 /// Where α is held, all of one row.
 constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};
 constexpr double kNear = 4.0;
+constexpr std::array kMobilised = {0.05, 0.2, 0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 0.997};
 constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
 /// Where α is held at 0 there are several minima next to each other.
@@ -37,7 +42,7 @@ constexpr std::size_t kDrawsPerStart = 20;  // the regression refuses some of th
 /// A point of the plane and its cost.
 struct Look {
   double cost = std::numeric_limits<double>::infinity();
-  double reach = 0.0;
+  double reach = 0.0;  // σX/Tc; T*/Tc of an imposed force
   double shape = 0.0;
   double rig_ratio = 1.0;
   std::size_t guess = 0;  // of where the contact was unloaded
@@ -63,7 +68,10 @@ class Plane {
   /// Writes the look's cost, and what it found into theta().
   void At(Look& look) {
     const Parameters& parameters = problem_.parameters;
-    const double log_reach = std::log(look.reach);
+    const Parameter& slip_force = parameters[kSlipForce];
+    const double log_reach = !is_forced()       ? std::log(look.reach)
+                             : slip_force.fixed ? -slip_force.theta
+                                                : std::log(look.reach / FarthestFrom(look.guess));
     LawPoint point{.log_rate = log_reach, .shape = look.shape, .theta = theta_};
     if (parameters.is_load_series()) {
       // Elements in parallel make it α.
@@ -76,7 +84,7 @@ class Plane {
     }
     std::size_t record = 0;
     for (std::size_t p = 0; p < parameters.size(); ++p) {
-      if (parameters[p].term->name != "displacement_offset") continue;
+      if (parameters[p].term->name != OriginTerm(problem_.data->excitation)) continue;
       theta_[p] = guesses_[look.guess][record++];
     }
     if (lag_is_open()) {
@@ -103,6 +111,10 @@ class Plane {
       }
     }
     theta_[kShape] = look.shape;
+    if (is_forced()) {
+      ClampFree();
+      return;
+    }
     if (!parameters[kStiffness].fixed) theta_[kStiffness] = point.log_rate + theta_[kSlipForce];
     if (parameters.has_rig() && !parameters[kRig].fixed) {
       theta_[kRig] = theta_[kSlipForce] - point.log_travel;
@@ -110,9 +122,11 @@ class Plane {
     if (parameters[kStiffness].fixed && !parameters[kSlipForce].fixed) {
       theta_[kSlipForce] = theta_[kStiffness] - point.log_rate;
     }
-    for (const std::size_t p : parameters.free()) {
-      theta_[p] = std::clamp(theta_[p], parameters[p].lower, parameters[p].upper);
-    }
+    ClampFree();
+  }
+
+  [[nodiscard]] bool is_forced() const {
+    return problem_.data->excitation == loop::Channel::kForce;
   }
 
   /// θ of the last look, with what the options have to say of starts.
@@ -126,6 +140,24 @@ class Plane {
  private:
   using Guess = std::pmr::vector<double>;  // one a record
 
+  /// Largest |excitation| from where a guess has the contact unloaded.
+  [[nodiscard]] double FarthestFrom(std::size_t guess) const {
+    double farthest = 0.0;
+    for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
+      const auto [low, high] = std::ranges::minmax(problem_.data->records[r].excitation());
+      const double unloaded = guesses_[guess][r];
+      farthest = std::max({farthest, high - unloaded, unloaded - low});
+    }
+    return farthest;
+  }
+
+  void ClampFree() {
+    const Parameters& parameters = problem_.parameters;
+    for (const std::size_t p : parameters.free()) {
+      theta_[p] = std::clamp(theta_[p], parameters[p].lower, parameters[p].upper);
+    }
+  }
+
   void FindGuesses(std::pmr::memory_resource* memory) {
     const Parameters& parameters = problem_.parameters;
     const std::size_t records = problem_.data->records.size();
@@ -135,10 +167,10 @@ class Plane {
     Guess zero(memory);
     bool all_fixed = true;
     for (std::size_t r = 0; r < records; ++r) {
-      const Parameter& offset = parameters[parameters.PositionOf("displacement_offset", r)];
+      const Parameter& offset = parameters[parameters.PositionOfOrigin(r)];
       all_fixed = all_fixed && offset.fixed;
       fixed.push_back(offset.theta);
-      first.push_back(offset.fixed ? offset.theta : problem_.data->records[r].displacement.front());
+      first.push_back(offset.fixed ? offset.theta : problem_.data->records[r].excitation().front());
       centre.push_back(offset.fixed ? offset.theta : 0.0);
       zero.push_back(offset.fixed ? offset.theta : offset.ToTheta(0.0));
     }
@@ -222,21 +254,23 @@ void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, d
   };
   if (shape.fixed) {
     constexpr std::size_t kThirds = 3;
-    for (std::size_t i = 0; i < kReaches.size(); ++i) {
-      look_at(i * kThirds / kReaches.size(), kReaches[i], shape.theta);
+    const auto& reaches = plane.is_forced() ? kMobilised : kReaches;
+    for (std::size_t i = 0; i < reaches.size(); ++i) {
+      look_at(i * kThirds / reaches.size(), reaches[i], shape.theta);
     }
     return;
   }
-  for (std::size_t k = 0; k < kRows.size(); ++k) {
-    const double alpha = std::clamp(kRows[k].shape, shape.lower, shape.upper);
+  const auto& rows = plane.is_forced() ? kMobilisedRows : kRows;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double alpha = std::clamp(rows[k].shape, shape.lower, shape.upper);
     // A loop says how far it reaches better than of which shape it is: where Mindlin's row saw a
     // minimum, the others are looked at around it.
     const double reach = best[0].reach;
     const auto is_near = [&](double other) {
       return k == 0 || reach == 0 || (other > reach / kNear && other < reach * kNear);
     };
-    for (std::size_t i = 0; i < kRows[k].count; ++i) {
-      if (is_near(kRows[k].reaches[i])) look_at(k, kRows[k].reaches[i], alpha);
+    for (std::size_t i = 0; i < rows[k].count; ++i) {
+      if (is_near(rows[k].reaches[i])) look_at(k, rows[k].reaches[i], alpha);
     }
     if (best[0].cost > hopeless) return;
   }
@@ -370,7 +404,8 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
   for (std::size_t left = kDrawsPerStart * options.starts;
        left > 0 && starts.size() < options.starts; --left) {
     Look look;
-    look.reach = draws.LogUniform(kReaches.front(), kReaches.back());
+    look.reach = plane.is_forced() ? draws.Uniform(kMobilised.front(), kMobilised.back())
+                                   : draws.LogUniform(kReaches.front(), kReaches.back());
     const double alpha = draws.Uniform(0.0, kHighestDrawnShape);
     look.shape = shape.fixed ? shape.theta : std::clamp(alpha, shape.lower, shape.upper);
     look.rig_ratio = draws.LogUniform(kRigRatios.front(), kRigRatios.back());

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "identification/problem/scaled_records.h"
+
+/// Derivatives by time of what was sampled.
+namespace mindahl::identification {
+
+/// Samples that a derivative at one of them may look at: turning points that were put in between
+/// have no time of their own.
+struct Neighbours {
+  std::vector<std::size_t> samples;        // that were measured
+  std::vector<unsigned char> turns_after;  // of each: the motion turns there or before the next one
+  std::vector<unsigned char> turned;       // of each: it turned between it and the one before
+};
+
+Neighbours NeighboursOf(const ScaledRecord& record);
+
+/// When each sample was read, from the middle of its record, in a unit that all records share.
+struct Clock {
+  bool timed = true;  // else by sample
+  double unit = 1.0;  // [s], or samples
+  std::vector<std::vector<double>> time;
+};
+
+Clock ClockOf(const ScaledRecords& data, std::span<const Neighbours> neighbours);
+
+/// Derivative by time, by differences to both sides.
+/// @param within_strokes  never beyond a turn; a turn is the stroke's that ends there
+void Derive(std::span<const double> values, std::span<const double> time,
+            const Neighbours& neighbours, bool within_strokes, std::span<double> rate);
+
+}  // namespace mindahl::identification

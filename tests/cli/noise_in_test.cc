@@ -1,0 +1,145 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "io/temporary_directory.h"
+
+// fit --noise-in displacement: loops whose force is imposed.
+namespace mindahl::cli {
+namespace {
+
+using nlohmann::json;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::Outcome;
+using testing::RunCommand;
+using Words = std::vector<std::string>;
+
+constexpr double kSigma = 5e7;
+constexpr double kSlipForce = 15.0;
+constexpr double kNoise = 3e-9;  // [m], 0.9 % of X
+
+class NoiseIn : public ::testing::Test {
+ protected:
+  /// Three cycles of Mindlin's contact under a force to 0.9 Tc.
+  std::string Loop(double noise) {
+    std::string forces = "force [N]\n";
+    for (int i = 0; i <= 600; ++i) {
+      char line[40];
+      const double phase = 2 * std::numbers::pi * (i % 200) / 200;
+      std::snprintf(line, sizeof line, "%.17g\n", 0.9 * kSlipForce * std::sin(phase));
+      forces += line;
+    }
+    const std::string path = directory_.Write("forces.csv", forces).string();
+    std::string loop = (directory_.path() / "loop.csv").string();
+    const Outcome outcome = RunCommand(
+        {"simulate", "--sigma", "5e7", "--slip-force", "15", "--force-path", path,
+         "--noise-displacement", std::to_string(noise * 1e9) + "e-9", "--seed", "5", "-o", loop});
+    EXPECT_EQ(outcome.status, kDone) << outcome.err;
+    return loop;
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(NoiseIn, DisplacementRecoversTheContactFromWhatSimulateMakes) {
+  const Outcome outcome =
+      RunCommand({"fit", Loop(0.0), "--noise-in", "displacement", "--json", "-"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const json fit = outcome.Json();
+  constexpr double kNoiseFree = 1e-8;  // as of any noise-free loop of 17 digits
+  EXPECT_NEAR(fit["parameters"]["sigma"]["value"].get<double>() / kSigma, 1, kNoiseFree);
+  EXPECT_NEAR(fit["parameters"]["alpha"]["value"].get<double>(), 1.0 / 3, kNoiseFree);
+  EXPECT_NEAR(fit["parameters"]["slip_force"]["value"].get<double>() / kSlipForce, 1, kNoiseFree);
+  EXPECT_EQ(fit["residuals"]["channel"], "displacement");
+  EXPECT_EQ(fit["residuals"]["force_noise"], 0.0);
+}
+
+TEST_F(NoiseIn, DisplacementGivesResidualsInMetres) {
+  const std::string loop = Loop(kNoise);
+  const std::string table = (directory_.path() / "residuals.csv").string();
+  const Outcome outcome =
+      RunCommand({"fit", loop, "--noise-in", "displacement", "--residuals", table, "--json", "-"});
+  ASSERT_EQ(outcome.status, kDone) << outcome.err;
+  const json fit = outcome.Json();
+  // n squares tell a deviation to 1/√(2n) = 3 %; five of those.
+  EXPECT_NEAR(fit["residuals"]["rms"].get<double>() / kNoise, 1, 0.15);
+  EXPECT_NEAR(fit["input"]["displacement_noise"][0].get<double>() / kNoise, 1, 0.15);
+  std::ifstream file(table);
+  std::string header;
+  std::getline(file, header);
+  EXPECT_THAT(testing::Cells(header), ElementsAre("time [s]", "displacement [m]", "force [N]",
+                                                  "fitted_displacement [m]", "residual [m]"));
+}
+
+TEST_F(NoiseIn, DisplacementIsToldInTheText) {
+  const Outcome outcome = RunCommand({"fit", Loop(kNoise), "--noise-in", "displacement"});
+  EXPECT_EQ(outcome.status, kDone) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("residuals of the displacement: rms "));
+  EXPECT_THAT(outcome.out, HasSubstr("% of Tc/σ)"));
+}
+
+TEST_F(NoiseIn, ForceIsAskedWhetherItIsTheRightChannel) {
+  const json fit = RunCommand({"fit", Loop(kNoise), "--json", "-"}).Json();
+  EXPECT_EQ(fit["residuals"]["channel"], "force");
+  EXPECT_THAT(fit["notes"], Contains(::testing::Truly([](const json& note) {
+                return note["code"] == "noise_in_displacement";
+              })));
+}
+
+TEST_F(NoiseIn, DisplacementFitsItsDrift) {
+  const json fit =
+      RunCommand({"fit", Loop(0.0), "--noise-in", "displacement", "--drift", "--json", "-"}).Json();
+  EXPECT_EQ(fit["parameters"]["displacement_drift"]["status"], "free");
+  EXPECT_EQ(fit["parameters"]["displacement_drift"]["unit"], "m/s");
+  EXPECT_FALSE(fit["parameters"].contains("force_drift"));
+}
+
+TEST_F(NoiseIn, DisplacementRefusesWhatIsOfAFittedForceInOneLine) {
+  const std::string loop = Loop(0.0);
+  const auto refusal = [&](Words options) {
+    options.insert(options.begin(), {"fit", loop, "--noise-in", "displacement"});
+    const Outcome outcome = RunCommand(options);
+    EXPECT_EQ(outcome.status, kBadInput) << outcome.out;
+    EXPECT_EQ(outcome.Errors().size(), 1U) << outcome.err;
+    return outcome.err;
+  };
+  for (const char* option : {"--rig-stiffness", "--viscous", "--lag"}) {
+    EXPECT_THAT(refusal({option, "fit"}),
+                HasSubstr(std::string(option) + " has no place beside --noise-in displacement"));
+  }
+  EXPECT_THAT(refusal({"--plateau-slope"}), HasSubstr("--plateau-slope has no place"));
+  EXPECT_THAT(refusal({"--covariate", "time"}), HasSubstr("--covariate has no place"));
+  EXPECT_THAT(refusal({"--model", "auto"}), HasSubstr("--model auto has no place"));
+  EXPECT_THAT(refusal({"--force-noise", "0.1"}), HasSubstr("give --displacement-noise"));
+  EXPECT_THAT(refusal({"--fix", "rig_stiffness=1e8"}),
+              HasSubstr("rig_stiffness has no place in a fit of the displacement"));
+  EXPECT_THAT(refusal({"--reversal-gate", "100"}), HasSubstr("the whole force is 27 N wide"));
+  EXPECT_THAT(refusal({"--backbone", (directory_.path() / "b.csv").string()}),
+              HasSubstr("--noise-in displacement"));
+}
+
+TEST_F(NoiseIn, OfNoChannelIsRefused) {
+  const Outcome outcome = RunCommand({"fit", Loop(0.0), "--noise-in", "load"});
+  EXPECT_EQ(outcome.status, kBadInput);
+  EXPECT_THAT(outcome.err, HasSubstr("--noise-in"));
+}
+
+TEST_F(NoiseIn, DisplacementIsNotReadByTrack) {
+  const Outcome outcome = RunCommand({"track", Loop(0.0), "--noise-in", "displacement", "--output",
+                                      (directory_.path() / "cycles.csv").string()});
+  EXPECT_EQ(outcome.status, kBadInput);
+  EXPECT_THAT(outcome.err, HasSubstr("--noise-in displacement is not read by track"));
+}
+
+}  // namespace
+}  // namespace mindahl::cli

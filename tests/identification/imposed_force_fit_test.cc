@@ -1,0 +1,309 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identification/inference/local.h"
+#include "identification/sample_loop.h"
+#include "identification/stages.h"
+#include "mindahl/core/error.h"
+#include "mindahl/models/imposed_force.h"
+#include "support/message_of.h"
+
+// Fits of the displacement that answers an imposed force.
+namespace mindahl::identification {
+namespace {
+
+using loop::Channel;
+using loop::Record;
+using models::BranchLaw;
+using models::InitialState;
+using testing::Cycling;
+using testing::FitOne;
+using testing::From;
+using testing::Generator;
+using ::testing::HasSubstr;
+using testing::History;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Normal;
+using testing::Recovers;
+using testing::Scaled;
+using testing::Shifted;
+using testing::Wave;
+
+constexpr double kSlipForce = 60.0;  // [N]
+constexpr int kSamplesPerCycle = 120;
+
+constexpr BranchLaw LawOf(double alpha) { return {5e7, alpha, kSlipForce}; }
+
+/// Three cycles of force to ±share·Tc from an unloaded contact, off centre in both channels.
+Record ForcedLoop(const BranchLaw& law, double share = 0.95,
+                  std::string_view model = "mindlin-dahl", double cycles = 3.0) {
+  const History force = Cycling(Wave::kSine, share * law.slip_force, cycles, kSamplesPerCycle);
+  History displacement(force.size());
+  models::EvaluateDisplacement(Model(model), law, force, displacement);
+  return Shifted(MakeRecord(displacement, force), 2e-7, 3.0);
+}
+
+FitOptions OfDisplacement(std::string_view model = "mindlin-dahl") {
+  FitOptions options;
+  options.model = models::FindFrictionModel(model);
+  options.preparation.excitation = Channel::kForce;
+  return options;
+}
+
+double AmplitudeOf(const Record& record) {
+  const auto [low, high] = std::ranges::minmax(record.displacement);
+  return (high - low) / 2;
+}
+
+Record WithDisplacementNoise(Record record, double share, Generator& generator) {
+  const double deviation = share * AmplitudeOf(record);
+  for (double& x : record.displacement) x += deviation * Normal(generator);
+  return record;
+}
+
+TEST(ImposedForceFit, RecoversAVirginContactOfAnyShape) {
+  for (const double alpha : {0.1, 1.0 / 3, 0.7, 1.0, 1.6}) {
+    SCOPED_TRACE(alpha);
+    const BranchLaw law = LawOf(alpha);
+    const FitResult fit = FitOne(ForcedLoop(law), OfDisplacement());
+    EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
+    EXPECT_EQ(fit.initial_state, InitialState::kVirgin);
+    EXPECT_EQ(fit.response, Channel::kDisplacement);
+    EXPECT_NEAR(fit.Find("displacement_offset")->value, 2e-7, 1e-8 * 2e-7);
+    EXPECT_NEAR(fit.Find("force_offset")->value, 3.0, 1e-8 * 3.0);
+  }
+}
+
+TEST(ImposedForceFit, RecoversASteadyLoopByItsOwnLaw) {
+  for (const std::string_view model : {"mindlin-dahl", "dahl"}) {
+    for (const double alpha : {1.0 / 3, 0.7}) {
+      SCOPED_TRACE(model);
+      const BranchLaw law = LawOf(alpha);
+      FitOptions options = OfDisplacement(model);
+      options.initial_state = InitialState::kSteady;
+      const Record loop = From(ForcedLoop(law, 0.9, model), kSamplesPerCycle);
+      const FitResult fit = FitOne(loop, options);
+      EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
+      EXPECT_EQ(fit.Find("force_offset")->status, ParameterStatus::kFixed);
+    }
+  }
+}
+
+TEST(ImposedForceFit, RecoversDahlsLawFromAVirginLoop) {
+  const BranchLaw law = LawOf(0.5);
+  const FitResult fit = FitOne(ForcedLoop(law, 0.9, "dahl"), OfDisplacement("dahl"));
+  EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
+}
+
+TEST(ImposedForceFit, KnowsTheSenseOfAForceOfTheOppositeSign) {
+  const BranchLaw law = LawOf(0.4);
+  const FitResult fit = FitOne(Scaled(ForcedLoop(law), 1.0, -1.0), OfDisplacement());
+  EXPECT_EQ(fit.force_sense, -1);
+  EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
+  EXPECT_NEAR(fit.Find("force_offset")->value, -3.0, 1e-8 * 3.0);
+}
+
+TEST(ImposedForceFit, FittedLoopRunsUnderTheMeasuredForceAndResidualsAreInMetres) {
+  Generator generator(5);
+  const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(0.4)), 0.01, generator);
+  const FitResult fit = FitOne(loop, OfDisplacement());
+  const RecordFit& record = fit.records.front();
+  ASSERT_EQ(record.fitted_displacement.size(), loop.size());
+  double squares = 0.0;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    EXPECT_EQ(record.fitted_force[i], loop.force[i]);
+    const double residual = record.fitted_displacement[i] - loop.displacement[i];
+    EXPECT_NEAR(record.residual[i], residual, 1e-12 * AmplitudeOf(loop));
+    squares += residual * residual;
+  }
+  EXPECT_NEAR(fit.rms, std::sqrt(squares / static_cast<double>(loop.size())), 1e-9 * fit.rms);
+  // n − 5 squares tell a deviation to 1/√(2n) = 3.7 %; five of those.
+  EXPECT_NEAR(record.displacement_noise / (0.01 * AmplitudeOf(ForcedLoop(LawOf(0.4)))), 1, 0.19);
+  EXPECT_EQ(fit.force_noise, 0.0);
+}
+
+TEST(ImposedForceFit, JacobianIsThatOfDifferences) {
+  // The curvature jumps where a branch meets the virgin curve, by less than 10 here: h times that,
+  // and rounding over h.
+  constexpr double kStep = 1e-7;
+  constexpr double kTolerance = 1e-6;
+  for (const std::string_view model : {"mindlin-dahl", "dahl"}) {
+    for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
+      Record loop = ForcedLoop(LawOf(0.4), 0.8, model);
+      if (state == InitialState::kSteady) loop = From(loop, kSamplesPerCycle);
+      FitOptions options = OfDisplacement(model);
+      options.terms = {"displacement_drift"};
+      options.initial_state = state;
+      testing::Stages stages(loop, options, state);
+      const std::vector<double> theta = stages.ThetaOf(FitOne(loop, options));
+      Response response;
+      const auto& free = stages.problem.parameters.free();
+      const Linearization at = LinearizeAt(stages.problem, theta, response, free);
+      const Eigen::MatrixXd expected = stages.DifferencesAt(theta, kStep);
+      EXPECT_EQ(free.size(), state == InitialState::kVirgin ? 6 : 5);
+      EXPECT_LT((at.jacobian - expected).cwiseAbs().maxCoeff(),
+                kTolerance * expected.cwiseAbs().maxCoeff())
+          << model;
+    }
+  }
+}
+
+TEST(ImposedForceFit, SlipForceFarFromWhatWasReachedIsALowerLimit) {
+  Generator generator(7);
+  const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(1.0 / 3), 0.25), 0.005, generator);
+  const FitResult fit = FitOne(loop, OfDisplacement());
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  EXPECT_EQ(slip_force.identifiability, Identifiability::kBoundedBelow);
+  ASSERT_TRUE(slip_force.lower95.has_value());
+  EXPECT_LE(*slip_force.lower95, kSlipForce);
+  EXPECT_FALSE(slip_force.upper95.has_value());
+}
+
+TEST(ImposedForceFit, HeldParametersStayAndTheOthersFollow) {
+  const BranchLaw law = LawOf(0.4);
+  for (const auto& [name, value] :
+       {std::pair("sigma", 5e7), std::pair("alpha", 0.4), std::pair("slip_force", kSlipForce)}) {
+    FitOptions options = OfDisplacement();
+    options.fixed[name] = value;
+    const FitResult fit = FitOne(ForcedLoop(law), options);
+    EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree)) << name;
+    EXPECT_EQ(fit.Find(name)->status, ParameterStatus::kFixed);
+  }
+}
+
+TEST(ImposedForceFit, BoundOnSigmaHoldsItThere) {
+  FitOptions options = OfDisplacement();
+  options.bounds["sigma"] = {5.5e7, 9e7};
+  const FitResult fit = FitOne(ForcedLoop(LawOf(0.4)), options);
+  EXPECT_NEAR(fit.law.tangential_stiffness, 5.5e7, 1e-6 * 5.5e7);
+  EXPECT_EQ(fit.Find("sigma")->status, ParameterStatus::kAtLowerBound);
+}
+
+TEST(ImposedForceFit, DriftOfTheDisplacementIsATermAndElseACause) {
+  Record loop = ForcedLoop(LawOf(0.4));
+  const double drift = 1e-8;  // [m/s], 3e-8 in all, 1 % of the way
+  Generator generator(3);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    loop.time.push_back(static_cast<double>(i) / kSamplesPerCycle);
+    loop.displacement[i] += drift * loop.time[i];
+  }
+  loop = WithDisplacementNoise(loop, 0.002, generator);
+  const FitResult plain = FitOne(loop, OfDisplacement());
+  EXPECT_EQ(plain.adequacy.verdict, AdequacyVerdict::kDoubtful);
+  ASSERT_FALSE(plain.adequacy.causes.empty());
+  EXPECT_EQ(plain.adequacy.causes.front().code, "displacement_drift");
+  EXPECT_EQ(plain.adequacy.causes.front().option, "--drift");
+  FitOptions options = OfDisplacement();
+  options.terms = {"displacement_drift"};
+  const FitResult fit = FitOne(loop, options);
+  const ParameterEstimate& estimate = *fit.Find("displacement_drift");
+  ASSERT_TRUE(estimate.standard_error.has_value());
+  EXPECT_NEAR(estimate.value, drift, 5 * *estimate.standard_error);
+  EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+}
+
+TEST(ImposedForceFit, LateForceIsNamedAsACause) {
+  Record loop = ForcedLoop(LawOf(0.4));
+  constexpr std::size_t kLate = 2;
+  for (std::size_t i = loop.size() - 1; i >= kLate; --i) loop.force[i] = loop.force[i - kLate];
+  Generator generator(4);
+  const FitResult fit =
+      FitOne(WithDisplacementNoise(From(loop, kLate), 0.002, generator), OfDisplacement());
+  EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  const auto& causes = fit.adequacy.causes;
+  EXPECT_TRUE(std::ranges::any_of(causes, [](const Cause& cause) {
+    return cause.code == "channel_lag" && cause.size > 0 && cause.option.empty();
+  }));
+}
+
+TEST(ImposedForceFit, TellsMasingsLawFromDahlsByTheVirginBranch) {
+  Generator generator(8);
+  const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(1.0 / 3)), 0.003, generator);
+  const FitResult fit = FitOne(loop, OfDisplacement());
+  ASSERT_TRUE(fit.law_choice.has_value());
+  EXPECT_TRUE(fit.law_choice->decided);
+  EXPECT_EQ(fit.law_choice->preferred, fit.model);
+}
+
+TEST(ImposedForceFit, IsSuggestedWhereTheDisplacementIsTheNoisierChannel) {
+  Generator generator(11);
+  const Record clean = ForcedLoop(LawOf(1.0 / 3), 0.9);
+  const Record noisy = WithDisplacementNoise(clean, 0.01, generator);
+  const Finding* finding = nullptr;
+  const FitResult of_force = FitOne(noisy);
+  finding = of_force.FindFinding("noise_in_displacement");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->severity, Severity::kNote);
+  // Third differences tell the deviation of 360 samples to some 8 %; five of those.
+  EXPECT_NEAR(*finding->Number("of_displacement") / 0.01, 1, 0.4);
+  EXPECT_EQ(FitOne(noisy, OfDisplacement()).FindFinding("noise_in_displacement"), nullptr);
+  EXPECT_EQ(FitOne(clean).FindFinding("noise_in_displacement"), nullptr);
+}
+
+TEST(ImposedForceFit, IsNotSuggestedOfADrivenLoopWhoseForceIsAsNoisyOrThatSlips) {
+  Generator generator(12);
+  const Record loop = testing::Loop();
+  const Record of_force = testing::WithForceNoise(loop, 0.3, generator);
+  EXPECT_EQ(FitOne(of_force).FindFinding("noise_in_displacement"), nullptr);
+  // 1.25 of gross slip: no displacement belongs to a force at slip.
+  const Record slips = WithDisplacementNoise(loop, 0.01, generator);
+  EXPECT_EQ(FitOne(slips).FindFinding("noise_in_displacement"), nullptr);
+  const Record both =
+      testing::WithForceNoise(WithDisplacementNoise(ForcedLoop(LawOf(0.4), 0.9), 0.01, generator),
+                              0.01 * kSlipForce, generator);
+  EXPECT_EQ(FitOne(both).FindFinding("noise_in_displacement"), nullptr);
+}
+
+TEST(ImposedForceFit, RefusesWhatIsOfAForceThatIsFitted) {
+  const Record loop = ForcedLoop(LawOf(0.4));
+  const auto refusal = [&](auto change) {
+    FitOptions options = OfDisplacement();
+    change(options);
+    return MessageOf([&] { FitOne(loop, options); });
+  };
+  for (const char* term : {"rig_stiffness", "plateau_slope", "viscous", "lag", "force_drift"}) {
+    EXPECT_THAT(refusal([&](FitOptions& options) { options.terms = {term}; }),
+                HasSubstr(std::string(term) + " has no place in a fit of the displacement"));
+    EXPECT_THAT(refusal([&](FitOptions& options) { options.fixed[term] = 1e9; }),
+                HasSubstr("has no place"));
+  }
+  EXPECT_THAT(refusal([](FitOptions& options) { options.force_noise = 0.1; }),
+              HasSubstr("imposed and taken as exact"));
+  EXPECT_THAT(refusal([](FitOptions& options) { options.covariates = {"pressure"}; }),
+              HasSubstr("a covariate has no place"));
+  FitOptions of_force;
+  of_force.terms = {"displacement_drift"};
+  EXPECT_THAT(MessageOf([&] { FitOne(loop, of_force); }),
+              HasSubstr("displacement_drift has no place in a fit of the force"));
+}
+
+TEST(ImposedForceFit, RefusesLoadsThatDifferOrVary) {
+  std::vector<Record> loops(2, ForcedLoop(LawOf(0.4)));
+  FitOptions options = OfDisplacement();
+  options.normal_loads = {50.0, 100.0};
+  EXPECT_THAT(MessageOf([&] { Fit(loops, options); }), HasSubstr("normal load"));
+  options.normal_loads.clear();
+  Record varying = loops.front();
+  for (std::size_t i = 0; i < varying.size(); ++i) {
+    varying.normal_load.push_back(100 + 10 * std::sin(0.05 * static_cast<double>(i)));
+  }
+  EXPECT_THAT(MessageOf([&] { FitOne(varying, options); }), HasSubstr("normal load"));
+}
+
+TEST(ImposedForceFit, SeveralRecordsShareTheContact) {
+  const BranchLaw law = LawOf(0.4);
+  const std::vector<Record> loops = {ForcedLoop(law), Shifted(ForcedLoop(law, 0.7), 1e-7, -5.0)};
+  const FitResult fit = Fit(loops, OfDisplacement());
+  EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
+  EXPECT_NEAR(fit.Find("force_offset_2")->value, -2.0, 1e-7);
+}
+
+}  // namespace
+}  // namespace mindahl::identification
