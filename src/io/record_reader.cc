@@ -16,6 +16,7 @@
 #include "core/nearest_name.h"
 #include "io/column_name.h"
 #include "io/message_text.h"
+#include "io/record_columns.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
@@ -46,6 +47,12 @@ constexpr std::array kDisplacementAliases = {
     Alias{"angle", 4},
     Alias{"rotation", 4},
     Alias{"twist", 4},
+    Alias{"weg", 2},
+    Alias{"verschiebung", 1},
+    Alias{"verfahrweg", 2},
+    Alias{"auslenkung", 2},
+    Alias{"déplacement", 1},
+    Alias{"deplacement", 1},
 };
 constexpr std::array kForceAliases = {
     Alias{"tangential force", 0},
@@ -62,14 +69,30 @@ constexpr std::array kForceAliases = {
     Alias{"Q", 4},
     Alias{"T", 5},    // t is the time
     Alias{"f n", 6},  // a force in newton, unless there is a better one
+    Alias{"tangentialkraft", 0},
+    Alias{"reibkraft", 0},
+    Alias{"reibungskraft", 0},
+    Alias{"querkraft", 0},
+    Alias{"kraft", 1},
+    Alias{"force tangentielle", 0},
+    Alias{"effort tangentiel", 0},
+    Alias{"effort", 1},
 };
 constexpr std::array kTimeAliases = {
-    Alias{"time", 0},         Alias{"time stamp", 0}, Alias{"timestamp", 0},
-    Alias{"elapsed time", 0}, Alias{"t", 1},
+    Alias{"time", 0}, Alias{"time stamp", 0}, Alias{"timestamp", 0}, Alias{"elapsed time", 0},
+    Alias{"t", 1},    Alias{"zeit", 0},       Alias{"temps", 0},
 };
 constexpr std::array kNormalLoadAliases = {
-    Alias{"normal load", 0}, Alias{"normal force", 0}, Alias{"normal", 1}, Alias{"n load", 1},
-    Alias{"fn", 2},          Alias{"f n", 2},          Alias{"N", 2},  // n counts the samples
+    Alias{"normal load", 0},
+    Alias{"normal force", 0},
+    Alias{"normal", 1},
+    Alias{"n load", 1},
+    Alias{"fn", 2},
+    Alias{"f n", 2},
+    Alias{"N", 2},  // n counts the samples
+    Alias{"normalkraft", 0},
+    Alias{"charge normale", 0},
+    Alias{"force normale", 0},
 };
 
 struct Role {
@@ -78,16 +101,24 @@ struct Role {
   std::optional<Unit> (*find_unit)(std::string_view);
   std::string (*unit_symbols)();
   std::string_view si_unit;
+  std::string_view option;       ///< of the command line that names the column
+  std::string_view unit_option;  ///< likewise its unit
 };
 
-constexpr Role kDisplacement{"displacement", kDisplacementAliases, LengthUnit, LengthUnitSymbols,
-                             "m"};
-constexpr Role kForce{"force", kForceAliases, ForceUnit, ForceUnitSymbols, "N"};
-constexpr Role kAngle{"displacement", kDisplacementAliases, AngleUnit, AngleUnitSymbols, "rad"};
-constexpr Role kTorque{"force", kForceAliases, TorqueUnit, TorqueUnitSymbols, "N m"};
-constexpr Role kTime{"time", kTimeAliases, TimeUnit, TimeUnitSymbols, "s"};
-constexpr Role kCovariate{"covariate", {}, nullptr, nullptr, ""};
-constexpr Role kNormalLoad{"normal load", kNormalLoadAliases, ForceUnit, ForceUnitSymbols, "N"};
+constexpr Role kDisplacement{
+    "displacement",   kDisplacementAliases, LengthUnit, LengthUnitSymbols, "m",
+    "--displacement", "--displacement-unit"};
+constexpr Role kForce{"force", kForceAliases, ForceUnit,     ForceUnitSymbols,
+                      "N",     "--force",     "--force-unit"};
+constexpr Role kAngle{"displacement",   kDisplacementAliases, AngleUnit, AngleUnitSymbols, "rad",
+                      "--displacement", "--displacement-unit"};
+constexpr Role kTorque{"force", kForceAliases, TorqueUnit,    TorqueUnitSymbols,
+                       "N m",   "--force",     "--force-unit"};
+constexpr Role kTime{"time", kTimeAliases, TimeUnit, TimeUnitSymbols, "s", "--time", "--time-unit"};
+constexpr Role kCovariate{"covariate", {}, nullptr, nullptr, "", "--covariate", ""};
+constexpr Role kNormalLoad{
+    "normal load", kNormalLoadAliases,     ForceUnit,           ForceUnitSymbols,
+    "N",           "--normal-load-column", "--normal-load-unit"};
 
 std::string LowerCase(std::string_view text) {
   std::string lower(text);
@@ -173,14 +204,15 @@ class ColumnFinder {
   }
 
   /// The unit that the header states for a column, "" when it states none.
-  std::string HeaderUnit(std::size_t column) const {
+  /// @param option  with which the user states it
+  std::string HeaderUnit(std::size_t column, std::string_view option) const {
     const std::string of_name = UnitOfName(column);
     const std::string of_row = UnitOfRow(column);
     if (!StatesOneUnit(column)) {
-      throw InputError(
-          fmt::format("{}: {} has the unit '{}' in its name and '{}' below it: "
-                      "choose its unit",
-                      Header(), Label(column), of_name, of_row));
+      throw InputError(fmt::format(
+          "{}: {} has the unit '{}' in its name and '{}' below it: "
+          "choose its unit{}{}",
+          Header(), Label(column), of_name, of_row, option.empty() ? "" : " with ", option));
     }
     return of_name.empty() ? of_row : of_name;
   }
@@ -258,11 +290,13 @@ class ColumnFinder {
 
   [[noreturn]] void ThrowAmbiguous(const Role& role, std::span<const std::size_t> found) const {
     std::string labels;
+    std::string choices;
     for (const std::size_t column : found) {
       labels += fmt::format("{}{}", labels.empty() ? "" : " and ", Label(column));
+      choices += fmt::format("{}{} {}", choices.empty() ? "" : " or ", role.option, column + 1);
     }
-    throw InputError(fmt::format("{}: {} may each be the {}: choose one by its number", Header(),
-                                 labels, role.name));
+    throw InputError(
+        fmt::format("{}: {} may each be the {}: give {}", Header(), labels, role.name, choices));
   }
 
   const CsvTable& table_;
@@ -295,10 +329,11 @@ class ColumnReader {
       throw InputError(fmt::format("{}: the {} unit '{}' is not known: must be one of {}",
                                    table_.file(), role.name, chosen, role.unit_symbols()));
     }
-    const std::string stated = finder_.HeaderUnit(column);
+    const std::string stated = finder_.HeaderUnit(column, role.unit_option);
     if (stated.empty()) {
-      notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}", table_.file(), role.name,
-                                   finder_.Label(column), role.si_unit));
+      notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} states another",
+                                   table_.file(), role.name, finder_.Label(column), role.si_unit,
+                                   role.unit_option));
       return {.symbol = std::string(role.si_unit)};
     }
     if (const auto unit = role.find_unit(stated)) return *unit;
@@ -309,20 +344,20 @@ class ColumnReader {
     }
     throw InputError(
         fmt::format("{}:{}: the unit '{}' of {} is not known for the {}: must be one "
-                    "of {}, or choose the unit",
+                    "of {}, or choose the unit with {}",
                     finder_.Header(), column + 1, stated, finder_.Label(column), role.name,
-                    role.unit_symbols()));
+                    role.unit_symbols(), role.unit_option));
   }
 
   /// Whether the two are an angle and a torque: by their units, and by name where there is none.
   /// @throws InputError when only one of them is
   bool IsTorsional(std::size_t displacement, const ColumnChoice& displacement_choice,
                    std::size_t force, const ColumnChoice& force_choice) const {
-    const auto stated = [&](std::size_t column, const ColumnChoice& choice) {
-      return choice.unit.empty() ? finder_.HeaderUnit(column) : choice.unit;
+    const auto stated = [&](const Role& role, std::size_t column, const ColumnChoice& choice) {
+      return choice.unit.empty() ? finder_.HeaderUnit(column, role.unit_option) : choice.unit;
     };
-    const std::string displacement_unit = stated(displacement, displacement_choice);
-    const std::string force_unit = stated(force, force_choice);
+    const std::string displacement_unit = stated(kDisplacement, displacement, displacement_choice);
+    const std::string force_unit = stated(kForce, force, force_choice);
     const bool is_angle = displacement_unit.empty() ? finder_.IsAngle(displacement)
                                                     : AngleUnit(displacement_unit).has_value();
     const bool is_torque = TorqueUnit(force_unit).has_value();
@@ -414,6 +449,9 @@ class RoleAssigner {
     }
     TakeRecognized(kNormalLoad, normal_load);
     const bool is_guessed = !displacement;
+    if (!displacement) nameless_.push_back(&kDisplacement);
+    if (!force) nameless_.push_back(&kForce);
+    named_ = taken_;
     const Assignment assigned{
         .displacement = displacement ? *displacement : TakeByPosition(kDisplacement, 0),
         .force = force ? *force : TakeByPosition(kForce, 1),
@@ -449,9 +487,10 @@ class RoleAssigner {
     if (!is_free && std::ranges::count(taken_, false) == 1) {
       column = static_cast<std::size_t>(std::ranges::find(taken_, false) - taken_.begin());
     } else if (!is_free) {
-      throw InputError(fmt::format(
-          "{}: no column for the {}: {}", table_.file(), role.name,
-          table_.columns() == 1 ? "the file has 1 column" : finder_.Listing() + ": choose one"));
+      throw InputError(fmt::format("{}: no column for the {}: {}", table_.file(), role.name,
+                                   table_.columns() == 1
+                                       ? "the file has 1 column"
+                                       : fmt::format("{}: {}", finder_.Listing(), HowToName())));
     }
     taken_[column] = true;
     notes_.push_back(fmt::format("{}: no column name is recognised as {}: taken from {}",
@@ -464,32 +503,48 @@ class RoleAssigner {
     const std::string where = fmt::format("{}:{}:{}: {}", table_.file(), table_.lines().front(),
                                           column + 1, finder_.Label(column));
     if (finder_.IsVelocity(column)) {
-      throw InputError(fmt::format(
-          "{} is a velocity: name the column of the displacement with --displacement", where));
+      throw InputError(fmt::format("{} is a velocity: {}", where, HowToName(column)));
     }
     if (!IsStrictlyMonotone(table_.NumbersOrNan(column))) return;
     for (std::size_t other = 0; other < table_.columns(); ++other) {
       if (!GoesToAndFro(table_.NumbersOrNan(other))) continue;
       throw InputError(fmt::format(
-          "{} only {} while {} goes to and fro, as a time does: name the column of the "
-          "displacement with --displacement",
-          where,
+          "{} only {} while {} goes to and fro, as a time does: {}", where,
           table_.NumbersOrNan(column)[1] > table_.NumbersOrNan(column)[0] ? "grows" : "falls",
-          finder_.Label(other)));
+          finder_.Label(other), HowToName(column)));
     }
+  }
+
+  /// "name the column of the force with --force, as in --force 3": of all roles that no column's
+  /// name tells, by the first columns that have no other.
+  /// @param refused  a column that is none of them
+  [[nodiscard]] std::string HowToName(std::optional<std::size_t> refused = std::nullopt) const {
+    std::string rule;
+    std::string example;
+    std::size_t column = 0;
+    for (const Role* role : nameless_) {
+      rule += fmt::format("{} the {} with {}", rule.empty() ? "name the column of" : " and that of",
+                          role->name, role->option);
+      while (column < named_.size() && (named_[column] || column == refused)) ++column;
+      if (column == named_.size()) continue;
+      example += fmt::format("{} {} {}", example.empty() ? ", as in" : "", role->option, ++column);
+    }
+    return rule + example;
   }
 
   const CsvTable& table_;
   const ColumnFinder& finder_;
   std::vector<std::string>& notes_;
   std::vector<bool> taken_;
+  std::vector<bool> named_;            // taken by choice or by name
+  std::vector<const Role*> nameless_;  // of displacement and force
 };
 
 /// Why a column that nobody asked for cannot be used; "" when it can.
 std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const Role& role,
                         std::size_t column, const ColumnChoice& choice) {
   if (!table.HasNumbers(column)) return "holds no numbers";
-  const std::string stated = choice.unit.empty() ? finder.HeaderUnit(column) : "";
+  const std::string stated = choice.unit.empty() ? finder.HeaderUnit(column, role.unit_option) : "";
   if (IsPressureUnit(stated)) return fmt::format("is a pressure, in {}", stated);
   if (!stated.empty() && !role.find_unit(stated)) {
     return fmt::format("has the unit '{}', not one of {}", stated, role.unit_symbols());
@@ -548,7 +603,7 @@ class CovariateReader {
   }
 
   void Add(std::size_t column, const std::string& name, std::span<const double> numbers) {
-    const std::string unit = finder_.HeaderUnit(column);
+    const std::string unit = finder_.HeaderUnit(column, kCovariate.unit_option);
     file_.covariates.push_back({name, column + 1, unit});
     file_.record.covariates.push_back(
         {.name = name, .unit = unit, .values = {numbers.begin(), numbers.end()}});
@@ -559,6 +614,13 @@ class CovariateReader {
   const Assignment& assigned_;
   RecordFile& file_;
 };
+
+Role WithUnitOption(Role role, std::string_view option) {
+  role.unit_option = option;
+  return role;
+}
+
+constexpr std::string_view kUnitOfPath = "--path-unit";
 
 /// One column of a path: that chosen, or the first; or, where the first is a time, the one that is
 /// recognised. Taking SI for granted is the documented default here.
@@ -580,7 +642,7 @@ std::vector<double> ReadPathColumn(const CsvTable& table, const Role& role,
 
 }  // namespace
 
-RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
+RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
   const ColumnFinder finder(table);
   RecordFile file;
   if (table.preamble_rows() > 0) {
@@ -634,6 +696,27 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   return file;
 }
 
+std::string DescribeTimeFault(double time, double time_above, std::string_view unit) {
+  if (!(time < time_above)) return "";
+  return fmt::format(
+      "time = {} {} is before the {} {} of the row above: times must not fall; sort the rows, "
+      "split the file where a clock starts again, or rename the column if it holds no time",
+      time, unit, time_above, unit);
+}
+
+RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
+  RecordFile file = RecordOfRows(table, columns);
+  if (!file.time) return file;
+  const std::span<const double> times = table.NumbersOrNan(file.time->number - 1);
+  for (std::size_t row = 1; row < times.size(); ++row) {
+    const std::string fault = DescribeTimeFault(times[row], times[row - 1], file.time->unit);
+    if (fault.empty()) continue;
+    throw InputError(
+        fmt::format("{}:{}:{}: {}", table.file(), file.lines[row], file.time->number, fault));
+  }
+  return file;
+}
+
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
   return RecordOf(ReadCsvTable(path), columns);
 }
@@ -641,19 +724,19 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
                                          const ColumnChoice& displacement) {
   const CsvTable table = ReadCsvTable(path);
-  return ReadPathColumn(table, kDisplacement, displacement);
+  return ReadPathColumn(table, WithUnitOption(kDisplacement, kUnitOfPath), displacement);
 }
 
 LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
                           const ColumnChoice& normal_load) {
   const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, kDisplacement, displacement),
+  return {ReadPathColumn(table, WithUnitOption(kDisplacement, kUnitOfPath), displacement),
           ReadPathColumn(table, kNormalLoad, normal_load)};
 }
 
 ForcePath ReadForcePath(const std::filesystem::path& path, const ColumnChoice& force) {
   const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, kForce, force), table.lines()};
+  return {ReadPathColumn(table, WithUnitOption(kForce, "--force-path-unit"), force), table.lines()};
 }
 
 }  // namespace mindahl::io

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,7 @@
 
 #include "io/csv_layout.h"
 #include "io/number_row.h"
+#include "io/record_columns.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"
@@ -127,7 +129,8 @@ struct RecordStream::State {
   std::size_t line = 0;    // last that was read
   std::size_t broken_rows = 0;
   std::string first_broken_row;
-  std::string refusal;  // of a row that is reached next
+  std::string refusal;                                     // of a row that is reached next
+  double time = -std::numeric_limits<double>::infinity();  // of the row above, in its unit
 };
 
 /// Finds out from the header and the first rows what the file holds.
@@ -140,7 +143,7 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
   line = found.data_line - 1;
   const std::size_t judged = text.find('\n', found.data_offset + kJudged);
   const CsvTable table = ParseCsvTable(WholeRows(text.substr(0, judged), found), name);
-  layout = RecordOf(table, columns);
+  layout = RecordOfRows(table, columns);
   const auto add = [&](const ChosenColumn& column, const std::optional<Unit>& unit,
                        std::vector<double> Samples::*values, std::string_view what) {
     channels.push_back({column.number - 1, *unit, values, what});
@@ -205,6 +208,7 @@ bool RecordStream::State::Next(Samples& samples) {
 
 void RecordStream::State::Read(std::string_view text, Samples& samples) {
   std::array<double, 4> values{};  // of displacement, force, time and normal load
+  constexpr std::size_t kTime = 2;
   const std::span<double> wanted(values.data(), channels.size());
   while (!text.empty() && refusal.empty()) {
     const std::string_view row = TakeLine(text);
@@ -217,6 +221,14 @@ void RecordStream::State::Read(std::string_view text, Samples& samples) {
         continue;
       case NumberRowReader::Row::kNumbers:
         break;
+    }
+    if (layout.time) {
+      const double above = std::exchange(time, values[kTime]);
+      const std::string fault = DescribeTimeFault(time, above, layout.time->unit);
+      if (!fault.empty()) {
+        MindBrokenRow(channels[kTime].column, fault);
+        continue;
+      }
     }
     bool is_finite = true;
     for (std::size_t k = 0; k < channels.size(); ++k) {

@@ -95,19 +95,20 @@ TEST_P(RecognizedHeader, GivesEachQuantityItsColumn) {
 
 INSTANTIATE_TEST_SUITE_P(
     , RecognizedHeader,
-    ::testing::Values(Header{"displacement,force,time,normal load", 1, 2, 3, 4},
-                      Header{"Time [s],Normal [uN],Position [mm],Friction [uN]", 3, 4, 1, 2},
-                      Header{"time_s,displacement_m,force_N,velocity_m_s", 2, 3, 1},
-                      Header{"TIME,POSITION,TORQUE,CONTROL_TORQUE", 2, 3, 1},
-                      Header{"F (kN),x [um],a,b", 2, 1}, Header{"t,N,x,T", 3, 4, 1, 2},
-                      Header{"t,x,F,T", 2, 3, 1}, Header{"n,x,F,t", 2, 3, 4},
-                      Header{"F_N,F_t,delta,t", 3, 2, 4, 1}, Header{"x_mm,F_N,a,b", 1, 2},
-                      Header{"F_N,F,x,t", 3, 2, 4, 1},
-                      Header{"Time Stamp,normal-force,tangential_force,stroke", 4, 3, 1, 2},
-                      Header{"friction force,force,disp_mm,x", 3, 1},
-                      Header{"position,displacement,Q,c", 2, 3},
-                      Header{"tangential displacement / mm,displacement / mm,Ft,fn", 1, 3, 0, 4},
-                      Header{"δ,f,a,b", 1, 2}, Header{"a,b,c,d", 4, 2}, Header{"a,b,c,e", 1, 2}));
+    ::testing::Values(
+        Header{"displacement,force,time,normal load", 1, 2, 3, 4},
+        Header{"Time [s],Normal [uN],Position [mm],Friction [uN]", 3, 4, 1, 2},
+        Header{"time_s,displacement_m,force_N,velocity_m_s", 2, 3, 1},
+        Header{"TIME,POSITION,TORQUE,CONTROL_TORQUE", 2, 3, 1}, Header{"F (kN),x [um],a,b", 2, 1},
+        Header{"t,N,x,T", 3, 4, 1, 2}, Header{"t,x,F,T", 2, 3, 1}, Header{"n,x,F,t", 2, 3, 4},
+        Header{"F_N,F_t,delta,t", 3, 2, 4, 1}, Header{"x_mm,F_N,a,b", 1, 2},
+        Header{"F_N,F,x,t", 3, 2, 4, 1},
+        Header{"Time Stamp,normal-force,tangential_force,stroke", 4, 3, 1, 2},
+        Header{"friction force,force,disp_mm,x", 3, 1}, Header{"position,displacement,Q,c", 2, 3},
+        Header{"tangential displacement / mm,displacement / mm,Ft,fn", 1, 3, 0, 4},
+        Header{"δ,f,a,b", 1, 2}, Header{"Zeit,Weg,Kraft,Normalkraft", 2, 3, 1, 4},
+        Header{"Temps (s),Effort (N),Déplacement (mm),Charge normale (N)", 3, 2, 1, 4},
+        Header{"a,b,c,d", 4, 2}, Header{"a,b,c,e", 1, 2}));
 
 TEST(RecordReader, TakesTheOnlyColumnLeftForTheForce) {
   const RecordFile file = Read("load,extension\n1.5,2.5\n");
@@ -191,7 +192,8 @@ INSTANTIATE_TEST_SUITE_P(
                       UnitHeader{"x,F\nmm,kN\n1.5,2.5\n", "mm", 1.5e-3},
                       UnitHeader{"x,F\n[in],[kN]\n\n1.5,2.5\n", "in", 0.0381},
                       UnitHeader{"x [mm],F\n,kN\n1.5,2.5\n", "mm", 1.5e-3},
-                      UnitHeader{"x [mm] F [kN]\n1.5 2.5\n", "mm", 1.5e-3}));
+                      UnitHeader{"x [mm] F [kN]\n1.5 2.5\n", "mm", 1.5e-3},
+                      UnitHeader{"Zeit [s];Weg [mm];Kraft [kN]\n0,5;1,5;2,5\n", "mm", 1.5e-3}));
 
 TEST(RecordReader, PutsChosenUnitAboveThatOfTheHeader) {
   const RecordFile file = Read("x [mm],F [furlong]\n1.5,2.5\n", Choose({"", "um"}, {"", "mN"}));
@@ -201,8 +203,10 @@ TEST(RecordReader, PutsChosenUnitAboveThatOfTheHeader) {
 
 TEST(RecordReader, TakesSiWithNoteWhenNoUnitIsNamed) {
   EXPECT_EQ(Notes("x,F\n1.5,2.5\n"),
-            (Strings{"loop.csv: displacement 'x' (column 1) names no unit: taken as m",
-                     "loop.csv: force 'F' (column 2) names no unit: taken as N"}));
+            (Strings{"loop.csv: displacement 'x' (column 1) names no unit: taken as m; "
+                     "--displacement-unit states another",
+                     "loop.csv: force 'F' (column 2) names no unit: taken as N; "
+                     "--force-unit states another"}));
 }
 
 TEST(RecordReader, NotesColumnsTakenByPosition) {
@@ -250,17 +254,22 @@ INSTANTIATE_TEST_SUITE_P(
               "loop.csv: 'x' (column 2) is chosen for the force and for another quantity: choose "
               "two columns"},
         Fault{"AmbiguousNames", "\nx,d,F\n1,2,3\n", Choose({}),
-              "loop.csv:2: 'x' (column 1) and 'd' (column 2) may each be the displacement: choose "
-              "one by its number"},
+              "loop.csv:2: 'x' (column 1) and 'd' (column 2) may each be the displacement: give "
+              "--displacement 1 or --displacement 2"},
         Fault{"RepeatedName", "x,x,F\n1,2,3\n", Choose({"x", ""}),
-              "loop.csv:1: 'x' (column 1) and 'x' (column 2) may each be the displacement: choose "
-              "one by its number"},
+              "loop.csv:1: 'x' (column 1) and 'x' (column 2) may each be the displacement: give "
+              "--displacement 1 or --displacement 2"},
         Fault{"NameInTwoUnits", "x [mm],x [V],F\n1,2,3\n", Choose({"x", ""}),
               "loop.csv:1: 'x [mm]' (column 1) and 'x [V]' (column 2) may each be the "
-              "displacement: choose one by its number"},
+              "displacement: give --displacement 1 or --displacement 2"},
         Fault{"ForceUnrecognizedWhereColumn2IsTaken", "t,x,y,z\n1,2,3,4\n", Choose({}),
               "loop.csv: no column for the force: the columns are 't' (1), 'x' (2), 'y' (3), 'z' "
-              "(4): choose one"},
+              "(4): name the column of the force with --force, as in --force 3"},
+        Fault{"NeitherRecognizedWhereColumn1IsTheTime", "Time,Actuator,Load cell\n1,2,3\n",
+              Choose({}),
+              "loop.csv: no column for the displacement: the columns are 'Time' (1), 'Actuator' "
+              "(2), 'Load cell' (3): name the column of the displacement with --displacement and "
+              "that of the force with --force, as in --displacement 2 --force 3"},
         Fault{"OneColumn", "x\n1\n", Choose({}),
               "loop.csv: no column for the force: the file has 1 column"},
         Fault{"UnknownChosenUnit", "x,F\n1,2\n", Choose({"", "furlong"}),
@@ -269,7 +278,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{
             "UnknownUnitInHeader", "\nt,x [m],F [V]\n1,2,3\n", Choose({}),
             "loop.csv:2:3: the unit 'V' of 'F [V]' (column 3) is not known for the force: must be "
-            "one of N, mN, uN, kN, MN, lbf, kgf, kip, or choose the unit"},
+            "one of N, mN, uN, kN, MN, lbf, kgf, kip, or choose the unit with --force-unit"},
         Fault{"PressureInHeader", "x [m],p [bar]\n1,2\n", Choose({}, {"p", ""}),
               "loop.csv:1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force: choose "
               "another column; a pressure times the area that it acts on is a force beside the "
@@ -288,10 +297,16 @@ INSTANTIATE_TEST_SUITE_P(
               "with --displacement-unit and --force-unit"},
         Fault{"TimeWithoutAName", "# clock\n0,0,0\n1,1,5\n2,0,-5\n3,-1,0\n", Choose({}),
               "loop.csv:2:1: column 1 only grows while column 2 goes to and fro, as a time does: "
-              "name the column of the displacement with --displacement"},
+              "name the column of the displacement with --displacement and that of the force with "
+              "--force, as in --displacement 2 --force 3"},
         Fault{"CountdownUnderAnUnknownName", "left,F\n3,0\n2,5\n1,-5\n", Choose({}),
               "loop.csv:2:1: 'left' (column 1) only falls while 'F' (column 2) goes to and fro, as "
               "a time does: name the column of the displacement with --displacement"},
+        Fault{"TimeBeforeThatOfTheRowAbove",
+              "time [ms],x [m],F [N]\n1,1,1\n2,2,2\n2,3,3\n# a restart\n0.5,4,4\n", Choose({}),
+              "loop.csv:6:1: time = 0.5 ms is before the 2 ms of the row above: times must not "
+              "fall; sort the rows, split the file where a clock starts again, or rename the "
+              "column if it holds no time"},
         Fault{"VelocityByItsName", "sliding speed,F\n1,2\n2,1\n", Choose({}),
               "loop.csv:2:1: 'sliding speed' (column 1) is a velocity: name the column of the "
               "displacement with --displacement"},
@@ -300,23 +315,27 @@ INSTANTIATE_TEST_SUITE_P(
               "displacement with --displacement"},
         Fault{"UnknownUnitInUnitsRow", "x,F\nfurlong,N\n1,2\n", Choose({}),
               "loop.csv:1:1: the unit 'furlong' of 'x' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
+              "--displacement-unit"},
         Fault{"UnknownUnitBehindSlash", "x / m/s,F\n1,2\n", Choose({}),
               "loop.csv:1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
+              "--displacement-unit"},
         Fault{"UnknownUnitBehindComma", "\"x, furlong\",F\n1,2\n", Choose({}),
               "loop.csv:1:1: the unit 'furlong' of 'x, furlong' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
+              "--displacement-unit"},
         Fault{"ForceUnitForDisplacement", "displacement_N,F\n1,2\n", Choose({}),
               "loop.csv:1:1: the unit 'N' of 'displacement_N' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit"},
+              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
+              "--displacement-unit"},
         Fault{"UnknownUnitOfTimeAskedFor", "time [h],x [m],F [N]\n1,2,3\n",
               Choose({}, {}, {"time", ""}),
               "loop.csv:1:1: the unit 'h' of 'time [h]' (column 1) is not known for the time: must "
-              "be one of s, ms, us, min, or choose the unit"},
+              "be one of s, ms, us, min, or choose the unit with --time-unit"},
         Fault{"TwoUnits", "x [mm],F\num,N\n1,2\n", Choose({}),
               "loop.csv:1: 'x [mm]' (column 1) has the unit 'mm' in its name and 'um' below it: "
-              "choose its unit"},
+              "choose its unit with --displacement-unit"},
         Fault{"OverflowInSi", "x [m],F [kN]\n1,2\n1,1e307\n", Choose({}),
               "loop.csv:3:2: force = 1e+307 kN is too large: must be below 1.8e308 N"},
         Fault{"NotANumber", "x [m],F [N]\n1,2\n3,off\n", Choose({}),

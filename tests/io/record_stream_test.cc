@@ -1,6 +1,7 @@
 #include "mindahl/io/record_stream.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -125,6 +126,22 @@ TEST_F(RecordStreamTest, SaysWhatTheWholeReaderSaysOfABrokenRow) {
     const std::string whole = RefusalOf([&] { ReadRecord(path); });
     EXPECT_EQ(RefusalOf([&] { ReadAll(path); }), whole) << row;
   }
+}
+
+TEST_F(RecordStreamTest, RefusesATimeThatRunsBackwardsAsTheWholeReaderDoes) {
+  const std::filesystem::path path = Write("t [ms],x,F\n0,0,.5\n2,1,1\n\n1,2,2\n2,3,3\n");
+  const std::string whole = RefusalOf([&] { ReadRecord(path); });
+  EXPECT_THAT(whole, ::testing::HasSubstr(":5:1: time = 1 ms is before the 2 ms"));
+  EXPECT_EQ(RefusalOf([&] { ReadAll(path); }), whole);
+}
+
+TEST_F(RecordStreamTest, SkipsOneRowWhereAClockStartsAgain) {
+  const std::filesystem::path path = Write("t,x,F\n5,0,.5\n6,1,1\n0,2,2\n1,3,3\n2,4,4\n");
+  RecordStream stream(path, {}, BrokenRows::kSkip);
+  Samples samples;
+  ASSERT_TRUE(stream.Next(samples));
+  EXPECT_EQ(samples.lines, (std::vector<std::size_t>{2, 3, 5, 6}));
+  EXPECT_EQ(stream.broken_rows(), 1u);
 }
 
 TEST_F(RecordStreamTest, RefusesASecondDecimalMarkAsTheWholeReaderDoes) {

@@ -65,13 +65,15 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// *Columns.* As chosen: by number; by header cell, exactly, then whatever the case, then without
 /// its unit. Else by recognised name, the unit taken off, whatever the case (but names of one
 /// letter as written), '_' and '-' as blanks, the first line that matches winning:
-///   displacement  tangential displacement, relative displacement | displacement, disp |
-///                 position, pos, travel, stroke, extension | x, X, d, delta, δ |
-///                 angle, rotation, twist
-///   force         tangential force, friction force, lateral force, shear force | force, friction |
-///                 torque | Ft | F, f, Q | T | F_N
-///   time          time, time stamp, timestamp, elapsed time | t
-///   normal load   normal load, normal force | normal, n load | Fn, F_N, N
+///   displacement  tangential displacement, relative displacement | displacement, disp,
+///                 Verschiebung, déplacement | position, pos, travel, stroke, extension, Weg,
+///                 Verfahrweg, Auslenkung | x, X, d, delta, δ | angle, rotation, twist
+///   force         tangential force, friction force, lateral force, shear force, Tangentialkraft,
+///                 Reibkraft, Reibungskraft, Querkraft, force tangentielle, effort tangentiel |
+///                 force, friction, Kraft, effort | torque | Ft | F, f, Q | T | F_N
+///   time          time, time stamp, timestamp, elapsed time, Zeit, temps | t
+///   normal load   normal load, normal force, Normalkraft, charge normale, force normale | normal,
+///                 n load | Fn, F_N, N
 /// A displacement or force that is not recognised is column 1 or 2, or the only one left when that
 /// has another role, with a note. Time and normal load are then absent. A column so taken for the
 /// displacement is refused when its name is that of a velocity, or when it only grows or only falls
@@ -91,7 +93,7 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 ///
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
-///   number
+///   number, a time before that of the row above
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
 
 /// ReadRecord() of a table that is in memory.

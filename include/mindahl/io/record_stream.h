@@ -22,8 +22,8 @@ struct Samples {
   [[nodiscard]] std::size_t size() const { return lines.size(); }
 };
 
-/// What becomes of a row in which a cell that is needed is missing or no finite number, or that has
-/// a cell too many.
+/// What becomes of a row in which a cell that is needed is missing or no finite number, that has a
+/// cell too many, or whose time is before that of the row above.
 enum class BrokenRows { kRefuse, kSkip };
 
 /// A record read piece by piece, in memory that does not depend on its length.
