@@ -1,9 +1,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 #include "bindings.h"
 #include "mindahl/contact/plausibility.h"
@@ -13,6 +16,7 @@
 #include "mindahl/core/version.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/request/contact_parameters.h"
+#include "mindahl/request/one_of.h"
 
 namespace mindahl::python {
 
@@ -73,17 +77,11 @@ py::object PairOrNone(const std::optional<convert::AmplitudeRange>& range) {
 std::pair<py::dict, py::object> Convert(const models::BranchLaw& law, const std::string& from,
                                         const std::string& to, const ConversionOptions& options,
                                         const convert::LammpsContact& lammps) {
+  std::vector<std::string_view> names;
+  for (const convert::TargetRow& target : convert::Targets()) names.push_back(target.name);
+  request::RequireOneOf("--to", to, names);
+  request::RequireOneOf("--from", from, std::array<std::string_view, 2>{"masing", "dahl"});
   const auto row = std::ranges::find(convert::Targets(), to, &convert::TargetRow::name);
-  if (row == convert::Targets().end()) {
-    std::string names;
-    for (const convert::TargetRow& target : convert::Targets()) {
-      names += (names.empty() ? "" : ", ") + std::string(target.name);
-    }
-    throw InputError("--to: '" + to + "' is not one of " + names);
-  }
-  if (from != "masing" && from != "dahl") {
-    throw InputError("--from: '" + from + "' is not one of masing, dahl");
-  }
   Validate(lammps, row->target);
   const Conversion conversion =
       convert::Convert({models::FindFrictionModel(from == "dahl" ? "dahl" : "mindlin-dahl"), law},

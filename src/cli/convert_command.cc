@@ -16,6 +16,7 @@
 #include "cli/contact_options.h"
 #include "cli/examples.h"
 #include "cli/json_output.h"
+#include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/text_output.h"
 #include "cli/tolerance.h"
@@ -203,7 +204,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->add_option("--from", options->from,
                    "law that they are of: of fit --model mindlin-dahl, or --model dahl")
       ->capture_default_str()
-      ->check(CLI::IsMember({"masing", "dahl"}))
+      ->check(OneOf({"masing", "dahl"}))
       ->group(contact);
   command
       ->add_option("--amplitude", options->conversion.amplitude,
@@ -216,7 +217,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   for (const TargetRow& row : convert::Targets()) names.emplace_back(row.name);
   command->add_option("--to", options->to, "law or program")
       ->required()
-      ->check(CLI::IsMember(names))
+      ->check(OneOf(names))
       ->group(result);
   AddOptional(*command, "--least-amplitude", options->least_amplitude,
               "from here [m] what cannot be exact is fitted; default the amplitude", "M")

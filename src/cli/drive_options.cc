@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cli/contact_options.h"
+#include "cli/one_of.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/record_reader.h"
@@ -75,7 +76,7 @@ void AddDriveOptions(CLI::App& command, DriveOptions& options) {
   const std::string group = "Excitation";
   command.add_option("--waveform", options.waveform, "imposed displacement")
       ->capture_default_str()
-      ->check(CLI::IsMember(Waveforms()))
+      ->check(OneOf(Waveforms()))
       ->group(group);
   AddOptional(command, "--lambda", options.lambda, "amplitude over the gross-slip displacement [-]",
               "L")

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/one_of.h"
 #include "cli/text_output.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
@@ -24,8 +25,8 @@ using request::kFitIt;
 
 constexpr std::string_view kColumnGroup = "Columns and units";
 
-CLI::IsMember OneOf(std::span<const std::string_view> values) {
-  return CLI::IsMember(std::vector<std::string>(values.begin(), values.end()));
+CLI::Validator OneOf(std::span<const std::string_view> words) {
+  return cli::OneOf(std::vector<std::string>(words.begin(), words.end()));
 }
 
 void AddWindowOptions(CLI::App& command, FitRequest& options) {

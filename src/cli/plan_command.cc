@@ -16,8 +16,10 @@
 #include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
+#include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/whole_number.h"
+#include "core/nearest_name.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/identification/fit.h"
@@ -122,8 +124,10 @@ FitOptions FitOptionsOf(const PlanOptions& options) {
   FitOptions fit;
   for (const std::string& name : options.with) {
     if (std::ranges::find(kTerms, name) == kTerms.end()) {
-      throw InputError(fmt::format("--with: '{}' cannot be planned for: must be one of {}", name,
-                                   fmt::join(kTerms, ", ")));
+      throw InputError(
+          fmt::format("--with: '{}' cannot be planned for{} must be one of {}", name,
+                      DidYouMean(name, std::vector<std::string>(kTerms.begin(), kTerms.end())),
+                      fmt::join(kTerms, ", ")));
     }
     fit.terms.push_back(name);
   }
@@ -452,10 +456,14 @@ void RunPlan(const PlanOptions& options, Console& console) {
   const WantedPrecision wanted = ParseWanted(options.want);
   for (const auto& [name, precision] : wanted) {
     if (identification::FindTerm(name) == nullptr) {
+      std::vector<std::string> names;
+      for (const identification::Term& term : identification::Terms()) {
+        names.emplace_back(term.name);
+      }
       throw InputError(
-          fmt::format("--want: '{}' is no parameter: must be sigma, alpha, slip_force "
+          fmt::format("--want: '{}' is no parameter{} must be sigma, alpha, slip_force "
                       "or a term that --with names",
-                      name));
+                      name, DidYouMean(name, names)));
     }
   }
   const Expectation expected = ExpectationOf(options, console);
@@ -552,7 +560,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       ->add_option("--initial-state", options->initial_state,
                    "virgin: with the first loading; steady: begun later")
       ->capture_default_str()
-      ->check(CLI::IsMember({"virgin", "steady", "both"}))
+      ->check(OneOf({"virgin", "steady", "both"}))
       ->group(loop);
   const std::string fit = "The fit";
   command

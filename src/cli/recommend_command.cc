@@ -14,6 +14,7 @@
 #include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
+#include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/precision_table.h"
 #include "cli/record_recommendation.h"
@@ -334,7 +335,7 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
       ->add_option("--criterion", options->criterion,
                    "error that counts: max or rms of the force, or the energy dissipated")
       ->capture_default_str()
-      ->check(CLI::IsMember(names))
+      ->check(OneOf(names))
       ->group(asked);
   command
       ->add_option("--transient-cycles", options->transient_cycles,

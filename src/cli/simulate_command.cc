@@ -15,6 +15,7 @@
 #include "cli/drive_options.h"
 #include "cli/examples.h"
 #include "cli/law_options.h"
+#include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
@@ -208,7 +209,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
                "path.csv --path-unit um"});
   command->add_option("--model", options->model, "friction model")
       ->capture_default_str()
-      ->check(CLI::IsMember(ModelNames()));
+      ->check(OneOf(ModelNames()));
   AddLawOptions(*command, options->law);
   AddDriveOptions(*command, options->drive);
   AddLoadColumnOptions(*command, options->drive);
@@ -229,7 +230,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   const std::string method = "Method";
   command->add_option("--method", options->method, MethodHelp())
       ->capture_default_str()
-      ->check(CLI::IsMember(MethodNames()))
+      ->check(OneOf(MethodNames()))
       ->group(method);
   command
       ->add_option("--steps", options->steps,

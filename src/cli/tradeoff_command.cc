@@ -15,6 +15,7 @@
 #include "cli/examples.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
+#include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/precision_table.h"
 #include "cli/progress.h"
@@ -394,7 +395,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
           ->add_option("--excitation", options->scenes,
                        "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
                        "default all")
-          ->check(CLI::IsMember(SceneNames()))
+          ->check(OneOf(SceneNames()))
           ->group(group);
   CLI::Option* path = command
                           ->add_option("--path", options->path,

@@ -1,6 +1,7 @@
 #include "core/nearest_name.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -69,6 +70,11 @@ std::optional<std::string> NearestName(std::string_view word, std::span<const st
 std::string DidYouMean(std::string_view word, std::span<const std::string> names) {
   const std::optional<std::string> name = NearestName(word, names);
   return name ? fmt::format(": did you mean '{}'?", *name) : ":";
+}
+
+std::string UnknownAmong(std::string_view word, std::span<const std::string> names) {
+  return fmt::format("'{}' is unknown{} must be one of {}", word, DidYouMean(word, names),
+                     fmt::join(names, ", "));
 }
 
 }  // namespace mindahl

@@ -20,4 +20,8 @@ std::optional<std::string> NearestName(std::string_view word, std::span<const st
 /// where no name is near.
 std::string DidYouMean(std::string_view word, std::span<const std::string> names);
 
+/// "'mindin' is unknown: did you mean 'mindlin'? must be one of dahl, mindlin": of a word that is
+/// none of the names that it may be.
+std::string UnknownAmong(std::string_view word, std::span<const std::string> names);
+
 }  // namespace mindahl

@@ -11,6 +11,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
+#include "mindahl/request/one_of.h"
 
 namespace mindahl::request {
 
@@ -226,13 +227,6 @@ Loss FindLoss(std::string_view name) {
   if (name == "cauchy") return Loss::kCauchy;
   if (name == "tukey") return Loss::kTukey;
   return Loss::kNone;
-}
-
-void RequireOneOf(std::string_view option, const std::string& value,
-                  std::span<const std::string_view> values) {
-  if (std::ranges::find(values, value) != values.end()) return;
-  throw InputError(
-      fmt::format("{}: '{}' is not one of {}", option, value, fmt::join(values, ", ")));
 }
 
 void RequireKnownChoices(const FitRequest& request) {

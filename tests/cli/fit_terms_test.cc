@@ -577,7 +577,8 @@ INSTANTIATE_TEST_SUITE_P(
                "--displacement-noise [m] = -1e-09 is invalid: must be finite and >= 0"},
         Misuse{"UnknownLoss",
                {"--loss", "l1"},
-               "--loss: l1 not in {none,huber,cauchy,tukey}; see mindahl fit --help"},
+               "--loss: 'l1' is unknown: must be one of none, huber, cauchy, tukey; see mindahl "
+               "fit --help"},
         Misuse{"NoStart",
                {"--starts", "0"},
                "--starts: '0' is invalid: must be a whole number from 1 to 1000"},
@@ -586,7 +587,8 @@ INSTANTIATE_TEST_SUITE_P(
                "--seed: '-1' is invalid: must be a whole number from 0"},
         Misuse{"UnknownModel",
                {"--model", "best"},
-               "--model: best not in {mindlin-dahl,mindlin,jenkins,dahl,auto}"}),
+               "--model: 'best' is unknown: must be one of mindlin-dahl, mindlin, jenkins, dahl, "
+               "auto"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(FitCommand, LoadWindowWithoutALoadNamesTheColumnOption) {

@@ -62,5 +62,12 @@ TEST(DidYouMean, AsksOnlyWhereANameIsNear) {
   EXPECT_EQ(DidYouMean("--stiffness", kOptions), ":");
 }
 
+TEST(UnknownAmong, NamesTheNearestAndAll) {
+  const std::vector<std::string> models = {"dahl", "mindlin"};
+  EXPECT_EQ(UnknownAmong("mindin", models),
+            "'mindin' is unknown: did you mean 'mindlin'? must be one of dahl, mindlin");
+  EXPECT_EQ(UnknownAmong("iwan", models), "'iwan' is unknown: must be one of dahl, mindlin");
+}
+
 }  // namespace
 }  // namespace mindahl

@@ -67,8 +67,9 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "load_exponent, plateau_slope, viscous, lag, force_offset, displacement_offset, "
        "force_drift"},
       {[](FitOptions& o) { o.start["force_offset_2"] = 1; },
-       "parameter 'force_offset_2' is unknown: must be one of sigma, alpha, slip_force, "
-       "rig_stiffness, load_exponent, plateau_slope, viscous, lag, force_offset, "
+       "parameter 'force_offset_2' is unknown: did you mean 'force_offset'? must be one of sigma, "
+       "alpha, slip_force, rig_stiffness, load_exponent, plateau_slope, viscous, lag, "
+       "force_offset, "
        "displacement_offset, "
        "force_drift"},
       {[](FitOptions& o) { o.fixed["sigma"] = 0; },

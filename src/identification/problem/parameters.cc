@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/nearest_name.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -272,8 +273,7 @@ Parameter& Parameters::Find(std::string_view name) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (parameters_[i].term->presence != Presence::kNever) names.push_back(NameOf(i));
   }
-  throw InvalidArgument(
-      fmt::format("parameter '{}' is unknown: must be one of {}", name, fmt::join(names, ", ")));
+  throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
 }
 
 void Parameters::ApplyOptions(const FitOptions& options) {
