@@ -348,6 +348,38 @@ class Script {
     }
   }
 
+  /// Labels that would meet stand one under the other, and those that would leave the panel on the
+  /// left of their line.
+  void AddMarks(const PlotPanel& panel, const Frame& frame) {
+    const auto along = [&](double x) { return panel.log_x ? std::log10(x) : x; };
+    double least = std::numeric_limits<double>::infinity();
+    double greatest = -least;
+    for (const PlotSeries& series : panel.series) {
+      for (const double x : series.x) {
+        least = std::min(least, along(x));
+        greatest = std::max(greatest, along(x));
+      }
+    }
+    const double scale = (frame.right - frame.left) / std::max(greatest - least, 1e-300);
+    std::vector<double> ends;  // [px] of the last label of each line
+    for (const PlotMark& mark : panel.marks) {
+      Add("set arrow from first {0:.9g}, graph 0 to first {0:.9g}, graph 1 nohead dt (4,4) lw 1.5 "
+          "lc rgb '#444444'\n",
+          mark.x);
+      if (mark.label.empty()) continue;
+      const double at = (along(mark.x) - least) * scale;
+      const double width = kCharacter + TextWidth(mark.label);
+      const bool is_left = at + width > frame.right - frame.left && at > width;
+      const double begin = is_left ? at - width : at;
+      const auto is_free = [&](double end) { return end <= begin; };
+      const auto line = std::ranges::find_if(ends, is_free) - ends.begin();
+      if (static_cast<std::size_t>(line) == ends.size()) ends.emplace_back();
+      ends[static_cast<std::size_t>(line)] = begin + width;
+      Add("set label {} at first {:.9g}, graph 0.97 {} offset {},{} font ',10'\n",
+          Quoted(mark.label), mark.x, is_left ? "right" : "left", is_left ? -0.5 : 0.5, -line);
+    }
+  }
+
   void AddPanel(std::size_t index, const Frame& frame) {
     const PlotPanel& panel = plot_.panels[index];
     Add("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n", FromLeft(frame.left),
@@ -368,14 +400,7 @@ class Script {
           FromBottom(frame.top - kLegend / 2));
     }
     AddKey(panel, frame);
-    for (const PlotMark& mark : panel.marks) {
-      Add("set arrow from first {0:.9g}, graph 0 to first {0:.9g}, graph 1 nohead dt (4,4) lw 1.5 "
-          "lc rgb '#444444'\n",
-          mark.x);
-      if (mark.label.empty()) continue;
-      Add("set label {} at first {:.9g}, graph 0.97 left offset 0.5,0 font ',10'\n",
-          Quoted(mark.label), mark.x);
-    }
+    AddMarks(panel, frame);
     Add("plot ");
     std::size_t look = 0;  // a line without a label goes on with that of the series before
     for (std::size_t series = 0; series < panel.series.size(); ++series) {

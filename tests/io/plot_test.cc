@@ -110,6 +110,37 @@ TEST(Plot, DrawsPointsOnlyForThatStyle) {
   EXPECT_EQ(Count(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kLine})), kDot), 0u);
 }
 
+/// Of a text that gnuplot writes, [px] from the top.
+double HeightOf(const std::string& svg, const std::string& text) {
+  const std::size_t at = svg.find(text);
+  if (at == std::string::npos) throw std::runtime_error("no " + text);
+  const std::size_t moved = svg.rfind("translate(", at);
+  return std::stod(svg.substr(svg.find(',', moved) + 1));
+}
+
+TEST(Plot, PutsLabelsOfCloseMarksOneUnderTheOther) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"", {0, 1000}, {1, 2}, PlotStyle::kLine});
+  plot.panels[0].marks = {
+      {100, "a step, 100"}, {110, "a step, 110"}, {120, "a step, 120"}, {700, "a step, 700"}};
+  const std::string svg = Svg(plot);
+  constexpr double kLine = 9;  // [px], of letters of 10 points less what is between the lines
+  EXPECT_GT(HeightOf(svg, "a step, 110"), HeightOf(svg, "a step, 100") + kLine);
+  EXPECT_GT(HeightOf(svg, "a step, 120"), HeightOf(svg, "a step, 110") + kLine);
+  EXPECT_EQ(HeightOf(svg, "a step, 700"), HeightOf(svg, "a step, 100"));
+}
+
+TEST(Plot, PutsTheLabelOfALastMarkOnTheLeftOfIt) {
+  REQUIRE_GNUPLOT();
+  Plot plot = OnePanel({"", {0, 1000}, {1, 2}, PlotStyle::kLine});
+  plot.panels[0].marks = {{990, "a step, 990"}};
+  const std::string svg = Svg(plot);
+  const std::size_t at = svg.find("a step, 990");
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t anchor = svg.rfind("text-anchor=", at);
+  EXPECT_EQ(svg.substr(anchor, 17), "text-anchor=\"end\"");
+}
+
 TEST(Plot, DrawsIntervalsThatReachToTheirEnds) {
   REQUIRE_GNUPLOT();
   // A linear axis takes the ends in: 9 is beyond every point.
