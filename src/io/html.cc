@@ -56,13 +56,17 @@ td.words{min-width:13rem;overflow-wrap:anywhere}
 code,pre{font:0.9em/1.45 ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;overflow-wrap:anywhere}
 pre{background:var(--panel);border:1px solid var(--grid);border-radius:.3rem;padding:.5rem .7rem;
  white-space:pre-wrap;margin:.4rem 0;max-width:60rem}
+.option{white-space:nowrap}
 .figures{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,27rem),1fr));gap:1.4rem 2rem;
  align-items:start}
 .wide{max-width:46rem}
 @media (max-width:600px){body{padding:.8rem .8rem 2rem} th,td{padding-right:.6rem}
  tbody th{min-width:7rem;overflow-wrap:anywhere} td.words{min-width:8rem}}
 @media print{body{max-width:none;font-size:10.5pt;padding:0} figure,tr,.verdict,pre{break-inside:avoid}
- h2,h3{break-after:avoid} .figures{grid-template-columns:1fr 1fr} .table{overflow:visible} a{color:inherit}}
+ h2,h3,caption,thead,thead tr{break-after:avoid} tbody tr:nth-child(-n+2){break-before:avoid}
+ .wide{max-width:32rem} .figures{grid-template-columns:1fr 1fr} .figures svg text{font-size:17px}
+ .table{overflow:visible} td.number{white-space:normal} td.words{min-width:6rem}
+ tbody th{min-width:6rem;overflow-wrap:anywhere} a{color:inherit}}
 )css";
 
 }  // namespace

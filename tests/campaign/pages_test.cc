@@ -7,6 +7,7 @@
 
 #include "mindahl/campaign/evolution.h"
 #include "mindahl/core/error.h"
+#include "support/page_text.h"
 
 namespace mindahl::campaign {
 namespace {
@@ -78,7 +79,7 @@ TEST(Evolution, OfOneCycleIsNoPicture) {
 }
 
 TEST(TestPage, SaysWhatChangedAndEscapesItsFiles) {
-  const std::string page = ToPage(SummaryOf(Step(true)));
+  const std::string page = testing::Unbroken(ToPage(SummaryOf(Step(true))));
   EXPECT_THAT(page, HasSubstr("<h1>&lt;script&gt;.csv: 100 cycles</h1>"));
   EXPECT_THAT(page, HasSubstr("<li>sigma [N/m]: at cycle 61 a step</li>"));
   EXPECT_THAT(page, HasSubstr("<figure id=\"evolution-1\">"));

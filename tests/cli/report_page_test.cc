@@ -10,6 +10,7 @@
 #include "cli/provenance.h"
 #include "io/temporary_directory.h"
 #include "mindahl/io/digest.h"
+#include "support/page_text.h"
 
 // --report of fit, batch and track: pages for people.
 namespace mindahl::cli {
@@ -37,7 +38,7 @@ TEST_F(ReportPage, OfAFitSaysTheVerdictAndWhatItWasMadeFrom) {
   const Outcome outcome =
       RunCommand({"fit", record, "--normal-load", "50", "--drift", "--report", At("out.html")});
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
-  const std::string page = FileContent(At("out.html"));
+  const std::string page = testing::Unbroken(FileContent(At("out.html")));
   EXPECT_THAT(page, HasSubstr("<h1>it&#39;s &lt;loop&gt;.csv: adequate</h1>"));
   EXPECT_THAT(page, Not(HasSubstr("<loop>")));
   EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(record)));
@@ -50,7 +51,7 @@ TEST_F(ReportPage, OfAConfigurationFileHasItsOptionsAndItsDigest) {
   const Outcome outcome = RunCommand(
       {"--config", config, "fit", SampleRecord(), "--report", At("out.html"), "--json", "-"});
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
-  const std::string page = FileContent(At("out.html"));
+  const std::string page = testing::Unbroken(FileContent(At("out.html")));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">--model</th><td class=\"words\">mindlin</td>"));
   EXPECT_THAT(page, HasSubstr(*io::Sha256OfFile(config)));
 }
@@ -79,7 +80,7 @@ TEST_F(ReportPage, OfABatchIsAnIndexAndAPageAFile) {
   EXPECT_THAT(index, HasSubstr("index.csv:2"));  // where it is broken
   EXPECT_FALSE(Exists("pages/index-2.html"));
   // Each page says how to make it alone.
-  EXPECT_THAT(FileContent(At("pages/loop-2.html")),
+  EXPECT_THAT(testing::Unbroken(FileContent(At("pages/loop-2.html"))),
               HasSubstr(fmt::format("<code>mindahl fit {} --model mindlin</code>", second)));
 }
 
@@ -112,7 +113,7 @@ TEST_F(ReportPage, OfATestOfManyCyclesShowsWhatChanged) {
   }
   const Outcome outcome = RunCommand(words);
   ASSERT_EQ(outcome.status, kDone) << outcome.err;
-  const std::string page = FileContent(At("out.html"));
+  const std::string page = testing::Unbroken(FileContent(At("out.html")));
   EXPECT_THAT(page, HasSubstr("<strong>changed</strong>"));
   EXPECT_THAT(page, HasSubstr("slip_force [N]: at cycle 40"));
   EXPECT_THAT(page, HasSubstr("<figure id=\"evolution-5\">"));

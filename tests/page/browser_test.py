@@ -8,7 +8,9 @@
 Exit status 77, skipped, where there is no chromium. Of each page: no message of the console and no
 request, which the page's own policy would make a message; every figure has an area and lies within
 the page; nothing scrolls sideways at 1280 nor at 390 px; text has a contrast of 4.5 to its ground,
-in the light and in the dark scheme; headings are in order, and names of files are text.
+in the light and in the dark scheme; headings are in order, names of files are text, and no option
+of the command line is broken at a hyphen. As it is printed, by a reader whose scheme is dark: on white,
+with the same contrast, as wide as the paper, no figure parted, and on few sheets.
 """
 
 import argparse
@@ -27,6 +29,9 @@ WIDTHS = (1280, 390)
 LEAST_CONTRAST = 4.5  # WCAG 2.2, 1.4.3, of text of the usual size
 LEAST_SIDE = 40       # px: a figure less wide or high than that shows nothing
 MOST_BYTES = 2_000_000
+PAPER = 718           # px: A4 between margins of 1 cm, at 96 px an inch
+# Of A4: nine sections, of which the longest, the residuals with five figures and a table, takes two.
+MOST_SHEETS = 10
 
 # Put into a copy of the page, whose policy then allows scripts: it writes what it finds as text.
 PROBE = r"""
@@ -68,6 +73,10 @@ addEventListener('load', () => {
   found.scripts = document.querySelectorAll('script').length;
   found.cells = [...document.querySelectorAll('th')].every(cell => cell.scope);
   found.ground = getComputedStyle(document.body).backgroundColor;
+  found.parted = [...document.querySelectorAll('figure,tr,pre')].filter(element =>
+      getComputedStyle(element).breakInside !== 'avoid').length;
+  found.options = [...document.querySelectorAll('.option')].map(option =>
+      [option.textContent, option.getClientRects().length]);
   const said = document.createElement('pre');
   said.id = 'found';
   said.textContent = JSON.stringify(found);
@@ -125,8 +134,11 @@ def framed(page, width, scratch):
     return frame
 
 
-def probe(browser, page, width, dark, scratch):
+def probe(browser, page, width, dark, scratch, printed=False):
     text = page.read_text(encoding="utf-8")
+    if printed:
+        require("@media print{" in text, f"{page.name}: says nothing of print")
+        text = text.replace("@media print{", "@media all{")
     policy = re.search(r'content="(default-src[^"]*)"', text)
     require(policy and "default-src 'none'" in policy.group(1), f"{page.name}: no policy")
     probed = scratch / f"probe-{page.stem.replace('<', '_').replace('>', '_')}.html"
@@ -153,6 +165,20 @@ def probe(browser, page, width, dark, scratch):
     said = (found.group(1).replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", '"')
             .replace("&#39;", "'").replace("&amp;", "&"))
     return json.loads(said)
+
+
+def check_print(browser, page, scratch):
+    found = probe(browser, page, PAPER, True, scratch, printed=True)
+    where = f"{page.name} in print"
+    require(found["ground"] == "rgb(255, 255, 255)", f"{where}: on {found['ground']}")
+    require(found["scroll"] <= PAPER, f"{where}: {found['scroll']} px wide")
+    require(found["contrasts"][0][0] >= LEAST_CONTRAST, f"{where}: {found['contrasts'][0]}")
+    require(found["parted"] == 0, f"{where}: {found['parted']} figures, rows or commands may be parted")
+    paper = scratch / f"{page.stem.replace('<', '_').replace('>', '_')}.pdf"
+    chromium(browser, scratch, *flags_of(1280, True), "--no-pdf-header-footer",
+             f"--print-to-pdf={paper}", page.as_uri())
+    sheets = len(re.findall(rb"/Type\s*/Page\b", paper.read_bytes()))
+    require(0 < sheets <= MOST_SHEETS, f"{where}: {sheets} sheets")
 
 
 def check(browser, page, figures, scratch, looks):
@@ -185,8 +211,11 @@ def check(browser, page, figures, scratch, looks):
                     all(b <= a + 1 for a, b in zip(levels, levels[1:])), f"{where}: {levels}")
             require(found["cells"], f"{where}: a header cell without scope")
             require(found["scripts"] == 1, f"{where}: {found['scripts']} scripts, one is the test's")
+            broken = [option for option, lines in found["options"] if lines != 1]
+            require(not broken, f"{where}: broken options {broken}")
             grounds.add((dark, found["ground"]))
     require(len(grounds) == 2, f"{page.name}: {grounds}")
+    check_print(browser, page, scratch)
     print(f"{page.name}: {len(found['figures'])} figures")
 
 

@@ -11,6 +11,7 @@
 #include "mindahl/models/friction_model.h"
 #include "report/made_report.h"
 #include "support/histories.h"
+#include "support/page_text.h"
 
 namespace mindahl::report {
 namespace {
@@ -27,7 +28,7 @@ using ::testing::Not;
 std::string BodyOf(const std::string& page) { return page.substr(page.find("<body>")); }
 
 std::string PageOf(ReportInput input, const Provenance& provenance = {}) {
-  return BodyOf(ToPage(MakeReport(std::move(input)), provenance));
+  return testing::Unbroken(BodyOf(ToPage(MakeReport(std::move(input)), provenance)));
 }
 
 ReportInput JudgedInput(AdequacyVerdict verdict) {
@@ -42,6 +43,15 @@ std::string FigureOf(const std::string& page, const std::string& id) {
   const std::size_t begin = page.find("<figure id=\"" + id + "\"");
   if (begin == std::string::npos) return "";
   return page.substr(begin, page.find("</figure>", begin) - begin);
+}
+
+TEST(Page, BreaksNoOptionAndNoNameWithinAWord) {
+  Provenance provenance;
+  provenance.command = "mindahl fit -- a--b.csv --rig-stiffness fit";
+  const std::string page = ToPage(MakeReport(MadeInput()), provenance);
+  EXPECT_THAT(page, HasSubstr("<pre><code>mindahl fit -- a--b.csv "
+                              "<span class=\"option\">--rig-stiffness</span> fit</code></pre>"));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">slip_<wbr>force</th>"));
 }
 
 TEST(Page, BeginsWithTheFileAndTheVerdict) {
