@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -23,6 +22,7 @@
 #include "cli/fit_request.h"
 #include "cli/json_output.h"
 #include "cli/kept_cycles.h"
+#include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
 #include "cli/provenance.h"
@@ -34,6 +34,7 @@
 #include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/pooled_value.h"
 #include "mindahl/campaign/reading.h"
+#include "mindahl/campaign/tracked_quantities.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
@@ -70,68 +71,18 @@ struct TrackCommandOptions {
   bool overwrite = false;
 };
 
-/// A quantity whose course over the test is described.
-struct TrackedQuantity {
-  std::string_view name;
-  std::string_view unit;  // of a record of forces
-  std::string_view open_flag;
-  std::optional<double> (*of)(const CycleFit&);
-  std::optional<double> (*error)(const CycleFit&);  // in proportion to its standard error
-  bool is_drawn = false;
-  /// Whether that is the standard error of the value, without a factor.
-  bool has_standard_error = false;
-};
-
-std::optional<double> Rms(const CycleFit& fit) { return fit.rms; }
-
-constexpr std::array kTracked = {
-    TrackedQuantity{"sigma", "N/m", "sigma_open",
-                    [](const CycleFit& fit) { return fit.sigma.value; },
-                    [](const CycleFit& fit) { return fit.sigma.standard_error; },
-                    /*is_drawn=*/true, /*has_standard_error=*/true},
-    TrackedQuantity{"alpha", "-", "alpha_open", [](const CycleFit& fit) { return fit.alpha.value; },
-                    [](const CycleFit& fit) { return fit.alpha.standard_error; },
-                    /*is_drawn=*/true, /*has_standard_error=*/true},
-    TrackedQuantity{"slip_force", "N", "slip_force_open",
-                    [](const CycleFit& fit) { return fit.slip_force.value; },
-                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
-                    /*is_drawn=*/true, /*has_standard_error=*/true},
-    TrackedQuantity{"friction_coefficient", "-", "",
-                    [](const CycleFit& fit) { return fit.friction_coefficient; },
-                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
-                    /*is_drawn=*/true},
-    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }, Rms,
-                    /*is_drawn=*/true},
-    TrackedQuantity{"energy", "J", "", [](const CycleFit& fit) { return fit.energy; }, Rms},
-    TrackedQuantity{"energy_ratio", "-", "", [](const CycleFit& fit) { return fit.energy_ratio; },
-                    Rms, /*is_drawn=*/true},
-};
-
-bool HasFlag(const CycleFit& fit, std::string_view flag) {
-  return !flag.empty() && std::ranges::find(fit.flags, flag) != fit.flags.end();
-}
-
 /// What a run adds up while cycles go by.
 struct Totals {
   std::size_t fits = 0;
   std::size_t flagged = 0;
   std::map<std::string, std::size_t> flags;
-  std::array<campaign::Course, kTracked.size()> courses;
-  std::array<bool, kTracked.size()> have_errors{};  // what is held has none
+  campaign::TrackedCourses courses;
 
   void Add(const CycleFit& fit) {
     ++fits;
     flagged += fit.flags.empty() ? 0 : 1;
     for (const std::string& flag : fit.flags) ++flags[flag];
-    for (std::size_t k = 0; k < kTracked.size(); ++k) {
-      const std::optional<double> value = kTracked[k].of(fit);
-      if (!value || HasFlag(fit, "not_converged") || HasFlag(fit, kTracked[k].open_flag)) continue;
-      // What has no error is exact, held or without noise: then all are alike.
-      const std::optional<double> error = kTracked[k].error(fit);
-      const bool has_error = error && *error > 0;
-      courses[k].Add(fit.number, *value, has_error ? 1 / (*error * *error) : 1.0);
-      have_errors[k] = have_errors[k] || has_error;
-    }
+    courses.Add(fit);
   }
 };
 
@@ -233,7 +184,8 @@ class Run {
   std::uintmax_t bytes_ = 0;  // of all files
   std::uintmax_t bytes_before_ = 0;
   const io::RecordStream* stream_ = nullptr;
-  std::array<campaign::CourseDescription, kTracked.size()> courses_;  // once all is read
+  std::span<const campaign::TrackedQuantity> tracked_ = campaign::TrackedQuantities();
+  std::vector<campaign::CourseDescription> courses_;  // of each, once all is read
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -262,7 +214,7 @@ void Run::PoolAlpha() {
                       [&](std::span<const CycleFit> fits) {
                         for (const CycleFit& fit : fits) {
                           const bool is_known =
-                              !HasFlag(fit, "not_converged") && !HasFlag(fit, "alpha_open");
+                              !fit.HasFlag("not_converged") && !fit.HasFlag("alpha_open");
                           const campaign::FittedValue& own = fit.alpha;
                           if (!is_known || !own.value || !own.standard_error) continue;
                           if (*own.standard_error > 0) alpha.Add(*own.value, *own.standard_error);
@@ -432,68 +384,28 @@ void Run::Go() {
   const auto failed = totals_.flags.find("not_converged");
   const bool none = failed != totals_.flags.end() && failed->second == totals_.fits;
   console_.exit_status = none ? kNotEstablished : kDone;
-  std::ranges::transform(totals_.courses, courses_.begin(), [](const campaign::Course& course) {
-    return campaign::FindChanges(course);
-  });
+  courses_ = totals_.courses.Describe();
   Draw();
   if (!options_.json_path.empty()) WriteJson(Json(), options_.json_path, console_);
   if (options_.json_path != "-") WriteSummary();
 }
 
-/// "p 0.003", or that it is beyond telling.
-std::string ChanceText(double p_value) {
-  return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
-}
-
-std::string TextOf(const campaign::Change& change) {
-  const std::string_view what =
-      change.kind == campaign::ChangeKind::kTransition ? "a step" : "another rate";
-  return fmt::format("at cycle {} ({} to {}) {}, {:.5g} to {:.5g}, {}", change.cycle,
-                     change.lower95, change.upper95, what, change.before, change.after,
-                     ChanceText(change.p_value));
-}
-
-std::string TextOf(const campaign::Stretch& stretch) {
-  return fmt::format("from cycle {} to {} a trend, {:.5g} to {:.5g}, {}", stretch.first_cycle,
-                     stretch.last_cycle, stretch.at_start, stretch.at_end,
-                     ChanceText(stretch.slope_p_value));
-}
-
-/// What happened, in order; a running-in, which bends as it goes, is one line.
-std::vector<std::string> TextOf(const campaign::CourseDescription& course) {
-  std::vector<std::string> lines;
-  const auto settled = std::ranges::find(course.changes, campaign::ChangeKind::kEndOfRunningIn,
-                                         &campaign::Change::kind);
-  std::size_t first = 0;  // stretch to be told
-  if (settled != course.changes.end()) {
-    lines.push_back(fmt::format("running-in up to cycle {} ({} to {}), {:.5g} to {:.5g}, {}",
-                                settled->cycle, settled->lower95, settled->upper95,
-                                course.stretches.front().at_start, settled->before,
-                                ChanceText(settled->p_value)));
-    first = static_cast<std::size_t>(settled - course.changes.begin()) + 1;
-  }
-  for (std::size_t k = first; k < course.stretches.size(); ++k) {
-    if (k > first) lines.push_back(TextOf(course.changes[k - 1]));
-    if (course.stretches[k].trends) lines.push_back(TextOf(course.stretches[k]));
-  }
-  return lines;
-}
-
 std::vector<campaign::Evolution> Run::Evolutions() const {
   std::vector<campaign::Evolution> evolutions;
   const auto is_known = [this](std::string_view name) {
-    const auto found = std::ranges::find(kTracked, name, &TrackedQuantity::name);
-    const auto k = static_cast<std::size_t>(found - kTracked.begin());
+    const auto found = std::ranges::find(tracked_, name, &campaign::TrackedQuantity::name);
+    const auto k = static_cast<std::size_t>(found - tracked_.begin());
     return !courses_[k].stretches.empty();
   };
-  for (std::size_t k = 0; k < kTracked.size(); ++k) {
-    const TrackedQuantity& quantity = kTracked[k];
+  for (std::size_t k = 0; k < tracked_.size(); ++k) {
+    const campaign::TrackedQuantity& quantity = tracked_[k];
     if (!quantity.is_drawn || courses_[k].stretches.empty()) continue;
     if (quantity.name == "slip_force" && is_known("friction_coefficient")) continue;
     evolutions.push_back({.name = std::string(quantity.name),
                           .unit = std::string(UnitOf(quantity.unit)),
-                          .has_errors = quantity.has_standard_error && totals_.have_errors[k],
-                          .course = totals_.courses[k],
+                           .has_errors =
+                               quantity.has_standard_error && totals_.courses.have_errors()[k],
+                           .course = totals_.courses.courses()[k],
                           .description = courses_[k]});
   }
   return evolutions;
@@ -513,9 +425,9 @@ campaign::TestSummary Run::Summary() const {
     test.flags.push_back(
         {.name = found->first, .meaning = std::string(flag.meaning), .cycles = found->second});
   }
-  for (std::size_t k = 0; k < kTracked.size(); ++k) {
-    const std::string name = report::WithUnit(kTracked[k].name, UnitOf(kTracked[k].unit));
-    for (const std::string& line : TextOf(courses_[k])) {
+  for (std::size_t k = 0; k < tracked_.size(); ++k) {
+    const std::string name = report::WithUnit(tracked_[k].name, UnitOf(tracked_[k].unit));
+    for (const std::string& line : campaign::ChangeStatements(courses_[k])) {
       test.changes.push_back(fmt::format("{}: {}", name, line));
     }
   }
@@ -553,7 +465,7 @@ std::string TextOf(const campaign::PooledValue& alpha) {
   return fmt::format(
       "alpha {:.6g} ± {:.2g} shared, of {} cycles that scatter by {:.2g} beyond their errors, {}\n",
       alpha.mean(), alpha.standard_error(), alpha.count(), alpha.scatter(),
-      ChanceText(alpha.p_value()));
+      report::ChanceText(alpha.p_value(), 1));
 }
 
 void Run::WriteSummary() {
@@ -577,14 +489,14 @@ void Run::WriteSummary() {
   }
   std::string courses;
   std::string changes;
-  for (std::size_t k = 0; k < kTracked.size(); ++k) {
+  for (std::size_t k = 0; k < tracked_.size(); ++k) {
     const campaign::CourseDescription& course = courses_[k];
     if (course.stretches.empty()) continue;
-    const std::string name = report::WithUnit(kTracked[k].name, UnitOf(kTracked[k].unit));
+    const std::string name = report::WithUnit(tracked_[k].name, UnitOf(tracked_[k].unit));
     courses += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
                            course.stretches.back().at_end);
-    for (const std::string& line : TextOf(course)) {
-      changes += fmt::format("  {:<21} {}\n", kTracked[k].name, line);
+    for (const std::string& line : campaign::ChangeStatements(course)) {
+      changes += fmt::format("  {:<21} {}\n", tracked_[k].name, line);
     }
   }
   if (!courses.empty()) {
@@ -628,7 +540,7 @@ nlohmann::ordered_json Run::Json() const {
                             {"p_value", shared_alpha_->p_value()}};
   }
   nlohmann::ordered_json quantities = nlohmann::ordered_json::object();
-  for (std::size_t k = 0; k < kTracked.size(); ++k) {
+  for (std::size_t k = 0; k < tracked_.size(); ++k) {
     const campaign::CourseDescription& course = courses_[k];
     if (course.stretches.empty()) continue;
     nlohmann::ordered_json stretches = nlohmann::ordered_json::array();
@@ -653,8 +565,8 @@ nlohmann::ordered_json Run::Json() const {
                          {"after", change.after},
                          {"p_value", change.p_value}});
     }
-    quantities[std::string(kTracked[k].name)] = {
-        {"unit", UnitOf(kTracked[k].unit)}, {"stretches", stretches}, {"changes", changes}};
+    quantities[std::string(tracked_[k].name)] = {
+        {"unit", UnitOf(tracked_[k].unit)}, {"stretches", stretches}, {"changes", changes}};
   }
   json["quantities"] = quantities;
   return json;
@@ -718,7 +630,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                    "a row without a number in a column that is needed ends the run, or is\n"
                    "skipped and counted")
       ->capture_default_str()
-      ->check(CLI::IsMember({"refuse", "skip"}))
+      ->check(OneOf({"refuse", "skip"}))
       ->group(cycles);
   command
       ->add_option("--threads", options->threads,

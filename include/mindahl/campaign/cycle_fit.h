@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -46,6 +47,10 @@ struct CycleFit {
   std::optional<bool> slips_grossly;  ///< the fitted law at the cycle's amplitude
   /// What to mind, each one of CycleFlags().
   std::vector<std::string> flags;
+
+  [[nodiscard]] bool HasFlag(std::string_view flag) const {
+    return std::ranges::find(flags, flag) != flags.end();
+  }
 };
 
 /// What a flag of a cycle says.

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/campaign/changes.h"
+#include "mindahl/campaign/cycle_fit.h"
+
+namespace mindahl::campaign {
+
+/// A quantity whose course over the test is described.
+struct TrackedQuantity {
+  std::string_view name;       ///< as the table of cycles calls it
+  std::string_view unit;       ///< of a record of forces; "-" of a pure number
+  std::string_view open_flag;  ///< of a cycle that leaves it open; "" where none does
+  std::optional<double> (*of)(const CycleFit&) = nullptr;
+  std::optional<double> (*error)(const CycleFit&) = nullptr;  ///< in proportion to its standard one
+  bool is_drawn = false;
+  /// Whether that is the standard error of the value, without a factor.
+  bool has_standard_error = false;
+};
+
+/// All of them, in the order in which they are told.
+std::span<const TrackedQuantity> TrackedQuantities();
+
+/// The courses of all of them while cycles go by, in memory that their number does not change.
+class TrackedCourses {
+ public:
+  TrackedCourses();
+
+  /// A cycle that did not converge, or leaves a quantity open, is not in its course.
+  void Add(const CycleFit& fit);
+
+  /// In the order of TrackedQuantities().
+  [[nodiscard]] std::span<const Course> courses() const { return courses_; }
+
+  /// Whether any value of each had an error, likewise: what is held has none.
+  [[nodiscard]] const std::vector<bool>& have_errors() const { return have_errors_; }
+
+  /// FindChanges() of each, likewise.
+  [[nodiscard]] std::vector<CourseDescription> Describe() const;
+
+ private:
+  std::vector<Course> courses_;
+  std::vector<bool> have_errors_;
+};
+
+/// What happened over a course, in order, a sentence each without the quantity's name; a
+/// running-in, which bends as it goes, is one. Numbers in SI.
+std::vector<std::string> ChangeStatements(const CourseDescription& course);
+
+}  // namespace mindahl::campaign

@@ -1,0 +1,99 @@
+#include "mindahl/campaign/tracked_quantities.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace mindahl::campaign {
+namespace {
+
+std::optional<double> Rms(const CycleFit& fit) { return fit.rms; }
+
+constexpr std::array kQuantities = {
+    TrackedQuantity{"sigma", "N/m", "sigma_open",
+                    [](const CycleFit& fit) { return fit.sigma.value; },
+                    [](const CycleFit& fit) { return fit.sigma.standard_error; },
+                    /*is_drawn=*/true, /*has_standard_error=*/true},
+    TrackedQuantity{"alpha", "-", "alpha_open", [](const CycleFit& fit) { return fit.alpha.value; },
+                    [](const CycleFit& fit) { return fit.alpha.standard_error; },
+                    /*is_drawn=*/true, /*has_standard_error=*/true},
+    TrackedQuantity{"slip_force", "N", "slip_force_open",
+                    [](const CycleFit& fit) { return fit.slip_force.value; },
+                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
+                    /*is_drawn=*/true, /*has_standard_error=*/true},
+    TrackedQuantity{"friction_coefficient", "-", "",
+                    [](const CycleFit& fit) { return fit.friction_coefficient; },
+                    [](const CycleFit& fit) { return fit.slip_force.standard_error; },
+                    /*is_drawn=*/true},
+    TrackedQuantity{"half_gap", "N", "", [](const CycleFit& fit) { return fit.half_gap; }, Rms,
+                    /*is_drawn=*/true},
+    TrackedQuantity{"energy", "J", "", [](const CycleFit& fit) { return fit.energy; }, Rms},
+    TrackedQuantity{"energy_ratio", "-", "", [](const CycleFit& fit) { return fit.energy_ratio; },
+                    Rms, /*is_drawn=*/true},
+};
+
+/// "p 0.003", or that it is beyond telling.
+std::string ChanceText(double p_value) {
+  return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
+}
+
+std::string TextOf(const Change& change) {
+  const std::string_view what = change.kind == ChangeKind::kTransition ? "a step" : "another rate";
+  return fmt::format("at cycle {} ({} to {}) {}, {:.5g} to {:.5g}, {}", change.cycle,
+                     change.lower95, change.upper95, what, change.before, change.after,
+                     ChanceText(change.p_value));
+}
+
+std::string TextOf(const Stretch& stretch) {
+  return fmt::format("from cycle {} to {} a trend, {:.5g} to {:.5g}, {}", stretch.first_cycle,
+                     stretch.last_cycle, stretch.at_start, stretch.at_end,
+                     ChanceText(stretch.slope_p_value));
+}
+
+}  // namespace
+
+std::span<const TrackedQuantity> TrackedQuantities() { return kQuantities; }
+
+TrackedCourses::TrackedCourses() : courses_(kQuantities.size()), have_errors_(kQuantities.size()) {}
+
+void TrackedCourses::Add(const CycleFit& fit) {
+  for (std::size_t k = 0; k < kQuantities.size(); ++k) {
+    const TrackedQuantity& quantity = kQuantities[k];
+    const std::optional<double> value = quantity.of(fit);
+    if (!value || fit.HasFlag("not_converged") || fit.HasFlag(quantity.open_flag)) continue;
+    // What has no error is exact, held or without noise: then all are alike.
+    const std::optional<double> error = quantity.error(fit);
+    const bool has_error = error && *error > 0;
+    courses_[k].Add(fit.number, *value, has_error ? 1 / (*error * *error) : 1.0);
+    if (has_error) have_errors_[k] = true;
+  }
+}
+
+std::vector<CourseDescription> TrackedCourses::Describe() const {
+  std::vector<CourseDescription> descriptions;
+  for (const Course& course : courses_) descriptions.push_back(FindChanges(course));
+  return descriptions;
+}
+
+std::vector<std::string> ChangeStatements(const CourseDescription& course) {
+  std::vector<std::string> lines;
+  const auto settled =
+      std::ranges::find(course.changes, ChangeKind::kEndOfRunningIn, &Change::kind);
+  std::size_t first = 0;  // stretch to be told
+  if (settled != course.changes.end()) {
+    lines.push_back(fmt::format("running-in up to cycle {} ({} to {}), {:.5g} to {:.5g}, {}",
+                                settled->cycle, settled->lower95, settled->upper95,
+                                course.stretches.front().at_start, settled->before,
+                                ChanceText(settled->p_value)));
+    first = static_cast<std::size_t>(settled - course.changes.begin()) + 1;
+  }
+  for (std::size_t k = first; k < course.stretches.size(); ++k) {
+    if (k > first) lines.push_back(TextOf(course.changes[k - 1]));
+    if (course.stretches[k].trends) lines.push_back(TextOf(course.stretches[k]));
+  }
+  return lines;
+}
+
+}  // namespace mindahl::campaign
