@@ -6,11 +6,11 @@
     print(result)
 
 fit() fits a record or several, track() every cycle of a long one; simulate() and ContactState
-compute the force of a contact; contact() predicts it from materials, convert() writes it as another
+compute the force of a contact, along excitation() or any motion; contact() predicts it from materials, convert() writes it as another
 law; read_csv() reads a record as the program does. docs/python.md has them with examples.
 """
 
-from ._contact import Conversion, Report, contact, convert, simulate
+from ._contact import Conversion, Report, contact, convert, excitation, simulate
 from ._fit import fit
 from ._mindahl import ContactState, InputError, Record, __version__
 from ._records import read_csv
@@ -23,5 +23,5 @@ for _public in (ContactState, InputError, Record):
 __all__ = [
     "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning", "FittedRecord",
     "InputError", "Message", "Parameter", "Record", "Report", "Section", "__version__", "contact",
-    "convert", "fit", "read_csv", "simulate", "track",
+    "convert", "excitation", "fit", "read_csv", "simulate", "track",
 ]

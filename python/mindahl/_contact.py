@@ -89,6 +89,27 @@ def convert(
         contact_radius=optional_number("contact_radius", contact_radius)))
 
 
+def excitation(
+    waveform: str = "sine", *, amplitude: float, cycles: float = 1.0, samples_per_cycle: int = 200,
+    frequency: float = 1.0, growth: float = 10.0, seed: int = 1,
+) -> tuple[Floats, Floats]:
+    """Time [s] and imposed displacement [m], as `mindahl simulate --waveform` makes them.
+
+    waveform: "sine", "triangle", "growing-sine", "random", "nested".
+    amplitude: [m], > 0, the largest. cycles: > 0, multiples of 1/samples_per_cycle.
+    samples_per_cycle: from 4; a multiple of 4 puts samples on the extremes. frequency: [Hz], > 0.
+    growth: of a growing sine, last over first envelope, >= 1. seed: of a random waveform.
+    Returns two arrays of one length, from 0 at time 0.
+    Raises InputError for an unknown waveform, ValueError for a value out of range.
+    """
+    return _mindahl.excitation(
+        waveform=waveform, amplitude=number("amplitude", amplitude),
+        cycles=number("cycles", cycles),
+        samples_per_cycle=count("samples_per_cycle", samples_per_cycle, 4),
+        frequency=number("frequency", frequency), growth=number("growth", growth),
+        seed=count("seed", seed, 0))
+
+
 def simulate(
     displacement: Any, *, sigma: float, slip_force: float, alpha: Optional[float] = None,
     model: str = "mindlin-dahl", rig_stiffness: Optional[float] = None,
@@ -101,7 +122,7 @@ def simulate(
     alpha: shape exponent [-], >= 0; by default the model's own, or 1/3.
     model: "mindlin-dahl", "mindlin", "dahl", "jenkins", "simplified-dahl".
     rig_stiffness: of a spring [N/m] in series, by default rigid.
-    Returns an array of the same length.
+    Returns an array of the same length. Noise is NumPy's: + rng.normal(0, deviation, force.size).
     Raises ValueError naming the quantity, its value and the rule.
     """
     return _mindahl.simulate(

@@ -113,7 +113,7 @@ def fit(
         G* [1/Pa] = (2-nu1)/G1 + (2-nu2)/G2.
 
     Returns a FitResult; one that failed or did not converge is a result too (result.converged).
-    What a person should act on is also a FitWarning.
+    What a person should act on, and what was assumed of columns and units, is also a FitWarning.
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
     Other threads run while it fits. Cost: the library's fit and a millisecond.
     """
@@ -148,6 +148,6 @@ def fit(
         _mindahl.ColumnChoice(unit=time_unit or ""), _mindahl.ColumnChoice(unit=normal_load_unit or ""),
         [])
     result = FitResult(_mindahl.fit(records_of(source, force, arguments, columns), request))
-    for warning in result.warnings:
-        warnings.warn(_mindahl.with_keywords(warning.message), FitWarning, stacklevel=2)
+    for message in (*arguments.assumed, *(warning.message for warning in result.warnings)):
+        warnings.warn(_mindahl.with_keywords(message), FitWarning, stacklevel=2)
     return result

@@ -111,7 +111,10 @@ class Fitted:
 def fit(records: Sequence[Record], request: FitRequest) -> Fitted: ...
 def terms() -> list[tuple[str, str]]: ...
 
-Tracked = tuple[dict[str, Any], dict[str, str], list[str]]
+class TrackedCourses:
+    def describe(self) -> tuple[dict[str, dict[str, Any]], list[str]]: ...
+
+Tracked = tuple[dict[str, Any], dict[str, str], list[str], TrackedCourses]
 
 class TrackRequest:
     fit: FitRequest
@@ -130,6 +133,8 @@ def convert(*, sigma: float, alpha: float, slip_force: float, amplitude: float, 
             to: str, range: Optional[tuple[float, float]], tolerance: float, elements: int,
             beta: float, normal_load: Optional[float],
             contact_radius: Optional[float]) -> tuple[dict[str, Any], Optional[list[str]]]: ...
+def excitation(*, waveform: str, amplitude: float, cycles: float, samples_per_cycle: int,
+               frequency: float, growth: float, seed: int) -> tuple[Floats, Floats]: ...
 def simulate(displacement: Floats, *, sigma: float, slip_force: float,
              alpha: Optional[float], model: str, rig_stiffness: Optional[float]) -> Floats: ...
 

@@ -67,6 +67,8 @@ class RecordArguments:
         self.units = {"displacement_unit": displacement_unit, "force_unit": force_unit,
                       "time_unit": time_unit, "normal_load_unit": normal_load_unit}
         self.covariates = list(covariates)
+        self.assumed: list[str] = []
+        """Of the columns and units of files and frames that were read, a sentence each."""
 
     def columns(self) -> _mindahl.RecordColumns:
         for role, value in self.roles.items():
@@ -172,6 +174,12 @@ def _record_of_arrays(displacement: Any, roles: Mapping[str, Any], arguments: Re
 
 
 def _record_of(source: Any, arguments: RecordArguments, name: str) -> Record:
+    record = _read_record(source, arguments, name)
+    arguments.assumed.extend(record.notes)
+    return record
+
+
+def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
     if isinstance(source, Record):
         arguments.refuse_choices("a record that is read already")
         return source

@@ -14,7 +14,8 @@ from ._arguments import Floats
 
 
 class FitWarning(UserWarning):
-    """What a fit found and a person should act on; result.warnings has all of it, with codes."""
+    """What a fit found and a person should act on, which result.warnings has too, with codes; and
+    what was assumed of the columns of a file or a frame and of their units: result.notes."""
 
 
 class Section(Mapping[str, Any]):
@@ -53,10 +54,12 @@ def _wrapped(value: Any, path: str) -> Any:
     return value
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Parameter:
     """A fitted or held parameter, in SI units.
 
+    is_known: does the record tell it? Ask it before the value is used: where it is False, value is
+        only where the fit ended, and repr() has no number of it.
     interval: ends of the 95 % interval; None where it is open.
     status: "free", "fixed", "at_lower_bound" or "at_upper_bound".
     identifiability: "identifiable", "extrapolated", "bounded_below" or "not_identifiable".
@@ -69,6 +72,26 @@ class Parameter:
     interval: tuple[Optional[float], Optional[float]]
     status: str
     identifiability: str
+
+    @property
+    def is_known(self) -> bool:
+        """Held fixed, or identifiable: the value is an answer."""
+        return self.status == "fixed" or self.identifiability == "identifiable"
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        verdict = self.identifiability.replace("_", " ")
+        if self.status == "fixed":
+            return f"{self.name} = {self.value:.6g}{unit}, held"
+        if self.identifiability == "bounded_below" and self.interval[0] is not None:
+            return f"{self.name} > {self.interval[0]:.6g}{unit}, {verdict}"
+        if self.value is None or self.identifiability == "not_identifiable":
+            return f"{self.name}: {verdict}"
+        error = "" if self.standard_error is None else f" ± {self.standard_error:.2g}"
+        return f"{self.name} = {self.value:.6g}{error}{unit}, {verdict}"
+
+    def __repr__(self) -> str:
+        return f"<mindahl.Parameter {self}>"
 
 
 @dataclass(frozen=True)
@@ -221,7 +244,7 @@ class FitResult:
 
     def _short(self, name: str) -> str:
         parameter = self.parameters[name]
-        if parameter.status != "fixed" and parameter.identifiability != "identifiable":
+        if not parameter.is_known:
             return f"{name} {parameter.identifiability.replace('_', ' ')}"
         unit = "" if parameter.unit == "-" else f" {parameter.unit}"
         return f"{name} = {parameter.value:.6g}{unit}"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import warnings
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -20,11 +22,28 @@ class CycleTable(Mapping[str, Any]):
     """What track() found: one row a cycle, a NumPy array a column; NaN for what is not known.
 
     units: of the columns that have one. to_pandas(): the same as a data frame.
+    changes: what changed over the test beyond chance, sentences; empty where nothing did.
+    quantities: the course of each quantity by name, as `mindahl track --json` has it: "unit",
+        "stretches" that are straight and the "changes" between them.
     """
 
-    def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str]) -> None:
+    def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str],
+                 courses: _mindahl.TrackedCourses) -> None:
         self._columns = {name: np.asarray(values) for name, values in columns.items()}
         self.units = dict(units)
+        self._courses = courses
+
+    @cached_property
+    def _described(self) -> tuple[dict[str, dict[str, Any]], list[str]]:
+        return self._courses.describe()
+
+    @property
+    def quantities(self) -> dict[str, dict[str, Any]]:
+        return copy.deepcopy(self._described[0])
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        return tuple(self._described[1])
 
     def __getitem__(self, name: str) -> Any:
         return self._columns[name]
@@ -69,7 +88,8 @@ def track(
     broken_rows: of files, "refuse" or "skip". threads: that fit; by default one a core.
     The others: as of fit(), but that model="auto" and covariates are not for single cycles.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
-    Warns with FitWarning of uncertain reversals and of rows that were skipped.
+    Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of
+        rows that were skipped.
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
     Other threads run while it fits.
     """
@@ -102,10 +122,10 @@ def track(
         fit.columns = arguments.columns()
         request.fit = fit
         found = _mindahl.track_files(request, files, broken_rows == "skip")
-    columns, units, doubts = found
-    for doubt in doubts:
+    columns, units, doubts, courses = found
+    for doubt in (*arguments.assumed, *doubts):
         warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
-    return CycleTable(columns, units)
+    return CycleTable(columns, units, courses)
 
 
 def _files_of(source: Any) -> Optional[Sequence[str]]:

@@ -26,6 +26,12 @@ std::string WithKeywords(const std::string& message) {
          ++i) {
       text += message[i] == '-' ? '_' : message[i];
     }
+    const bool has_number = i + 1 < message.size() && message[i] == ' ' &&
+                            std::isdigit(static_cast<unsigned char>(message[i + 1])) != 0;
+    if (has_number) {
+      text += '=';
+      ++i;
+    }
   }
   return text;
 }

@@ -2,14 +2,19 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "bindings.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
+#include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
+#include "mindahl/request/one_of.h"
 
 namespace mindahl::python {
 
@@ -21,12 +26,10 @@ using models::FrictionModel;
 namespace {
 
 const FrictionModel& RequireModel(const std::string& name) {
-  std::string names;
-  for (const FrictionModel& model : models::FrictionModels()) {
-    if (model.name == name) return model;
-    names += (names.empty() ? "" : ", ") + std::string(model.name);
-  }
-  throw InputError("--model: '" + name + "' is not one of " + names);
+  std::vector<std::string_view> names;
+  for (const FrictionModel& model : models::FrictionModels()) names.push_back(model.name);
+  request::RequireOneOf("--model", name, names);
+  return *models::FindFrictionModel(name);
 }
 
 /// The law as the model uses it.
@@ -64,6 +67,22 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
   return force;
 }
 
+/// Times [s] and displacements [m].
+std::pair<py::array_t<double>, py::array_t<double>> Excite(const std::string& waveform,
+                                                           models::ExcitationOptions options) {
+  request::RequireOneOf("--waveform", waveform, models::WaveformNames());
+  options.waveform = *models::FindWaveform(waveform);
+  models::Excitation made;
+  {
+    const py::gil_scoped_release others_may_run;
+    made = models::MakeExcitation(options);
+  }
+  const auto copy = [](const std::vector<double>& values) {
+    return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+  };
+  return {copy(made.time), copy(made.displacement)};
+}
+
 ContactState MakeState(double sigma, double slip_force, std::optional<double> alpha,
                        const std::string& model_name, double unloaded_displacement,
                        std::optional<double> rig_stiffness) {
@@ -76,6 +95,19 @@ ContactState MakeState(double sigma, double slip_force, std::optional<double> al
 }  // namespace
 
 void AddModels(py::module_& module) {
+  module.def(
+      "excitation",
+      [](const std::string& waveform, double amplitude, double cycles,
+         std::size_t samples_per_cycle, double frequency, double growth, std::uint64_t seed) {
+        return Excite(waveform, {.amplitude = amplitude,
+                                 .cycles = cycles,
+                                 .samples_per_cycle = samples_per_cycle,
+                                 .frequency = frequency,
+                                 .growth = growth,
+                                 .seed = seed});
+      },
+      py::kw_only(), py::arg("waveform"), py::arg("amplitude"), py::arg("cycles"),
+      py::arg("samples_per_cycle"), py::arg("frequency"), py::arg("growth"), py::arg("seed"));
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
              py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"));
   py::class_<ContactState>(module, "ContactState", R"(A contact that is moved step by step.

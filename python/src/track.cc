@@ -15,9 +15,11 @@
 #include "mindahl/campaign/cycle_table.h"
 #include "mindahl/campaign/dissipated_energy.h"
 #include "mindahl/campaign/reading.h"
+#include "mindahl/campaign/tracked_quantities.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/record_stream.h"
+#include "mindahl/report/quantity.h"
 #include "mindahl/report/units.h"
 #include "mindahl/request/fit_request.h"
 #include "record.h"
@@ -40,6 +42,7 @@ struct TrackRequest {
 
 struct Tracked {
   std::vector<CycleFit> fits;
+  campaign::TrackedCourses courses;
   bool is_torsional = false;
   std::size_t cycles_per_row = 1;
   std::vector<std::string> warnings;
@@ -68,6 +71,7 @@ class Run {
                                             .threads = request_.threads},
                      [this](std::span<const CycleFit> fits) {
                        tracked_.fits.insert(tracked_.fits.end(), fits.begin(), fits.end());
+                       for (const CycleFit& fit : fits) tracked_.courses.Add(fit);
                      });
   }
 
@@ -109,6 +113,7 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
   for (const std::string& file : files) {
     io::RecordStream stream(file, request.fit.columns, broken);
     RequireOneKind(run, stream.layout().is_torsional, files.front(), file);
+    for (const std::string& note : stream.layout().notes) run.Warn(note);
     io::Samples piece;
     if (run.has_begun()) {
       stream.Next(piece);
@@ -160,9 +165,67 @@ py::array_t<Value> ColumnOf(const std::vector<CycleFit>& fits, Of of) {
   return column;
 }
 
-/// The columns of the command line's table, with NaN for what is not known; their units; and what
-/// is to be warned of.
-std::tuple<py::dict, py::dict, std::vector<std::string>> ColumnsOf(Tracked tracked) {
+/// Courses of a test in the units of its records.
+struct CoursesOfTest {
+  campaign::TrackedCourses courses;
+  report::Units units;
+};
+
+py::dict Describe(const campaign::CourseDescription& course, std::string_view unit) {
+  py::list stretches;
+  for (const campaign::Stretch& stretch : course.stretches) {
+    py::dict described;
+    described["first_cycle"] = stretch.first_cycle;
+    described["last_cycle"] = stretch.last_cycle;
+    described["at_start"] = stretch.at_start;
+    described["at_end"] = stretch.at_end;
+    described["slope"] = stretch.slope;
+    described["slope_p_value"] = stretch.slope_p_value;
+    described["trends"] = stretch.trends;
+    stretches.append(described);
+  }
+  py::list changes;
+  for (const campaign::Change& change : course.changes) {
+    py::dict described;
+    described["kind"] = std::string(campaign::NameOf(change.kind));
+    described["cycle"] = change.cycle;
+    described["ci95"] = std::vector<std::size_t>{change.lower95, change.upper95};
+    described["before"] = change.before;
+    described["after"] = change.after;
+    described["p_value"] = change.p_value;
+    changes.append(described);
+  }
+  py::dict described;
+  described["unit"] = std::string(unit);
+  described["stretches"] = stretches;
+  described["changes"] = changes;
+  return described;
+}
+
+/// `quantities` of what `mindahl track --json` writes, and its changes in sentences.
+std::pair<py::dict, std::vector<std::string>> Describe(const CoursesOfTest& test) {
+  std::vector<campaign::CourseDescription> courses;
+  {
+    const py::gil_scoped_release others_may_run;
+    courses = test.courses.Describe();
+  }
+  py::dict quantities;
+  std::vector<std::string> statements;
+  for (std::size_t k = 0; k < courses.size(); ++k) {
+    if (courses[k].stretches.empty()) continue;
+    const campaign::TrackedQuantity& quantity = campaign::TrackedQuantities()[k];
+    const std::string_view unit = report::UnitIn(test.units, quantity.unit);
+    quantities[py::str(std::string(quantity.name))] = Describe(courses[k], unit);
+    for (const std::string& statement : campaign::ChangeStatements(courses[k])) {
+      statements.push_back(fmt::format("{}: {}", report::WithUnit(quantity.name, unit), statement));
+    }
+  }
+  return {quantities, statements};
+}
+
+/// The columns of the command line's table, with NaN for what is not known; their units; what is to
+/// be warned of; and the courses, which are described when they are asked for.
+std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest> ColumnsOf(Tracked tracked) {
   py::dict columns;
   py::dict units;
   const report::Units& names =
@@ -201,12 +264,14 @@ std::tuple<py::dict, py::dict, std::vector<std::string>> ColumnsOf(Tracked track
   }
   columns["slip_regime"] = regimes;
   columns["flags"] = flags;
-  return {columns, units, tracked.warnings};
+  return {columns, units, tracked.warnings, {std::move(tracked.courses), names}};
 }
 
 }  // namespace
 
 void AddTrack(py::module_& module) {
+  py::class_<CoursesOfTest>(module, "TrackedCourses")
+      .def("describe", py::overload_cast<const CoursesOfTest&>(&Describe));
   py::class_<TrackRequest>(module, "TrackRequest")
       .def(py::init<>())
       .def_readwrite("fit", &TrackRequest::fit)

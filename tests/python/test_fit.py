@@ -96,6 +96,51 @@ def test_a_frame_is_read_by_the_names_and_units_of_its_columns(sphere):
     assert result.input.units.displacement == "um"
 
 
+def test_units_that_a_frame_does_not_name_are_warned_of_once(sphere):
+    seconds, displacement, force = sphere
+    frame = pandas.DataFrame({"displacement": displacement, "force": force, "time [s]": seconds})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        for _ in range(2):
+            mindahl.fit(frame)
+    said = [str(warning.message) for warning in caught]
+    assert said == [
+        "record: displacement 'displacement' (column 1) names no unit: taken as m; displacement_unit "
+        "states another",
+        "record: force 'force' (column 2) names no unit: taken as N; force_unit states another"]
+    assert {warning.category for warning in caught} == {mindahl.FitWarning}
+    assert {warning.filename for warning in caught} == {__file__}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        mindahl.fit(frame, displacement_unit="m", force_unit="N")
+        mindahl.fit(displacement, force, time=seconds)
+
+
+def test_columns_that_no_name_tells_are_asked_for_in_keywords():
+    frame = pandas.DataFrame({"Time": [0.0, 1.0], "Actuator": [1.0, 2.0], "Load cell": [3.0, 4.0]})
+    with pytest.raises(mindahl.InputError, match="with displacement and that of the force with force, "
+                                                 "as in displacement=2 force=3"):
+        mindahl.fit(frame)
+
+
+def test_a_time_that_runs_backwards_is_refused(sphere):
+    seconds, displacement, force = sphere
+    backwards = seconds.copy()
+    backwards[300:] -= 1.0
+    with pytest.raises(mindahl.InputError, match="time = .* s is before the .* s of the row above"):
+        mindahl.fit(displacement, force, time=backwards)
+
+
+def test_what_is_not_known_has_no_number_where_it_is_printed():
+    far = mindahl.fit(DATA / "far_from_slip.csv")
+    assert not far.alpha.is_known and not far.slip_force.is_known and far.sigma.is_known
+    assert repr(far.alpha) == "<mindahl.Parameter alpha: not identifiable>"
+    assert str(far.slip_force).startswith("slip_force > 3.2") and "bounded below" in str(far.slip_force)
+    assert str(far.sigma).endswith(" N/m, identifiable") and " ± " in str(far.sigma)
+    held = mindahl.fit(DATA / "far_from_slip.csv", fix={"alpha": 0.25})
+    assert held.alpha.is_known and str(held.alpha) == "alpha = 0.25, held"
+
+
 def test_a_frame_s_columns_can_be_chosen(sphere):
     seconds, displacement, force = sphere
     frame = pandas.DataFrame({"left": displacement * 1e6, "right": force, "clock": seconds})
@@ -195,9 +240,9 @@ def test_what_is_no_record_is_refused_in_one_line(arguments, message):
 
 
 @pytest.mark.parametrize("keywords, message", [
-    ({"model": "coulomb"}, "model: 'coulomb' is not one of mindlin-dahl"),
-    ({"initial_state": "new"}, "initial_state: 'new' is not one of auto, virgin, steady"),
-    ({"offsets": "maybe"}, "offsets: 'maybe' is not one of on, off"),
+    ({"model": "coulomb"}, "model: 'coulomb' is unknown: must be one of mindlin-dahl"),
+    ({"initial_state": "new"}, "initial_state: 'new' is unknown: must be one of auto, virgin, steady"),
+    ({"offsets": "maybe"}, "offsets: 'maybe' is unknown: must be one of on, off"),
     ({"fix": {"gamma": 1}}, "gamma"),
     ({"fix": "alpha=1"}, "must be a dict"),
     ({"fix": {"alpha": "x"}}, r"fix\['alpha'\] = 'x' is invalid: must be a number"),

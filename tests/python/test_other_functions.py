@@ -51,6 +51,38 @@ def test_track_gives_the_program_s_table(long_record, tmp_path):
     assert list(tracked.to_pandas()["cycle"]) == list(tracked["cycle"])
 
 
+def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
+    worn = tmp_path / "worn.csv"
+    worn.write_text(program("simulate", "--model", "mindlin-dahl", "--sigma", SIGMA, "--slip-force",
+                            0.8 * SLIP_FORCE, "--waveform", "sine", "--amplitude", "3e-6",
+                            "--cycles", 30, "--samples-per-cycle", 100, "--noise-force", 0.2,
+                            "--seed", 4))
+    expected = program_json("track", long_record, worn, "--output", tmp_path / "worn_cycles.csv")
+    tracked = mindahl.track([long_record, worn])
+    assert tracked.quantities == expected["quantities"]
+    step, = tracked.quantities["slip_force"]["changes"]
+    assert step["kind"] == "transition"
+    assert step["after"] == pytest.approx(0.8 * step["before"], rel=0.01)
+    assert any(line.startswith(f"slip_force [N]: at cycle {step['cycle']} (") for line in tracked.changes)
+    assert not any("step" in line for line in mindahl.track(long_record).changes)
+
+
+def test_excitation_is_the_program_s_waveform():
+    for waveform in ("sine", "triangle", "growing-sine", "random", "nested"):
+        lines = program("simulate", "--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--waveform",
+                        waveform, "--amplitude", "3e-6", "--cycles", 3, "--samples-per-cycle", 40,
+                        "--seed", 5)
+        expected = np.loadtxt(lines.splitlines(), delimiter=",", skiprows=1, unpack=True)
+        time, displacement = mindahl.excitation(waveform, amplitude=3e-6, cycles=3,
+                                                samples_per_cycle=40, seed=5)
+        np.testing.assert_array_equal(time, expected[0])
+        np.testing.assert_array_equal(displacement, expected[1])
+    with pytest.raises(mindahl.InputError, match="waveform: 'triangel' is unknown: did you mean 'triangle'"):
+        mindahl.excitation("triangel", amplitude=1e-6)
+    with pytest.raises(ValueError, match="amplitude"):
+        mindahl.excitation(amplitude=-1.0)
+
+
 def test_track_of_arrays_frames_and_files_is_the_same(long_record):
     expected = mindahl.track(long_record, average=2)
     time, displacement, force = read_columns(long_record)
@@ -64,7 +96,7 @@ def test_track_of_arrays_frames_and_files_is_the_same(long_record):
 @pytest.mark.parametrize("keywords, message", [
     ({"model": "auto"}, "model auto: a model is chosen for a test"),
     ({"average": 0}, "average = 0 is invalid"),
-    ({"average": 1000}, "average 1000: "),
+    ({"average": 1000}, "average=1000: "),
     ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid"),
     ({"normal_load": 0}, r"normal_load \[N\] = 0 is invalid"),
 ])
@@ -138,7 +170,7 @@ def test_the_virgin_force_of_mindlin_is_the_closed_form():
 
 @pytest.mark.parametrize("call, message", [
     (lambda: mindahl.simulate([0, 1e-6], sigma=-1, slip_force=1), "must be finite and > 0"),
-    (lambda: mindahl.simulate([0, 1e-6], sigma=1, slip_force=1, model="oak"), "model: 'oak' is not"),
+    (lambda: mindahl.simulate([0, 1e-6], sigma=1, slip_force=1, model="oak"), "model: 'oak' is unknown"),
     (lambda: mindahl.simulate([0, 1e-6], sigma=1, slip_force=1, model="mindlin", alpha=0.5),
      "alpha contradicts model mindlin"),
     (lambda: mindahl.simulate(np.zeros((2, 2)), sigma=1, slip_force=1), "shape"),
@@ -149,7 +181,7 @@ def test_the_virgin_force_of_mindlin_is_the_closed_form():
     (lambda: mindahl.contact(friction=-1, normal_load=1, contact_radius=1, compliance=1),
      r"friction \[-\] = -1 is invalid"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="brass"),
-     "to: 'brass' is not one of"),
+     "to: 'brass' is unknown: must be one of"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=-1, to="dahl"), "invalid"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="dahl", normal_load=3),
      "normal_load and contact_radius are of to lammps alone"),
