@@ -10,6 +10,7 @@ namespace mindahl::contact {
 namespace {
 
 constexpr double kSoftestModulus = 1e6;     // [Pa]
+constexpr double kStiffestModulus = 2e12;   // [Pa]
 constexpr double kLargestCompliance = 1.0;  // [1/Pa]
 constexpr double kLargestFriction = 5.0;    // [-]
 constexpr double kLargestRadiusShare = 1.0 / 3.0;
@@ -56,6 +57,12 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
           fmt::format("Young's modulus of body {} = {:.4g} Pa is below 1 MPa, softer than rubber: "
                       "give it in Pa, as 210e9",
                       number, body->youngs_modulus->value));
+    }
+    if (body->youngs_modulus && body->youngs_modulus->value > kStiffestModulus) {
+      doubts.push_back(fmt::format(
+          "Young's modulus of body {} = {:.4g} Pa is above 2 TPa, stiffer than diamond: "
+          "give it in Pa, as 210e9",
+          number, body->youngs_modulus->value));
     }
     ++number;
   }

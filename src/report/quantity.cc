@@ -104,10 +104,15 @@ std::string RoundedTo(double error, double value) {
   constexpr double kRoundsUp = 0.995;
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(error / kRoundsUp)));
   constexpr int kMostDecimals = 9;
+  constexpr double kMostWritten = 1e6;  // beyond it zeros are counted
   if (decimals > kMostDecimals) return fmt::format("{:.6g}", value);
   const double rounded =
       decimals < 0 ? std::round(value * std::pow(10.0, decimals)) / std::pow(10.0, decimals)
                    : value;
+  if (std::abs(rounded) >= kMostWritten && decimals <= 0) {
+    const int digits = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + decimals;
+    return fmt::format("{:.{}e}", rounded, std::max(0, digits));
+  }
   const std::string text = fmt::format("{:.{}f}", rounded, std::max(0, decimals));
   return text.find_first_not_of("-0.") == std::string::npos && text.starts_with('-')
              ? text.substr(1)

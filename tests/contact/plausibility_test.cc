@@ -37,6 +37,15 @@ TEST(Doubts, AreOfAModulusThatIsNotInPascal) {
               ElementsAre(HasSubstr("Young's modulus of body 1 = 210 Pa is below 1 MPa")));
 }
 
+TEST(Doubts, AreOfAModulusStifferThanAnySolid) {
+  KnownContact known = SteelContact();
+  known.normal_load = std::nullopt;
+  known.body_1.youngs_modulus = 210e12;  // in GPa, and then once more
+  known.body_2.youngs_modulus = 1.2e12;  // diamond
+  EXPECT_THAT(DoubtsAbout(known, 0.3),
+              ElementsAre(HasSubstr("Young's modulus of body 1 = 2.1e+14 Pa is above 2 TPa")));
+}
+
 TEST(Doubts, AreOfAComplianceThatIsAModulus) {
   const KnownContact known{.contact_radius = 2e-4, .tangential_compliance = 2.5e10};
   EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("give 4e-11 if it is that")));

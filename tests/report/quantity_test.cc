@@ -46,6 +46,13 @@ TEST(QuantityWithError, IsRoundedToTwoDigitsOfTheError) {
   EXPECT_EQ(QuantityWithError(412.3, 131.0, "N"), "410 ± 130 N");
 }
 
+TEST(QuantityWithError, FromAMillionOnHasAnExponent) {
+  EXPECT_EQ(QuantityWithError(5.00164e16, 1.2e14, "m"), "5.002e+16 ± 1.2e+14 m");
+  EXPECT_EQ(QuantityWithError(-2.5e7, 3.1e4, "m"), "-2.5000e+07 ± 31000 m");
+  EXPECT_EQ(QuantityWithError(999999.0, 120.0, "m"), "1.00000e+06 ± 120 m");
+  EXPECT_EQ(QuantityWithError(999949.0, 120.0, "m"), "999950 ± 120 m");
+}
+
 TEST(QuantityWithError, HasTheUnitOfTheLargerOfTheTwo) {
   EXPECT_EQ(QuantityWithError(3.19e-4, 2.7e-3, "N"), "0.3 ± 2.7 mN");
   EXPECT_EQ(QuantityWithError(-1e-5, 2.7e-3, "N"), "0.0 ± 2.7 mN");  // not -0.0

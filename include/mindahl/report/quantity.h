@@ -21,7 +21,8 @@ std::string WithUnit(std::string_view name, std::string_view unit);
 /// "48.1 N/µm" of 4.814e7 N/m: significant digits, in the unit that suits it.
 std::string Quantity(double value, std::string_view unit, int digits = 5);
 
-/// The number with as many decimals as leave the error two digits: "48.142" of 0.0391.
+/// The number with as many decimals as leave the error two digits: "48.142" of 0.0391; from a
+/// million on with an exponent, "5.002e+16" of 1.2e14.
 /// @param error  > 0; where it is not, or not finite, the number has six digits
 std::string RoundedTo(double error, double value);
 
