@@ -27,6 +27,7 @@ struct CauseRow {
   const char* remedy;    // where no option takes it into account
   double whole = std::numeric_limits<double>::infinity();  // a size from which on it is all
   const char* remedy_of_displacement = nullptr;            // where that is fitted; null: the same
+  const char* unsized = nullptr;  // of one of several numbers, where the first says little
 };
 
 constexpr std::array<CauseRow, 23> kCauses = {{
@@ -66,11 +67,13 @@ constexpr std::array<CauseRow, 23> kCauses = {{
      "leave the first cycles out with --skip-cycles, or fit parts of the record"},
     {"force_saturates", "a force reading that loses {} of what is beyond nine tenths of its peak",
      "a force reading that gains {} of what is beyond nine tenths of its peak",
-     "look at the ranges of the force sensor and its amplifier", 1.0},
+     "look at the ranges of the force sensor and its amplifier", 1.0, nullptr,
+     "a force that is not read linearly near its peak"},
     {"load_varies", "a friction that grows by {} from the middle of the stroke to its end",
      "a friction that falls by {} from the middle of the stroke to its end",
      "look whether the normal load varies with the position; where it is recorded, name its column "
-     "with --normal-load-column"},
+     "with --normal-load-column",
+     std::numeric_limits<double>::infinity(), nullptr, "a friction that varies along the stroke"},
     {"force_of_position", "a force that depends on the position", nullptr,
      "look for a spring, a cable or a tilt beside the contact, and measure it without it"},
     {"covariate", "a force in proportion to another column of the file, {}", nullptr,
@@ -109,6 +112,7 @@ std::string SizeText(const Cause& cause, double size) {
 /// What the residuals look like.
 std::string Looks(const Cause& cause) {
   const CauseRow& row = RowOf(cause);
+  if (cause.unit.empty() && row.unsized != nullptr) return row.unsized;
   const bool turns = cause.size < 0 && row.negative != nullptr;
   return fmt::format(fmt::runtime(turns ? row.negative : row.looks),
                      SizeText(cause, turns ? -cause.size : cause.size));
@@ -164,6 +168,12 @@ std::vector<std::string_view> CauseCodes() {
 std::string VerdictSentence(const Report& report) {
   if (!IsJudged(report)) return fmt::format("not judged: {}", kWhyNotJudged);
   const Adequacy& adequacy = report.fit.adequacy;
+  if (const auto* unseen = report.fit.FindFinding("loop_not_seen"); unseen != nullptr) {
+    return fmt::format(
+        "inadequate: no loop is seen in the force, of whose variance the model explains {:.2g} %; "
+        "its parameters mean nothing for this record",
+        std::max(0.0, 100 * unseen->Number("r_squared").value_or(0.0)));
+  }
   const std::string misfit = fmt::format("{:.2g} times the noise ({})", adequacy.misfit_over_noise,
                                          ChanceText(adequacy.p_value, 2));
   std::string found;

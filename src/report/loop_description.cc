@@ -56,11 +56,10 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
   const double peak = models::SteadyPeakForce(*fit.model, law, loop.contact_amplitude);
   loop.slip_force_share = peak / law.slip_force;
   const bool slips = SlipsGrossly(*fit.model, law, loop.contact_amplitude);
-  // A lower limit of Tc is beyond what was reached.
+  // Any slip force above a lower limit of Tc fits as well: by none of these does less slip.
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
-  if (!HasValue(slip_force) && slip_force.identifiability != Identifiability::kBoundedBelow) {
-    return loop;
-  }
+  const bool is_bounded = slip_force.identifiability == Identifiability::kBoundedBelow;
+  if (!HasValue(slip_force) && !(is_bounded && !slips)) return loop;
   loop.regime = slips ? SlipRegime::kGross : SlipRegime::kPartial;
   loop.stick_radius_ratio =
       slips ? 0.0 : contact::StickRadiusRatio(std::min(peak, law.slip_force), law.slip_force);

@@ -17,7 +17,8 @@ std::string WhyNoSlip(const Report& report) {
              : "with alpha >= 1 the force only approaches slip_force";
 }
 
-constexpr const char* kWhyNoRegime = "slip_force is not identifiable";
+constexpr const char* kWhyNoRegime =
+    "slip_force is not identifiable, or has a lower limit that the loop reaches";
 
 /// Of the loop's description, where there is one.
 template <typename Get>

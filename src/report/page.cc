@@ -111,7 +111,9 @@ std::string ParameterSection(const Report& report) {
     about += fmt::format("; sigma and slip_force are those at the mean of the loads, {}",
                          Quantity(*fit.normal_load, "N"));
   }
-  return Heading("Parameters") + Paragraph(about + ".") + table.Html();
+  const std::string wide = WideIntervalStatement(fit, report.units);
+  return Heading("Parameters") + Paragraph(about + ".") + table.Html() +
+         (wide.empty() ? "" : Paragraph(wide + "."));
 }
 
 // --- what to do

@@ -109,30 +109,42 @@ std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, cons
       Quantity(Needed(finding, "amplitude"), units.displacement, 4));
 }
 
-std::string TooWide(const char* parameter, const Finding& finding, std::string_view unit) {
-  return fmt::format(
-      "{}: the 95 % interval {} … {} is too wide to call it known; record more samples, less noise "
-      "or a larger amplitude (mindahl plan --record says which)",
-      parameter, Quantity(Needed(finding, "lower"), unit, 3),
-      Quantity(Needed(finding, "upper"), unit, 3));
+/// Then a larger amplitude shows less of the branches still.
+bool SeesSlip(const FitResult& fit) {
+  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
+  return slip_force != nullptr &&
+         slip_force->identifiability == identification::Identifiability::kIdentifiable;
 }
 
-std::string AlphaNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
-  if (finding.kind == "wide") return TooWide("alpha", finding, "-");
+std::string TooWide(const char* parameter, const Finding& finding, const FitResult& fit,
+                    std::string_view unit) {
+  return fmt::format(
+      "{}: the 95 % interval {} … {} is too wide to call it known; record {} (mindahl plan "
+      "--record "
+      "says which)",
+      parameter, Quantity(Needed(finding, "lower"), unit, 3),
+      Quantity(Needed(finding, "upper"), unit, 3),
+      SeesSlip(fit) ? "more samples, or less noise"
+                    : "more samples, less noise or a larger amplitude");
+}
+
+std::string AlphaNotIdentifiable(const Finding& finding, const FitResult& fit, const Units&) {
+  if (finding.kind == "wide") return TooWide("alpha", finding, fit, "-");
   if (finding.kind != "with_slip_force") ThrowKind(finding);
   return "alpha: known only together with slip_force (the ratio alpha/slip_force enters the loop); "
          "raise the amplitude until the force levels off (mindahl plan --record says how far), or "
          "fix one of them";
 }
 
-std::string SigmaNotIdentifiable(const Finding& finding, const FitResult&, const Units& units) {
+std::string SigmaNotIdentifiable(const Finding& finding, const FitResult& fit, const Units& units) {
   if (finding.kind != "wide") ThrowKind(finding);
-  return TooWide("sigma", finding, units.stiffness);
+  return TooWide("sigma", finding, fit, units.stiffness);
 }
 
-std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult&, const Units& units) {
+std::string SlipForceNotIdentifiable(const Finding& finding, const FitResult& fit,
+                                     const Units& units) {
   if (finding.kind != "wide") ThrowKind(finding);
-  return TooWide("slip_force", finding, units.force);
+  return TooWide("slip_force", finding, fit, units.force);
 }
 
 std::string SigmaBoundedBelow(const Finding&, const FitResult&, const Units&) {
@@ -148,17 +160,10 @@ std::string UndeterminedParameter(const Finding& finding, const FitResult&, cons
 }
 
 std::string UndeterminedCombination(const Finding& finding, const FitResult& fit, const Units&) {
-  // Where the slip force is seen and the stiffness is not, a larger amplitude shows less of it
-  // still.
-  const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  const bool slips = slip_force != nullptr &&
-                     slip_force->identifiability == identification::Identifiability::kIdentifiable;
-  const bool lacks_stiffness =
-      std::ranges::find(finding.parameters, "sigma") != finding.parameters.end();
-  return fmt::format("the record determines only a combination of {}: fix one of them, or {}",
-                     fmt::join(finding.parameters, ", "),
-                     slips && lacks_stiffness ? "sample more densely after the reversals"
-                                              : "record a larger amplitude");
+  return fmt::format(
+      "the record determines only a combination of {}: fix one of them, or {}",
+      fmt::join(finding.parameters, ", "),
+      SeesSlip(fit) ? "sample more densely after the reversals" : "record a larger amplitude");
 }
 
 std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
@@ -177,7 +182,8 @@ std::string LoopNotSeen(const Finding& finding, const FitResult&, const Units&) 
   return fmt::format(
       "sigma, alpha, slip_force: the loop explains {}; the record shows something else. Look at "
       "the "
-      "plot: other columns, a shorter part of the record, or less noise are needed",
+      "plot: are displacement and force the right columns, and not swapped? A shorter part of the "
+      "record, or less noise, may show a loop",
       share);
 }
 

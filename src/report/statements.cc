@@ -114,7 +114,8 @@ bool IsIdentified(const Report& report, const ContactField& field, const Propaga
   const bool is_of_radius_alone =
       field.key == "maximum_pressure" && report.known.contact_radius.has_value();
   if (!knows_stiffness && field.key != "friction_coefficient" && !is_of_radius_alone) return false;
-  return knows_slip_force || field.key != "mindlin_gross_slip_displacement";
+  if (field.key != "mindlin_gross_slip_displacement") return true;
+  return knows_slip_force && report.fit.Find("alpha")->is_known();
 }
 
 std::string VarianceStatement(const PropagatedValue& value) {
@@ -124,7 +125,7 @@ std::string VarianceStatement(const PropagatedValue& value) {
 }
 
 std::string SlipStatement(const LoopDescription& loop, const Units& units) {
-  if (!loop.regime) return "whether it slips is open: slip_force is not identifiable";
+  if (!loop.regime) return "whether it slips is open: so is slip_force";
   if (loop.gross_slip_displacement) {
     return fmt::format("{}, the contact slips as a whole from an amplitude of {}",
                        Name(*loop.regime),
@@ -135,6 +136,41 @@ std::string SlipStatement(const LoopDescription& loop, const Units& units) {
   }
   return fmt::format("{:.3g} % of Tc reached: with α >= 1 the force only approaches it",
                      100 * loop.slip_force_share);
+}
+
+std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
+  if (fit.adequacy.verdict != identification::AdequacyVerdict::kDoubtful) return "";
+  constexpr double kNormalQuantile = 1.96;
+  constexpr double kFar = 3.0;  // as wide as of an error that is taken three times too small
+  std::vector<std::string> names;
+  double widest = 0.0;
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    const double error = estimate.standard_error.value_or(0.0);
+    const bool has_both = estimate.lower95 && estimate.upper95;
+    if (WhatIsShown(estimate) != Shown::kValue || !has_both || !(error > 0)) continue;
+    const double ratio = (*estimate.upper95 - *estimate.lower95) / (2 * kNormalQuantile * error);
+    if (!(ratio > kFar)) continue;
+    names.push_back(estimate.name);
+    widest = std::max(widest, ratio);
+  }
+  if (names.empty()) return "";
+  std::string covered;
+  if (!fit.adequacy.causes.empty()) covered = " what the causes above would change";
+  const ParameterEstimate* slip_force = fit.Find("slip_force");
+  const identification::RecordFit& record = fit.WidestRecord();
+  const bool has_gap = record.facts.half_gap && slip_force->lower95 && slip_force->upper95;
+  if (has_gap && std::ranges::find(names, "slip_force") != names.end()) {
+    const double gap = *record.facts.half_gap / record.load_ratio;
+    if (gap == *slip_force->lower95 || gap == *slip_force->upper95) {
+      covered += fmt::format("{} the measured half gap, {}", covered.empty() ? "" : ", and",
+                             Quantity(gap, units.force, 4));
+    }
+  }
+  if (covered.empty()) return "";
+  return fmt::format(
+      "intervals of {}: up to {:.0f} times as wide as standard errors make them, to "
+      "cover{}",
+      fmt::join(names, ", "), widest, covered);
 }
 
 std::vector<std::string> TrendStatements(const loop::LoopFacts& facts) {

@@ -54,6 +54,9 @@ std::string VarianceStatement(const contact::PropagatedValue& value);
 /// Whether the contact slips as a whole, and from where on.
 std::string SlipStatement(const LoopDescription& loop, const Units& units);
 
+/// Why intervals are far wider than standard errors make them, in a sentence; "" where none is.
+std::string WideIntervalStatement(const identification::FitResult& fit, const Units& units);
+
 /// What changes over the cycles, where it is worth saying.
 std::vector<std::string> TrendStatements(const loop::LoopFacts& facts);
 

@@ -261,6 +261,8 @@ std::string ToText(const Report& report, const TextOptions& options) {
   const FitResult& fit = report.fit;
   const Style style(options.has_colours);
   std::string text = AdequacyText(report, style) + "\n" + ParameterTable(fit, style);
+  const std::string wide = WideIntervalStatement(fit, report.units);
+  if (!wide.empty()) text += Wrapped(wide, 2);
   for (const Warning& warning : report.fit_warnings) {
     if (warning.code == "no_model_fits") text += Wrapped(warning.message, 2);
   }

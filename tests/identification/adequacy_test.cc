@@ -234,6 +234,31 @@ TEST(Adequacy, CausesHaveTheirSizeInTheirUnit) {
   }
 }
 
+TEST(Adequacy, CauseOfSeveralNumbersHasASizeWhereTheFirstIsToldFromNone) {
+  const auto cause_of = [](double linear, double square) {
+    Record record = Alone();
+    const double half_range = std::ranges::max(record.displacement);
+    Generator generator(5);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      const double place = record.displacement[i] / half_range;
+      record.force[i] *= 1 + linear * place + square * place * place;
+      record.force[i] += kNoise * Normal(generator);
+    }
+    const FitResult fit = Fitted(record);
+    const Cause* const cause = Find(fit, "load_varies");
+    return cause == nullptr ? Cause{} : *cause;
+  };
+  constexpr double kGrowth = 0.05;
+  constexpr double kSizeError = 0.1;  // of first order as they are
+  const Cause tilted = cause_of(kGrowth, 0.0);
+  EXPECT_EQ(tilted.unit, "-");
+  EXPECT_NEAR(tilted.size / kGrowth, 1.0, kSizeError);
+  // Alike at both ends of the stroke: nothing of it grows from one to the other.
+  const Cause hollow = cause_of(0.0, kGrowth);
+  EXPECT_EQ(hollow.code, "load_varies");
+  EXPECT_EQ(hollow.unit, "");
+}
+
 TEST(Adequacy, LagOfTwoSamplesIsTheFirstOfTheCauses) {
   Record record = LateBy(2);
   Generator generator(3);

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,10 +18,15 @@ namespace mindahl::identification {
 namespace {
 
 using loop::Record;
+using testing::Cycling;
+using testing::FitOne;
+using testing::Generator;
 using ::testing::HasSubstr;
 using testing::kLaw;
 using testing::Loop;
 using testing::MakeRecord;
+using testing::Normal;
+using testing::Wave;
 
 std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
   try {
@@ -55,6 +62,25 @@ TEST(EdgeRecords, FiveSamplesOfWhichThreeAreOneUnderEveryLoss) {
     FitOptions options;
     options.loss = loss;
     ExpectNumbersOrNone(Fit(std::vector{record}, options));
+  }
+}
+
+TEST(EdgeRecords, WhiteNoiseForAForceIsInadequateWithoutACause) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    SCOPED_TRACE(seed);
+    Generator generator(seed);
+    Record record;
+    record.displacement = Cycling(Wave::kSine, 1e-6, 3.0, 200);
+    for (std::size_t i = 0; i < record.size(); ++i) record.force.push_back(Normal(generator));
+    const FitResult fit = FitOne(record);
+    EXPECT_EQ(fit.adequacy.verdict, AdequacyVerdict::kInadequate);
+    EXPECT_TRUE(fit.adequacy.causes.empty());
+    EXPECT_NE(fit.FindFinding("loop_not_seen"), nullptr);
+    // What would be to do if there were a loop.
+    EXPECT_EQ(fit.FindFinding("slip_force_bounded_below"), nullptr);
+    for (const char* name : {"sigma", "alpha", "slip_force"}) {
+      EXPECT_EQ(fit.Find(name)->identifiability, Identifiability::kNotIdentifiable) << name;
+    }
   }
 }
 

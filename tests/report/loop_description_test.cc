@@ -54,6 +54,18 @@ TEST(LoopDescription, TakesTheTravelOfTheRigOffTheAmplitude) {
   }
 }
 
+TEST(LoopDescription, LeavesOpenWhetherALoopSlipsThatFitsAnyLargerSlipForce) {
+  for (const double amplitude : {1.4e-6, 1.6e-6}) {
+    SCOPED_TRACE(amplitude);
+    FitResult fit = MadeFit({MadeRecord(amplitude)}, amplitude, kMindlin);
+    fit.parameters[2].identifiability = Identifiability::kBoundedBelow;
+    const bool reaches_the_limit = amplitude > 1.5e-6;
+    const LoopDescription loop = DescribeLoop(fit);
+    EXPECT_EQ(loop.regime.has_value(), !reaches_the_limit);
+    EXPECT_EQ(loop.stick_radius_ratio.has_value(), !reaches_the_limit);
+  }
+}
+
 TEST(LoopDescription, JudgesTheSlipByTheContactsOwnAmplitude) {
   // δc = 1.5 µm; a rig of 3e7 N/m gives way by Tc/k_r = 1.33 µm under Tc.
   EXPECT_EQ(Describe(kMindlin, 1.6e-6).regime, SlipRegime::kGross);
@@ -112,7 +124,7 @@ TEST(LoopDescription, SaysOfSlipOnlyWhatTheRecordSays) {
     EXPECT_EQ(loop.stick_radius_ratio.has_value(), loop.regime.has_value()) << open;
   }
   const LoopDescription bounded = describe("slip_force", Identifiability::kBoundedBelow);
-  EXPECT_TRUE(bounded.regime);
+  EXPECT_FALSE(bounded.regime) << "any larger slip force fits as well";
   EXPECT_FALSE(bounded.gross_slip_displacement);
   EXPECT_TRUE(describe("slip_force", Identifiability::kExtrapolated).gross_slip_displacement);
 }

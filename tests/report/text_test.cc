@@ -16,6 +16,7 @@ using identification::Identifiability;
 using mindahl::testing::MadeInput;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 TEST(Text, SaysFirstWhatIsReadInTenSecondsAndThenWhatItRestsOn) {
   const std::string text = ToText(MakeReport(MadeInput()));
@@ -63,6 +64,47 @@ TEST(Text, SaysInOneLineWhatWouldTellMoreOfTheContact) {
   const std::string text = ToText(MakeReport(MadeInput()));
   EXPECT_THAT(text, HasSubstr("with the normal load, E and ν of both bodies given, more would be "
                               "known: friction coefficient"));
+}
+
+TEST(Text, SaysWhyAnIntervalIsFarWiderThanItsErrorMakesIt) {
+  const auto text_of = [](double times, double half_gap) {
+    ReportInput input = MadeInput();
+    identification::ParameterEstimate& slip_force = input.fit.parameters[2];
+    slip_force.lower95 = slip_force.value - times * 1.96 * *slip_force.standard_error;
+    slip_force.upper95 = slip_force.value + times * 1.96 * *slip_force.standard_error;
+    input.fit.adequacy.verdict = identification::AdequacyVerdict::kDoubtful;
+    input.fit.adequacy.tried = 1;
+    input.fit.adequacy.causes.push_back(
+        {.code = "channel_lag", .unit = "s", .option = "--lag fit"});
+    input.fit.records[0].facts.half_gap = half_gap < 0 ? *slip_force.lower95 : half_gap;
+    return ToText(MakeReport(std::move(input)));
+  };
+  constexpr double kItsLowerEnd = -1;
+  EXPECT_THAT(text_of(50, 20.0), HasSubstr("intervals of slip_force: up to 50 times as wide as "
+                                           "standard errors make them, to cover what the\n"
+                                           "  causes above would change\n"));
+  EXPECT_THAT(text_of(50, kItsLowerEnd),
+              HasSubstr("causes above would change, and the measured half gap, 800 mN\n"));
+  EXPECT_THAT(text_of(2, 20.0), Not(HasSubstr("times as wide")));
+}
+
+TEST(Text, OfAnOpenShapeHasNoSlipOfMindlins) {
+  ReportInput input = MadeInput();
+  EXPECT_THAT(ToText(MakeReport(MadeInput())), HasSubstr("gross slip (α = 1/3)"));
+  input.fit.parameters[1].identifiability = identification::Identifiability::kNotIdentifiable;
+  EXPECT_THAT(ToText(MakeReport(std::move(input))), Not(HasSubstr("gross slip (α = 1/3)")));
+}
+
+TEST(Text, OfAForceWithoutALoopSaysSoFirst) {
+  ReportInput input = MadeInput();
+  input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
+  input.fit.adequacy.tried = 1;
+  input.fit.findings = {{.code = "loop_not_seen",
+                         .parameters = {"sigma", "alpha", "slip_force"},
+                         .numbers = {{"r_squared", 0.031}}}};
+  EXPECT_THAT(ToText(MakeReport(std::move(input))),
+              StartsWith("inadequate: no loop is seen in the force, of whose variance the model "
+                         "explains 3.1 %;"));
 }
 
 TEST(Text, HasNoChanceThatIsZero) {

@@ -34,9 +34,10 @@ struct LoopDescription {
   /// Whether the record says when the contact slips: σ, α and Tc are identifiable or held.
   bool knows_slip = true;
   double slip_force_share = 0.0;  ///< T*/Tc [-] of the law
-  /// c/a [-] of a Mindlin contact under T*, 0 in gross slip; empty where Tc has no value.
+  /// c/a [-] of a Mindlin contact under T*, 0 in gross slip; empty where the regime is.
   std::optional<double> stick_radius_ratio;
-  std::optional<SlipRegime> regime;  ///< likewise: with a lower limit of Tc it is known
+  /// Empty where Tc has no value, nor a lower limit of which the fitted law stays short.
+  std::optional<SlipRegime> regime;
 };
 
 /// From this share of Tc on a law with α >= 1 is said to slip as a whole, which it never quite

@@ -57,6 +57,10 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
   return causes;
 }
 
+bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds) {
+  return cause.size_p_value < thresholds.cause;
+}
+
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
                        std::span<const DepartureFit> causes, const Thresholds& thresholds,
                        std::span<const ParameterEstimate> estimates) {
@@ -68,12 +72,13 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
   const auto& reported = problem.parameters.reported();
   for (const DepartureFit& fit : causes) {
     const Departure& departure = Departures()[fit.departure];
-    Cause& cause = adequacy.causes.emplace_back(Cause{.code = departure.code,
-                                                      .delta_aicc = fit.delta_aicc,
-                                                      .explains = fit.explains,
-                                                      .size = SizeOf(fit),
-                                                      .unit = fit.unit,
-                                                      .option = OptionOf(problem, fit)});
+    Cause& cause = adequacy.causes.emplace_back(
+        Cause{.code = departure.code,
+              .delta_aicc = fit.delta_aicc,
+              .explains = fit.explains,
+              .size = SizeOf(fit),
+              .unit = SaysItsSize(fit, thresholds) ? fit.unit : std::string_view(),
+              .option = OptionOf(problem, fit)});
     for (std::size_t k = 0; k < reported.size(); ++k) {
       if (reported[k] > kSlipForce) continue;
       cause.moves =
@@ -124,6 +129,7 @@ std::optional<Finding> FindSlowResiduals(const FitResult& result, const Threshol
 
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
+  if (result.FindFinding("loop_not_seen") != nullptr) return true;
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
          result.adequacy.misfit > thresholds.failing_misfit * SizeOfResponse(result);
 }

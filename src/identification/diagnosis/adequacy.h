@@ -20,6 +20,10 @@ bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);
 /// clearly.
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
 
+/// Is the size of a cause, which is that of the first of its columns, told from none? Where the
+/// others make the cause it is as near zero as noise has it.
+bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
+
 /// @param estimates  of the reported parameters, with the intervals that the model itself gives
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
                        std::span<const DepartureFit> causes, const Thresholds& thresholds,
@@ -39,7 +43,8 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds);
 /// told from nothing that changes slowly.
 std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds);
 
-/// A misfit that is no noise and as large as failing_misfit, wherever it comes back.
+/// A misfit that is no noise and as large as failing_misfit, wherever it comes back; or a force in
+/// which no loop is seen.
 bool IsInadequate(const FitResult& result, const Thresholds& thresholds);
 
 }  // namespace mindahl::identification

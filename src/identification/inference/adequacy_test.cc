@@ -70,6 +70,11 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
       LinearStep step = columns.Step(places);
       fit.explains = step.explains;
       fit.size = step.size * departures.unit_of_size[first];
+      fit.size_p_value = fit.p_value;
+      if (places.size() > 1) {
+        const double errors = step.size_error > 0 ? step.size / step.size_error : 0.0;
+        fit.size_p_value = PValueOfF(errors * errors, columns.degrees_of_freedom());
+      }
       fit.step = std::move(step.step);
       fit.error = std::move(step.error);
       const Departure& departure = Departures()[fit.departure];

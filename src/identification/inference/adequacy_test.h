@@ -19,6 +19,7 @@ struct DepartureFit {
   double delta_aicc = 0.0;                    // against the fit without
   double explains = 0.0;                      // share of the sum of squares
   double size = 0.0;                          // of its first column, in its unit
+  double size_p_value = 1.0;                  // that noise alone makes that
   std::string_view unit = {};
   std::vector<double> step = {};   // of θ, one a free parameter
   std::vector<double> error = {};  // standard error of θ with it, likewise

@@ -29,7 +29,7 @@ constexpr std::array kVerdicts = {
     Row{"shape_or_rig", Identifiability::kNotIdentifiable},
     Row{"unknown_past", Identifiability::kNotIdentifiable},
     Row{"few_places", Identifiability::kNotIdentifiable},
-    Row{"loop_not_seen", Identifiability::kNotIdentifiable},
+    Row{"loop_not_seen", Identifiability::kNotIdentifiable, true},
     Row{"rig_not_tried", Identifiability::kNotIdentifiable},
     Row{"slip_force_bounded_below", Identifiability::kBoundedBelow},
     Row{"sigma_bounded_below", Identifiability::kBoundedBelow},
@@ -59,6 +59,8 @@ void WithdrawInadequate(FitResult& result) {
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   result.mindlin_test.reset();
   result.branch_shapes.clear();
+  // Departures are taken to first order, here of a curve that is none of the record's.
+  if (result.FindFinding("loop_not_seen") != nullptr) result.adequacy.causes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {
     // Another account of a curve that is not there: also where it is but a note.
     const bool is_of_the_curve = finding.code == "shape_or_rig";
