@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the Debian packages, installs them on a clean root and uses them there: the program on a
-# record, an example against the library by pkg-config, the completions read by zsh, and the Python
-# module where there is one. Needs root and Debian's mirror; leaves build/package/packages.
+# record, its manual page, the completions read by zsh, the examples against the library by pkg-config
+# and by CMake, and the Python module. Needs root and Debian's mirror; leaves build/package/packages.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -30,8 +30,8 @@ install ./mindahl_*.deb
 mindahl simulate --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 2 --noise-force 0.1 -o loop.csv
 mindahl fit loop.csv --json fit.json | head -20
 grep -q '"schema": "mindahl.fit/1"' fit.json
-# A minimal root leaves out every manual page but the list of what a package has.
-dpkg -L mindahl | grep -qx /usr/share/man/man1/mindahl.1.gz
+install man-db
+man mindahl | grep -q 'mindahl fit'
 bash -c '. /usr/share/bash-completion/completions/mindahl; COMP_WORDS=(mindahl fi); COMP_CWORD=1
          _mindahl; test "${COMPREPLY[*]}" = fit'
 install zsh
@@ -51,11 +51,18 @@ done
 ./fit_to_json loop.csv >library.json
 grep -q '"schema": "mindahl.fit/1"' library.json
 test -s /usr/share/mindahl/schema/fit.json
+install cmake make
+cmake -S examples -B examples_of_cmake >/dev/null
+cmake --build examples_of_cmake >/dev/null
+./examples_of_cmake/fit_arrays
+./examples_of_cmake/mass_on_contact
 
-if ls ./python3-mindahl_*.deb >/dev/null 2>&1; then
-  install ./python3-mindahl_*.deb
-  python3 -c 'import mindahl; print(mindahl.__version__)'
-fi
+install ./python3-mindahl_*.deb
+python3 -c '
+import json, mindahl
+fitted = mindahl.fit("loop.csv")
+assert fitted.to_dict()["parameters"] == json.load(open("fit.json"))["parameters"]
+print(mindahl.__version__, repr(fitted))'
 apt-get remove -y -q mindahl >/dev/null
 test ! -e /usr/bin/mindahl
 END
