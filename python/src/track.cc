@@ -182,6 +182,7 @@ py::dict Describe(const campaign::CourseDescription& course, std::string_view un
     described["slope"] = stretch.slope;
     described["slope_p_value"] = stretch.slope_p_value;
     described["trends"] = stretch.trends;
+    described["time_constant"] = py::cast(stretch.time_constant);
     stretches.append(described);
   }
   py::list changes;

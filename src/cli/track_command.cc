@@ -401,12 +401,12 @@ std::vector<campaign::Evolution> Run::Evolutions() const {
     const campaign::TrackedQuantity& quantity = tracked_[k];
     if (!quantity.is_drawn || courses_[k].stretches.empty()) continue;
     if (quantity.name == "slip_force" && is_known("friction_coefficient")) continue;
-    evolutions.push_back({.name = std::string(quantity.name),
-                          .unit = std::string(UnitOf(quantity.unit)),
-                           .has_errors =
-                               quantity.has_standard_error && totals_.courses.have_errors()[k],
-                           .course = totals_.courses.courses()[k],
-                          .description = courses_[k]});
+    evolutions.push_back(
+        {.name = std::string(quantity.name),
+         .unit = std::string(UnitOf(quantity.unit)),
+         .has_errors = quantity.has_standard_error && totals_.courses.have_errors()[k],
+         .course = totals_.courses.courses()[k],
+         .description = courses_[k]});
   }
   return evolutions;
 }

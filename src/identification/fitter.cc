@@ -489,6 +489,16 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
   Judge(result.parameters, result.findings);
 }
 
+/// Does the likelihood allow α = 1/3, which its parabola excludes?
+bool TestContradictsInterval(const FitResult& result) {
+  constexpr double kMindlin = 1.0 / 3;
+  constexpr double kOutside95 = 0.05;
+  const ParameterEstimate& alpha = *result.Find("alpha");
+  if (!alpha.lower95 || !alpha.upper95) return false;
+  const bool is_excluded = kMindlin < *alpha.lower95 || kMindlin > *alpha.upper95;
+  return is_excluded && result.mindlin_test->p_value > kOutside95;
+}
+
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
 /// @param at     the problem by all its free parameters, at the solution
 /// @param rival  the other past of the contact, where the record hardly tells; else null
@@ -507,6 +517,10 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     WidenByProfiles(attempt, problem, solution, noise, estimates, result);
     result.mindlin_test = TestMindlin(problem, solution, noise, estimates, options, buffers);
     if (result.mindlin_test) {
+      if (TestContradictsInterval(result)) {
+        WidenByRanges(problem, ProfileShape(problem, solution, noise, estimates, options, buffers),
+                      estimates.quantile(), result);
+      }
       const std::optional<RigAlternative> rig =
           TryRig(problem, attempt.thin, solution, *result.mindlin_test, noise, estimates, options,
                  buffers);

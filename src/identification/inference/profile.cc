@@ -68,7 +68,8 @@ models::BranchLaw LawOf(const Parameters& parameters, const std::vector<double>&
           .slip_force = parameters[kSlipForce].ToValue(theta[kSlipForce])};
 }
 
-void Include(SlipForceProfile& profile, const std::vector<double>& theta) {
+template <typename Ranges>
+void Include(Ranges& profile, const std::vector<double>& theta) {
   const auto include = [](Range& range, double value) {
     range.lower = std::min(range.lower, value);
     range.upper = std::max(range.upper, value);
@@ -209,7 +210,11 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
                           SearchBuffers& buffers) {
   if (problem.parameters[kStiffness].fixed) return false;
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kStiffness);
-  if (half <= options.thresholds.rigid_error && best.side[kStiffness] == BoundSide::kInside) {
+  // Where nothing but rounding is left the parabola is of its derivatives at a corner.
+  const double rms = std::sqrt(best.sum_of_squares / static_cast<double>(problem.data->counted));
+  const bool only_rounding = !noise.is_known && rms < kRoundingRms;
+  const bool is_inside = best.side[kStiffness] == BoundSide::kInside;
+  if (half <= options.thresholds.rigid_error && is_inside && !only_rounding) {
     return false;
   }
   HeldParameter held(problem, kStiffness, best, noise, estimates, SolverOptionsOf(options),
@@ -219,16 +224,50 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
   return held.At(start[kStiffness], start) < estimates.quantile() * estimates.quantile();
 }
 
+namespace {
+
+ParameterEstimate& FindIn(FitResult& result, std::string_view name) {
+  return *std::ranges::find(result.parameters, name, &ParameterEstimate::name);
+}
+
+}  // namespace
+
+ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const Noise& noise,
+                            const Estimates& estimates, const FitOptions& options,
+                            SearchBuffers& buffers) {
+  constexpr double kStep = 0.05;
+  const double fitted = best.theta[kShape];
+  ProfiledRanges ranges{.slip_force = {best.theta[kSlipForce], best.theta[kSlipForce]},
+                        .shape_exponent = {fitted, fitted},
+                        .stiffness = {best.theta[kStiffness], best.theta[kStiffness]}};
+  const Parameter& shape = problem.parameters[kShape];
+  const double critical = estimates.quantile() * estimates.quantile();
+  HeldParameter held(problem, kShape, best, noise, estimates, SolverOptionsOf(options), buffers);
+  for (const double step : {-kStep, kStep}) {
+    std::vector<double> start = best.theta;
+    while (start[kShape] + step >= shape.lower && start[kShape] + step <= shape.upper) {
+      start[kShape] += step;
+      if (!(held.At(start[kShape], start) < critical)) break;
+      Include(ranges, held.solution().theta);
+      start = held.solution().theta;
+    }
+  }
+  return ranges;
+}
+
+void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double quantile,
+                   FitResult& result) {
+  Widen(FindIn(result, "sigma"), problem.parameters[kStiffness], ranges.stiffness, quantile);
+  Widen(FindIn(result, "alpha"), problem.parameters[kShape], ranges.shape_exponent, quantile);
+  Widen(FindIn(result, "slip_force"), problem.parameters[kSlipForce], ranges.slip_force, quantile);
+}
+
 void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, double quantile,
                     double peak_force, FitResult& result) {
-  const auto find = [&](std::string_view name) -> ParameterEstimate& {
-    return *std::ranges::find(result.parameters, name, &ParameterEstimate::name);
-  };
-  ParameterEstimate& alpha = find("alpha");
-  ParameterEstimate& slip_force = find("slip_force");
-  Widen(find("sigma"), problem.parameters[kStiffness], profile.stiffness, quantile);
-  Widen(alpha, problem.parameters[kShape], profile.shape_exponent, quantile);
-  Widen(slip_force, problem.parameters[kSlipForce], profile.slip_force, quantile);
+  ParameterEstimate& alpha = FindIn(result, "alpha");
+  ParameterEstimate& slip_force = FindIn(result, "slip_force");
+  WidenByRanges(problem, {profile.slip_force, profile.shape_exponent, profile.stiffness}, quantile,
+                result);
   if (!profile.open_above) return;
   slip_force.upper95.reset();
   slip_force.standard_error.reset();

@@ -15,6 +15,13 @@ struct Range {
   double upper = 0.0;
 };
 
+/// Of the points of a profile that are not rejected.
+struct ProfiledRanges {
+  Range slip_force = {};      // ln Tc
+  Range shape_exponent = {};  // α
+  Range stiffness = {};       // ln σ
+};
+
 /// The likelihood along the one direction in which hysteresis loops are badly determined.
 ///
 /// Far from gross slip a loop depends on σ and α/Tc, and weakly on the rest (docs/theory.md §10):
@@ -60,6 +67,17 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
 bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const Noise& noise,
                           const Estimates& estimates, const FitOptions& options,
                           SearchBuffers& buffers);
+
+/// The likelihood along α, from the estimate outwards. Where few samples lie on the bend of the
+/// branches σ and α are told by next to nothing together, and a fit is anywhere in a flat valley,
+/// at whose floor's end the parabola sees a steep wall.
+ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const Noise& noise,
+                            const Estimates& estimates, const FitOptions& options,
+                            SearchBuffers& buffers);
+
+/// Puts the ranges into the intervals where these are narrower.
+void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double quantile,
+                   FitResult& result);
 
 /// Puts what a profile found into the intervals: the wider of both, and open ends.
 /// @param peak_force  T* [N]: a contact that carried it has at least that slip force
