@@ -3,7 +3,6 @@
 // in single precision; the table of docs/tradeoff.md.
 //   build/release/bench/identification_trade [loops]
 #include <fmt/format.h>
-#include <time.h>
 
 #include <array>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
+#include "processor_time.h"
 
 namespace {
 
@@ -78,13 +78,6 @@ Record AsGiven(const Record& record, const Way& way) {
     given.force.push_back(value(record.force[i]));
   }
   return given;
-}
-
-/// Of the processor, which other programs on the machine disturb less than the clock [s].
-double ProcessorTime() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 struct Outcome {

@@ -1,7 +1,5 @@
 // Times fits of one record, for comparison with other programs: bench/peers/compare.py runs it.
 //   mindahl_fit RECORD.csv REPEATS
-#include <time.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
@@ -15,6 +13,7 @@
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/response.h"
+#include "processor_time.h"
 
 namespace {
 
@@ -31,19 +30,12 @@ const std::vector<std::pair<const char*, Depth>> kDepths = {{"estimate", Depth::
                                                             {"full", Depth::kFull},
                                                             {"thorough", Depth::kThorough}};
 
-/// Of the processor, which other programs on the machine disturb less than the clock.
-double ProcessorMilliseconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
-}
-
 double MedianMilliseconds(int repeats, const std::function<void()>& call) {
   std::vector<double> times;
   for (int i = 0; i < repeats; ++i) {
-    const double begin = ProcessorMilliseconds();
+    const double begin = ProcessorTime();
     call();
-    times.push_back(ProcessorMilliseconds() - begin);
+    times.push_back(1e3 * (ProcessorTime() - begin));
   }
   std::ranges::sort(times);
   const std::size_t middle = times.size() / 2;

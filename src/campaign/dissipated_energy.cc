@@ -1,6 +1,5 @@
 #include "mindahl/campaign/dissipated_energy.h"
 
-#include <algorithm>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <vector>
 
@@ -13,7 +12,7 @@ constexpr std::size_t kNeighbours = 9;
 
 void DissipatedEnergy::Add(const CycleFit& fit) {
   const double steps = fit.samples > 1 ? static_cast<double>(fit.samples - 1) : 0.0;
-  const bool is_open = std::ranges::find(fit.flags, "not_closed") != fit.flags.end();
+  const bool is_open = fit.HasFlag("not_closed");
   if (is_open && !of_a_step_.empty()) {
     std::vector<double> neighbours(of_a_step_.begin(), of_a_step_.end());
     total_ += cycles_ * steps * boost::math::statistics::median(neighbours);

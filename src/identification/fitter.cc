@@ -71,7 +71,7 @@ void RequireTermsOfResponse(const FitOptions& options) {
 
 /// The displacement of an imposed force is that of one load.
 void RequireOneLoad(const ScaledRecords& data) {
-  if (data.excitation == loop::Channel::kDisplacement) return;
+  if (!data.is_forced()) return;
   const bool varies = std::ranges::any_of(
       data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
   if (!data.is_load_series && !data.load_varies && !varies) return;
@@ -97,11 +97,11 @@ void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
   constexpr double kLargest = 1e100;  // in half ranges of the force
   const std::optional<double> noise = options.response_noise();
   if (!noise || *noise / data.response_unit() < kLargest) return;
-  const bool is_force = data.excitation == loop::Channel::kDisplacement;
-  ThrowInvalid(
-      is_force ? "force noise [N]" : "displacement noise [m]", *noise,
-      fmt::format("must be below 1e100 times half the range of the {}, {:.4g} {}",
-                  is_force ? "force" : "displacement", data.response_unit(), is_force ? "N" : "m"));
+  const bool is_forced = data.is_forced();
+  ThrowInvalid(is_forced ? "displacement noise [m]" : "force noise [N]", *noise,
+               fmt::format("must be below 1e100 times half the range of the {}, {:.4g} {}",
+                           is_forced ? "displacement" : "force", data.response_unit(),
+                           is_forced ? "m" : "N"));
 }
 
 /// How many samples are left out for what: "; of 12 that were read 8 are left out: 2 glitches, …".
@@ -234,7 +234,7 @@ void FillFitted(const Attempt& attempt, const Problem& problem, std::span<const 
     const ScaledRecord& record = data.records[r];
     const RecordView& view = attempt.prepared.records[r].record;
     RecordFit& fit = result.records[r];
-    const bool is_forced = data.excitation == loop::Channel::kForce;
+    const bool is_forced = data.is_forced();
     const std::span<const double> measured = is_forced ? view.displacement : view.force;
     const double unit = is_forced ? data.length : data.sense * data.force;
     const std::span<const double> response = record.response();
@@ -364,8 +364,7 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   AdequacyTest test =
       TestAdequacy(problem, solution, noise, displacement, estimates, thresholds, buffers.response);
   // A load that varies would have to be read as late.
-  const bool fits_force = problem.data->excitation == loop::Channel::kDisplacement;
-  if (IsDoubtful(test, thresholds) && !problem.data->load_varies && fits_force) {
+  if (IsDoubtful(test, thresholds) && !problem.data->load_varies && !problem.data->is_forced()) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
   }
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
@@ -489,16 +488,6 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
   Judge(result.parameters, result.findings);
 }
 
-/// Does the likelihood allow α = 1/3, which its parabola excludes?
-bool TestContradictsInterval(const FitResult& result) {
-  constexpr double kMindlin = 1.0 / 3;
-  constexpr double kOutside95 = 0.05;
-  const ParameterEstimate& alpha = *result.Find("alpha");
-  if (!alpha.lower95 || !alpha.upper95) return false;
-  const bool is_excluded = kMindlin < *alpha.lower95 || kMindlin > *alpha.upper95;
-  return is_excluded && result.mindlin_test->p_value > kOutside95;
-}
-
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
 /// @param at     the problem by all its free parameters, at the solution
 /// @param rival  the other past of the contact, where the record hardly tells; else null
@@ -517,7 +506,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     WidenByProfiles(attempt, problem, solution, noise, estimates, result);
     result.mindlin_test = TestMindlin(problem, solution, noise, estimates, options, buffers);
     if (result.mindlin_test) {
-      if (TestContradictsInterval(result)) {
+      if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
         WidenByRanges(problem, ProfileShape(problem, solution, noise, estimates, options, buffers),
                       estimates.quantile(), result);
       }
@@ -528,13 +517,13 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
         result.mindlin_test->rig_stiffness = rig->rig_stiffness;
         result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
       }
-      const bool fits_force = problem.data->excitation == loop::Channel::kDisplacement;
-      if ((problem.data->load_varies || !fits_force) &&
+      const bool is_forced = problem.data->is_forced();
+      if ((problem.data->load_varies || is_forced) &&
           WantsRig(problem, solution, *result.mindlin_test, options.thresholds)) {
         result.findings.push_back({.code = "rig_not_tried",
                                    .parameters = {"sigma", "alpha"},
                                    .numbers = {{"alpha", result.law.shape_exponent}},
-                                   .kind = fits_force ? "varying_load" : "imposed_force"});
+                                   .kind = is_forced ? "imposed_force" : "varying_load"});
       }
     }
   }
@@ -729,7 +718,6 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   Noise noise;
   bool settled = true;
   std::optional<TurningPointFit> turned;
-  bool fits_turns = false;
   if (std::isfinite(best->solution->sum_of_squares)) {
     if (is_weighted) {
       const auto fit_with_weights = [&] {
@@ -755,24 +743,24 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
       const bool has_lag = best->problem.parameters.has_lag();
       // Nor under a load that varies: the way between the samples is not the displacement's alone.
       // An imposed force is taken as it was sampled.
-      const bool is_driven = data.excitation == loop::Channel::kDisplacement;
-      if (best->solution->converged && !gated && !has_lag && !data.load_varies && is_driven) {
+      if (best->solution->converged && !gated && !has_lag && !data.load_varies &&
+          !data.is_forced()) {
         turned = FitTurningPointsIfNeeded(best->problem, *best->solution, given, buffers);
       }
       if (turned) {
         best->problem.data = &turned->records->data;
         *best->solution = turned->solution;
-        fits_turns = turned->records->data.turns_are_fitted;
-        if (rival && !fits_turns) {
+        if (rival && !best->problem.data->turns_are_fitted) {
           rival->problem.data = &turned->records->data;
           buffers.solver.Bind(rival->problem, buffers.response);
           const std::vector<double> start = rival->solution->theta;
           buffers.solver.Solve(start, SolverOptionsOf(given), *rival->solution);
         }
       }
-      noise = PlainNoise(*best->problem.data, given, best->solution->sum_of_squares,
-                         best->problem.parameters.free().size() +
-                             (fits_turns ? turned->records->overshoot.size() : 0));
+      noise = PlainNoise(
+          *best->problem.data, given, best->solution->sum_of_squares,
+          best->problem.parameters.free().size() +
+              (best->problem.data->turns_are_fitted ? turned->records->overshoot.size() : 0));
     }
   }
   const Solution& solution = *best->solution;
@@ -792,10 +780,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     result.termination.assign("The weights of the samples did not settle.");
     result.findings.push_back({.code = "weights_not_settled"});
   }
-  if (data.excitation == loop::Channel::kDisplacement) {
-    result.force_noise = noise.force * data.force;
-  } else {
+  if (data.is_forced()) {
     for (RecordFit& fit : result.records) fit.displacement_noise = noise.force * data.length;
+  } else {
+    result.force_noise = noise.force * data.force;
   }
   result.outliers = noise.outliers;
   FillParameters(best->problem, solution, result);
@@ -810,6 +798,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     Predict(best->problem, solution.theta, buffers.response, predicted);
     FillFitted(attempt, best->problem, predicted, result);
   }
+  const bool fits_turns = best->problem.data->turns_are_fitted;
   if (fits_turns) {
     std::size_t k = 0;
     double longest = 0.0;
@@ -900,10 +889,7 @@ const RecordFit& FitResult::WidestRecord() const {
 }
 
 models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
-  return {
-      .tangential_stiffness = law.tangential_stiffness * std::pow(record.load_ratio, load_exponent),
-      .shape_exponent = law.shape_exponent,
-      .slip_force = law.slip_force * record.load_ratio};
+  return models::AtLoad(law, record.load_ratio, load_exponent);
 }
 
 double FitResult::ResponseNoise() const {

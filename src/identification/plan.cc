@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "identification/inference/displacement_errors.h"
@@ -63,21 +62,8 @@ void Require(const Expectation& expected, const Protocol& protocol, const FitOpt
 
 bool IsRigid(const models::SeriesSpring& rig) { return std::isinf(rig.stiffness); }
 
-/// At a load over the one of the law: σ ∝ N^p, Tc ∝ N.
-models::BranchLaw AtLoad(const Expectation& expected, double load) {
-  models::BranchLaw law = expected.law;
-  law.tangential_stiffness *= std::pow(load, expected.load_exponent);
-  law.slip_force *= load;
-  return law;
-}
-
 std::vector<double> LoadsOf(const Protocol& protocol) {
   return protocol.loads.empty() ? std::vector{1.0} : protocol.loads;
-}
-
-double MeanLoad(const Protocol& protocol) {
-  const std::vector<double> loads = LoadsOf(protocol);
-  return std::accumulate(loads.begin(), loads.end(), 0.0) / static_cast<double>(loads.size());
 }
 
 /// The loop of a law as it would be measured without noise.
@@ -103,7 +89,8 @@ loop::Record LoopOf(const models::BranchLaw& law, const models::SeriesSpring& ri
 std::vector<loop::Record> LoopsOf(const Expectation& expected, const Protocol& protocol) {
   std::vector<loop::Record> records;
   for (const double load : LoadsOf(protocol)) {
-    records.push_back(LoopOf(AtLoad(expected, load), expected.rig, protocol));
+    records.push_back(
+        LoopOf(models::AtLoad(expected.law, load, expected.load_exponent), expected.rig, protocol));
   }
   return records;
 }
@@ -208,8 +195,10 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
   }
   const Problem problem{&data, options.model, protocol.initial_state,
                         Parameters(data, options, protocol.initial_state, &arena)};
+  const double mean_load = protocol.loads.empty() ? 1.0 : data.reference_load;
   Solution solution =
-      SolutionAt(expected, AtLoad(expected, MeanLoad(protocol)), problem.parameters);
+      SolutionAt(expected, models::AtLoad(expected.law, mean_load, expected.load_exponent),
+                 problem.parameters);
   const DisplacementErrors errors(prepared, data);
   Response response;
   Noise noise;

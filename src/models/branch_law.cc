@@ -24,6 +24,12 @@ void Validate(const BranchLaw& law) {
   }
 }
 
+BranchLaw AtLoad(const BranchLaw& law, double load_ratio, double load_exponent) {
+  return {.tangential_stiffness = law.tangential_stiffness * std::pow(load_ratio, load_exponent),
+          .shape_exponent = law.shape_exponent,
+          .slip_force = law.slip_force * load_ratio};
+}
+
 double GrossSlipDisplacement(const BranchLaw& law) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const long double beta = 1 - static_cast<long double>(law.shape_exponent);

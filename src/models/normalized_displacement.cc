@@ -9,17 +9,6 @@
 #include "models/reduced_displacement.h"
 
 namespace mindahl::models {
-namespace {
-
-/// Where the force without its offset is zero [N].
-double UnloadedForce(const LoadingPath& path) {
-  const Branch& first = path.branches.front();
-  if (first.start != BranchStart::kSteadyExtreme) return first.origin;
-  return first.origin + first.direction * first.amplitude;
-}
-
-}  // namespace
-
 /// @returns false at slip and beyond
 bool NormalizedDisplacement::PointOn(const Branch& branch, const ForcedLaw& law, double force,
                                      bool with_gradient, Point& point) {
@@ -64,7 +53,7 @@ bool NormalizedDisplacement::Differentiate(const FrictionModel& model, const For
   }
   const bool with_gradient = !gradient.log_slip_force.empty() || !gradient.shape_exponent.empty() ||
                              !gradient.unloaded_force.empty();
-  const double zero = UnloadedForce(path);
+  const double zero = UnloadedAt(path);
   branches_.clear();
   branches_.reserve(path.branches.size());
   Point point;

@@ -213,10 +213,9 @@ PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
       const double load = least + (greatest - least) * i / kSteps;
       const double ratio = load / *fit.normal_load;
       line.x.push_back(load);
-      const double value = quantity.is_stiffness
-                               ? fit.law.tangential_stiffness * std::pow(ratio, fit.load_exponent)
-                               : fit.law.slip_force * ratio;
-      line.y.push_back(quantity.scale * value);
+      const models::BranchLaw law = models::AtLoad(fit.law, ratio, fit.load_exponent);
+      line.y.push_back(quantity.scale *
+                       (quantity.is_stiffness ? law.tangential_stiffness : law.slip_force));
     }
     panel.series.push_back(std::move(line));
   }

@@ -116,9 +116,9 @@ FitResult Widened(const SlipForceProfile& profile, double peak_force, bool shape
 
 TEST(Profile, TakesTheWiderOfBothAtEachEnd) {
   // The records' units are 1: σ and Tc are exp θ, α is θ.
-  const FitResult result = Widened({.slip_force = {std::log(0.95), std::log(1.5)},
-                                    .shape_exponent = {0.5, 1.05},
-                                    .stiffness = {std::log(0.95), std::log(1.05)}},
+  const FitResult result = Widened({.ranges = {.slip_force = {std::log(0.95), std::log(1.5)},
+                                               .shape_exponent = {0.5, 1.05},
+                                               .stiffness = {std::log(0.95), std::log(1.05)}}},
                                    0.0);
   const ParameterEstimate& sigma = result.parameters[0];
   EXPECT_EQ(*sigma.lower95, 0.9);
@@ -136,9 +136,9 @@ TEST(Profile, TakesTheWiderOfBothAtEachEnd) {
 
 TEST(Profile, OpenAboveLeavesAtLeastTheForceThatWasCarried) {
   SlipForceProfile open{.open_above = true};
-  open.slip_force = {std::log(0.8), std::log(20)};
-  open.shape_exponent = {0.2, 5.0};
-  open.stiffness = {0.0, 0.0};
+  open.ranges.slip_force = {std::log(0.8), std::log(20)};
+  open.ranges.shape_exponent = {0.2, 5.0};
+  open.ranges.stiffness = {0.0, 0.0};
   const FitResult result = Widened(open, 0.97);
   EXPECT_NEAR(*result.parameters[2].lower95, 0.97, 1e-12);
   EXPECT_FALSE(result.parameters[2].upper95 || result.parameters[2].standard_error);
@@ -166,7 +166,7 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     const SlipForceProfile profile =
         ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
     EXPECT_FALSE(profile.open_above);
-    for (const double end : {profile.slip_force.lower, profile.slip_force.upper}) {
+    for (const double end : {profile.ranges.slip_force.lower, profile.ranges.slip_force.upper}) {
       FitOptions held;
       held.fixed["slip_force"] = stages.problem.parameters[kSlipForce].ToValue(end);
       const double cost = Stages(record, held).Solve().sum_of_squares - best.sum_of_squares;
@@ -175,11 +175,11 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
       EXPECT_LT(cost / variance * share, critical * 1.001);
       EXPECT_GT(cost / variance * share, critical * 0.7);
     }
-    EXPECT_LT(profile.slip_force.lower, best.theta[kSlipForce]);
-    EXPECT_GT(profile.slip_force.upper, best.theta[kSlipForce]);
-    EXPECT_LT(profile.shape_exponent.lower, best.theta[kShape]);
-    EXPECT_GT(profile.shape_exponent.upper, best.theta[kShape]);
-    EXPECT_LT(profile.stiffness.lower, best.theta[kStiffness]);
+    EXPECT_LT(profile.ranges.slip_force.lower, best.theta[kSlipForce]);
+    EXPECT_GT(profile.ranges.slip_force.upper, best.theta[kSlipForce]);
+    EXPECT_LT(profile.ranges.shape_exponent.lower, best.theta[kShape]);
+    EXPECT_GT(profile.ranges.shape_exponent.upper, best.theta[kShape]);
+    EXPECT_LT(profile.ranges.stiffness.lower, best.theta[kStiffness]);
   }
 }
 
@@ -196,7 +196,7 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
     const SlipForceProfile profile =
         ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
     if (variance > 1e-5) {
-      EXPECT_EQ(SideOf(stages.problem.parameters[kShape], profile.shape_exponent.upper),
+      EXPECT_EQ(SideOf(stages.problem.parameters[kShape], profile.ranges.shape_exponent.upper),
                 BoundSide::kUpper);
     }
     EXPECT_EQ(profile.open_above, variance > 1e-5);

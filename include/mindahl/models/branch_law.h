@@ -17,6 +17,11 @@ struct BranchLaw {
 /// @throws InvalidArgument naming the parameter, its value and the rule
 void Validate(const BranchLaw& law);
 
+/// The law of the same contact under another load: σ·(N/N₀)^p, α, Tc·N/N₀.
+/// @param load_ratio     N/N₀ [–], finite, > 0
+/// @param load_exponent  p [–], finite
+BranchLaw AtLoad(const BranchLaw& law, double load_ratio, double load_exponent);
+
 /// Displacement at gross slip [m]: δc = Tc/(σ(1−α)) for α < 1. Infinite for α >= 1, which only
 /// approaches Tc, and where it exceeds the largest double, which no x reaches. Johnson (1985) 7.42
 /// at the limit, for α = 1/3. Relative error < 1 ε = 2.2e-16.

@@ -58,6 +58,14 @@ struct LoadingPath {
   std::vector<std::int32_t> open;  ///< branches still open after the last sample, oldest first
 };
 
+/// Where the contact is unloaded, in the unit of what the path is of: where a virgin one begins, or
+/// the middle of a steady loop.
+[[nodiscard]] inline double UnloadedAt(const LoadingPath& path) {
+  const Branch& first = path.branches.front();
+  if (first.start != BranchStart::kSteadyExtreme) return first.origin;
+  return first.origin + first.direction * first.amplitude;
+}
+
 /// The contact's past, where it is not in the record.
 struct InitialContact {
   InitialState state = InitialState::kVirgin;

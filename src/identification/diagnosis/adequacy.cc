@@ -23,7 +23,7 @@ double ChanceOfNoise(const AdequacyTest& test) {
 /// What to type: a covariate's has its name, quoted where it has blanks.
 std::string OptionOf(const Problem& problem, const DepartureFit& fit) {
   const Departure& departure = Departures()[fit.departure];
-  if (problem.data->excitation == loop::Channel::kForce) {
+  if (problem.data->is_forced()) {
     // What is beside a force has no place in a fit of the displacement.
     return departure.term == "displacement_drift" ? std::string(departure.option) : "";
   }

@@ -441,7 +441,7 @@ std::span<const Departure> Departures() { return kDepartures; }
 
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      Response& response, std::size_t most) {
-  if (problem.data->excitation == loop::Channel::kForce) {
+  if (problem.data->is_forced()) {
     return ColumnsOfDisplacementDepartures(problem, theta, response, most);
   }
   const double slip_force = std::exp(theta[kSlipForce]);

@@ -92,10 +92,7 @@ struct Run {
 /// Each half wave along each branch, which goes on from what it was where the branch starts.
 void FillBulges(const Problem& problem, const models::LoadingPath& path, double slip_force,
                 double unit, std::span<const double> force, std::span<Place> places) {
-  const models::Branch& first = path.branches.front();
-  const double unloaded = first.start == models::BranchStart::kSteadyExtreme
-                              ? first.origin + first.direction * first.amplitude
-                              : first.origin;
+  const double unloaded = models::UnloadedAt(path);
   std::vector<Run> runs;
   for (const models::Branch& branch : path.branches) {
     const bool is_virgin = models::IsVirgin(branch.start);

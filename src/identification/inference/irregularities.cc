@@ -78,9 +78,7 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
   };
   if (!robust) add(kHeavyTails, FindHeavyTails(samples, evidence));
   // A force that is imposed drops by itself.
-  if (problem.data->excitation == loop::Channel::kDisplacement) {
-    add(kStickSlip, FindStickSlip(samples));
-  }
+  if (!problem.data->is_forced()) add(kStickSlip, FindStickSlip(samples));
   return found;
 }
 

@@ -62,7 +62,7 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
                           {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
   at.residual = at.response;
   TakeOffMeasured(problem, {at.residual.data(), samples});
-  if (FitsTurningPoints(*problem.data)) {
+  if (problem.data->turns_are_fitted) {
     const TurningPointColumns turning(problem, theta, response);
     for (Eigen::Index c = 0; c < at.jacobian.cols(); ++c) turning.ProjectOut(at.jacobian.col(c));
   }

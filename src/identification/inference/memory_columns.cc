@@ -298,7 +298,7 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
     result.of.push_back(kOtherLaw);
     result.compared.push_back(kOtherLaw);
   }
-  if (FitsTurningPoints(*problem.data)) {
+  if (problem.data->turns_are_fitted) {
     const TurningPointColumns turning(problem, theta, response);
     for (Eigen::MatrixXd* columns : {&result.shape, &result.differences}) {
       for (Eigen::Index c = 0; c < columns->cols(); ++c) turning.ProjectOut(columns->col(c));

@@ -104,7 +104,7 @@ class Memory {
 }  // namespace
 
 bool CanCompareBranches(const Problem& problem) {
-  return problem.data->excitation == loop::Channel::kDisplacement && !problem.data->load_varies &&
+  return !problem.data->is_forced() && !problem.data->load_varies &&
          !problem.parameters.has_lag() && !problem.parameters.is_load_series();
 }
 

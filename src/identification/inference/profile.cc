@@ -68,15 +68,20 @@ models::BranchLaw LawOf(const Parameters& parameters, const std::vector<double>&
           .slip_force = parameters[kSlipForce].ToValue(theta[kSlipForce])};
 }
 
-template <typename Ranges>
-void Include(Ranges& profile, const std::vector<double>& theta) {
+void Include(ProfiledRanges& ranges, const std::vector<double>& theta) {
   const auto include = [](Range& range, double value) {
     range.lower = std::min(range.lower, value);
     range.upper = std::max(range.upper, value);
   };
-  include(profile.slip_force, theta[kSlipForce]);
-  include(profile.shape_exponent, theta[kShape]);
-  include(profile.stiffness, theta[kStiffness]);
+  include(ranges.slip_force, theta[kSlipForce]);
+  include(ranges.shape_exponent, theta[kShape]);
+  include(ranges.stiffness, theta[kStiffness]);
+}
+
+/// The best fit alone.
+ProfiledRanges RangesAt(const Solution& best) {
+  const auto at = [&](std::size_t p) { return Range{best.theta[p], best.theta[p]}; };
+  return {.slip_force = at(kSlipForce), .shape_exponent = at(kShape), .stiffness = at(kStiffness)};
 }
 
 /// Widens an interval to a likelihood range; its standard error follows where it was too small.
@@ -134,9 +139,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
                                   SearchBuffers& buffers) {
   SlipForceProfile profile;
   const double fitted = best.theta[kSlipForce];
-  profile.slip_force = {fitted, fitted};
-  profile.shape_exponent = {best.theta[kShape], best.theta[kShape]};
-  profile.stiffness = {best.theta[kStiffness], best.theta[kStiffness]};
+  profile.ranges = RangesAt(best);
   const Parameter& parameter = problem.parameters[kSlipForce];
   const double critical = estimates.quantile() * estimates.quantile();  // of F(1, ν)
   HeldParameter held(problem, kSlipForce, best, noise, estimates, SolverOptionsOf(options),
@@ -169,7 +172,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
       last_theta = held.solution().theta;
       far_end_is_open = value < std::max(critical, options.thresholds.open_slip_force);
       if (value < critical) {
-        Include(profile, last_theta);
+        Include(profile.ranges, last_theta);
         accepted_theta = last_theta;
         any_rejected = false;
       } else {
@@ -185,7 +188,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
     for (int i = 0; i < kBisections; ++i) {
       const double middle = accepted_theta[kSlipForce] / 2 + outside / 2;
       if (look_at(middle, Continue(problem.parameters, accepted_theta, middle)) < critical) {
-        Include(profile, held.solution().theta);
+        Include(profile.ranges, held.solution().theta);
         accepted_theta = held.solution().theta;
       } else {
         outside = middle;
@@ -199,7 +202,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
                     [](const ProfilePoint& point) { return point.law.slip_force; });
   // α rises with Tc along the valley: where its bound ends the valley, the data do not.
   const Parameter& shape = problem.parameters[kShape];
-  if (!shape.fixed && SideOf(shape, profile.shape_exponent.upper) == BoundSide::kUpper) {
+  if (!shape.fixed && SideOf(shape, profile.ranges.shape_exponent.upper) == BoundSide::kUpper) {
     profile.open_above = true;
   }
   return profile;
@@ -236,10 +239,7 @@ ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const 
                             const Estimates& estimates, const FitOptions& options,
                             SearchBuffers& buffers) {
   constexpr double kStep = 0.05;
-  const double fitted = best.theta[kShape];
-  ProfiledRanges ranges{.slip_force = {best.theta[kSlipForce], best.theta[kSlipForce]},
-                        .shape_exponent = {fitted, fitted},
-                        .stiffness = {best.theta[kStiffness], best.theta[kStiffness]}};
+  ProfiledRanges ranges = RangesAt(best);
   const Parameter& shape = problem.parameters[kShape];
   const double critical = estimates.quantile() * estimates.quantile();
   HeldParameter held(problem, kShape, best, noise, estimates, SolverOptionsOf(options), buffers);
@@ -266,8 +266,7 @@ void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, dou
                     double peak_force, FitResult& result) {
   ParameterEstimate& alpha = FindIn(result, "alpha");
   ParameterEstimate& slip_force = FindIn(result, "slip_force");
-  WidenByRanges(problem, {profile.slip_force, profile.shape_exponent, profile.stiffness}, quantile,
-                result);
+  WidenByRanges(problem, profile.ranges, quantile, result);
   if (!profile.open_above) return;
   slip_force.upper95.reset();
   slip_force.standard_error.reset();

@@ -33,9 +33,7 @@ struct ProfiledRanges {
 struct SlipForceProfile {
   /// Not clearly rejected where Tc is twenty times the largest force, or α has reached its bound.
   bool open_above = false;
-  Range slip_force = {};      // ln Tc
-  Range shape_exponent = {};  // α
-  Range stiffness = {};       // ln σ
+  ProfiledRanges ranges = {};
   LikelihoodProfile likelihood = {};
 };
 

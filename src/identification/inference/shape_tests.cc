@@ -64,6 +64,13 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
   return test;
 }
 
+bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha) {
+  constexpr double kOutside95 = 0.05;
+  if (!alpha.lower95 || !alpha.upper95) return false;
+  const bool is_excluded = kMindlin < *alpha.lower95 || kMindlin > *alpha.upper95;
+  return is_excluded && test.p_value > kOutside95;
+}
+
 bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
               const Thresholds& thresholds) {
   return test.p_value < thresholds.significance &&
@@ -76,8 +83,7 @@ std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords
                                      const FitOptions& options, SearchBuffers& buffers) {
   // The law of a load that varies has none, nor has that of an imposed force.
   const bool is_wanted = WantsRig(problem, best, test, options.thresholds);
-  const bool fits_force = problem.data->excitation == loop::Channel::kDisplacement;
-  if (!is_wanted || problem.data->load_varies || !fits_force) return std::nullopt;
+  if (!is_wanted || problem.data->load_varies || problem.data->is_forced()) return std::nullopt;
   FitOptions with_rig = options;
   with_rig.terms.emplace_back("rig_stiffness");
   with_rig.fixed["alpha"] = kMindlin;

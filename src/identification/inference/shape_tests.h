@@ -15,6 +15,9 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
                                        const Noise& noise, const Estimates& estimates,
                                        const FitOptions& options, SearchBuffers& buffers);
 
+/// Does the likelihood allow α = 1/3, which the interval by its parabola excludes?
+bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha);
+
 /// α = 1/3 in a rig that gives way.
 struct RigAlternative {
   double rig_stiffness = 0.0;         // [N/m]

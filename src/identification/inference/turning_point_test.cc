@@ -19,29 +19,23 @@ double EffectiveSamples(const ScaledRecords& data, std::span<const double> resid
          AutocorrelationOf(data, residual).SquaredCorrelations();
 }
 
-/// How far the motion may turn beyond any sample; as LongestOvershoots, the longest of them.
-double LongestOvershoot(const ScaledRecords& data) {
-  double longest = 0.0;
+/// The largest of all records' reversals.
+double LargestOf(double (*overshoot)(const ScaledRecord&, std::size_t), const ScaledRecords& data) {
+  double largest = 0.0;
   for (const ScaledRecord& record : data.records) {
-    const auto& x = record.displacement;
-    for (const std::size_t i : record.reversals) {
-      longest = std::max({longest, std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i])});
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      largest = std::max(largest, overshoot(record, k));
     }
   }
-  return longest;
+  return largest;
 }
 
 /// The most that turning points where the motion has them move a parameter, in standard errors: as
 /// if every sample lay on the steepest part of its branch.
 double LargestShift(const Problem& problem, const Solution& best) {
-  double longest = 0.0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
-      longest = std::max(longest, OvershootOfMotion(record, k));
-    }
-  }
   const auto counted = static_cast<double>(problem.data->counted);
-  return counted * std::exp(best.theta[kStiffness]) * longest / std::sqrt(best.sum_of_squares);
+  return counted * std::exp(best.theta[kStiffness]) * LargestOf(OvershootOfMotion, *problem.data) /
+         std::sqrt(best.sum_of_squares);
 }
 
 /// The fit with turning points where the motion has them; empty where that hardly matters, or the
@@ -96,7 +90,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   const std::size_t parameters = problem.parameters.free().size() + reversals;
   if (2 * parameters > data.counted) return of_motion;
   // Missed extremes explain nothing that no sample could show: σ·overshoot is the most they may do.
-  const double most = std::exp(best.theta[kStiffness]) * LongestOvershoot(data);
+  const double most = std::exp(best.theta[kStiffness]) * LargestOf(LongestOvershoot, data);
   if (count * count * most * most / least < 2 * static_cast<double>(reversals)) return of_motion;
 
   const double needed =

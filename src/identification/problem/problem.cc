@@ -9,7 +9,7 @@
 namespace mindahl::identification {
 
 LawPoint PointAt(const Problem& problem, std::span<const double> theta) {
-  const bool is_forced = problem.data->excitation == loop::Channel::kForce;
+  const bool is_forced = problem.data->is_forced();
   return {.log_rate = (is_forced ? 0.0 : theta[kStiffness]) - theta[kSlipForce],
           .shape = theta[kShape],
           .log_travel = problem.parameters.has_rig() ? theta[kSlipForce] - theta[kRig] : 0.0,
@@ -18,7 +18,7 @@ LawPoint PointAt(const Problem& problem, std::span<const double> theta) {
 }
 
 double LogScaleAt(const Problem& problem, std::span<const double> theta) {
-  const bool is_forced = problem.data->excitation == loop::Channel::kForce;
+  const bool is_forced = problem.data->is_forced();
   return theta[kSlipForce] - (is_forced ? theta[kStiffness] : 0.0);
 }
 
@@ -302,7 +302,7 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
     return std::ranges::any_of(columns,
                                [&](std::size_t p) { return parameters[p].term->name == term; });
   };
-  const bool is_forced = problem.data->excitation == loop::Channel::kForce;
+  const bool is_forced = problem.data->is_forced();
   const bool by_rate = (asks(kStiffness) && !is_forced) || asks(kSlipForce) || asks(kLoadExponent);
   const bool by_travel = parameters.has_rig() && (asks(kSlipForce) || asks(kRig));
   const std::string_view origin = OriginTerm(problem.data->excitation);

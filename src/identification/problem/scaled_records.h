@@ -112,10 +112,10 @@ struct ScaledRecords {
   bool load_varies = false;            // within a record, and the law knows it
   bool turns_are_fitted = false;       // are turning points between samples parameters of the fit?
 
+  /// Is the force imposed, and the displacement fitted?
+  [[nodiscard]] bool is_forced() const { return excitation == loop::Channel::kForce; }
   /// Of the channel that is fitted [N or m].
-  [[nodiscard]] double response_unit() const {
-    return excitation == loop::Channel::kForce ? length : force;
-  }
+  [[nodiscard]] double response_unit() const { return is_forced() ? length : force; }
   [[nodiscard]] std::size_t samples() const;
   /// Units, loads and covariates without records, and none that counts.
   [[nodiscard]] ScaledRecords WithoutRecords(std::pmr::memory_resource* memory) const;

@@ -120,9 +120,7 @@ class Solver {
     return {derivatives_.data() + k * samples_, samples_};
   }
 
-  [[nodiscard]] bool is_forced() const {
-    return problem_->data->excitation == loop::Channel::kForce;
-  }
+  [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
 
   const Problem* problem_ = nullptr;
   Response* response_ = nullptr;

@@ -125,9 +125,7 @@ class Plane {
     ClampFree();
   }
 
-  [[nodiscard]] bool is_forced() const {
-    return problem_.data->excitation == loop::Channel::kForce;
-  }
+  [[nodiscard]] bool is_forced() const { return problem_.data->is_forced(); }
 
   /// θ of the last look, with what the options have to say of starts.
   [[nodiscard]] std::span<const double> theta() {

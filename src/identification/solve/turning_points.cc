@@ -104,14 +104,13 @@ std::vector<BranchMotion> MotionOf(const models::LoadingPath& path, const Scaled
 
 }  // namespace
 
-bool FitsTurningPoints(const ScaledRecords& data) { return data.turns_are_fitted; }
-
-namespace {
-
-/// The longer of the steps beside a sample.
-double LongestStep(std::span<const double> x, std::size_t i) {
+double LongestOvershoot(const ScaledRecord& record, std::size_t reversal) {
+  const std::size_t i = record.reversals[reversal];
+  const auto& x = record.displacement;
   return std::max(std::abs(x[i] - x[i - 1]), std::abs(x[i + 1] - x[i]));
 }
+
+namespace {
 
 /// Extremum beyond x₀ of the polynomial through samples first … last about it; from three samples
 /// the parabola's. Newton's form, and his method from the middle.
@@ -181,14 +180,15 @@ double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal) {
   const std::size_t after = is_last ? x.size() - 1 : record.reversals[reversal + 1];
   const std::size_t reach = i >= before + 2 && i + 2 <= after ? 2 : 1;
   const double overshoot = sharp ? *sharp : SmoothOvershoot(x, t, i, i - reach, i + reach);
-  return std::clamp(std::isfinite(overshoot) ? overshoot : 0.0, 0.0, LongestStep(x, i));
+  return std::clamp(std::isfinite(overshoot) ? overshoot : 0.0, 0.0,
+                    LongestOvershoot(record, reversal));
 }
 
 std::vector<double> LongestOvershoots(const ScaledRecords& data) {
   std::vector<double> longest;
   for (const ScaledRecord& record : data.records) {
-    for (const std::size_t i : record.reversals) {
-      longest.push_back(LongestStep(record.displacement, i));
+    for (std::size_t k = 0; k < record.reversals.size(); ++k) {
+      longest.push_back(LongestOvershoot(record, k));
     }
   }
   return longest;

@@ -26,9 +26,6 @@ struct TurnedRecords {
 std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
                                                   std::span<const double> overshoot);
 
-/// Are turning points fitted, so that what they explain is nothing that a parameter does?
-bool FitsTurningPoints(const ScaledRecords& data);
-
 /// How far the motion turns beyond a reversal's sample, by the samples about it alone: >= 0, at
 /// most the longer of the steps beside it. It turns where the lines through the two samples before
 /// and the two after meet if its velocity changes there and hardly beside it, as that of a triangle
@@ -38,6 +35,9 @@ bool FitsTurningPoints(const ScaledRecords& data);
 double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 
 /// How far a turning point may lie beyond its sample: the longer of the steps beside it.
+double LongestOvershoot(const ScaledRecord& record, std::size_t reversal);
+
+/// Of all records' reversals.
 std::vector<double> LongestOvershoots(const ScaledRecords& data);
 
 /// ∂(weighted force)/∂overshoot, a sparse column a reversal: an overshoot moves the branch that
