@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/extremes.h"
 #include "loop/scratch.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
@@ -21,7 +22,7 @@ std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement
   points.reserve(reversals.size() + 2);
   points.assign(reversals.begin(), reversals.end());
   if (points.empty()) return points;
-  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const auto [lowest, highest] = ExtremesOf(displacement);
   const double tolerance = kAtExtreme * (highest - lowest);
   const auto at_extreme = [&](std::size_t end, std::size_t neighbour) {
     const bool upper = displacement[end] > displacement[neighbour];
@@ -91,12 +92,12 @@ struct Swing {
 
 Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last) {
   const std::size_t count = last - first + 1;
-  const auto displacement = std::ranges::minmax(record.displacement.subspan(first, count));
+  const Extremes displacement = ExtremesOf(record.displacement.subspan(first, count));
   const auto [least, greatest] = MovingMeanRange(record.force.subspan(first, count));
   const bool rising = record.displacement[last] > record.displacement[first];
   return {.rising = rising,
-          .lowest = displacement.min,
-          .highest = displacement.max,
+          .lowest = displacement.least,
+          .highest = displacement.greatest,
           .lower_end_force = record.force[rising ? first : last],
           .upper_end_force = record.force[rising ? last : first],
           .least_force = least,
@@ -248,9 +249,10 @@ int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
                std::pmr::memory_resource* scratch) {
   if (record.size() == 0) return 0;
   constexpr double kThin = 0.01;  // energy over that of the rectangle round the loop, 4XT*
-  const auto displacement = std::ranges::minmax(record.displacement);
-  const auto force = std::ranges::minmax(record.force);
-  const double rectangle = (displacement.max - displacement.min) * (force.max - force.min);
+  const Extremes displacement = ExtremesOf(record.displacement);
+  const Extremes force = ExtremesOf(record.force);
+  const double rectangle =
+      (displacement.greatest - displacement.least) * (force.greatest - force.least);
   const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
   if (!energies.empty() && std::abs(Mean(energies)) > kThin * rectangle) {
     return SignOf(Mean(energies));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/extremes.h"
 #include "loop/scratch.h"
 #include "loop/smallest_step.h"
 #include "mindahl/core/error.h"
@@ -23,7 +24,7 @@ bool IsQuantised(std::span<const double> displacement, double step) {
   // Multiples of a finer step are no more whole than rounding leaves them, nor any reading's.
   constexpr double kFinest = 1e-9;
   if (displacement.empty()) return false;
-  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const auto [lowest, highest] = ExtremesOf(displacement);
   if (!(step > kFinest * (highest - lowest))) return false;
   const auto pairs = static_cast<double>(displacement.size() - 1);
   std::size_t broken = 0;

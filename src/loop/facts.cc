@@ -47,8 +47,14 @@ std::optional<std::array<double, kEdges - 1>> MeansBetween(
   for (std::size_t i = 1; i < x.size(); ++i) {
     const double step = x[i] - x[i - 1];
     const auto [lowest, highest] = std::minmax(x[i - 1], x[i]);
+    if (highest <= edges.front() || lowest >= edges.back()) continue;
     while (first > 0 && lowest < edges[first]) --first;
     while (first + 1 < kParts && lowest >= edges[first + 1]) ++first;
+    if (lowest >= edges[first] && highest <= edges[first + 1]) {  // most lie within one
+      integrals[first] += (y[i - 1] + y[i]) / 2 * step;
+      ways[first] += step;
+      continue;
+    }
     for (std::size_t j = first; j < kParts && highest > edges[j]; ++j) {
       const double from = std::clamp(x[i - 1], edges[j], edges[j + 1]);
       const double to = std::clamp(x[i], edges[j], edges[j + 1]);
@@ -163,23 +169,28 @@ CycleFacts MeasureCycle(const RecordView& record, Points points) {
 std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to) {
   constexpr double kFewest = 3;
   const double width = stroke.width();
-  const auto share = [&](std::size_t i) {
-    return std::abs(stroke.displacement[i] - stroke.displacement.front()) / width;
+  const auto for_each = [&](auto visit) {
+    for (std::size_t i = 0; i < stroke.force.size(); ++i) {
+      const double way = std::abs(stroke.displacement[i] - stroke.displacement.front());
+      if (way >= from * width && way <= to * width) visit(stroke.displacement[i], stroke.force[i]);
+    }
   };
   double count = 0.0;
   double mean_x = 0.0;
   double mean_y = 0.0;
+  for_each([&](double x, double y) {
+    ++count;
+    mean_x += x;
+    mean_y += y;
+  });
+  mean_x /= count;
+  mean_y /= count;
   double xx = 0.0;
   double xy = 0.0;
-  for (std::size_t i = 0; i < stroke.force.size(); ++i) {
-    if (share(i) < from || share(i) > to) continue;
-    ++count;
-    const double dx = stroke.displacement[i] - mean_x;
-    mean_x += dx / count;
-    mean_y += (stroke.force[i] - mean_y) / count;
-    xx += dx * (stroke.displacement[i] - mean_x);
-    xy += dx * (stroke.force[i] - mean_y);
-  }
+  for_each([&](double x, double y) {
+    xx += (x - mean_x) * (x - mean_x);
+    xy += (x - mean_x) * (y - mean_y);
+  });
   if (count >= kFewest && xx > 0) return xy / xx;
   const double sense = stroke.rises() ? 1.0 : -1.0;
   const double start = stroke.displacement.front();

@@ -246,13 +246,16 @@ bool GoesOn(Column values, std::size_t begin, std::size_t end) {
          0;
 }
 
-/// The next run of at least so many equal values from a sample on; empty at the end.
+/// The next run of at least so many equal values, two or more, from a sample on; empty at the end.
+/// One of n values has a pair of neighbours at a multiple of n − 1: other pairs are not looked at.
 Run NextRun(Column values, std::size_t from, std::size_t shortest) {
-  for (std::size_t begin = from; begin < values.size();) {
-    std::size_t end = begin + 1;
-    while (end < values.size() && values[end] == values[begin]) ++end;
+  for (std::size_t i = from; i + 1 < values.size(); i += shortest - 1) {
+    if (values[i] != values[i + 1]) continue;
+    std::size_t begin = i;
+    while (begin > from && values[begin - 1] == values[i]) --begin;
+    std::size_t end = i + 2;
+    while (end < values.size() && values[end] == values[i]) ++end;
     if (end - begin >= shortest) return {begin, end};
-    begin = end;
   }
   return {values.size(), values.size()};
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/extremes.h"
 #include "loop/mending.h"
 #include "loop/scratch.h"
 #include "mindahl/core/error.h"
@@ -51,7 +52,7 @@ double DisplacementNoise(const PreparedRecord& prepared, const PreparationOption
   if (options.excitation == Channel::kForce) return 0.0;
   if (options.displacement_noise) return *options.displacement_noise;
   const std::span<const double> displacement = prepared.readings().displacement;
-  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const auto [lowest, highest] = ExtremesOf(displacement);
   const bool is_coarse = prepared.encoder_step > kCoarse * (highest / 2 - lowest / 2);
   return prepared.reversal_gate > 0 || is_coarse ? EstimateDisplacementNoise(displacement, memory)
                                                  : 0.0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/extremes.h"
 #include "core/magnitudes.h"
 #include "mindahl/core/error.h"
 #include "models/madelung.h"
@@ -68,8 +69,13 @@ class OpenBranches {
   [[nodiscard]] std::size_t SamplesAhead(std::span<const double> displacement) const {
     if (memory_ == Memory::kNone || open_.size() < 2) return displacement.size();
     const double closing = ClosingDisplacement(open_.size(), OriginOf{path_, open_});
-    const double direction = direction_;
     std::size_t ahead = 0;
+    constexpr std::size_t kBlock = 32;
+    for (; ahead + kBlock <= displacement.size(); ahead += kBlock) {
+      const auto [least, greatest] = ExtremesOf(displacement.subspan(ahead, kBlock));
+      if (!(direction_ > 0 ? greatest < closing : least > closing)) break;
+    }
+    const double direction = direction_;
     while (ahead < displacement.size() && direction * (displacement[ahead] - closing) < 0) ++ahead;
     return ahead;
   }
@@ -109,7 +115,7 @@ void AppendToRuns(std::vector<BranchRun>& runs, std::size_t begin, std::size_t e
 /// Opens what is open before the first sample.
 void OpenInitialBranches(OpenBranches& open, std::span<const double> displacement,
                          std::int8_t direction, Memory memory, const InitialContact& initial) {
-  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const auto [lowest, highest] = ExtremesOf(displacement);
   if (initial.state == InitialState::kVirgin) {
     const double origin = initial.unloaded_displacement;
     const double amplitude = std::max(highest - origin, origin - lowest);

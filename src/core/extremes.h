@@ -1,0 +1,45 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <span>
+
+namespace mindahl {
+
+struct Extremes {
+  double least = 0.0;
+  double greatest = 0.0;
+};
+
+/// Least and greatest of values that are no NaN, at least one. In registers side by side, as
+/// comparisons one after the other would wait for each other.
+[[nodiscard]] inline Extremes ExtremesOf(std::span<const double> values) {
+  using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+  constexpr std::size_t kSideBySide = 4;
+  const Pair first = {values[0], values[0]};
+  std::array<Pair, kSideBySide> least = {first, first, first, first};
+  std::array<Pair, kSideBySide> greatest = least;
+  std::size_t i = 0;
+  for (; i + 2 * kSideBySide <= values.size(); i += 2 * kSideBySide) {
+    for (std::size_t k = 0; k < kSideBySide; ++k) {
+      Pair pair;
+      std::memcpy(&pair, values.data() + i + 2 * k, sizeof pair);
+      least[k] = pair < least[k] ? pair : least[k];
+      greatest[k] = pair > greatest[k] ? pair : greatest[k];
+    }
+  }
+  Extremes extremes{values[0], values[0]};
+  for (; i < values.size(); ++i) {
+    extremes.least = std::min(extremes.least, values[i]);
+    extremes.greatest = std::max(extremes.greatest, values[i]);
+  }
+  for (std::size_t k = 0; k < kSideBySide; ++k) {
+    extremes.least = std::min({extremes.least, least[k][0], least[k][1]});
+    extremes.greatest = std::max({extremes.greatest, greatest[k][0], greatest[k][1]});
+  }
+  return extremes;
+}
+
+}  // namespace mindahl
