@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -142,7 +143,7 @@ struct Attempt {
   const FitOptions& options;
   const loop::PreparedRecords& prepared;
   ScaledRecords& data;
-  const ScaledRecords& thin;
+  ThinnedRecords& thin;
   SearchBuffers& buffers;
   std::pmr::memory_resource* memory;
 };
@@ -305,22 +306,30 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
   result.load_exponent = parameters.LoadExponentAt(solution.theta);
 }
 
+/// Those that count: the values themselves where all do, else a copy of some, which is kept.
+std::span<const double> Counting(std::span<const double> values, const RecordFit& fit,
+                                 std::deque<std::vector<double>>& kept) {
+  if (fit.left_out == 0) return values;
+  std::vector<double>& counting = kept.emplace_back();
+  counting.reserve(values.size() - fit.left_out);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (fit.counts[i] != 0) counting.push_back(values[i]);
+  }
+  return counting;
+}
+
 /// Statistics of the residuals that count, as the files have them.
-void DescribeFit(const Problem& problem, const Noise& noise, FitResult& result) {
-  std::vector<std::vector<double>> residuals;
-  std::vector<std::vector<double>> measured;
+void DescribeFit(const Attempt& attempt, const Problem& problem, const Noise& noise,
+                 FitResult& result) {
+  std::deque<std::vector<double>> kept;
+  std::vector<std::span<const double>> residuals;
+  std::vector<std::span<const double>> measured;
   const bool is_forced = result.response == loop::Channel::kDisplacement;
-  for (const RecordFit& fit : result.records) {
-    std::vector<double>& residual = residuals.emplace_back();
-    std::vector<double>& of_record = measured.emplace_back();
-    const std::vector<double>& fitted = is_forced ? fit.fitted_displacement : fit.fitted_force;
-    residual.reserve(fit.residual.size());
-    of_record.reserve(fit.residual.size());
-    for (std::size_t i = 0; i < fit.residual.size(); ++i) {
-      if (fit.counts[i] == 0) continue;
-      residual.push_back(fit.residual[i]);
-      of_record.push_back(fitted[i] - fit.residual[i]);
-    }
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const RecordFit& fit = result.records[r];
+    const RecordView& record = attempt.prepared.records[r].record;
+    residuals.push_back(Counting(fit.residual, fit, kept));
+    measured.push_back(Counting(is_forced ? record.displacement : record.force, fit, kept));
   }
   const double scale =
       is_forced ? result.law.slip_force / result.law.tangential_stiffness : result.law.slip_force;
@@ -335,18 +344,26 @@ void DescribeFit(const Problem& problem, const Noise& noise, FitResult& result) 
 /// What comes back in every stroke, and by how much it widens a variance.
 double DescribeStructures(const Problem& problem, std::span<const double> residual,
                           const Thresholds& thresholds, FitResult& result) {
+  const bool is_described = result.depth >= Depth::kIntervals;
   double widening = 1.0;
   std::size_t begin = 0;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     RecordFit& fit = result.records[r];
+    // Of one stroke each way nothing comes back.
+    if (!is_described && record.reversals.size() < 2) {
+      begin += record.size();
+      continue;
+    }
     std::vector<double> in_si(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
       in_si[i] = residual[begin + i] * problem.data->response_unit();
     }
-    fit.structure = DescribeStructure(record.excitation(), record.reversals, in_si, record.counts,
-                                      {thresholds.main_stroke, thresholds.repeat_chance});
-    widening = std::max(widening, fit.structure.Widening());
+    ResidualStructure structure =
+        DescribeStructure(record.excitation(), record.reversals, in_si, record.counts,
+                          {thresholds.main_stroke, thresholds.repeat_chance});
+    widening = std::max(widening, structure.Widening());
+    if (is_described) fit.structure = std::move(structure);
     begin += record.size();
   }
   return widening;
@@ -430,7 +447,7 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
   }
   const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
   noise.repeating = only_rounding ? 1.0 : repeating;
-  DescribeFit(problem, noise, result);
+  DescribeFit(attempt, problem, noise, result);
 }
 
 /// Standard errors, intervals and correlations of the parabola.
@@ -695,8 +712,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   ScaledRecords data = Scale(prepared, given, &arena);
   AddCovariates(given.covariates, depth >= Depth::kIntervals, prepared, given.offsets, data);
   if (HasTerm(given, "lag")) SetClocks(data);
-  std::pmr::vector<std::pmr::vector<std::size_t>> thin_reversals(&arena);
-  const ScaledRecords thin = Thin(data, thin_reversals, &arena);
+  ThinnedRecords thin(data, &arena);
   const Attempt attempt{given, prepared, data, thin, buffers, &arena};
   RequireOneLoad(data);
   RequireRigStifferThanLoop(given, prepared);
@@ -727,8 +743,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
       fit_with_weights();
       // Outliers may have hidden the past and the valley: once more from all starts, as weighted.
       if (given.loss != Loss::kNone) {
-        std::pmr::vector<std::pmr::vector<std::size_t>> reversals(&arena);
-        const ScaledRecords weighted_thin = Thin(data, reversals, &arena);
+        ThinnedRecords weighted_thin(data, &arena);
         const Attempt weighted{given, prepared, data, weighted_thin, buffers, &arena};
         descents.clear();
         best.emplace(FitBestState(weighted, first, second, recorded, rival));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -17,9 +18,15 @@ using Series = std::vector<std::vector<double>>;
 // A handful of additions and a division: a few roundings.
 constexpr double kRounding = 1e-15;
 
+ResidualStatistics Describe(const Series& residuals, const Series& forces, double slip_force) {
+  const std::vector<std::span<const double>> of_residuals(residuals.begin(), residuals.end());
+  const std::vector<std::span<const double>> of_forces(forces.begin(), forces.end());
+  return DescribeResiduals(of_residuals, of_forces, slip_force);
+}
+
 TEST(ResidualStatistics, AreThoseComputedByHand) {
   // r = 1, 2, −1, 0: Σr² = 6, Σ(Δr)² = 1 + 9 + 1 = 11; forces 0, 4, 8, 4: mean 4, Σ(T − 4)² = 32.
-  const ResidualStatistics s = DescribeResiduals(Series{{1, 2, -1, 0}}, Series{{0, 4, 8, 4}}, 10.0);
+  const ResidualStatistics s = Describe(Series{{1, 2, -1, 0}}, Series{{0, 4, 8, 4}}, 10.0);
   EXPECT_EQ(s.samples, 4u);
   EXPECT_NEAR(s.rms, std::sqrt(6.0 / 4), kRounding);
   EXPECT_EQ(s.max_abs, 2.0);
@@ -30,8 +37,7 @@ TEST(ResidualStatistics, AreThoseComputedByHand) {
 
 TEST(ResidualStatistics, DifferencesAreTakenWithinARecordOnly) {
   // Across the join 1 → −1 the difference would add 4.
-  const ResidualStatistics s =
-      DescribeResiduals(Series{{1, 1}, {-1, -1}}, Series{{0, 1}, {2, 3}}, 1.0);
+  const ResidualStatistics s = Describe(Series{{1, 1}, {-1, -1}}, Series{{0, 1}, {2, 3}}, 1.0);
   EXPECT_EQ(s.samples, 4u);
   EXPECT_EQ(s.durbin_watson, 0.0);
   // Forces 0 … 3 over both records: mean 3/2, Σ = 5.
@@ -39,26 +45,26 @@ TEST(ResidualStatistics, DifferencesAreTakenWithinARecordOnly) {
 }
 
 TEST(ResidualStatistics, PerfectFitIsWhite) {
-  const ResidualStatistics s = DescribeResiduals(Series{{0, 0, 0}}, Series{{1, 2, 3}}, 2.0);
+  const ResidualStatistics s = Describe(Series{{0, 0, 0}}, Series{{1, 2, 3}}, 2.0);
   EXPECT_EQ(s.rms, 0.0);
   EXPECT_EQ(s.r_squared, 1.0);
   EXPECT_EQ(s.durbin_watson, 2.0);
 }
 
 TEST(ResidualStatistics, ConstantForceExplainsNothing) {
-  const ResidualStatistics s = DescribeResiduals(Series{{1, -1}}, Series{{5, 5}}, 5.0);
+  const ResidualStatistics s = Describe(Series{{1, -1}}, Series{{5, 5}}, 5.0);
   EXPECT_EQ(s.r_squared, 0.0);
 }
 
 TEST(ResidualStatistics, SizesThatDifferAreRefused) {
-  EXPECT_THROW(DescribeResiduals(Series{{1}}, Series{{1}, {2}}, 1.0), InvalidArgument);
-  EXPECT_THROW(DescribeResiduals(Series{{1, 2}}, Series{{1}}, 1.0), InvalidArgument);
+  EXPECT_THROW(Describe(Series{{1}}, Series{{1}, {2}}, 1.0), InvalidArgument);
+  EXPECT_THROW(Describe(Series{{1, 2}}, Series{{1}}, 1.0), InvalidArgument);
 }
 
 TEST(ResidualStatistics, NoSampleIsRefused) {
   for (const Series& none : {Series{}, Series{{}}}) {
     try {
-      DescribeResiduals(none, none, 1.0);
+      Describe(none, none, 1.0);
       ADD_FAILURE() << "accepted";
     } catch (const InvalidArgument& error) {
       EXPECT_THAT(error.what(), HasSubstr("there must be samples"));

@@ -166,8 +166,8 @@ TEST(Starts, ThinnedRecordKeepsAllReversalsAndTheHistory) {
     record.normal_load.push_back(100.0 + static_cast<double>(i % 7));
   }
   Stages stages(std::vector<Record>{record, testing::Scaled(record, 0.5, 0.5)});
-  std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
-  const ScaledRecords thin = Thin(stages.data, reversals, Stages::Memory());
+  ThinnedRecords thinned(stages.data, Stages::Memory());
+  const ScaledRecords& thin = thinned.Get();
   ASSERT_EQ(thin.records.size(), 2U);
   std::size_t counted = 0;
   for (std::size_t r = 0; r < 2; ++r) {
@@ -202,8 +202,8 @@ TEST(Starts, RespectTheMaskAndARowThatIsLoadedFirst) {
   const FitResult fit = testing::FitOne(record, options);
   EXPECT_TRUE(testing::Recovers(fit, kLaw, testing::kNoiseFree));
   Stages stages(record, options);
-  std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
-  const ScaledRecords thin = Thin(stages.data, reversals, Stages::Memory());
+  ThinnedRecords thinned(stages.data, Stages::Memory());
+  const ScaledRecords& thin = thinned.Get();
   const Problem problem{&thin, stages.problem.model, stages.problem.state,
                         Parameters(stages.problem.parameters, Stages::Memory())};
   Solution scratch;

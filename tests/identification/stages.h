@@ -54,8 +54,7 @@ class Stages {
 
   /// The least-squares solution, from starts on the thinned records.
   identification::Solution Solve() {
-    std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
-    const identification::ScaledRecords thin = identification::Thin(data, reversals, Memory());
+    identification::ThinnedRecords thin(data, Memory());
     identification::Candidate candidate(data, options, problem.state, Memory());
     identification::Solution solution;
     candidate.solution = &solution;

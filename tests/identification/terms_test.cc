@@ -36,7 +36,8 @@ TEST(Terms, EveryRowIsComplete) {
     ASSERT_NE(term.scale, nullptr);
     EXPECT_TRUE(!term.positive || (term.lowest > 0 && term.scale(kUnits) > 0));
     // Who enters linearly has a column, but for the factor of the model's own force.
-    EXPECT_EQ(term.column != nullptr, term.entry == Entry::kLinear && term.name != "slip_force");
+    EXPECT_EQ(term.column != Regressor::kNone,
+              term.entry == Entry::kLinear && term.name != "slip_force");
     // Who is asked for by a word of the command line says what it does; who is not, has none.
     const bool is_asked_for =
         term.presence == Presence::kOnDemand || term.presence == Presence::kReported;
@@ -135,10 +136,25 @@ TEST(Parameters, HaveTheUnitsOfTheFile) {
   EXPECT_DOUBLE_EQ(value_of_one("force_drift"), -20.0 / 5.0);
   EXPECT_DOUBLE_EQ(value_of_one("displacement_offset"), 3e-6);
   EXPECT_DOUBLE_EQ(FindTerm("displacement_offset")->reference(kUnits), 2e-6);
-  const TermSample sample{.displacement = 0.3, .time = -0.7};
-  EXPECT_EQ(FindTerm("plateau_slope")->column(sample), 0.3);
-  EXPECT_EQ(FindTerm("force_offset")->column(sample), 1.0);
-  EXPECT_EQ(FindTerm("force_drift")->column(sample), -0.7);
+}
+
+TEST(Terms, AreFactorsOfColumnsOfTheRecord) {
+  ScaledRecord record(std::pmr::get_default_resource());
+  record.displacement = {0.3};
+  record.time = {-0.7};
+  record.velocity = {4.0};
+  record.covariates.resize(2);
+  record.covariates[1] = {5.0};
+  const auto column_of = [&](const char* name, std::size_t covariate = 0) {
+    return record.ColumnOf(FindTerm(name)->column, covariate);
+  };
+  EXPECT_EQ(column_of("plateau_slope").front(), 0.3);
+  EXPECT_EQ(column_of("force_drift").front(), -0.7);
+  EXPECT_EQ(column_of("viscous").front(), 4.0);
+  EXPECT_EQ(column_of("covariate", 1).front(), 5.0);
+  EXPECT_EQ(FindTerm("force_offset")->column, Regressor::kOne);
+  EXPECT_TRUE(column_of("force_offset").empty());
+  EXPECT_EQ(FindTerm("sigma")->column, Regressor::kNone);
 }
 
 TEST(Parameters, LieAtABoundWithinABillionthOfTheWay) {

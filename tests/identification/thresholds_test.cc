@@ -184,8 +184,7 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double p_val
   const Solution best = stages.Solve();
   const Noise noise = KnownNoise(variance, stages.data.counted);
   const Estimates estimates(stages.problem, best, noise, {}, thresholds, stages.buffers.response);
-  std::pmr::vector<std::pmr::vector<std::size_t>> reversals;
-  const ScaledRecords thin = Thin(stages.data, reversals, Stages::Memory());
+  ThinnedRecords thin(stages.data, Stages::Memory());
   return TryRig(stages.problem, thin, best, MindlinTest{0.0, p_value, {}}, noise, estimates,
                 stages.options, stages.buffers)
       .has_value();

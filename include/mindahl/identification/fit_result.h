@@ -31,7 +31,8 @@ enum class Depth {
   kErrors,     ///< and facts of the record, noise, standard errors, intervals, correlations and
                ///< residuals as if the model were adequate: from the parabola of the likelihood,
                ///< and from its profile where that is wrong about Tc
-  kIntervals,  ///< and adequacy, its causes, and verdicts; intervals cover what these would change
+  kIntervals,  ///< and what repeats in the residuals, adequacy, its causes, and verdicts; intervals
+               ///< cover what these would change
   kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α and
                ///< of the law
   kThorough,   ///< and whether branches are copies of each other, of whatever shape
@@ -120,7 +121,8 @@ struct RecordFit {
   bool load_varies = false;           ///< within the record, as the law was told
   /// Of a load series, from Depth::kFull on; empty where the record by itself is no fit.
   std::optional<RecordAlone> alone;
-  ResidualStructure structure;  ///< of the residuals, in the displacement's sense
+  /// Of the residuals, in the displacement's sense; from depth kIntervals on.
+  ResidualStructure structure;
   /// [N], in the file's sense, offsets included; in a fit of the displacement as measured.
   std::vector<double> fitted_force;
   std::vector<double> residual;  ///< fitted − measured [unit of the response]

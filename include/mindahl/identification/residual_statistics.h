@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace mindahl::identification {
 
@@ -25,8 +24,8 @@ struct ResidualStatistics {
 /// @param slip_force  [N] Tc
 /// @throws InvalidArgument when sizes differ or there is no sample
 /// Effective samples and degrees of freedom are left to who knows the noise: 0.
-ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residuals,
-                                     std::span<const std::vector<double>> forces,
+ResidualStatistics DescribeResiduals(std::span<const std::span<const double>> residuals,
+                                     std::span<const std::span<const double>> forces,
                                      double slip_force);
 
 }  // namespace mindahl::identification

@@ -40,12 +40,14 @@ struct TermUnits {
   double displacement_reference = 0.0;  ///< [m], likewise
 };
 
-/// A sample in those units, force in the displacement's sense.
-struct TermSample {
-  double displacement = 0.0;
-  double time = 0.0;       ///< −1 … 1 over the record
-  double velocity = 0.0;   ///< of the displacement, in the first record's time; 0 without time
-  double covariate = 0.0;  ///< of the term's own column; 0 where it has none
+/// What a linear parameter is the factor of, sample by sample in those units.
+enum class Regressor {
+  kNone,          ///< it is not linear, or a factor of the model's own response
+  kOne,           ///< an offset
+  kDisplacement,  ///< δ
+  kTime,          ///< −1 … 1 over the record
+  kVelocity,      ///< of the displacement, in the first record's time
+  kCovariate,     ///< the column of the record that the parameter is called after
 };
 
 /// A parameter of a fit: all that layout, solver, command line, help and documents need to know of
@@ -63,7 +65,7 @@ struct Term {
   double highest = 0.0;
   double (*scale)(const TermUnits&) = nullptr;
   double (*reference)(const TermUnits&) = nullptr;  ///< none: 0
-  double (*column)(const TermSample&) = nullptr;    ///< of a linear one; none: the model's force
+  Regressor column = Regressor::kNone;
   bool needs_time = false;
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;

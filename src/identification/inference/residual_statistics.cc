@@ -7,8 +7,8 @@
 
 namespace mindahl::identification {
 
-ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residuals,
-                                     std::span<const std::vector<double>> forces,
+ResidualStatistics DescribeResiduals(std::span<const std::span<const double>> residuals,
+                                     std::span<const std::span<const double>> forces,
                                      double slip_force) {
   RequireSameSize("residual series", residuals.size(), "force series", forces.size());
   ResidualStatistics statistics;
@@ -16,7 +16,7 @@ ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residu
   double sum_of_steps = 0.0;
   double force_sum = 0.0;
   for (std::size_t record = 0; record < residuals.size(); ++record) {
-    const std::vector<double>& r = residuals[record];
+    const std::span<const double> r = residuals[record];
     RequireSameSize("residuals", r.size(), "forces", forces[record].size());
     statistics.samples += r.size();
     for (std::size_t i = 0; i < r.size(); ++i) {
@@ -30,7 +30,7 @@ ResidualStatistics DescribeResiduals(std::span<const std::vector<double>> residu
 
   const auto count = static_cast<double>(statistics.samples);
   double force_variation = 0.0;
-  for (const std::vector<double>& force : forces) {
+  for (const std::span<const double> force : forces) {
     for (const double value : force) {
       force_variation += (value - force_sum / count) * (value - force_sum / count);
     }

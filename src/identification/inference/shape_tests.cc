@@ -77,7 +77,7 @@ bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& t
          kMindlin - best.theta[kShape] > thresholds.shape_effect && !problem.parameters.has_rig();
 }
 
-std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords& thin,
+std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thin,
                                      const Solution& best, const MindlinTest& test,
                                      const Noise& noise, const Estimates& estimates,
                                      const FitOptions& options, SearchBuffers& buffers) {

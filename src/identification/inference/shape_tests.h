@@ -28,7 +28,7 @@ struct RigAlternative {
 /// one that gives way may bring it back.
 /// @returns empty where α = 1/3 is not rejected, α is the larger one, a rig is there already, or
 ///   none helps
-std::optional<RigAlternative> TryRig(const Problem& problem, const ScaledRecords& thin,
+std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thin,
                                      const Solution& best, const MindlinTest& test,
                                      const Noise& noise, const Estimates& estimates,
                                      const FitOptions& options, SearchBuffers& buffers);

@@ -237,16 +237,13 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r, dou
                std::span<double> to) {
   const Parameter& linear = problem.parameters[parameter];
   if (linear.term->scope == Scope::kRecord && linear.record != r) return;
-  const ScaledRecord& record = problem.data->records[r];
-  const auto column = linear.term->column;
-  const std::span<const double> covariate =
-      linear.term->of_column ? std::span<const double>(record.covariates[linear.column])
-                             : std::span<const double>();
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    TermSample at = record.SampleAt(i);
-    if (!covariate.empty()) at.covariate = covariate[i];
-    to[i] += factor * column(at);
+  if (linear.term->column == Regressor::kOne) {
+    for (double& value : to) value += factor;
+    return;
   }
+  const std::span<const double> column =
+      problem.data->records[r].ColumnOf(linear.term->column, linear.column);
+  for (std::size_t i = 0; i < column.size(); ++i) to[i] += factor * column[i];
 }
 
 namespace {
@@ -257,7 +254,7 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   for (double& value : predicted) value *= scale;
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     const Parameter& parameter = problem.parameters[p];
-    if (parameter.term->column == nullptr || theta[p] == 0) continue;
+    if (parameter.term->column == Regressor::kNone || theta[p] == 0) continue;
     std::size_t begin = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const std::size_t count = problem.data->records[r].size();
@@ -332,7 +329,7 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
       const std::size_t begin = k;
       k += record.size();
       if (parameter.term->scope == Scope::kRecord && parameter.record != r) continue;
-      if (parameter.term->column != nullptr) AddColumn(problem, p, r, 1.0, column);
+      if (parameter.term->column != Regressor::kNone) AddColumn(problem, p, r, 1.0, column);
       const auto add = [&](std::span<const double> derivative, double factor) {
         if (derivative.empty()) return;
         for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * derivative[begin + i];

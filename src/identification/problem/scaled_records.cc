@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/extremes.h"
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
 
@@ -19,7 +20,7 @@ struct Range {
 };
 
 Range RangeOf(std::span<const double> values) {
-  const auto [lowest, highest] = std::ranges::minmax(values);
+  const auto [lowest, highest] = ExtremesOf(values);
   const double half = highest / 2 - lowest / 2;
   return {lowest + half, half};
 }
@@ -246,6 +247,23 @@ ScaledRecords ScaledRecords::WithoutRecords(std::pmr::memory_resource* memory) c
   return scaled;
 }
 
+std::span<const double> ScaledRecord::ColumnOf(Regressor column, std::size_t covariate) const {
+  switch (column) {
+    case Regressor::kDisplacement:
+      return displacement;
+    case Regressor::kTime:
+      return time;
+    case Regressor::kVelocity:
+      return velocity;
+    case Regressor::kCovariate:
+      return covariates[covariate];
+    case Regressor::kNone:
+    case Regressor::kOne:
+      break;
+  }
+  return {};
+}
+
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals) {
   const double whole = time.empty() ? static_cast<double>(samples) - 1 : time.back() - time.front();
   return whole > 0 ? 2 * whole / static_cast<double>(reversals + 1) : 1.0;
@@ -259,9 +277,16 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
   scaled.length = 0.0;
   scaled.force = 0.0;
   scaled.counted = records.counted();
+  struct Ranges {
+    Range displacement;
+    Range force;
+  };
+  std::pmr::vector<Ranges> ranges(memory);
+  ranges.reserve(records.records.size());
   for (const loop::PreparedRecord& record : records.records) {
-    scaled.length = std::max(scaled.length, RangeOf(record.displacement()).half);
-    scaled.force = std::max(scaled.force, RangeOf(record.force()).half);
+    const Ranges& of = ranges.emplace_back(RangeOf(record.displacement()), RangeOf(record.force()));
+    scaled.length = std::max(scaled.length, of.displacement.half);
+    scaled.force = std::max(scaled.force, of.force.half);
   }
   if (!(scaled.length > 0)) {
     throw InvalidArgument("the displacement never changes: a fit needs a moving contact");
@@ -278,6 +303,7 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
     const std::span<const double> force = prepared.force();
     const std::span<const double> time = prepared.record.time;
     const std::size_t size = prepared.size();
+    const Ranges& of = ranges[scaled.records.size()];
     ScaledRecord& target = scaled.records.emplace_back(memory);
     target.imposed = records.excitation;
     target.reversals = prepared.reversals;
@@ -288,8 +314,8 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
                     .half_duration = last > first ? (last - first) / 2 : 1.0,
                     .cycle = MeanCycleDuration(time, size, prepared.reversals.size()),
                     .force_sense = sense,
-                    .force_reference = sense * RangeOf(force).middle,
-                    .displacement_reference = RangeOf(displacement).middle};
+                    .force_reference = sense * of.force.middle,
+                    .displacement_reference = of.displacement.middle};
     for (auto* column : {&target.displacement, &target.force, &target.time, &target.root_weight}) {
       column->resize(size);
     }
@@ -346,16 +372,18 @@ void AddCovariates(std::span<const std::string> fitted, bool with_others,
   }
 }
 
-ScaledRecords Thin(const ScaledRecords& data,
-                   std::pmr::vector<std::pmr::vector<std::size_t>>& reversals,
-                   std::pmr::memory_resource* memory) {
-  ScaledRecords thin = data.WithoutRecords(memory);
-  thin.records.reserve(data.records.size());
-  reversals.clear();
-  reversals.reserve(data.records.size());
-  for (const ScaledRecord& record : data.records) {
-    ScaledRecord& target = thin.records.emplace_back(record.WithoutSamples(memory));
-    std::pmr::vector<std::size_t>& turns = reversals.emplace_back();
+const ScaledRecords& ThinnedRecords::Get() {
+  if (!thin_) Make();
+  return *thin_;
+}
+
+void ThinnedRecords::Make() {
+  ScaledRecords& thin = thin_.emplace(data_.WithoutRecords(memory_));
+  thin.records.reserve(data_.records.size());
+  reversals_.reserve(data_.records.size());
+  for (const ScaledRecord& record : data_.records) {
+    ScaledRecord& target = thin.records.emplace_back(record.WithoutSamples(memory_));
+    std::pmr::vector<std::size_t>& turns = reversals_.emplace_back();
     turns.reserve(record.reversals.size());
     if (!record.clock.empty()) target.whole = &record;
     const std::size_t strokes = record.reversals.size() + 1;
@@ -391,8 +419,7 @@ ScaledRecords Thin(const ScaledRecords& data,
     }
   }
   // Turns are complete: their memory moves no more.
-  for (std::size_t r = 0; r < thin.records.size(); ++r) thin.records[r].reversals = reversals[r];
-  return thin;
+  for (std::size_t r = 0; r < thin.records.size(); ++r) thin.records[r].reversals = reversals_[r];
 }
 
 }  // namespace mindahl::identification

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -75,9 +76,9 @@ struct ScaledRecord {
     return imposed == loop::Channel::kForce ? displacement : force;
   }
   [[nodiscard]] std::size_t size() const { return force.size(); }
-  [[nodiscard]] TermSample SampleAt(std::size_t i) const {
-    return {displacement[i], time[i], velocity.empty() ? 0.0 : velocity[i]};
-  }
+  /// What a linear term is the factor of; empty where it is 0, or the same everywhere.
+  /// @param covariate  its place among the covariates, for a term of one
+  [[nodiscard]] std::span<const double> ColumnOf(Regressor column, std::size_t covariate) const;
 };
 
 /// Residuals of a noise-free record are rounding errors, to here [of the force unit]; smaller
@@ -140,11 +141,25 @@ void AddCovariates(std::span<const std::string> fitted, bool with_others,
                    const loop::PreparedRecords& records, bool offsets, ScaledRecords& data);
 
 /// The records by fewer samples: all reversals, and of each stroke some, densest at its start: the
-/// same history for a law that knows no rate, at a fraction of the cost.
-/// @param reversals  written: those of each record, by the samples that are left; must outlive the
-///                   result
-ScaledRecords Thin(const ScaledRecords& data,
-                   std::pmr::vector<std::pmr::vector<std::size_t>>& reversals,
-                   std::pmr::memory_resource* memory);
+/// same history for a law that knows no rate, at a fraction of the cost. They are made when they
+/// are first asked for: a fit that is given its start never does.
+class ThinnedRecords {
+ public:
+  /// @param data  must outlive this
+  ThinnedRecords(const ScaledRecords& data, std::pmr::memory_resource* memory)
+      : data_(data), memory_(memory), reversals_(memory) {}
+  ThinnedRecords(const ThinnedRecords&) = delete;
+  ThinnedRecords& operator=(const ThinnedRecords&) = delete;
+
+  const ScaledRecords& Get();
+
+ private:
+  void Make();
+
+  const ScaledRecords& data_;
+  std::pmr::memory_resource* memory_;
+  std::pmr::vector<std::pmr::vector<std::size_t>> reversals_;  // by the samples that are left
+  std::optional<ScaledRecords> thin_;
+};
 
 }  // namespace mindahl::identification

@@ -78,7 +78,7 @@ constexpr std::array kTerms = {
          .lowest = -kWidest,
          .highest = kWidest,
          .scale = Stiffness,
-         .column = [](const TermSample& sample) { return sample.displacement; },
+         .column = Regressor::kDisplacement,
          .option = "--plateau-slope",
          .help = "fit a force that grows with the displacement beside the contact's [N/m]"},
     Term{
@@ -91,7 +91,7 @@ constexpr std::array kTerms = {
         .highest = kWidest,
         .scale =
             [](const TermUnits& units) { return units.force * units.half_duration / units.length; },
-        .column = [](const TermSample& sample) { return sample.velocity; },
+        .column = Regressor::kVelocity,
         .needs_time = true,
         .option = "--viscous",
         .argument = "C|fit",
@@ -122,7 +122,7 @@ constexpr std::array kTerms = {
              [](const TermUnits& units) {
                return units.force_sense * units.force / units.covariate;
              },
-         .column = [](const TermSample& sample) { return sample.covariate; },
+         .column = Regressor::kCovariate,
          .of_column = true,
          .option = "--covariate",
          .argument = "COL[=C|fit]",
@@ -139,7 +139,7 @@ constexpr std::array kTerms = {
          .scale = ForceOfTheFile,
          .reference =
              [](const TermUnits& units) { return units.force_sense * units.force_reference; },
-         .column = [](const TermSample& /*sample*/) { return 1.0; }},
+         .column = Regressor::kOne},
     Term{.name = "displacement_offset",
          .unit = "m",
          .meaning = "where a virgin contact is unloaded; for a steady loop its centre, taken from "
@@ -159,7 +159,7 @@ constexpr std::array kTerms = {
          .lowest = -kWidest,
          .highest = kWidest,
          .scale = ForceRateOfTheFile,
-         .column = [](const TermSample& sample) { return sample.time; },
+         .column = Regressor::kTime,
          .option = "--drift",
          .help = "fit a force drift linear in time [N/s]"},
     Term{.name = "displacement_drift",
@@ -172,7 +172,7 @@ constexpr std::array kTerms = {
          .lowest = -kWidest,
          .highest = kWidest,
          .scale = [](const TermUnits& units) { return units.length / units.half_duration; },
-         .column = [](const TermSample& sample) { return sample.time; },
+         .column = Regressor::kTime,
          .unit_by_sample = "m/sample"},
 };
 
@@ -186,10 +186,10 @@ constexpr auto kTermsOfDisplacement = [] {
       term.entry = Entry::kLaw;
     } else if (term.name == "force_offset") {
       term.entry = Entry::kLaw;
-      term.column = nullptr;
+      term.column = Regressor::kNone;
     } else if (term.name == "displacement_offset") {
       term.entry = Entry::kLinear;
-      term.column = [](const TermSample& /*sample*/) { return 1.0; };
+      term.column = Regressor::kOne;
     } else if (term.name == "displacement_drift") {
       term.presence = Presence::kReported;
     } else if (term.name != "alpha" && term.name != "load_exponent") {

@@ -12,8 +12,14 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
           .max_iterations = options.max_iterations};
 }
 
-double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOptions& options,
+double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
                     double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory) {
+  if (auto given = GivenStart(candidate.problem.parameters, options, memory)) {
+    candidate.starts.clear();
+    candidate.starts.push_back(std::move(*given));
+    return 0.0;
+  }
+  const ScaledRecords& thin = thinned.Get();
   // Where a window or a fold leaves little of the thinned record, all of it is looked at.
   constexpr std::size_t kEnough = 4;  // samples a parameter
   const bool is_enough = thin.counted >= kEnough * candidate.problem.parameters.free().size();

@@ -39,10 +39,10 @@ struct Candidate {
 
 SolverOptions SolverOptionsOf(const FitOptions& options);
 
-/// Finds the candidate's starting points on the thinned records.
+/// Finds the candidate's starting points on the thinned records, unless the options give one.
 /// @param rival  of another past, as FindStarts() takes it
 /// @returns the least cost there; infinity where none has the sense of the force
-double FindStartsOf(Candidate& candidate, const ScaledRecords& thin, const FitOptions& options,
+double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
                     double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory);
 
 /// Solves from each starting point and keeps the best solution.

@@ -17,6 +17,11 @@ const double kHighestLogRate = std::log(1e9);
 const double kLowestLogTravel = std::log(1e-9);
 const double kHighestLogTravel = std::log(1e3);
 
+/// Room for so many, which is never given back: what is in it is nobody's.
+void GrowTo(std::size_t size, std::vector<double>& buffer) {
+  if (buffer.size() < size) buffer.resize(size);
+}
+
 /// Solves A·x = b in place by Cholesky's rule; false where A is not positive definite.
 bool SolveCholesky(std::span<double> a, std::span<double> x) {
   const std::size_t n = x.size();
@@ -65,13 +70,14 @@ void Solver::Bind(const Problem& problem, Response& response) {
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     held_theta_[p] = problem.parameters[p].theta;
   }
-  weight_.resize(samples_);
-  measured_.resize(samples_);
-  response_values_.resize(samples_);
-  residual_.resize(samples_);
+  GrowTo(4 * samples_, of_samples_);
+  std::size_t used = 0;
+  for (std::span<double>* part : {&measured_, &weight_, &response_values_, &residual_}) {
+    *part = std::span(of_samples_).subspan(used++ * samples_, samples_);
+  }
   ChooseSearched();
   const std::size_t count = searched_.size();
-  derivatives_.resize(std::max<std::size_t>(count, 1) * samples_);
+  GrowTo(std::max<std::size_t>(count, 1) * samples_, derivatives_);
   hessian_.resize(count * count);
   matrix_.resize(count * count);
   for (std::vector<double>* buffer : {&gradient_, &step_, &trial_, &u_}) buffer->resize(count);
@@ -158,19 +164,17 @@ void Solver::OrthogonaliseColumns() {
   for (const Scope scope : {Scope::kRecord, Scope::kContact}) {
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const Parameter& parameter = parameters[p];
-      if (parameter.term->column == nullptr || parameter.term->scope != scope) continue;
+      if (parameter.term->column == Regressor::kNone || parameter.term->scope != scope) continue;
       const bool is_held = parameter.fixed || held_[p] != 0;
       if (is_held && held_theta_[p] == 0) continue;
       const auto [begin, end] =
           scope == Scope::kRecord ? RowsOf(parameter.record) : std::pair(std::size_t{0}, samples_);
       if (!is_held) columns_.push_back({p, begin, end, 0.0});
       const std::size_t place = columns_.size() - 1;
-      if (!is_held && basis_.size() < columns_.size() * samples_) {
-        basis_.resize(columns_.size() * samples_);
-      }
+      if (!is_held) GrowTo(columns_.size() * samples_, basis_);
       if (!is_held) std::ranges::fill(Basis(place), 0.0);
       // What is held is taken off what was measured as it is, which is weighted with the rest.
-      const std::span<double> to = is_held ? std::span(measured_) : Basis(place);
+      const std::span<double> to = is_held ? measured_ : Basis(place);
       const double factor = is_held ? -held_theta_[p] : 1.0;
       std::size_t k = 0;
       for (std::size_t r = 0; r < data.records.size(); ++r) {
@@ -321,7 +325,7 @@ double Solver::Regress(double log_rate, bool is_free, double held_scale) {
     const std::size_t begin = columns_[j].begin;
     const std::size_t count = columns_[j].end - begin;
     response_projections_[j] =
-        TakeOut(std::span(response_values_).subspan(begin, count), Basis(j).subspan(begin, count));
+        TakeOut(response_values_.subspan(begin, count), Basis(j).subspan(begin, count));
   }
   scale_ = held_scale;
   scale_is_free_ = false;
@@ -341,6 +345,7 @@ double Solver::Regress(double log_rate, bool is_free, double held_scale) {
 /// A record's origin moves its own samples only.
 /// @param all  ∂t/∂δ₀ of every sample by its own record's, the first of the columns that take it
 void Solver::SplitByRecord(std::span<const double> all) {
+  if (problem_->data->records.size() == 1) return;
   for (std::size_t j = searched_.size(); j-- > 0;) {
     if (searched_[j].role != Role::kUnloaded) continue;
     const auto [begin, end] = RowsOf(problem_->parameters[searched_[j].parameter].record);
@@ -407,7 +412,7 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
   if (lacks_rate || (tied && has_rig && columns.log_spring_travel.empty())) {
     // ∂T/∂ln Tc needs both, ∂T/∂p the first; what is not searched goes into scratch behind the
     // rest.
-    derivatives_.resize((searched_.size() + 2) * samples_);
+    GrowTo((searched_.size() + 2) * samples_, derivatives_);
     columns.shape_exponent = wants(Role::kShapeExponent);  // the buffer has moved
     columns.log_rate = wants(Role::kLogStiffness);
     columns.log_spring_travel = wants(Role::kLogRig);

@@ -131,15 +131,16 @@ class Solver {
   std::vector<Column> columns_;
   std::vector<double> basis_;                 // orthonormal columns
   std::vector<double> triangle_;              // R, columns_.size()², by rows
-  std::vector<double> measured_;              // y, weighted, projected
   std::vector<double> measured_projections_;  // Qᵀy
-  std::vector<double> weight_;
-  std::vector<double> response_values_;  // t, weighted, projected
   std::vector<double> response_projections_;
-  std::vector<double> residual_;     // projected
   std::vector<double> derivatives_;  // of the residual by what is searched, projected
-  double scale_ = 0.0;               // of t: Tc, or Tc/σ of a displacement
-  bool scale_is_free_ = false;       // of its bounds
+  std::vector<double> of_samples_;   // that the next four are in
+  std::span<double> measured_;       // y, weighted, projected
+  std::span<double> weight_;
+  std::span<double> response_values_;  // t, weighted, projected
+  std::span<double> residual_;         // projected
+  double scale_ = 0.0;                 // of t: Tc, or Tc/σ of a displacement
+  bool scale_is_free_ = false;         // of its bounds
   bool scale_is_linear_ = false;
   std::vector<double> hessian_;
   std::vector<double> gradient_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/draws.h"
+#include "core/extremes.h"
 
 namespace mindahl::identification {
 namespace {
@@ -104,7 +105,7 @@ class Plane {
     if (!std::isfinite(look.cost)) return;
     for (const std::size_t p : parameters.free()) {
       // Columns far beyond their bounds make a straight line of any loop.
-      const bool is_column = parameters[p].term->column != nullptr;
+      const bool is_column = parameters[p].term->column != Regressor::kNone;
       if (is_column && (theta_[p] < parameters[p].lower || theta_[p] > parameters[p].upper)) {
         look.cost = std::numeric_limits<double>::infinity();
         return;
@@ -142,7 +143,7 @@ class Plane {
   [[nodiscard]] double FarthestFrom(std::size_t guess) const {
     double farthest = 0.0;
     for (std::size_t r = 0; r < problem_.data->records.size(); ++r) {
-      const auto [low, high] = std::ranges::minmax(problem_.data->records[r].excitation());
+      const auto [low, high] = ExtremesOf(problem_.data->records[r].excitation());
       const double unloaded = guesses_[guess][r];
       farthest = std::max({farthest, high - unloaded, unloaded - low});
     }
@@ -323,12 +324,12 @@ void AddRelaxedStart(const Problem& thin, Solver& solver, Response& response, So
   start.cost = scratch.sum_of_squares;
 }
 
-/// The options' own start, where it leaves nothing to be looked for.
-std::optional<StartingPoint> GivenStart(const Problem& thin, const FitOptions& options,
+}  // namespace
+
+std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options,
                                         std::pmr::memory_resource* memory) {
   if (options.start.empty() || options.starts > 1) return std::nullopt;
   StartingPoint start{.theta = std::pmr::vector<double>(memory)};
-  const Parameters& parameters = thin.parameters;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     double& theta = start.theta.emplace_back(parameters[p].theta);
     const bool is_searched = p == kSlipForce || parameters[p].term->entry == Entry::kLaw;
@@ -337,8 +338,6 @@ std::optional<StartingPoint> GivenStart(const Problem& thin, const FitOptions& o
   }
   return start;
 }
-
-}  // namespace
 
 bool HasKinks(const Parameters& parameters) {
   return parameters[kShape].fixed && parameters[kShape].theta == 0;
@@ -350,10 +349,6 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
   // A look that is that much worse than the best does not lead to a better minimum.
   constexpr double kHopeless = 4.0;
   std::pmr::vector<StartingPoint> starts(memory);
-  if (std::optional<StartingPoint> given = GivenStart(thin, options, memory)) {
-    starts.push_back(std::move(*given));
-    return starts;
-  }
   starts.reserve(std::max(options.starts, kRows.size()) + 1);
   solver.Bind(thin, response);
   Plane plane(thin, options, solver, memory);

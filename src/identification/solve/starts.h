@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory_resource>
+#include <optional>
 #include <vector>
 
 #include "identification/problem/problem.h"
@@ -20,6 +21,10 @@ struct StartingPoint {
 /// Is α held at 0? Then the likelihood has a kink wherever a sample begins to slip, and minima next
 /// to each other: all samples are looked at, and four starts followed.
 bool HasKinks(const Parameters& parameters);
+
+/// The options' own start, where it leaves nothing to be looked for.
+std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitOptions& options,
+                                        std::pmr::memory_resource* memory);
 
 /// Starting points from the data, best first.
 ///
