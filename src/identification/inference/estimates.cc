@@ -43,10 +43,9 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
     places.push_back(static_cast<Eigen::Index>(j));
   }
   full_ = AnalyseJacobian(problem, free, at_.jacobian, noise, displacement);
-  conditional_ =
-      inside.size() == free.size()
-          ? full_
-          : AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, displacement);
+  if (inside.size() < free.size()) {
+    held_ = AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, displacement);
+  }
   // Of correlated residuals a fit takes up more than its parameters' number, and leaves less than
   // the noise's variance; where it takes up most, that is all that can be said.
   if (noise.is_known || displacement.residuals.size() > 0) return;
@@ -57,7 +56,7 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
 }
 
 const LocalUncertainty& Estimates::LocalOf(std::size_t parameter) const {
-  return solution_.side[parameter] == BoundSide::kInside ? conditional_ : full_;
+  return solution_.side[parameter] == BoundSide::kInside ? Conditional() : full_;
 }
 
 double Estimates::ErrorOfTheta(std::size_t parameter) const {
@@ -113,17 +112,18 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {
-  const std::size_t i = conditional_.PlaceOf(row);
-  const std::size_t j = conditional_.PlaceOf(column);
-  const std::size_t none = conditional_.columns.size();
-  if (i == none || j == none || !conditional_.determined[i] || !conditional_.determined[j]) {
+  const LocalUncertainty& local = Conditional();
+  const std::size_t i = local.PlaceOf(row);
+  const std::size_t j = local.PlaceOf(column);
+  const std::size_t none = local.columns.size();
+  if (i == none || j == none || !local.determined[i] || !local.determined[j]) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   if (i == j) return 1.0;
   const auto sign = [&](std::size_t p) {
     return problem_.parameters[p].scale < 0 ? -1.0 : 1.0;  // the value falls where θ grows
   };
-  const auto& factor = conditional_.factor;
+  const auto& factor = local.factor;
   const auto a = static_cast<Eigen::Index>(i);
   const auto b = static_cast<Eigen::Index>(j);
   return sign(row) * sign(column) * factor(a, b) / std::sqrt(factor(a, a) * factor(b, b));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "identification/inference/local.h"
@@ -52,6 +53,8 @@ class Estimates {
 
  private:
   [[nodiscard]] const LocalUncertainty& LocalOf(std::size_t parameter) const;
+  /// Of the parameters inside their bounds, the others held there.
+  [[nodiscard]] const LocalUncertainty& Conditional() const { return held_ ? *held_ : full_; }
 
   const Problem& problem_;
   const Solution& solution_;
@@ -59,8 +62,8 @@ class Estimates {
   double white_variance_;
   double variance_;
   Linearization at_;
-  LocalUncertainty conditional_;  // of the parameters inside their bounds, the others held there
-  LocalUncertainty full_;         // of all free parameters
+  LocalUncertainty full_;                 // of all free parameters
+  std::optional<LocalUncertainty> held_;  // with others held at bounds, where any are
 };
 
 ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);

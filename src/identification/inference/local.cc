@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "identification/solve/sums.h"
@@ -13,6 +14,8 @@ namespace {
 
 /// Singular values below this share of the largest are rounding of a Jacobian of unit columns.
 constexpr double kRankTolerance = 1e-11;
+/// Far from that: substitution then leaves the inverse all but five digits.
+constexpr double kRegular = 1e-5;
 /// A parameter with more than this component in a null direction is not determined.
 constexpr double kNullComponent = 1e-3;
 
@@ -42,6 +45,47 @@ Eigen::MatrixXd TriangleOf(Eigen::MatrixXd columns) {
     }
   }
   return triangle;
+}
+
+/// R⁻¹; nothing where R is so near to singular that directions without effect must be looked for.
+std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle) {
+  if (!(triangle.diagonal().minCoeff() > kRegular)) return std::nullopt;  // of unit columns
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(triangle.rows(), triangle.cols());
+  for (Eigen::Index j = 0; j < triangle.cols(); ++j) {
+    inverse(j, j) = 1 / triangle(j, j);
+    for (Eigen::Index i = j; i-- > 0;) {
+      double sum = 0.0;
+      for (Eigen::Index k = i + 1; k <= j; ++k) sum += triangle(i, k) * inverse(k, j);
+      inverse(i, j) = -sum / triangle(i, i);
+    }
+  }
+  // |R|·|R⁻¹| bounds the ratio of the singular values.
+  if (!(triangle.norm() * inverse.norm() * kRegular < 1)) return std::nullopt;
+  return inverse;
+}
+
+/// (RᵀR)⁻¹ on the directions with an effect; names those without.
+Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& norms,
+                              LocalUncertainty& result) {
+  const Eigen::Index size = triangle.cols();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
+  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(size, size);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const double value = k < svd.singularValues().size() ? svd.singularValues()[k] : 0.0;
+    const Eigen::VectorXd direction = svd.matrixV().col(k);
+    if (value > kRankTolerance * svd.singularValues()[0]) {
+      factor += direction * direction.transpose() / (value * value);
+      continue;
+    }
+    const Eigen::VectorXd in_theta = direction.cwiseQuotient(norms);
+    result.null.emplace_back(in_theta.begin(), in_theta.end());
+    for (Eigen::Index j = 0; j < size; ++j) {
+      if (std::abs(direction[j]) > kNullComponent) {
+        result.determined[static_cast<std::size_t>(j)] = false;
+      }
+    }
+  }
+  return factor;
 }
 
 }  // namespace
@@ -139,23 +183,9 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   for (Eigen::Index j = 0; j < size; ++j) norms[j] = Normalize(ColumnOf(jacobian, j));
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
   const Eigen::MatrixXd triangle = TriangleOf(jacobian);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(size, size);
-  for (Eigen::Index k = 0; k < size; ++k) {
-    const double value = k < svd.singularValues().size() ? svd.singularValues()[k] : 0.0;
-    const Eigen::VectorXd direction = svd.matrixV().col(k);
-    if (value > kRankTolerance * svd.singularValues()[0]) {
-      factor += direction * direction.transpose() / (value * value);
-      continue;
-    }
-    const Eigen::VectorXd in_theta = direction.cwiseQuotient(norms);
-    result.null.emplace_back(in_theta.begin(), in_theta.end());
-    for (Eigen::Index j = 0; j < size; ++j) {
-      if (std::abs(direction[j]) > kNullComponent) {
-        result.determined[static_cast<std::size_t>(j)] = false;
-      }
-    }
-  }
+  const std::optional<Eigen::MatrixXd> inverse = InverseIfRegular(triangle);
+  const Eigen::MatrixXd factor =
+      inverse ? *inverse * inverse->transpose() : PseudoInverse(triangle, norms, result);
   const Eigen::MatrixXd correlated =
       displacement.residuals.size() > 0
           ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, jacobian)
