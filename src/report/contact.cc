@@ -7,6 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "mindahl/report/load_series.h"
+
 namespace mindahl::report {
 
 using identification::FitResult;
@@ -15,12 +17,22 @@ namespace {
 
 /// As the contact module takes it: infinite where the fit leaves a parameter open.
 contact::UncertainValue Uncertain(const identification::ParameterEstimate& estimate) {
-  const bool known = estimate.status == identification::ParameterStatus::kFixed;
-  return {estimate.value,
-          estimate.standard_error.value_or(known ? 0.0 : std::numeric_limits<double>::infinity())};
+  return {estimate.value, StandardErrorOf(estimate)};
+}
+
+/// What rests on Hertz's law, of a series that denies it.
+void WithholdSphere(const FitResult& fit, contact::IdentifiedContact& contact) {
+  if (!DeniesHertz(fit)) return;
+  contact.equivalent_radius.reset();
+  contact.maximum_pressure.reset();
 }
 
 }  // namespace
+
+double StandardErrorOf(const identification::ParameterEstimate& estimate) {
+  const bool is_held = estimate.status == identification::ParameterStatus::kFixed;
+  return estimate.standard_error.value_or(is_held ? 0.0 : std::numeric_limits<double>::infinity());
+}
 
 double Correlation(const FitResult& fit, std::string_view first, std::string_view second) {
   const std::size_t count = fit.parameters.size();
@@ -51,6 +63,7 @@ contact::IdentifiedContact IdentifyFittedContact(const FitResult& fit,
     contact.friction_coefficient.reset();
     contact.unidentified.push_back("friction coefficient " + *why);
   }
+  WithholdSphere(fit, contact);
   return contact;
 }
 
@@ -60,9 +73,11 @@ contact::IdentifiedContact IdentifyContactOf(const FitResult& fit, const models:
     const contact::UncertainValue fitted = Uncertain(*fit.Find(name));
     return contact::UncertainValue{value, fitted.standard_error * (value / fitted.value)};
   };
-  return contact::IdentifyContact(moved("sigma", law.tangential_stiffness),
-                                  moved("slip_force", law.slip_force), known,
-                                  Correlation(fit, "sigma", "slip_force"));
+  contact::IdentifiedContact contact = contact::IdentifyContact(
+      moved("sigma", law.tangential_stiffness), moved("slip_force", law.slip_force), known,
+      Correlation(fit, "sigma", "slip_force"));
+  WithholdSphere(fit, contact);
+  return contact;
 }
 
 std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,

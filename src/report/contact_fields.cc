@@ -17,6 +17,9 @@ namespace {
 
 std::string WhyNotIdentified(const Report& report, ContactQuantity quantity) {
   if (report.failed()) return WhyFailed(report);
+  const bool is_of_sphere = quantity == ContactQuantity::kEquivalentRadius ||
+                            quantity == ContactQuantity::kMaximumPressure;
+  if (is_of_sphere && DeniesHertz(report.fit)) return kWhyNoSphere;
   return fmt::format("needs {}", fmt::join(contact::MissingInputs(report.known, quantity), ", "));
 }
 

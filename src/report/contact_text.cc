@@ -52,12 +52,38 @@ std::string MissingText(const Report& report) {
     if (is_friction && report.known.normal_load) continue;  // withheld, as said
     // Of radius and compliance each gives the other.
     if (field.key == "compliance" && !report.known.contact_radius) continue;
+    const bool is_of_sphere = field.key == "equivalent_radius" || field.key == "maximum_pressure";
+    if (is_of_sphere && DeniesHertz(report.fit)) continue;
     if (!field.get(report)) more.emplace_back(field.label);
   }
   if (!report.contact.hertz) more.emplace_back("Hertz's prediction");
   return text + Wrapped(fmt::format("with {} given, more would be known: {}",
                                     fmt::join(inputs, ", "), fmt::join(more, ", ")),
                         2);
+}
+
+/// What the laws that a series does not reject make of the contact.
+std::string LoadLawText(const Report& report) {
+  std::string text;
+  for (const LoadLaw& law : LawsToShow(*report.load_series)) {
+    text += Wrapped("  " + LawHeading(law), 4);
+    for (const QuantityUnderLaw& quantity : law.quantities) {
+      if (quantity.key == "contact_radius") continue;  // at every load above
+      text += fmt::format("    {:<21} {:<25} 95 % {:<26} {}\n", quantity.label,
+                          ValueAndError(quantity.value, quantity.unit), IntervalWords(quantity),
+                          quantity.formula);
+      if (quantity.predicted) {
+        text += fmt::format("    {:<21} {}\n", "  of the two radii",
+                            Quantity(*quantity.predicted, quantity.unit));
+      }
+      const std::string shares = VarianceStatement(quantity.value);
+      if (!shares.empty()) text += fmt::format("    {:<21} {}\n", "", shares);
+    }
+  }
+  for (const std::string& statement : LoadLawStatements(report)) {
+    text += Wrapped("  " + statement, 4);
+  }
+  return text;
 }
 
 /// No number of what is not known.
@@ -128,12 +154,12 @@ std::string LoadSeriesText(const Report& report) {
   for (const LoadHypothesis& hypothesis : series.hypotheses) {
     if (!hypothesis.p_value) continue;
     const double p_value = *hypothesis.p_value;
-    text +=
-        fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, {}{}\n",
-                    Words(hypothesis), hypothesis.exponent, *hypothesis.difference, *hypothesis.z,
-                    ChanceText(p_value), p_value < kSignificance ? ": rejected" : "");
+    text += fmt::format("  {:<28} p − {:<6.4g} = {:>8.3g}, {:>6.2f} standard errors, {}{}\n",
+                        WordsOfHypothesis(hypothesis.name), hypothesis.exponent,
+                        *hypothesis.difference, *hypothesis.z, ChanceText(p_value),
+                        p_value < kSignificance ? ": rejected" : "");
   }
-  return text;
+  return text + LoadLawText(report);
 }
 
 std::string MappingText(const Report& report) {

@@ -45,6 +45,10 @@ void AddBackboneFields(FieldTable& table);
 inline constexpr const char* kWhyNoContact =
     "of a torque against an angle: Hertz, Mindlin and the mapping are of a force along the contact";
 
+/// Why a load series has no ρ and no p₀.
+inline constexpr const char* kWhyNoSphere =
+    "of Hertz's law, σ ∝ N^(1/3), which the load series denies";
+
 /// Why nothing of a fit that failed is there.
 std::string WhyFailed(const Report& report);
 

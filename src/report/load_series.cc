@@ -2,9 +2,10 @@
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 
 #include "mindahl/report/contact.h"
+#include "mindahl/report/mapping_tests.h"
+#include "report/load_laws.h"
 
 namespace mindahl::report {
 
@@ -14,12 +15,6 @@ using identification::ParameterEstimate;
 using identification::ParameterStatus;
 
 namespace {
-
-/// Infinite where the fit leaves the parameter open.
-double ErrorOf(const ParameterEstimate& estimate) {
-  if (estimate.status == ParameterStatus::kFixed) return 0.0;
-  return estimate.standard_error.value_or(std::numeric_limits<double>::infinity());
-}
 
 /// Error of a + factor·b, from their errors and correlation.
 double ErrorOfSum(double a, double factor, double b, double correlation) {
@@ -47,13 +42,13 @@ ContactUnderLoad ContactUnder(const FitResult& fit, const identification::Record
   const ParameterEstimate& sigma = *fit.Find("sigma");
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   const models::BranchLaw law = fit.LawOf(record);
-  const double relative =
-      ErrorOfSum(ErrorOf(sigma) / sigma.value, std::log(record.load_ratio),
-                 ErrorOf(*fit.Find("load_exponent")), Correlation(fit, "sigma", "load_exponent"));
+  const double relative = ErrorOfSum(
+      StandardErrorOf(sigma) / sigma.value, std::log(record.load_ratio),
+      StandardErrorOf(*fit.Find("load_exponent")), Correlation(fit, "sigma", "load_exponent"));
   ContactUnderLoad contact{
       .normal_load = *record.normal_load,
       .stiffness = {law.tangential_stiffness, law.tangential_stiffness * relative},
-      .slip_force = {law.slip_force, record.load_ratio * ErrorOf(slip_force)},
+      .slip_force = {law.slip_force, record.load_ratio * StandardErrorOf(slip_force)},
       .alone = record.alone};
   contact::KnownContact under_load = known;
   under_load.normal_load = UncertainValue{contact.normal_load};
@@ -66,6 +61,17 @@ ContactUnderLoad ContactUnder(const FitResult& fit, const identification::Record
 
 }  // namespace
 
+bool DeniesHertz(const FitResult& fit) {
+  if (!fit.is_load_series()) return false;
+  const ParameterEstimate& exponent = *fit.Find("load_exponent");
+  if (exponent.status == ParameterStatus::kFixed) {
+    return !IsHeldAt(exponent.value, contact::kMindlinShapeExponent);
+  }
+  const LoadHypothesis sphere =
+      Test("sphere", contact::kMindlinShapeExponent, fit, StandardErrorOf(exponent));
+  return sphere.p_value && *sphere.p_value < kSignificance;
+}
+
 std::optional<LoadSeries> DescribeLoadSeries(const FitResult& fit,
                                              const contact::KnownContact& known) {
   if (!fit.is_load_series()) return std::nullopt;
@@ -73,15 +79,16 @@ std::optional<LoadSeries> DescribeLoadSeries(const FitResult& fit,
   for (const identification::RecordFit& record : fit.records) {
     series.contacts.push_back(ContactUnder(fit, record, known));
   }
-  const double error = ErrorOf(*fit.Find("load_exponent"));
+  const double error = StandardErrorOf(*fit.Find("load_exponent"));
   const ParameterEstimate& alpha = *fit.Find("alpha");
   // p − α, of which both are fitted.
   const double error_from_alpha =
-      ErrorOfSum(error, -1.0, ErrorOf(alpha), Correlation(fit, "load_exponent", "alpha"));
+      ErrorOfSum(error, -1.0, StandardErrorOf(alpha), Correlation(fit, "load_exponent", "alpha"));
   series.hypotheses = {Test("sphere", contact::kMindlinShapeExponent, fit, error),
                        Test("elements", alpha.value, fit, error_from_alpha),
                        Test("cone", 0.5, fit, error), Test("flat_punch", 0.0, fit, error),
                        Test("rough", 1.0, fit, error)};
+  series.laws = TenableLaws(fit, series.hypotheses, known);
   return series;
 }
 

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "report/field_table.h"
+#include "report/propagated_fields.h"
 
 namespace mindahl::report {
 
@@ -89,6 +90,64 @@ const std::vector<Field<LoadHypothesis>>& HypothesisFields() {
   return fields;
 }
 
+std::string WhyNoInterval(const QuantityUnderLaw&) { return "the series leaves it open"; }
+
+/// What a quantity has beside the members of every quantity of the contact.
+const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
+  using Item = QuantityUnderLaw;
+  static const std::vector<Field<Item>> fields = {
+      {"ci95[0]", "of the quantity", "lower end of the 95 % interval",
+       [](const Item& item) {
+         return item.interval95 ? Number(item.interval95->lower) : Missing();
+       },
+       WhyNoInterval},
+      {"ci95[1]", "of the quantity", "upper end of the 95 % interval",
+       [](const Item& item) {
+         return item.interval95 ? Number(item.interval95->upper) : Missing();
+       },
+       WhyNoInterval},
+      {"predicted", "of the quantity", "what the bodies say; absent where they are not known",
+       [](const Item& item) { return item.predicted ? Number(*item.predicted) : Value{}; }},
+  };
+  return fields;
+}
+
+Value QuantitiesOf(const LoadLaw& law) {
+  Value::Object quantities;
+  for (const QuantityUnderLaw& quantity : law.quantities) {
+    Value::Object members = PropagatedMembers(quantity.value, quantity.unit);
+    for (auto& member : Render(QuantityFields(), quantity)) members.push_back(std::move(member));
+    quantities.emplace_back(std::string(quantity.key), Value{std::move(members)});
+  }
+  return {std::move(quantities)};
+}
+
+const std::vector<Field<LoadLaw>>& LawFields() {
+  using Item = LoadLaw;
+  const auto why_exact = [](const Item&) { return std::string("sigma was held"); };
+  static const std::vector<Field<Item>> fields = {
+      {"name", "", "of the hypothesis", [](const Item& item) { return Text(item.name); }},
+      {"exponent", "-", "p that is held; of elements in parallel the p = α nearest to both",
+       [](const Item& item) { return Number(item.exponent); }},
+      {"sigma.value", "N/m", "σ at the reference load, with p held",
+       [](const Item& item) { return Number(item.stiffness.value); }},
+      {"sigma.standard_error", "N/m", "standard error",
+       [](const Item& item) { return Number(item.stiffness.standard_error); }},
+      {"sigma.ci95[0]", "N/m", "lower end of the 95 % interval",
+       [](const Item& item) {
+         return item.stiffness95 ? Number(item.stiffness95->lower) : Missing();
+       },
+       why_exact},
+      {"sigma.ci95[1]", "N/m", "upper end of the 95 % interval",
+       [](const Item& item) {
+         return item.stiffness95 ? Number(item.stiffness95->upper) : Missing();
+       },
+       why_exact},
+      {"quantities", "", "what follows of the contact, by name; may be empty", QuantitiesOf},
+  };
+  return fields;
+}
+
 }  // namespace
 
 void AddLoadSeriesFields(FieldTable& table) {
@@ -109,9 +168,16 @@ void AddLoadSeriesFields(FieldTable& table) {
          return report.load_series ? List(HypothesisFields(), report.load_series->hypotheses)
                                    : Value{};
        }},
+      {"load_series.laws", "", "the hypotheses that are tenable, each held over all loads",
+       [](const Report& report) {
+         return report.load_series ? List(LawFields(), report.load_series->laws) : Value{};
+       }},
   });
   table.Describe("load_series.records[].", ContactFieldsUnderLoad());
   table.Describe("load_series.hypotheses[].", HypothesisFields());
+  table.Describe("load_series.laws[].", LawFields());
+  table.Describe("load_series.laws[].quantities.NAME.", PropagatedFields());
+  table.Describe("load_series.laws[].quantities.NAME.", QuantityFields());
 }
 
 }  // namespace mindahl::report

@@ -429,13 +429,29 @@ std::string LoadSection(const Report& report) {
     if (!hypothesis.p_value) continue;
     const bool is_rejected = *hypothesis.p_value < kSignificance;
     hypotheses.Row(
-        Words(hypothesis),
+        WordsOfHypothesis(hypothesis.name),
         {Number(fmt::format("{:.3g}", *hypothesis.difference)),
          Number(fmt::format("{:.2f}", *hypothesis.z)),
          Number(*hypothesis.p_value < 1e-12 ? std::string("< 1e-12")
                                             : fmt::format("{:.3g}", *hypothesis.p_value)),
          Words(is_rejected ? "rejected" : "tenable", is_rejected ? "bad" : "good")});
   }
+  std::string laws;
+  for (const LoadLaw& law : LawsToShow(series)) {
+    Table table_of_law("what follows of the contact",
+                       {"quantity", "value", "95 % interval", "from", "of the bodies",
+                        "what its error is made of"});
+    for (const QuantityUnderLaw& quantity : law.quantities) {
+      table_of_law.Row(quantity.label,
+                       {ValueCell(quantity.value, quantity.unit), Number(IntervalWords(quantity)),
+                        Number(std::string(quantity.formula)),
+                        Number(quantity.predicted ? Quantity(*quantity.predicted, quantity.unit)
+                                                  : std::string(kNone)),
+                        Words(VarianceStatement(quantity.value))});
+    }
+    laws += Paragraph(LawHeading(law) + ".") + table_of_law.Html();
+  }
+  laws += SentenceList(LoadLawStatements(report));
   std::string figures;
   constexpr std::array kIds = {"load-stiffness", "load-slip-force"};
   const std::vector<io::PlotPanel> panels = LoadPanels(report, PrefixedUnits(report));
@@ -443,7 +459,7 @@ std::string LoadSection(const Report& report) {
     figures += Figure(panels[k], kIds.at(k), k == 0 ? "Stiffness and load" : "Slip force and load",
                       "Intervals are of each file by itself, with the shape of the whole series.");
   }
-  return Heading("Under several loads") + table.Html() + hypotheses.Html() + Grid(figures);
+  return Heading("Under several loads") + table.Html() + hypotheses.Html() + laws + Grid(figures);
 }
 
 std::string BackboneSection(const Report& report) {

@@ -104,7 +104,13 @@ std::string RoundedTo(double error, double value) {
   constexpr double kRoundsUp = 0.995;
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(error / kRoundsUp)));
   constexpr int kMostDecimals = 9;
-  constexpr double kMostWritten = 1e6;  // beyond it zeros are counted
+  constexpr double kMostWritten = 1e6;    // beyond it zeros are counted
+  constexpr double kLeastWritten = 1e-4;  // below it zeros are counted too
+  if (decimals > kMostDecimals && std::abs(value) < kLeastWritten && value != 0) {
+    constexpr int kMostDigits = 5;
+    const int digits = static_cast<int>(std::floor(std::log10(std::abs(value)))) + decimals;
+    return fmt::format("{:.{}e}", value, std::clamp(digits, 0, kMostDigits));
+  }
   if (decimals > kMostDecimals) return fmt::format("{:.6g}", value);
   const double rounded =
       decimals < 0 ? std::round(value * std::pow(10.0, decimals)) / std::pow(10.0, decimals)

@@ -313,7 +313,51 @@ std::vector<std::string> StiffnessStatements(const StiffnessTest& test) {
   return statements;
 }
 
-std::string Words(const LoadHypothesis& hypothesis) {
+std::vector<std::string> LoadLawStatements(const Report& report) {
+  if (!report.load_series) return {};
+  const FitResult& fit = report.fit;
+  std::vector<std::string> statements;
+  if (!fit.Find("sigma")->is_known() || !fit.Find("load_exponent")->is_known()) {
+    return {"no law of the load is held over the series: sigma or load_exponent is open"};
+  }
+  const std::vector<LoadLaw>& laws = report.load_series->laws;
+  if (DeniesHertz(fit)) {
+    statements.emplace_back(
+        "not Hertz's law, so that no radius, compliance or modulus of a sphere follows");
+  }
+  if (laws.empty()) statements.emplace_back("none of these theories is tenable");
+  for (const LoadLaw& law : LawsToShow(*report.load_series)) {
+    if (!law.unidentified.empty()) {
+      statements.push_back("with more known, more would follow: " + law.unidentified);
+    }
+  }
+  return statements;
+}
+
+std::vector<LoadLaw> LawsToShow(const LoadSeries& series) {
+  std::vector<LoadLaw> laws = series.laws;
+  if (std::ranges::find(laws, "sphere", &LoadLaw::name) != laws.end()) {
+    std::erase_if(laws, [](const LoadLaw& law) { return law.name == "elements"; });
+  }
+  return laws;
+}
+
+std::string LawHeading(const LoadLaw& law) {
+  return fmt::format("{} held over all loads: σ = {} at the mean load",
+                     law.name == "elements" ? fmt::format("p = α = {:.4g}", law.exponent)
+                                            : WordsOfHypothesis(law.name),
+                     QuantityWithError(law.stiffness.value, law.stiffness.standard_error, "N/m"));
+}
+
+std::string IntervalWords(const QuantityUnderLaw& quantity) {
+  if (!quantity.interval95) return "open";
+  const ScaledUnit unit = UnitFor(quantity.unit, std::abs(quantity.value.value));
+  const std::string interval =
+      IntervalText(quantity.interval95->lower, quantity.interval95->upper, unit.factor);
+  return unit.name.empty() ? interval : interval + " " + unit.name;
+}
+
+std::string WordsOfHypothesis(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kWords = {{
       {"sphere", "smooth sphere, Hertz (1/3)"},
       {"elements", "elements in parallel (α)"},
@@ -321,9 +365,9 @@ std::string Words(const LoadHypothesis& hypothesis) {
       {"flat_punch", "flat punch (0)"},
       {"rough", "rough contact (1)"},
   }};
-  const auto row = std::ranges::find(kWords, hypothesis.name,
-                                     &std::pair<std::string_view, std::string_view>::first);
-  return std::string(row == kWords.end() ? hypothesis.name : row->second);
+  const auto row =
+      std::ranges::find(kWords, name, &std::pair<std::string_view, std::string_view>::first);
+  return std::string(row == kWords.end() ? name : row->second);
 }
 
 }  // namespace mindahl::report

@@ -74,7 +74,22 @@ std::vector<std::string> ExponentStatements(const Report& report);
 /// Is the stiffness 8a/G*: the ratio, then its test where there is one.
 std::vector<std::string> StiffnessStatements(const StiffnessTest& test);
 
+/// Of a load series, what of the contact no law gives and why. Empty where the report has no
+/// series.
+std::vector<std::string> LoadLawStatements(const Report& report);
+
+/// The laws of a series that say something of the contact: elements in parallel only where Hertz's
+/// law, of which they are the general case, is not among them.
+std::vector<LoadLaw> LawsToShow(const LoadSeries& series);
+
+/// A law of the load and the stiffness with it: "smooth sphere, Hertz (1/3), held over all loads:
+/// σ = 52.11 ± 0.06 N/µm at the mean load".
+std::string LawHeading(const LoadLaw& law);
+
+/// The 95 % interval of a quantity in its own unit, "49.8 … 50.4 mm"; "open".
+std::string IntervalWords(const QuantityUnderLaw& quantity);
+
 /// A theory of the load's exponent in words.
-std::string Words(const LoadHypothesis& hypothesis);
+std::string WordsOfHypothesis(std::string_view name);
 
 }  // namespace mindahl::report

@@ -123,6 +123,8 @@ std::string AsInTheContract(const std::string& leaf) {
   std::string path = std::regex_replace(leaf, std::regex("^parameters\\.[^.]+"), "parameters.NAME");
   path =
       std::regex_replace(path, std::regex("^correlation\\.[^.]+\\.[^.]+"), "correlation.NAME.NAME");
+  path = std::regex_replace(path, std::regex("^(load_series\\.laws\\[\\]\\.quantities)\\.[^.]+"),
+                            "$1.NAME");
   const std::regex quantity(
       "^contact\\..*\\.(value|standard_error|unit|from_fit|from_inputs|largest_input)$");
   return std::regex_replace(path, quantity, "contact.QUANTITY.$1");

@@ -53,6 +53,12 @@ TEST(QuantityWithError, FromAMillionOnHasAnExponent) {
   EXPECT_EQ(QuantityWithError(999949.0, 120.0, "m"), "999950 ± 120 m");
 }
 
+TEST(QuantityWithError, OfWhatHasNoPrefixHasAnExponentWhereItIsSmall) {
+  EXPECT_EQ(QuantityWithError(4.207216e-11, 7.075e-14, "1/Pa"), "4.2072e-11 ± 7.1e-14 1/Pa");
+  EXPECT_EQ(QuantityWithError(4.2e-11, 1e-17, "1/Pa"), "4.20000e-11 ± 1.0e-17 1/Pa");
+  EXPECT_EQ(QuantityWithError(3e-12, 2e-11, "1/Pa"), "3e-12 ± 2.0e-11 1/Pa");
+}
+
 TEST(QuantityWithError, HasTheUnitOfTheLargerOfTheTwo) {
   EXPECT_EQ(QuantityWithError(3.19e-4, 2.7e-3, "N"), "0.3 ± 2.7 mN");
   EXPECT_EQ(QuantityWithError(-1e-5, 2.7e-3, "N"), "0.0 ± 2.7 mN");  // not -0.0

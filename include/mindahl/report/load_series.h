@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,10 +29,41 @@ struct ContactUnderLoad {
   std::optional<identification::RecordAlone> alone = {};  ///< what the record says by itself
 };
 
+/// What a law of the load makes of the contact: ρ [m], G* [1/Pa], …
+struct QuantityUnderLaw {
+  std::string_view key;      ///< "equivalent_radius"
+  std::string_view unit;     ///< "m"
+  std::string label;         ///< "equivalent radius"
+  std::string_view formula;  ///< "ρ = 4E*a³/(3N)"
+  contact::PropagatedValue value;
+  /// 95 %, of the fit's widened as that of σ is, and of what is known besides it; empty where the
+  /// error is open.
+  std::optional<identification::Interval> interval95;
+  /// What is known besides the fit says; empty where that is not enough.
+  std::optional<double> predicted;
+};
+
+/// A theory that the series does not reject, held over all its loads.
+struct LoadLaw {
+  std::string_view name;                                ///< of its hypothesis
+  double exponent = 0.0;                                ///< p that is held
+  contact::UncertainValue stiffness;                    ///< σ [N/m] at the mean load, with p held
+  std::optional<identification::Interval> stiffness95;  ///< empty where it was held
+  std::vector<QuantityUnderLaw> quantities;
+  std::string unidentified;  ///< what would have to be known for more; may be empty
+};
+
 struct LoadSeries {
   std::vector<ContactUnderLoad> contacts;  ///< one a record, in their order
   std::vector<LoadHypothesis> hypotheses;  ///< in the order of the table of docs/theory.md §9
+  /// Of the hypotheses those that are not rejected at kSignificance, in their order; where p was
+  /// held those whose exponent that is, to three digits. Empty where σ or p is not identifiable.
+  std::vector<LoadLaw> laws;
 };
+
+/// Whether a load series denies Hertz's law: p = 1/3 is rejected, or p was held at another value.
+/// Then no ρ and no pressure follow from a contact radius.
+bool DeniesHertz(const identification::FitResult& fit);
 
 /// What a fit of records under several loads says of the contact at each; empty where the fit is of
 /// one load.

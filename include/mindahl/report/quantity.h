@@ -22,7 +22,7 @@ std::string WithUnit(std::string_view name, std::string_view unit);
 std::string Quantity(double value, std::string_view unit, int digits = 5);
 
 /// The number with as many decimals as leave the error two digits: "48.142" of 0.0391; from a
-/// million on with an exponent, "5.002e+16" of 1.2e14.
+/// million on with an exponent, "5.002e+16" of 1.2e14, and where it is small, "4.207e-11" of 7e-14.
 /// @param error  > 0; where it is not, or not finite, the number has six digits
 std::string RoundedTo(double error, double value);
 
