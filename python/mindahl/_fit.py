@@ -66,7 +66,7 @@ def fit(
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
     samples: Optional[tuple[int, int]] = None, skip_cycles: int = 0,
-    time_window: Optional[Range] = None, load_window: Optional[Range] = None, loss: str = "none",
+    trim: str = "off", time_window: Optional[Range] = None, load_window: Optional[Range] = None, loss: str = "none",
     starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
     youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
@@ -102,6 +102,7 @@ def fit(
 
     What counts
         cycles, samples: (first, last), counted from 1. skip_cycles: so many at the start.
+        trim: "off", or "auto" to leave out rests, ramps and running-in at the ends, with a note.
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.
@@ -128,6 +129,7 @@ def fit(
     request.cycles = "" if cycles is None else pair("cycles", cycles)
     request.samples = "" if samples is None else pair("samples", samples)
     request.skip_cycles = count("skip_cycles", skip_cycles, 0)
+    request.trim = trim
     request.time_window = "" if time_window is None else pair("time_window", time_window)
     request.load_window = "" if load_window is None else pair("load_window", load_window)
     options = _mindahl.ContactOptions()

@@ -79,6 +79,7 @@ class FitRequest:
     cycles: str
     samples: str
     skip_cycles: int
+    trim: str
     loss: str
     starts: int
     seed: int

@@ -107,6 +107,7 @@ void AddFit(py::module_& module) {
       .def_readwrite("cycles", &FitRequest::cycles)
       .def_readwrite("samples", &FitRequest::samples)
       .def_readwrite("skip_cycles", &FitRequest::skip_cycles)
+      .def_readwrite("trim", &FitRequest::trim)
       .def_readwrite("loss", &FitRequest::loss)
       .def_readwrite("starts", &FitRequest::starts)
       .def_readwrite("seed", &FitRequest::seed)

@@ -24,6 +24,7 @@
 #include "mindahl/report/report.h"
 #include "mindahl/report/residual_table.h"
 #include "mindahl/report/text.h"
+#include "mindahl/request/fit_records.h"
 
 namespace mindahl::cli {
 namespace {
@@ -48,7 +49,9 @@ identification::BackboneEstimate BackboneOf(const FitRequest& request,
   }
   std::vector<loop::RecordView> records;
   for (const io::RecordFile& input : report.records) records.emplace_back(input.record);
-  return identification::EstimateBackbone(records, MakeFitOptions(request), report.fit);
+  identification::FitOptions options = MakeFitOptions(request);
+  request::LeaveOutTrimmed(report.trims, options);
+  return identification::EstimateBackbone(records, options, report.fit);
 }
 
 /// @param provenance  asked for where a page is written: it reads the files once more

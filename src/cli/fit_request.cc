@@ -58,6 +58,13 @@ void AddWindowOptions(CLI::App& command, FitRequest& options) {
       ->capture_default_str()
       ->check(WholeNumber(0, 1'000'000'000))
       ->group(group);
+  command
+      .add_option("--trim", options.trim,
+                  "auto leaves out, and says, what at the ends is not the test:\n"
+                  "rests, ramps of load and amplitude, cycles of running in")
+      ->capture_default_str()
+      ->check(OneOf(request::kTrims))
+      ->group(group);
 }
 
 void AddTermOptions(CLI::App& command, FitRequest& options, const std::string& group) {

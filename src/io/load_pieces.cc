@@ -37,7 +37,23 @@ RecordFile PieceOf(const RecordFile& input, const loop::ConstantLoad& piece) {
   return part;
 }
 
+NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piece,
+                         const std::string& file) {
+  RecordFile part = PieceOf(input, piece);
+  std::string name = fmt::format("{}:{}-{}", file, part.piece->first_line, part.piece->last_line);
+  return {.name = std::move(name), .file = std::move(part)};
+}
+
 }  // namespace
+
+NamedRecord CutAtLoadRamps(const RecordFile& input, const std::string& file) {
+  const std::optional<loop::ConstantLoad> piece = loop::FindSettledLoad(input.record);
+  if (!piece) return {.name = file, .file = input};
+  NamedRecord record = NamedPieceOf(input, *piece, file);
+  record.file.piece->is_between_ramps = true;
+  record.file.piece->left_out = input.record.size() - (piece->last - piece->first);
+  return record;
+}
 
 std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {
   const std::vector<loop::ConstantLoad> pieces = loop::FindLoadSteps(input.record);
@@ -45,10 +61,7 @@ std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::st
   std::vector<NamedRecord> records;
   std::size_t kept = 0;
   for (const loop::ConstantLoad& piece : pieces) {
-    RecordFile part = PieceOf(input, piece);
-    records.push_back(
-        {.name = fmt::format("{}:{}-{}", file, part.piece->first_line, part.piece->last_line),
-         .file = std::move(part)});
+    records.push_back(NamedPieceOf(input, piece, file));
     kept += piece.last - piece.first;
   }
   records.back().file.piece->left_out = input.record.size() - kept;

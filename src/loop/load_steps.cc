@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <span>
 
 #include "loop/load_step_rules.h"
@@ -61,14 +62,27 @@ class LoadSteps {
     std::vector<Run> runs = ConstantRuns();
     if (runs.size() < 2 || !AreSteps(runs)) return {};
     std::vector<ConstantLoad> pieces;
-    for (const Run& run : runs) {
-      const std::size_t first = run.first == 0 ? 0 : *std::next(NextTurn(run.first));
-      pieces.push_back({.first = first, .last = run.last, .normal_load = run.load});
-    }
+    for (const Run& run : runs) pieces.push_back(PieceOf(run));
     return pieces;
   }
 
+  [[nodiscard]] std::optional<ConstantLoad> FindSettled() const {
+    const std::vector<Run> runs = ConstantRuns();
+    const auto longest =
+        std::ranges::max_element(runs, {}, [](const Run& run) { return run.last - run.first; });
+    if (longest == runs.end()) return std::nullopt;
+    const ConstantLoad piece = PieceOf(*longest);
+    const auto samples = static_cast<double>(piece.last - piece.first);
+    const bool is_whole = piece.first == 0 && piece.last == load_.size();
+    if (is_whole || samples < rules_.share * static_cast<double>(load_.size())) return std::nullopt;
+    return piece;
+  }
+
  private:
+  [[nodiscard]] ConstantLoad PieceOf(const Run& run) const {
+    const std::size_t first = run.first == 0 ? 0 : *std::next(NextTurn(run.first));
+    return {.first = first, .last = run.last, .normal_load = run.load};
+  }
   [[nodiscard]] double Tolerance(double load) const {
     return std::max(rules_.constant * load, rules_.noise * noise_);
   }
@@ -137,6 +151,11 @@ class LoadSteps {
 };
 
 }  // namespace
+
+std::optional<ConstantLoad> FindSettledLoad(const RecordView& record) {
+  if (record.normal_load.empty()) return std::nullopt;
+  return LoadSteps(record, {}).FindSettled();
+}
 
 std::vector<ConstantLoad> FindLoadSteps(const RecordView& record) {
   if (record.normal_load.empty()) return {};

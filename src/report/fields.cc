@@ -7,6 +7,7 @@
 #include "mindahl/core/version.h"
 #include "report/field_table.h"
 #include "report/names.h"
+#include "report/trims.h"
 
 namespace mindahl::report {
 
@@ -104,8 +105,8 @@ void AddInputFields(FieldTable& table) {
          return Count(samples);
        }},
       {"input.load_pieces", "",
-       "of files whose load goes in steps, what was fitted as a record of its own; absent where "
-       "there is none",
+       "of files whose load goes in steps, or ramps under --trim auto, what was fitted as a record "
+       "of its own; absent where there is none",
        [](const Report& report) {
          const std::vector<LoadPieceItem> pieces = LoadPieces(report);
          return pieces.empty() ? Value{} : List(LoadPieceFields(), pieces);
@@ -115,6 +116,11 @@ void AddInputFields(FieldTable& table) {
        "turning points have passed since; absent likewise",
        [](const Report& report) {
          return LoadPieces(report).empty() ? Value{} : Count(BetweenLoads(report));
+       }},
+      {"input.trimmed", "",
+       "what --trim auto leaves out; may be empty, absent where it was not asked for",
+       [](const Report& report) {
+         return report.trims.empty() ? Value{} : List(TrimmedFields(), TrimmedItems(report));
        }},
       {"input.cycles", "", "complete cycles, of all files",
        Sum([](const RecordFit& record) { return record.measures.cycles; })},
@@ -168,6 +174,7 @@ FieldTable MakeTable() {
   FieldTable table;
   AddInputFields(table);
   table.Describe("input.load_pieces[].", LoadPieceFields());
+  table.Describe("input.trimmed[].", TrimmedFields());
   AddAdequacyFields(table);
   AddMeasuredFields(table);
   AddParameterFields(table);

@@ -11,6 +11,7 @@
 #include "mindahl/report/contact.h"
 #include "mindahl/report/sentences.h"
 #include "report/adequacy.h"
+#include "report/trims.h"
 
 namespace mindahl::report {
 namespace {
@@ -50,7 +51,7 @@ void SayLoadPieces(Report& report) {
   std::size_t left_out = 0;
   for (std::size_t r = 0; r < report.records.size(); ++r) {
     const std::optional<io::LoadPiece>& piece = report.records[r].piece;
-    if (!piece) continue;
+    if (!piece || piece->is_between_ramps) continue;
     pieces.push_back(fmt::format("{:.4g} N ({})", piece->normal_load, report.files[r]));
     left_out += piece->left_out;
   }
@@ -107,6 +108,7 @@ Report MakeReport(ReportInput input) {
               report.fit.adequacy.causes);
   SayFindings(report);
   SayLoadPieces(report);
+  for (Warning& note : TrimNotes(report)) report.notes.push_back(std::move(note));
   if (report.failed()) return report;
   report.loop = DescribeLoop(report.fit);
   if (report.is_torsional()) return report;

@@ -135,24 +135,40 @@ void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& in
 }
 
 /// One record for each constant load of a file, unless it is said what the loads are, or which
-/// samples of it count.
+/// samples of it count; and of a file whose ends are trimmed what is under its constant load.
 /// @param names  written: those of the records
 std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
                                    std::vector<std::string>& names) {
+  const bool splits = request.contact.normal_loads.empty() && request.load_window.empty() &&
+                      request.samples.empty();
+  const bool trims = request.trim == kAutomatic && request.load_window.empty();
   names = request.files;
-  if (!request.contact.normal_loads.empty() || !request.load_window.empty() ||
-      !request.samples.empty()) {
-    return inputs;
-  }
+  if (!splits && !trims) return inputs;
   names.clear();
   std::vector<RecordFile> records;
   for (std::size_t r = 0; r < inputs.size(); ++r) {
-    for (io::NamedRecord& record : io::SplitAtLoadSteps(inputs[r], request.files[r])) {
+    std::vector<io::NamedRecord> pieces;
+    if (splits) pieces = io::SplitAtLoadSteps(inputs[r], request.files[r]);
+    if (trims && pieces.size() <= 1) {
+      pieces = {io::CutAtLoadRamps(inputs[r], request.files[r])};
+    }
+    for (io::NamedRecord& record : pieces) {
       names.push_back(std::move(record.name));
       records.push_back(std::move(record.file));
     }
   }
   return records;
+}
+
+/// What is no part of the test in each record; empty where that is not asked for.
+std::vector<loop::Trim> FindTrims(const FitRequest& request, const FitOptions& options,
+                                  std::span<const Record> records) {
+  std::vector<loop::Trim> trims;
+  if (request.trim != kAutomatic) return trims;
+  for (const Record& record : records) {
+    trims.push_back(loop::FindTrim(record, options.preparation));
+  }
+  return trims;
 }
 
 /// What needs a load column must have one, and a window some samples, before the fit says so in its
@@ -223,6 +239,26 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
 
 }  // namespace
 
+void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
+  if (trims.empty()) return;
+  std::vector<std::vector<bool>>& held_out = options.preparation.held_out;
+  held_out.assign(trims.size(), {});
+  bool all_begin_later = true;
+  for (std::size_t r = 0; r < trims.size(); ++r) {
+    all_begin_later = all_begin_later && trims[r].has_first_loading;
+    if (trims[r].parts.empty()) continue;
+    held_out[r].assign(trims[r].samples, false);
+    for (const loop::TrimmedPart& part : trims[r].parts) {
+      std::fill(held_out[r].begin() + static_cast<std::ptrdiff_t>(part.first),
+                held_out[r].begin() + static_cast<std::ptrdiff_t>(part.last), true);
+    }
+  }
+  if (std::ranges::all_of(held_out, &std::vector<bool>::empty)) held_out.clear();
+  if (all_begin_later && !options.initial_state) {
+    options.initial_state = models::InitialState::kSteady;
+  }
+}
+
 void Validate(const FitRequest& request) {
   Validate(request.contact);
   RequireLoadsOfRecords(request);
@@ -241,7 +277,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   if (inputs.empty()) throw InputError("a fit needs a record: give one");
   RequireSameSize("names", request.files.size(), "records", inputs.size());
   RequireLoadsOfRecords(request);
-  const FitOptions options = MakeFitOptions(request);
+  FitOptions options = MakeFitOptions(request);
   RequireColumns(request, inputs);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
     throw InputError(
@@ -256,6 +292,8 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::vector<Record> records;
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
+  std::vector<loop::Trim> trims = FindTrims(request, options, records);
+  LeaveOutTrimmed(trims, options);
   std::optional<identification::ModelSelection> selection;
   identification::FitResult fit = FitAsked(request, options, records, selection);
   contact::KnownContact known = request.contact.known;
@@ -265,6 +303,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .fit = std::move(fit),
                              .known = known,
                              .load_window = options.preparation.load_window,
+                             .trims = std::move(trims),
                              .selection = std::move(selection)});
 }
 

@@ -236,6 +236,22 @@ void RequireKnownChoices(const FitRequest& request) {
   RequireOneOf("--noise-in", request.noise_in, kNoiseIn);
   RequireOneOf("--offsets", request.offsets, kOnOff);
   RequireOneOf("--loss", request.loss, kLosses);
+  RequireOneOf("--trim", request.trim, kTrims);
+}
+
+/// What counts is said once.
+void RequireTrimAlone(const FitRequest& request) {
+  if (request.trim != kAutomatic) return;
+  const auto refuse = [](std::string_view option, std::string_view why) {
+    throw InputError(fmt::format("{} has no place beside --trim auto: {}", option, why));
+  };
+  constexpr std::string_view kBoth = "both say which cycles count; leave one of the two out";
+  if (!request.cycles.empty()) refuse("--cycles", kBoth);
+  if (!request.samples.empty()) refuse("--samples", kBoth);
+  if (request.skip_cycles > 0) refuse("--skip-cycles", kBoth);
+  if (request.noise_in == "displacement") {
+    refuse("--noise-in displacement", "cycles are compared under a displacement that is imposed");
+  }
 }
 
 }  // namespace
@@ -252,6 +268,7 @@ std::vector<std::string_view> ModelNames() {
 FitOptions MakeFitOptions(const FitRequest& options) {
   FitOptions fit;
   RequireKnownChoices(options);
+  RequireTrimAlone(options);
   if (options.model != kAutomatic) fit.model = models::FindFrictionModel(options.model);
   if (options.initial_state == "virgin") fit.initial_state = models::InitialState::kVirgin;
   if (options.initial_state == "steady") fit.initial_state = models::InitialState::kSteady;

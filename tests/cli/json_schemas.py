@@ -62,6 +62,8 @@ COMMANDS = [
     ("fit hopeless.csv", 0),
     ("fit torque.csv", 0),
     ("fit steps.csv", 0),
+    ("fit rested.csv --trim auto", 0),
+    (f"fit {BALL} --trim auto", 0),
     ("fit noise.csv", 0),
     ("fit loaded.csv", 0),
     ("fit walk.csv", 0),
@@ -118,6 +120,8 @@ def make_files(directory, run):
         walk.append(f"{place}")
     write("walk_path.csv", "displacement [m]", walk)
     run(shlex.split("simulate --sigma 4e7 --slip-force 40 --path walk_path.csv -o walk.csv"))
+    write("rested.csv", "displacement [m],force [N]",
+          ["0,0"] * 150 + [f"{x},{force}" for _, x, force in cells])
     steps = []
     for n, load in enumerate((25, 100)):
         steps += [f"{float(t) + 3 * n},{x},{force},{load}" for t, x, force in cells]

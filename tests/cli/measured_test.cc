@@ -94,9 +94,37 @@ TEST_F(MeasuredRecord, TribometerUnderItsFullLoadIsFittedAsBetweenTwentyAndSixty
   EXPECT_TRUE(Warns(fit, "shape_or_rig"));
 }
 
+TEST_F(MeasuredRecord, TribometerIsTrimmedToItsFullLoad) {
+  constexpr const char* kFile = "tribometer/test_data_2.txt";
+  SKIP_WITHOUT(kFile);
+  const json fit = Fit(kFile, {"--trim", "auto"});
+  EXPECT_EQ(fit["input"]["samples"], 42579);
+  // By awk 2169 rows are under another load than 5 N to 1 %; up to where it has settled, and to the
+  // second turn from there, are at most three strokes of 400 more.
+  const std::size_t between = fit["input"]["between_loads"];
+  EXPECT_GE(between, 2169U);
+  EXPECT_LE(between, 2169U + 3U * 400U);
+  ASSERT_EQ(fit["input"]["trimmed"].size(), 1U);
+  EXPECT_EQ(fit["input"]["trimmed"][0]["reason"], "rest");
+  EXPECT_NEAR(Value(fit, "sigma"), 41.3e3, 1e3);
+  EXPECT_NEAR(Value(fit, "slip_force"), 2.35, 0.03);
+  EXPECT_NEAR(fit["contact"]["friction_coefficient"]["value"].get<double>(), 0.47, 0.01);
+  EXPECT_TRUE(Warns(fit, "shape_or_rig"));
+}
+
 const Words kSealColumns = {"--displacement", "5", "--displacement-unit", "mm",
                             "--force",        "7", "--force-unit",        "N",
                             "--time",         "1", "--time-unit",         "ms"};
+
+TEST_F(MeasuredRecord, SealThatRunsInAllTheTimeIsLeftWhole) {
+  constexpr const char* kFile = "seals/rerun_2_O-ring257_5bar.csv";
+  SKIP_WITHOUT(kFile);
+  Words options = kSealColumns;
+  options.insert(options.end(), {"--trim", "auto"});
+  const json fit = Fit(kFile, options);
+  EXPECT_TRUE(fit["input"]["trimmed"].empty());
+  EXPECT_EQ(fit["notes"].back()["code"], "nothing_trimmed");
+}
 
 TEST_F(MeasuredRecord, SealsGiveTheHalfGapOfTheirForcesAndTheOffsetOfThePressure) {
   struct Seal {

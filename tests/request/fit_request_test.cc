@@ -14,7 +14,7 @@ namespace {
 TEST(FitRequest, RefusesAChoiceThatIsNone) {
   for (std::string FitRequest::*member :
        {&FitRequest::model, &FitRequest::initial_state, &FitRequest::force_sign,
-        &FitRequest::offsets, &FitRequest::loss}) {
+        &FitRequest::offsets, &FitRequest::loss, &FitRequest::trim}) {
     FitRequest request;
     request.*member = "oak";
     EXPECT_THROW(MakeFitOptions(request), InputError);

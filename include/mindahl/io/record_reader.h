@@ -38,6 +38,8 @@ struct LoadPiece {
   std::size_t first_line = 0;  ///< of the file, 1-based
   std::size_t last_line = 0;   ///< likewise
   std::size_t left_out = 0;    ///< samples of the file in none of its pieces; with the last piece
+  /// Of one constant load, to and from which the file's load ramps.
+  bool is_between_ramps = false;
 };
 
 /// A record and where it came from.

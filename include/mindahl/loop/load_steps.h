@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "mindahl/loop/record.h"
@@ -30,5 +31,14 @@ struct ConstantLoad {
 /// @returns two pieces or more in order of time; empty where the load has no steps
 /// Cost: n log n at most (ChooseReversalGate).
 std::vector<ConstantLoad> FindLoadSteps(const RecordView& record);
+
+/// The piece of a record whose load ramps up at its start, or down at its end, that is under one
+/// constant load: constant, and begun, as a piece of FindLoadSteps(), with three fifths of the
+/// samples.
+/// @param record  likewise
+/// @returns empty where the record has no load, or none that is constant for so long, or is under
+///   one from its first sample to its last
+/// Cost: likewise.
+std::optional<ConstantLoad> FindSettledLoad(const RecordView& record);
 
 }  // namespace mindahl::loop

@@ -9,6 +9,7 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/loop/trim.h"
 #include "mindahl/report/load_series.h"
 #include "mindahl/report/loop_description.h"
 #include "mindahl/report/mapping_tests.h"
@@ -25,6 +26,8 @@ struct ReportInput {
   contact::KnownContact known = {};  ///< of the contact, besides the fit
   /// Normal loads [N] of the samples that counted, as the fit was told.
   std::optional<identification::Interval> load_window = {};
+  /// What was left out of each record as no part of its test; empty where that was not asked for.
+  std::vector<loop::Trim> trims = {};
   std::optional<identification::ModelSelection> selection = {};   ///< where the model was chosen
   std::optional<identification::BackboneEstimate> backbone = {};  ///< where it was asked for
 };

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mindahl/io/record_reader.h"
+#include "mindahl/loop/trim.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 
@@ -13,6 +15,12 @@ namespace mindahl::request {
 
 /// Told what is assumed, one sentence each.
 using Tell = std::function<void(std::string_view)>;
+
+/// Has the fit leave out what is no part of the test of each record, and take the contact for one
+/// that was not unloaded before where that leaves out every first loading and nothing else is said
+/// of it.
+/// @param trims  one a record, or none
+void LeaveOutTrimmed(std::span<const loop::Trim> trims, identification::FitOptions& options);
 
 /// @throws InvalidArgument or InputError for options that break a rule whatever the records are
 void Validate(const FitRequest& request);

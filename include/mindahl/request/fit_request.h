@@ -28,6 +28,7 @@ inline constexpr std::array<std::string_view, 3> kInitialStates = {"auto", "virg
 inline constexpr std::array<std::string_view, 3> kForceSigns = {"auto", "same", "opposite"};
 inline constexpr std::array<std::string_view, 2> kNoiseIn = {"force", "displacement"};
 inline constexpr std::array<std::string_view, 2> kOnOff = {"on", "off"};
+inline constexpr std::array<std::string_view, 2> kTrims = {"off", "auto"};
 inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "cauchy", "tukey"};
 
 /// Models that can be fitted, and kAutomatic.
@@ -50,6 +51,7 @@ struct FitRequest {
   std::string cycles;
   std::string samples;
   std::size_t skip_cycles = 0;
+  std::string trim = "off";
   std::string loss = "none";
   std::size_t starts = identification::FitOptions{}.starts;
   std::uint64_t seed = identification::FitOptions{}.seed;

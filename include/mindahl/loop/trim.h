@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/loop/preparation.h"
+#include "mindahl/loop/record.h"
+
+namespace mindahl::loop {
+
+/// Why samples at an end of a record are not of its test.
+enum class TrimReason {
+  kRest,       ///< the displacement rests
+  kRamp,       ///< cycles whose amplitude grows to that of the test, or falls from it
+  kRunningIn,  ///< cycles of the test's amplitude whose facts have not settled
+};
+
+/// "rest", "ramp" or "running_in".
+std::string_view NameOf(TrimReason reason);
+
+/// Successive samples [first, last) at an end of a record.
+struct TrimmedPart {
+  TrimReason reason = TrimReason::kRest;
+  std::size_t first = 0;
+  std::size_t last = 0;
+  std::size_t cycles = 0;  ///< closed ones within it
+
+  [[nodiscard]] std::size_t samples() const { return last - first; }
+};
+
+/// Whether a record's cycles say that it has run in.
+enum class Settling {
+  kSettled,    ///< they do, at once or after those that are left out
+  kFewCycles,  ///< there are too few of one amplitude to say
+  kUnsettled,  ///< half gap or energy still change in the last half of them, or for longer
+};
+
+/// What of a record is not of its test.
+struct Trim {
+  std::size_t samples = 0;         ///< of the record
+  std::vector<TrimmedPart> parts;  ///< at the beginning, then at the end, in order of time
+  Settling settling = Settling::kFewCycles;
+  /// The first loading, which alone is of a contact that may be unloaded, is among them.
+  bool has_first_loading = false;
+};
+
+/// Parts at the ends of a record that are not of its test, by its model-free facts, cycle by cycle
+/// (MeasureFacts), before any model:
+///
+///  - rest: the displacement stays within 1 % of half its range, or within the reversal gate, for
+///    longer than half a usual stroke, before the motion begins or after it has ended;
+///  - ramps: cycles narrower than 0.95 of the widest, at either end, whose amplitude grows to it or
+///    falls from it by no step back of more than 5 %, where all others are that wide and at least
+///    three fifths of all. Nested loops, a growing sine, amplitudes in turn are no ramps;
+///  - running in: of eight cycles of the widest amplitude or more the first whose half gap or
+///    energy is farther than 1 % from its mean over their last half, and farther than the scatter
+///    there makes once in a thousand cycles (Student's t), all to one side, up to half of them.
+///    Where a slope of the last half changes it by more than 1 %, p < 0.01, or more cycles are off,
+///    the record has not settled, and none is left out.
+///
+/// The first loading is left out where a ramp or a running-in is, never by itself.
+/// @param options  as the record will be prepared; windows, held-out samples and what counts are
+///   not looked at
+/// @throws InvalidArgument as Prepare()
+/// Cost: as Prepare() and MeasureFacts().
+Trim FindTrim(const RecordView& record, const PreparationOptions& options = {});
+
+}  // namespace mindahl::loop

@@ -1,0 +1,267 @@
+#include "mindahl/loop/trim.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <memory_resource>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "loop/strokes.h"
+#include "loop/trim_rules.h"
+#include "mindahl/loop/facts.h"
+
+namespace mindahl::loop {
+namespace {
+
+double MedianOf(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+/// A least-squares line through values at 0, 1, 2 …, three or more.
+struct Line {
+  double mean = 0.0;
+  double slope = 0.0;
+  double slope_error = 0.0;
+  double deviation = 0.0;  ///< standard, of the values from it
+  double degrees_of_freedom = 0.0;
+};
+
+Line LineThrough(std::span<const double> values) {
+  const auto count = static_cast<double>(values.size());
+  const double centre = (count - 1) / 2;
+  Line line{.degrees_of_freedom = count - 2};
+  for (const double value : values) line.mean += value / count;
+  double squares = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double distance = static_cast<double>(k) - centre;
+    squares += distance * distance;
+    line.slope += distance * (values[k] - line.mean);
+  }
+  line.slope /= squares;
+  double residuals = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double residual =
+        values[k] - line.mean - line.slope * (static_cast<double>(k) - centre);
+    residuals += residual * residual;
+  }
+  line.deviation = std::sqrt(residuals / line.degrees_of_freedom);
+  line.slope_error = line.deviation / std::sqrt(squares);
+  return line;
+}
+
+/// Student's t beyond which chance lies, to either side.
+double TwoSided(double chance, double degrees_of_freedom) {
+  return boost::math::quantile(
+      boost::math::complement(boost::math::students_t(degrees_of_freedom), chance / 2));
+}
+
+/// Samples that the displacement rests for from its first one on.
+template <typename Iterator>
+std::size_t RestFrom(Iterator first, Iterator last, double reach) {
+  const double at_rest = *first;
+  const auto moves = std::find_if(
+      first, last, [&](double displacement) { return std::abs(displacement - at_rest) > reach; });
+  return static_cast<std::size_t>(moves - first);
+}
+
+class Trimming {
+ public:
+  Trimming(const PreparedRecord& prepared, int force_sense, const TrimRules& rules)
+      : rules_(rules),
+        displacement_(prepared.displacement()),
+        gate_(prepared.reversal_gate),
+        points_(TurningPoints(displacement_, prepared.reversals,
+                              std::pmr::get_default_resource())),
+        cycles_(MeasureFacts(prepared, force_sense).cycles),
+        last_(prepared.size()) {}
+
+  Trim Find() {
+    trim_.samples = displacement_.size();
+    LeaveOutRest();
+    FindRamps();
+    if (steady_.first > 0) CutBefore(TrimReason::kRamp, steady_.first);
+    FindRunningIn();
+    if (steady_.second < cycles_.size()) {
+      const std::size_t end = points_[2 * steady_.second];
+      if (end < last_) {
+        at_end_.insert(at_end_.begin(), {.reason = TrimReason::kRamp,
+                                         .first = end,
+                                         .last = last_,
+                                         .cycles = cycles_.size() - steady_.second});
+      }
+    }
+    trim_.parts.insert(trim_.parts.end(), at_end_.begin(), at_end_.end());
+    return std::move(trim_);
+  }
+
+ private:
+  /// Samples of a usual stroke; 0 where there is none.
+  [[nodiscard]] double UsualStroke() const {
+    if (points_.size() < 2) return 0.0;
+    std::vector<double> lengths;
+    for (std::size_t k = 1; k < points_.size(); ++k) {
+      lengths.push_back(static_cast<double>(points_[k] - points_[k - 1]));
+    }
+    return MedianOf(std::move(lengths));
+  }
+
+  void LeaveOutRest() {
+    const double usual = UsualStroke();
+    if (!(usual > 0)) return;
+    const auto [least, greatest] = std::ranges::minmax(displacement_);
+    const double reach = std::max(rules_.rest * (greatest / 2 - least / 2), gate_);
+    const auto is_rest = [&](std::size_t samples) {
+      return static_cast<double>(samples) > rules_.longest_dwell * usual && samples > 1;
+    };
+    // One sample stays, from which the motion begins and at which it ends.
+    const std::size_t before = RestFrom(displacement_.begin(), displacement_.end(), reach);
+    if (is_rest(before)) {
+      first_ = before - 1;
+      trim_.parts.push_back({.reason = TrimReason::kRest, .first = 0, .last = first_});
+    }
+    const std::size_t after = RestFrom(displacement_.rbegin(), displacement_.rend(), reach);
+    if (is_rest(after)) {
+      at_end_.push_back({.reason = TrimReason::kRest,
+                         .first = displacement_.size() - after + 1,
+                         .last = displacement_.size()});
+      last_ = at_end_.front().first;
+    }
+  }
+
+  /// From the samples that are left on those before a cycle, counted from 0.
+  void CutBefore(TrimReason reason, std::size_t cycle) {
+    const std::size_t begin = points_[2 * cycle];
+    if (begin <= first_) return;
+    trim_.parts.push_back(
+        {.reason = reason, .first = first_, .last = begin, .cycles = cycle - cut_cycles_});
+    trim_.has_first_loading = true;
+    first_ = begin;
+    cut_cycles_ = cycle;
+  }
+
+  /// Does the amplitude grow over these cycles, or fall, by no step back?
+  [[nodiscard]] bool IsMonotone(std::size_t first, std::size_t last, double widest,
+                                double sense) const {
+    for (std::size_t k = first; k + 1 < last; ++k) {
+      const double step = sense * (cycles_[k + 1].amplitude - cycles_[k].amplitude);
+      if (step < -rules_.step_back * widest) return false;
+    }
+    return true;
+  }
+
+  /// The cycles of the test, [first, second): all where there are no ramps.
+  void FindRamps() {
+    steady_ = {0, cycles_.size()};
+    const auto is_steady = [](const CycleFacts& cycle) { return cycle.steady; };
+    const auto first = std::ranges::find_if(cycles_, is_steady);
+    if (first == cycles_.end()) return;
+    const auto end =
+        std::find_if(cycles_.rbegin(), cycles_.rend(), is_steady).base();  // one past the last
+    is_of_one_amplitude_ = std::all_of(first, end, is_steady);
+    if (!is_of_one_amplitude_) return;
+    const auto begin_cycle = static_cast<std::size_t>(first - cycles_.begin());
+    const auto end_cycle = static_cast<std::size_t>(end - cycles_.begin());
+    const double widest = std::ranges::max(cycles_, {}, &CycleFacts::amplitude).amplitude;
+    const bool is_test = static_cast<double>(end_cycle - begin_cycle) >=
+                         rules_.share * static_cast<double>(cycles_.size());
+    is_of_one_amplitude_ = is_test && IsMonotone(0, begin_cycle + 1, widest, 1.0) &&
+                           IsMonotone(end_cycle - 1, cycles_.size(), widest, -1.0);
+    if (is_of_one_amplitude_) steady_ = {begin_cycle, end_cycle};
+  }
+
+  /// A fact of each cycle of the test; empty where one does not have it.
+  template <typename Get>
+  [[nodiscard]] std::vector<double> FactOf(Get get) const {
+    std::vector<double> values;
+    for (std::size_t k = steady_.first; k < steady_.second; ++k) {
+      const std::optional<double> value = get(cycles_[k]);
+      if (!value) return {};
+      values.push_back(*value);
+    }
+    return values;
+  }
+
+  /// Cycles at the beginning whose fact is not what it settles to; empty where it does not settle.
+  [[nodiscard]] std::optional<std::size_t> Unsettled(const std::vector<double>& values) const {
+    const std::span<const double> last = std::span(values).subspan(values.size() / 2);
+    const Line line = LineThrough(last);
+    const auto count = static_cast<double>(last.size());
+    const double level = line.mean;
+    const double settled = rules_.settled * std::abs(level);
+    const double slope = std::abs(line.slope);
+    const bool is_trend =
+        slope > TwoSided(rules_.trend_chance, line.degrees_of_freedom) * line.slope_error;
+    if (is_trend && slope * (count - 1) > settled) return std::nullopt;
+    const double scatter = TwoSided(rules_.chance, line.degrees_of_freedom) * line.deviation *
+                           std::sqrt(1 + 1 / count);
+    const double band = std::max(settled, scatter);
+    const double sense = values.front() < level ? -1.0 : 1.0;
+    std::size_t off = 0;
+    while (off < values.size() && sense * (values[off] - level) > band) ++off;
+    return off <= values.size() / 2 ? std::optional(off) : std::nullopt;
+  }
+
+  void FindRunningIn() {
+    if (!is_of_one_amplitude_ || steady_.second - steady_.first < rules_.fewest) return;
+    std::size_t off = 0;
+    for (const std::vector<double>& values :
+         {FactOf([](const CycleFacts& cycle) { return cycle.half_gap; }),
+          FactOf([](const CycleFacts& cycle) { return std::optional(cycle.energy); })}) {
+      if (values.empty()) continue;
+      const std::optional<std::size_t> of_this = Unsettled(values);
+      if (!of_this) {
+        trim_.settling = Settling::kUnsettled;
+        return;
+      }
+      off = std::max(off, *of_this);
+    }
+    trim_.settling = Settling::kSettled;
+    if (off > 0) CutBefore(TrimReason::kRunningIn, steady_.first + off);
+  }
+
+  TrimRules rules_;
+  std::span<const double> displacement_;  // [m]
+  double gate_;                           // [m]
+  std::pmr::vector<std::size_t> points_;
+  std::vector<CycleFacts> cycles_;  // from every other point to the next but one
+  std::pair<std::size_t, std::size_t> steady_{0, 0};
+  bool is_of_one_amplitude_ = false;
+  // What is left, as far as it is known: samples [first_, last_), without cut_cycles_.
+  std::size_t first_ = 0;
+  std::size_t last_ = 0;
+  std::size_t cut_cycles_ = 0;
+  Trim trim_;
+  std::vector<TrimmedPart> at_end_;
+};
+
+}  // namespace
+
+std::string_view NameOf(TrimReason reason) {
+  switch (reason) {
+    case TrimReason::kRest:
+      return "rest";
+    case TrimReason::kRamp:
+      return "ramp";
+    case TrimReason::kRunningIn:
+      break;
+  }
+  return "running_in";
+}
+
+Trim FindTrim(const RecordView& record, const PreparationOptions& options) {
+  PreparationOptions whole = options;
+  whole.load_window.reset();
+  whole.skip_cycles = 0;
+  whole.cycles.reset();
+  whole.samples.reset();
+  whole.held_out.clear();
+  const PreparedRecords prepared =
+      Prepare({&record, 1}, whole, std::pmr::get_default_resource());
+  return Trimming(prepared.records.front(), prepared.force_sense, {}).Find();
+}
+
+}  // namespace mindahl::loop

@@ -1,0 +1,133 @@
+#include "report/trims.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <string_view>
+
+namespace mindahl::report {
+
+using loop::Settling;
+using loop::Trim;
+using loop::TrimmedPart;
+using loop::TrimReason;
+
+namespace {
+
+std::string CyclesText(std::size_t cycles) {
+  return fmt::format("{} cycle{}", cycles, cycles == 1 ? "" : "s");
+}
+
+bool IsAtStart(const Trim& trim, const TrimmedPart& part) {
+  // A ramp at the end is followed by nothing but a rest.
+  return part.first == 0 || (trim.parts.front().first == 0 && part.first == trim.parts[0].last) ||
+         part.reason == TrimReason::kRunningIn;
+}
+
+std::string InWords(const Trim& trim, const TrimmedPart& part) {
+  const bool is_at_start = IsAtStart(trim, part);
+  switch (part.reason) {
+    case TrimReason::kRest:
+      return fmt::format("{} samples at rest {}", part.samples(),
+                         is_at_start ? "before the motion" : "after it");
+    case TrimReason::kRamp:
+      return fmt::format("{} in which the amplitude {}", CyclesText(part.cycles),
+                         is_at_start ? "grows" : "falls");
+    case TrimReason::kRunningIn:
+      break;
+  }
+  return fmt::format("{} of running in", CyclesText(part.cycles));
+}
+
+/// Of cycles that do not say that the contact has run in, why.
+std::string_view WhyNotSettled(Settling settling) {
+  switch (settling) {
+    case Settling::kFewCycles:
+      return "there are too few cycles of one amplitude to see a running-in";
+    case Settling::kUnsettled:
+      return "half gap or energy of a cycle do not settle, so that no cycle is left out for it: "
+             "see how they change, and choose with --cycles";
+    case Settling::kSettled:
+      break;
+  }
+  return "";
+}
+
+std::size_t LineOf(const io::RecordFile& file, std::size_t sample) {
+  return sample < file.lines.size() ? file.lines[sample] : sample + 1;
+}
+
+Warning NoteOf(const Report& report, std::size_t r) {
+  const Trim& trim = report.trims[r];
+  std::vector<std::string> parts;
+  const auto& piece = report.records[r].piece;
+  if (piece && piece->is_between_ramps) {
+    parts.push_back(
+        fmt::format("{} samples under another normal load than {:.4g} N, and up to the second "
+                    "turning point under it",
+                    piece->left_out, piece->normal_load));
+  }
+  for (const TrimmedPart& part : trim.parts) parts.push_back(InWords(trim, part));
+  const std::string_view why = WhyNotSettled(trim.settling);
+  if (parts.empty()) {
+    return {"nothing_trimmed",
+            fmt::format("--trim auto leaves nothing out of {}: {}", report.files[r],
+                        why.empty() ? "it neither rests nor ramps, and its cycles agree" : why)};
+  }
+  std::string text =
+      fmt::format("--trim auto leaves out of {}: {}", report.files[r], fmt::join(parts, ", "));
+  if (trim.has_first_loading) {
+    text +=
+        "; the first loading is among them, which tells Masing's law from Dahl's own and a virgin "
+        "contact from a steady one: what is left is of a steady one, unless --initial-state says "
+        "another";
+  }
+  if (!why.empty()) text += fmt::format("; {}", why);
+  return {"trimmed", text};
+}
+
+}  // namespace
+
+std::vector<Warning> TrimNotes(const Report& report) {
+  std::vector<Warning> notes;
+  for (std::size_t r = 0; r < report.trims.size(); ++r) notes.push_back(NoteOf(report, r));
+  return notes;
+}
+
+std::vector<TrimmedItem> TrimmedItems(const Report& report) {
+  std::vector<TrimmedItem> items;
+  for (std::size_t r = 0; r < report.trims.size(); ++r) {
+    const Trim& trim = report.trims[r];
+    for (const TrimmedPart& part : trim.parts) {
+      items.push_back({.file = report.files[r],
+                       .part = part,
+                       .first_line = LineOf(report.records[r], part.first),
+                       .last_line = LineOf(report.records[r], part.last - 1),
+                       .has_first_loading = trim.has_first_loading &&
+                                            part.reason != TrimReason::kRest &&
+                                            IsAtStart(trim, part)});
+    }
+  }
+  return items;
+}
+
+const std::vector<Field<TrimmedItem>>& TrimmedFields() {
+  using Item = TrimmedItem;
+  static const std::vector<Field<Item>> fields = {
+      {"file", "", "name of the record", [](const Item& item) { return Text(item.file); }},
+      {"reason", "", "rest, ramp of the amplitude, or running_in",
+       [](const Item& item) { return Text(loop::NameOf(item.part.reason)); }},
+      {"first_line", "", "of the file, counted from 1",
+       [](const Item& item) { return Count(item.first_line); }},
+      {"last_line", "", "likewise", [](const Item& item) { return Count(item.last_line); }},
+      {"samples", "", "that do not count",
+       [](const Item& item) { return Count(item.part.samples()); }},
+      {"cycles", "", "closed ones among them",
+       [](const Item& item) { return Count(item.part.cycles); }},
+      {"first_loading", "", "whether what comes before the first turning point is left out by it",
+       [](const Item& item) { return Flag(item.has_first_loading); }},
+  };
+  return fields;
+}
+
+}  // namespace mindahl::report
