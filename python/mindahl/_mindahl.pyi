@@ -115,7 +115,7 @@ def terms() -> list[tuple[str, str]]: ...
 class TrackedCourses:
     def describe(self) -> tuple[dict[str, dict[str, Any]], list[str]]: ...
 
-Tracked = tuple[dict[str, Any], dict[str, str], list[str], TrackedCourses]
+Tracked = tuple[dict[str, Any], dict[str, str], list[str], TrackedCourses, dict[str, Any]]
 
 class TrackRequest:
     fit: FitRequest
@@ -123,6 +123,7 @@ class TrackRequest:
     average: int
     every: int
     threads: int
+    shares_alpha: bool
 
 def track_files(request: TrackRequest, files: Sequence[str],
                 skip_broken_rows: bool) -> Tracked: ...

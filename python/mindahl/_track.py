@@ -23,15 +23,21 @@ class CycleTable(Mapping[str, Any]):
 
     units: of the columns that have one. to_pandas(): the same as a data frame.
     changes: what changed over the test beyond chance, sentences; empty where nothing did.
+    energy_counts: of how many fits `accumulated_energy` has their own, "measured"; that of those
+        before them, "replaced"; nothing, "left_out".
+    shared_alpha: with alpha="shared" its "value", "standard_error", "scatter" between "cycles" beyond
+        their errors and "p_value" of that; else None.
     quantities: the course of each quantity by name, as `mindahl track --json` has it: "unit",
         "stretches" that are straight and the "changes" between them.
     """
 
     def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str],
-                 courses: _mindahl.TrackedCourses) -> None:
+                 courses: _mindahl.TrackedCourses, summary: Mapping[str, Any]) -> None:
         self._columns = {name: np.asarray(values) for name, values in columns.items()}
         self.units = dict(units)
         self._courses = courses
+        self.energy_counts: dict[str, int] = summary["energy_counts"]
+        self.shared_alpha: Optional[dict[str, float]] = summary["shared_alpha"]
 
     @cached_property
     def _described(self) -> tuple[dict[str, dict[str, Any]], list[str]]:
@@ -76,7 +82,7 @@ def track(
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
     loss: str = "none", starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
-    average: int = 1, every: int = 1, broken_rows: str = "refuse", threads: Optional[int] = None,
+    average: int = 1, every: int = 1, alpha: str = "cycle", broken_rows: str = "refuse", threads: Optional[int] = None,
 ) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
@@ -85,6 +91,7 @@ def track(
         this order, and a cycle ends with its source.
     normal_load: [N] of all cycles; by default the column's mean over each.
     average: so many cycles in a row are one fit. every: one fit of so many that there could be.
+    alpha: "cycle", each its own; "shared", one for all cycles: the mean of a first pass by errors.
     broken_rows: of files, "refuse" or "skip". threads: that fit; by default one a core.
     The others: as of fit(), but that model="auto" and covariates are not for single cycles.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
@@ -105,6 +112,9 @@ def track(
     request.average = count("average", average, 1)
     request.every = count("every", every, 1)
     request.threads = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
+    if alpha not in ("cycle", "shared"):
+        raise ValueError(f"alpha = {alpha!r} is invalid: must be 'cycle' or 'shared'")
+    request.shares_alpha = alpha == "shared"
     if broken_rows not in ("refuse", "skip"):
         raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
     arguments = RecordArguments(
@@ -122,10 +132,10 @@ def track(
         fit.columns = arguments.columns()
         request.fit = fit
         found = _mindahl.track_files(request, files, broken_rows == "skip")
-    columns, units, doubts, courses = found
+    columns, units, doubts, courses, summary = found
     for doubt in (*arguments.assumed, *doubts):
         warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
-    return CycleTable(columns, units, courses)
+    return CycleTable(columns, units, courses, summary)
 
 
 def _files_of(source: Any) -> Optional[Sequence[str]]:

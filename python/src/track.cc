@@ -14,7 +14,9 @@
 #include "bindings.h"
 #include "mindahl/campaign/cycle_table.h"
 #include "mindahl/campaign/dissipated_energy.h"
+#include "mindahl/campaign/pooled_value.h"
 #include "mindahl/campaign/reading.h"
+#include "mindahl/campaign/shared_alpha.h"
 #include "mindahl/campaign/tracked_quantities.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
@@ -38,11 +40,13 @@ struct TrackRequest {
   std::size_t together = 1;
   std::size_t every = 1;
   std::size_t threads = 1;
+  bool shares_alpha = false;
 };
 
 struct Tracked {
   std::vector<CycleFit> fits;
   campaign::TrackedCourses courses;
+  std::optional<campaign::PooledValue> shared_alpha;
   bool is_torsional = false;
   std::size_t cycles_per_row = 1;
   std::vector<std::string> warnings;
@@ -51,8 +55,12 @@ struct Tracked {
 /// Fits of one test, whose samples come as the function gives them.
 class Run {
  public:
-  explicit Run(const TrackRequest& request)
+  /// @param shared_alpha  held in all fits; empty where each cycle has its own
+  explicit Run(const TrackRequest& request,
+               const std::optional<campaign::PooledValue>& shared_alpha = {})
       : request_(request), fit_(request::MakeCycleFitOptions(request.fit)) {
+    tracked_.shared_alpha = shared_alpha;
+    if (shared_alpha) fit_.fixed["alpha"] = shared_alpha->mean();
     if (request.normal_load) RequirePositive("--normal-load [N]", *request.normal_load);
     if (request.normal_load) fit_.normal_loads = {*request.normal_load};
     tracked_.cycles_per_row = request.together * request.every;
@@ -106,9 +114,30 @@ void RequireOneKind(const Run& run, bool is_torsional, const std::string& first,
                                is_torsional ? "torque" : "force"));
 }
 
+/// What all cycles of a first pass have in common.
+campaign::PooledValue AlphaOf(const Tracked& first_pass) {
+  campaign::PooledValue alpha;
+  for (const CycleFit& fit : first_pass.fits) campaign::PoolAlpha(fit, alpha);
+  campaign::RequireSharedAlpha(alpha);
+  return alpha;
+}
+
+/// By one pass, or where alpha is shared by a second with that of the first.
+/// @param pass   tracks all samples once with the alpha that is given
+/// @param files  that it reads
+template <typename Pass>
+Tracked TrackInPasses(const TrackRequest& request, const std::vector<std::string>& files,
+                      Pass pass) {
+  if (!request.shares_alpha) return pass(std::optional<campaign::PooledValue>());
+  campaign::RequireThatAlphaCanBeShared(request::MakeCycleFitOptions(request.fit), files);
+  const campaign::PooledValue alpha = AlphaOf(pass(std::optional<campaign::PooledValue>()));
+  return pass(std::optional(alpha));
+}
+
 Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& files,
-                   bool skip_broken_rows) {
-  Run run(request);
+                   bool skip_broken_rows,
+                   const std::optional<campaign::PooledValue>& shared_alpha) {
+  Run run(request, shared_alpha);
   const io::BrokenRows broken = skip_broken_rows ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
   for (const std::string& file : files) {
     io::RecordStream stream(file, request.fit.columns, broken);
@@ -134,9 +163,10 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
   return run.Finish(fmt::format("{}", fmt::join(files, ", ")));
 }
 
-Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>& records) {
+Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>& records,
+                     const std::optional<campaign::PooledValue>& shared_alpha) {
   constexpr std::size_t kMostOfHead = 1'000'000;
-  Run run(request);
+  Run run(request, shared_alpha);
   for (const NamedRecord& record : records) {
     const bool is_torsional = record.file.is_torsional;
     RequireOneKind(run, is_torsional, records.front().name, record.name);
@@ -224,9 +254,32 @@ std::pair<py::dict, std::vector<std::string>> Describe(const CoursesOfTest& test
   return {quantities, statements};
 }
 
+/// `energy_counts` and `shared_alpha` of what `mindahl track --json` writes.
+py::dict SummaryOf(const campaign::EnergyCounts& counts,
+                   const std::optional<campaign::PooledValue>& alpha) {
+  py::dict energy;
+  energy["measured"] = counts.measured;
+  energy["replaced"] = counts.replaced;
+  energy["left_out"] = counts.left_out;
+  py::dict summary;
+  summary["energy_counts"] = energy;
+  summary["shared_alpha"] = py::none();
+  if (alpha) {
+    py::dict shared;
+    shared["value"] = alpha->mean();
+    shared["standard_error"] = alpha->standard_error();
+    shared["cycles"] = alpha->count();
+    shared["scatter"] = alpha->scatter();
+    shared["p_value"] = alpha->p_value();
+    summary["shared_alpha"] = shared;
+  }
+  return summary;
+}
+
 /// The columns of the command line's table, with NaN for what is not known; their units; what is to
-/// be warned of; and the courses, which are described when they are asked for.
-std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest> ColumnsOf(Tracked tracked) {
+/// be warned of; the courses, which are described when they are asked for; and SummaryOf().
+std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest, py::dict> ColumnsOf(
+    Tracked tracked) {
   py::dict columns;
   py::dict units;
   const report::Units& names =
@@ -265,7 +318,11 @@ std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest> ColumnsO
   }
   columns["slip_regime"] = regimes;
   columns["flags"] = flags;
-  return {columns, units, tracked.warnings, {std::move(tracked.courses), names}};
+  return {columns,
+          units,
+          tracked.warnings,
+          {std::move(tracked.courses), names},
+          SummaryOf(energy.counts(), tracked.shared_alpha)};
 }
 
 }  // namespace
@@ -279,14 +336,17 @@ void AddTrack(py::module_& module) {
       .def_readwrite("normal_load", &TrackRequest::normal_load)
       .def_readwrite("average", &TrackRequest::together)
       .def_readwrite("every", &TrackRequest::every)
-      .def_readwrite("threads", &TrackRequest::threads);
+      .def_readwrite("threads", &TrackRequest::threads)
+      .def_readwrite("shares_alpha", &TrackRequest::shares_alpha);
   module.def(
       "track_files",
       [](const TrackRequest& request, const std::vector<std::string>& files, bool skip) {
         Tracked tracked;
         {
           const py::gil_scoped_release others_may_run;
-          tracked = TrackFiles(request, files, skip);
+          tracked = TrackInPasses(request, files, [&](const auto& alpha) {
+            return TrackFiles(request, files, skip, alpha);
+          });
         }
         return ColumnsOf(std::move(tracked));
       },
@@ -297,7 +357,9 @@ void AddTrack(py::module_& module) {
         Tracked tracked;
         {
           const py::gil_scoped_release others_may_run;
-          tracked = TrackRecords(request, records);
+          tracked = TrackInPasses(request, {}, [&](const auto& alpha) {
+            return TrackRecords(request, records, alpha);
+          });
         }
         return ColumnsOf(std::move(tracked));
       },

@@ -1,6 +1,10 @@
 #include "mindahl/campaign/dissipated_energy.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <boost/math/statistics/univariate_statistics.hpp>
+#include <string>
 #include <vector>
 
 namespace mindahl::campaign {
@@ -25,6 +29,15 @@ void DissipatedEnergy::Add(const CycleFit& fit) {
     if (of_a_step_.size() == kNeighbours) of_a_step_.pop_front();
     of_a_step_.push_back(*fit.energy / steps);
   }
+}
+
+std::string InWords(const EnergyCounts& counts) {
+  std::vector<std::string> parts;
+  if (counts.replaced > 0) {
+    parts.push_back(fmt::format("{} that do not close by those before them", counts.replaced));
+  }
+  if (counts.left_out > 0) parts.push_back(fmt::format("{} by nothing", counts.left_out));
+  return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));
 }
 
 }  // namespace mindahl::campaign

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "mindahl/campaign/shared_alpha.h"
 #include "mindahl/io/html.h"
 #include "mindahl/report/quantity.h"
 #include "report/page_parts.h"
@@ -113,10 +114,13 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
     body += SentenceList(test.changes);
   }
   body += Heading("Over the test");
-  body += Paragraph(fmt::format(
-      "{} cycles of {} samples, {} fits; {} dissipated in all; {} samples at the ends are part of "
-      "no whole cycle.",
-      test.cycles, test.samples, test.fits, Quantity(test.dissipated, "J"), test.unused_samples));
+  body +=
+      Paragraph(fmt::format("{} cycles of {} samples, {} fits; {} dissipated in all{}; {} samples "
+                            "at the ends are part of "
+                            "no whole cycle.",
+                            test.cycles, test.samples, test.fits, Quantity(test.dissipated, "J"),
+                            InWords(test.energy_counts), test.unused_samples));
+  if (test.shared_alpha) body += Paragraph(SharedAlphaInWords(*test.shared_alpha) + ".");
   Table courses("by the stretches of each course", {"quantity", "at first", "at last"});
   for (const Evolution& evolution : test.evolutions) {
     const auto& stretches = evolution.description.stretches;

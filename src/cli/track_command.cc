@@ -34,6 +34,7 @@
 #include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/pooled_value.h"
 #include "mindahl/campaign/reading.h"
+#include "mindahl/campaign/shared_alpha.h"
 #include "mindahl/campaign/tracked_quantities.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
@@ -95,28 +96,13 @@ struct WhatWasRead {
   campaign::Reading of_head;
 };
 
-/// Two passes, over files that are there twice, with an alpha that is free.
-void RequireThatAlphaCanBeShared(const TrackCommandOptions& options) {
-  const FitOptions fit = request::MakeCycleFitOptions(options.request);
-  if (fit.model->shape_exponent || fit.fixed.contains("alpha")) {
-    throw InputError(
-        fmt::format("--alpha shared: alpha is not fitted: {} it",
-                    fit.fixed.contains("alpha") ? "--fix holds" : "--model prescribes"));
-  }
-  for (const std::string& file : options.request.files) {
-    std::error_code error;
-    const auto status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) continue;
-    throw InputError(fmt::format(
-        "--alpha shared: {} can be read only once, and two passes are needed: write it to a file",
-        file));
-  }
-}
-
 void RequireOptions(const TrackCommandOptions& options) {
   request::MakeCycleFitOptions(options.request);
   if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
-  if (options.alpha == kSharedAlpha) RequireThatAlphaCanBeShared(options);
+  if (options.alpha == kSharedAlpha) {
+    campaign::RequireThatAlphaCanBeShared(request::MakeCycleFitOptions(options.request),
+                                          options.request.files);
+  }
   if (options.resume && options.overwrite) {
     throw InputError("--resume and --overwrite contradict each other: give one of the two");
   }
@@ -212,13 +198,7 @@ void Run::PoolAlpha() {
                                              .every = options_.every,
                                              .threads = options_.threads},
                       [&](std::span<const CycleFit> fits) {
-                        for (const CycleFit& fit : fits) {
-                          const bool is_known =
-                              !fit.HasFlag("not_converged") && !fit.HasFlag("alpha_open");
-                          const campaign::FittedValue& own = fit.alpha;
-                          if (!is_known || !own.value || !own.standard_error) continue;
-                          if (*own.standard_error > 0) alpha.Add(*own.value, *own.standard_error);
-                        }
+                        for (const CycleFit& fit : fits) campaign::PoolAlpha(fit, alpha);
                       });
     } else {
       stream.Next(piece);
@@ -231,11 +211,7 @@ void Run::PoolAlpha() {
   }
   tracker->Finish();
   if (tracker->cycles() == 0) return;  // as the second pass will say
-  if (alpha.count() == 0) {
-    throw InputError(
-        "--alpha shared: no cycle determines alpha: --fix alpha=VALUE holds it at one that is "
-        "known");
-  }
+  campaign::RequireSharedAlpha(alpha);
   shared_alpha_ = alpha;
 }
 
@@ -418,6 +394,8 @@ campaign::TestSummary Run::Summary() const {
                              .fits = totals_.fits,
                              .unused_samples = reading_.unused_samples,
                              .dissipated = energy_.total(),
+                             .energy_counts = energy_.counts(),
+                             .shared_alpha = shared_alpha_,
                              .evolutions = Evolutions()};
   for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
     const auto found = totals_.flags.find(std::string(flag.name));
@@ -451,23 +429,6 @@ void Run::Draw() {
   }
 }
 
-/// What of a sum was not measured; nothing where all was.
-std::string TextOf(const campaign::EnergyCounts& counts) {
-  std::vector<std::string> parts;
-  if (counts.replaced > 0) {
-    parts.push_back(fmt::format("{} that do not close by those before them", counts.replaced));
-  }
-  if (counts.left_out > 0) parts.push_back(fmt::format("{} by nothing", counts.left_out));
-  return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));
-}
-
-std::string TextOf(const campaign::PooledValue& alpha) {
-  return fmt::format(
-      "alpha {:.6g} ± {:.2g} shared, of {} cycles that scatter by {:.2g} beyond their errors, {}\n",
-      alpha.mean(), alpha.standard_error(), alpha.count(), alpha.scatter(),
-      report::ChanceText(alpha.p_value(), 1));
-}
-
 void Run::WriteSummary() {
   std::string text = fmt::format("{} cycles of {} samples, {} fits in {}\n", reading_.cycles,
                                  reading_.samples, totals_.fits, options_.output);
@@ -476,8 +437,9 @@ void Run::WriteSummary() {
     text +=
         fmt::format("{} samples at the ends are part of no whole cycle\n", reading_.unused_samples);
   }
-  text += fmt::format("{:.6g} J dissipated in all{}\n", energy_.total(), TextOf(energy_.counts()));
-  if (shared_alpha_) text += TextOf(*shared_alpha_);
+  text += fmt::format("{:.6g} J dissipated in all{}\n", energy_.total(),
+                      campaign::InWords(energy_.counts()));
+  if (shared_alpha_) text += campaign::SharedAlphaInWords(*shared_alpha_) + "\n";
   if (totals_.flagged > 0) {
     text += fmt::format("\n{} {} a flag:\n", totals_.flagged,
                         totals_.flagged == 1 ? "cycle has" : "cycles have");

@@ -44,8 +44,7 @@ Line LineThrough(std::span<const double> values) {
   line.slope /= squares;
   double residuals = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
-    const double residual =
-        values[k] - line.mean - line.slope * (static_cast<double>(k) - centre);
+    const double residual = values[k] - line.mean - line.slope * (static_cast<double>(k) - centre);
     residuals += residual * residual;
   }
   line.deviation = std::sqrt(residuals / line.degrees_of_freedom);
@@ -74,8 +73,7 @@ class Trimming {
       : rules_(rules),
         displacement_(prepared.displacement()),
         gate_(prepared.reversal_gate),
-        points_(TurningPoints(displacement_, prepared.reversals,
-                              std::pmr::get_default_resource())),
+        points_(TurningPoints(displacement_, prepared.reversals, std::pmr::get_default_resource())),
         cycles_(MeasureFacts(prepared, force_sense).cycles),
         last_(prepared.size()) {}
 
@@ -259,8 +257,7 @@ Trim FindTrim(const RecordView& record, const PreparationOptions& options) {
   whole.cycles.reset();
   whole.samples.reset();
   whole.held_out.clear();
-  const PreparedRecords prepared =
-      Prepare({&record, 1}, whole, std::pmr::get_default_resource());
+  const PreparedRecords prepared = Prepare({&record, 1}, whole, std::pmr::get_default_resource());
   return Trimming(prepared.records.front(), prepared.force_sense, {}).Find();
 }
 

@@ -38,6 +38,21 @@ TestSummary SummaryOf(Evolution evolution) {
           .changes = {"sigma [N/m]: at cycle 61 a step"}};
 }
 
+TEST(TestPage, SaysTheAlphaThatCyclesShareAndWhatEnergiesAreOf) {
+  TestSummary test = SummaryOf(Step(/*has_errors=*/true));
+  EXPECT_THAT(ToPage(test), Not(HasSubstr("shared")));
+  EXPECT_THAT(ToPage(test), Not(HasSubstr("counting")));
+  PooledValue alpha;
+  alpha.Add(0.3, 0.01);
+  alpha.Add(0.4, 0.01);
+  test.shared_alpha = alpha;
+  test.energy_counts = {.measured = 95, .replaced = 3, .left_out = 2};
+  const std::string page = ToPage(test);
+  EXPECT_THAT(page, HasSubstr("alpha 0.35 ± 0.05 shared, of 2 cycles"));
+  EXPECT_THAT(page,
+              HasSubstr("counting 3 that do not close by those before them and 2 by nothing"));
+}
+
 TEST(Evolution, DrawsTheCourseItsBandAndItsChange) {
   const std::vector<Evolution> evolutions = {Step(/*has_errors=*/true)};
   const std::vector<io::PlotPanel> panels = EvolutionPanels(evolutions);

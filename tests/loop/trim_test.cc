@@ -21,7 +21,7 @@ using testing::History;
 
 constexpr std::size_t kCycle = 100;  // samples
 constexpr std::size_t kTurn = kCycle / 4;
-constexpr double kReach = 2e-6;             // [m], 1.3 times gross slip
+constexpr double kReach = 2e-6;                // [m], 1.3 times gross slip
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};  // δc = 1.5 µm
 
 using OfCycle = std::function<double(double cycle)>;
@@ -123,9 +123,7 @@ TEST(Trim, LeavesOutRampsOfTheAmplitude) {
 
 TEST(Trim, TakesNoAmplitudesInTurnAndNoGrowingSineForRamps) {
   const OfCycle growing = [](double cycle) { return 0.1 + 0.09 * cycle; };
-  const OfCycle in_turn = [](double cycle) {
-    return static_cast<int>(cycle) % 2 == 0 ? 1.0 : 0.6;
-  };
+  const OfCycle in_turn = [](double cycle) { return static_cast<int>(cycle) % 2 == 0 ? 1.0 : 0.6; };
   const OfCycle two_blocks = [](double cycle) { return cycle < 5 ? 0.5 : 1.0; };
   const OfCycle up_and_down_at_first = [](double cycle) {
     return cycle < 1 ? 0.8 : cycle < 2 ? 0.4 : 1.0;
@@ -167,8 +165,8 @@ TEST(Trim, LeavesARecordWholeThatDoesNotSettle) {
 
 TEST(Trim, LeavesARecordWholeThatIsOffForMoreThanHalfOfIt) {
   // A step after 13 of 20 cycles: the last half is on both sides of it.
-  const Trim trim = FindTrim(
-      Cycled(20, Always, [](double cycle) { return cycle < 13 ? 0.8 : 1.0; }));
+  const Trim trim =
+      FindTrim(Cycled(20, Always, [](double cycle) { return cycle < 13 ? 0.8 : 1.0; }));
   EXPECT_TRUE(trim.parts.empty());
 }
 
@@ -221,8 +219,7 @@ TEST(Trim, FindsARunningInUnderNoise) {
   Generator generator(11);
   std::size_t found = 0;
   for (std::size_t k = 0; k < kRecords; ++k) {
-    const Trim trim =
-        FindTrim(WithNoise(Cycled(30, Always, RunningIn(0.7, 2.0)), 0.4, generator));
+    const Trim trim = FindTrim(WithNoise(Cycled(30, Always, RunningIn(0.7, 2.0)), 0.4, generator));
     const bool is_there = trim.parts.size() == 1 && trim.parts[0].cycles >= 5 &&
                           trim.parts[0].cycles <= 8;  // 6 without noise
     found += is_there ? 1 : 0;

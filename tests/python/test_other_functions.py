@@ -67,6 +67,22 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     assert not any("step" in line for line in mindahl.track(long_record).changes)
 
 
+def test_track_shares_an_alpha_and_counts_energies_as_the_program_does(long_record, tmp_path):
+    options = ("--output", tmp_path / "shared.csv", "--alpha", "shared")
+    expected = program_json("track", long_record, *options)
+    table = table_of(long_record, tmp_path, "--alpha", "shared")
+    tracked = mindahl.track(long_record, alpha="shared")
+    assert tracked.shared_alpha == expected["shared_alpha"]
+    assert tracked.energy_counts == expected["energy_counts"]
+    assert tracked.energy_counts["measured"] == len(tracked["cycle"])
+    assert_same_table(tracked, table)
+    assert set(tracked["alpha"]) == {tracked.shared_alpha["value"]}
+    time, displacement, force = read_columns(long_record)
+    of_arrays = mindahl.track(displacement, force, time=time, alpha="shared")
+    assert of_arrays.shared_alpha == tracked.shared_alpha
+    assert mindahl.track(long_record).shared_alpha is None
+
+
 def test_excitation_is_the_program_s_waveform():
     for waveform in ("sine", "triangle", "growing-sine", "random", "nested"):
         lines = program("simulate", "--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--waveform",
@@ -96,6 +112,8 @@ def test_track_of_arrays_frames_and_files_is_the_same(long_record):
 @pytest.mark.parametrize("keywords, message", [
     ({"model": "auto"}, "model auto: a model is chosen for a test"),
     ({"average": 0}, "average = 0 is invalid"),
+    ({"alpha": "both"}, "alpha = 'both' is invalid"),
+    ({"alpha": "shared", "fix": {"alpha": 0.3}}, "alpha.*shared: alpha is not fitted"),
     ({"average": 1000}, "average=1000: "),
     ({"broken_rows": "mend"}, "broken_rows = 'mend' is invalid"),
     ({"normal_load": 0}, r"normal_load \[N\] = 0 is invalid"),

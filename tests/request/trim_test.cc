@@ -1,3 +1,5 @@
+#include "mindahl/loop/trim.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +14,6 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/loop/trim.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
@@ -29,8 +30,8 @@ using identification::FitResult;
 using loop::Record;
 using models::BranchLaw;
 using ::testing::AllOf;
-using ::testing::HasSubstr;
 using testing::Generator;
+using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr std::size_t kCycle = 100;            // samples

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <string>
 
 #include "mindahl/campaign/cycle_fit.h"
 
@@ -13,6 +14,10 @@ struct EnergyCounts {
   std::size_t replaced = 0;  ///< by what the measured before them dissipate in as many samples
   std::size_t left_out = 0;  ///< nothing: no energy is known of them, or they dissipate none
 };
+
+/// ", counting 2 that do not close by those before them and 1 by nothing"; nothing where all were
+/// measured.
+std::string InWords(const EnergyCounts& counts);
 
 /// Energy [J] dissipated over a test, from fits in their order.
 ///

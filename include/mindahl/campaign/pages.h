@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "mindahl/campaign/dissipated_energy.h"
 #include "mindahl/campaign/evolution.h"
+#include "mindahl/campaign/pooled_value.h"
 #include "mindahl/campaign/repeats.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/report/page.h"
@@ -26,7 +29,10 @@ struct TestSummary {
   std::size_t samples = 0;
   std::size_t fits = 0;
   std::size_t unused_samples = 0;
-  double dissipated = 0.0;            ///< [J] in all
+  double dissipated = 0.0;          ///< [J] in all
+  EnergyCounts energy_counts = {};  ///< of how many fits that has what
+  /// Exponent of all cycles; empty where each has its own.
+  std::optional<PooledValue> shared_alpha = {};
   std::vector<FlagCount> flags = {};  ///< those that a cycle has
   std::vector<Evolution> evolutions = {};
   std::vector<std::string> changes = {};  ///< in words, one sentence each
