@@ -325,7 +325,18 @@ std::vector<std::string> LoadLawStatements(const Report& report) {
     statements.emplace_back(
         "not Hertz's law, so that no radius, compliance or modulus of a sphere follows");
   }
-  if (laws.empty()) statements.emplace_back("none of these theories is tenable");
+  const bool is_tested = std::ranges::any_of(
+      report.load_series->hypotheses,
+      [](const LoadHypothesis& hypothesis) { return hypothesis.p_value.has_value(); });
+  if (laws.empty()) {
+    const ParameterEstimate& exponent = *fit.Find("load_exponent");
+    statements.push_back(
+        exponent.status == ParameterStatus::kFixed
+            ? fmt::format("load_exponent is held at {:.4g}, which is no theory's", exponent.value)
+        : is_tested ? std::string("none of these theories is tenable")
+                    : std::string("load_exponent has no error by which a theory "
+                                  "could be tested: no law is held"));
+  }
   for (const LoadLaw& law : LawsToShow(*report.load_series)) {
     if (!law.unidentified.empty()) {
       statements.push_back("with more known, more would follow: " + law.unidentified);

@@ -370,6 +370,26 @@ TEST(LoadLaws, SayEverywhereThatHertzIsDenied) {
   EXPECT_THAT(ToJson(report), HasSubstr("which the load series denies"));
 }
 
+TEST(LoadLaws, SayWhyThereIsNone) {
+  Report report = ReportOf(RadiusOfBall, 1.0 / 3, Bodies());
+  ASSERT_THAT(ToText(report), Not(HasSubstr("no law")));
+  report.load_series->laws.clear();
+  EXPECT_THAT(ToText(report), HasSubstr("none of these theories is tenable"));
+  for (LoadHypothesis& hypothesis : report.load_series->hypotheses) hypothesis.p_value.reset();
+  EXPECT_THAT(ToText(report), HasSubstr("could be tested: no law is held"));
+  for (identification::ParameterEstimate& estimate : report.fit.parameters) {
+    if (estimate.name != "load_exponent") continue;
+    estimate.status = identification::ParameterStatus::kFixed;
+    estimate.value = 0.42;
+  }
+  EXPECT_THAT(ToText(report), HasSubstr("load_exponent is held at 0.42, which is no theory's"));
+  for (identification::ParameterEstimate& estimate : report.fit.parameters) {
+    if (estimate.name != "sigma") continue;
+    estimate.identifiability = identification::Identifiability::kNotIdentifiable;
+  }
+  EXPECT_THAT(ToText(report), HasSubstr("sigma or load_exponent is open"));
+}
+
 TEST(LoadLaws, SayWhatWouldHaveToBeKnown) {
   const Report report = ReportOf(RadiusOfBall, 1.0 / 3, {.normal_load = kMeanLoad});
   EXPECT_THAT(ToText(report), HasSubstr("with more known, more would follow"));
