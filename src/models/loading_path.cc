@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/extremes.h"
 #include "core/magnitudes.h"
@@ -31,6 +32,16 @@ void RequireDisplacements(std::span<const double> displacement) {
   }
 }
 
+void RequireAsymmetry(double asymmetry, Memory memory) {
+  if (!(std::abs(asymmetry) < 1)) {
+    ThrowInvalid("asymmetry [-]", asymmetry, "must be in (-1, 1)");
+  }
+  if (asymmetry != 0 && memory == Memory::kNone) {
+    ThrowInvalid("asymmetry [-]", asymmetry,
+                 "must be 0 of a law without memory: its two directions would differ in stiffness");
+  }
+}
+
 std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int8_t{1}; }
 
 /// Direction in which the record sets out.
@@ -48,13 +59,23 @@ std::int8_t FirstDirection(std::span<const double> displacement,
 /// stack: the origins on it are the surviving extrema.
 class OpenBranches {
  public:
-  OpenBranches(LoadingPath& path, Memory memory) : path_(path), open_(path.open), memory_(memory) {}
+  /// @param asymmetry  of a virgin contact; 0 of another
+  OpenBranches(LoadingPath& path, Memory memory, double asymmetry)
+      : path_(path), open_(path.open), memory_(memory), asymmetry_(asymmetry) {}
 
   void Open(Branch branch) {
     branch.parent = open_.empty() ? -1 : open_.back();
     direction_ = branch.direction;
     path_.branches.push_back(branch);
     open_.push_back(static_cast<std::int32_t>(path_.branches.size() - 1));
+  }
+
+  /// Opens the virgin curve, in either sense where the two differ.
+  void OpenVirgin(const Branch& branch) {
+    Open(branch);
+    if (asymmetry_ == 0) return;
+    Branch& back = path_.branches.emplace_back(path_.branches.back());
+    back.direction = static_cast<std::int8_t>(-branch.direction);
   }
 
   /// Starts the branch back from `extreme` on the present one.
@@ -68,7 +89,7 @@ class OpenBranches {
   /// How many of the samples ahead the present branch has before it closes.
   [[nodiscard]] std::size_t SamplesAhead(std::span<const double> displacement) const {
     if (memory_ == Memory::kNone || open_.size() < 2) return displacement.size();
-    const double closing = ClosingDisplacement(open_.size(), OriginOf{path_, open_});
+    const double closing = ClosingDisplacement(open_.size(), OriginOf{path_, open_}, asymmetry_);
     std::size_t ahead = 0;
     constexpr std::size_t kBlock = 32;
     for (; ahead + kBlock <= displacement.size(); ahead += kBlock) {
@@ -83,12 +104,17 @@ class OpenBranches {
   /// Moves on to `displacement` in the present direction; closes what it passes.
   void Advance(double displacement) {
     if (memory_ == Memory::kNone) return;
-    open_.resize(StillOpen(open_.size(), OriginOf{path_, open_}, direction_, displacement));
+    const std::size_t open = open_.size();
+    open_.resize(StillOpen(open, OriginOf{path_, open_}, direction_, displacement, asymmetry_));
+    if (asymmetry_ != 0 && open > 1 && open_.size() == 1) TakeVirginCurve();
   }
 
   [[nodiscard]] std::int32_t Present() const { return open_.back(); }
 
  private:
+  /// That of the present direction, of the two that differ: the first branches of the path.
+  void TakeVirginCurve() { open_.front() = path_.branches.front().direction == direction_ ? 0 : 1; }
+
   struct OriginOf {
     const LoadingPath& path;
     const std::vector<std::int32_t>& open;
@@ -100,6 +126,7 @@ class OpenBranches {
   LoadingPath& path_;
   std::vector<std::int32_t>& open_;
   Memory memory_;
+  double asymmetry_;
   std::int8_t direction_ = 1;  // of the motion; the virgin curve is run both ways
 };
 
@@ -121,7 +148,7 @@ void OpenInitialBranches(OpenBranches& open, std::span<const double> displacemen
     const double amplitude = std::max(highest - origin, origin - lowest);
     const double first_step = displacement.front() - origin;
     const std::int8_t first_direction = first_step == 0 ? direction : SignOf(first_step);
-    open.Open({origin, amplitude, -1, BranchStart::kUnloaded, first_direction});
+    open.OpenVirgin({origin, amplitude, -1, BranchStart::kUnloaded, first_direction});
     if (first_direction != direction) open.Reverse(displacement.front());
     return;
   }
@@ -152,12 +179,15 @@ void MakeLoadingPath(std::span<const double> displacement, std::span<const std::
                      Memory memory, const InitialContact& initial, LoadingPath& path) {
   RequireDisplacements(displacement);
   RequireWithinReach("unloaded displacement [m]", initial.unloaded_displacement);
+  RequireAsymmetry(initial.asymmetry, memory);
+  path.asymmetry = initial.asymmetry;
   path.branches.clear();
   path.runs.clear();
   path.open.clear();
   constexpr std::size_t kInitialBranches = 3;
   path.branches.reserve(reversals.size() + kInitialBranches);
-  OpenBranches open(path, memory);
+  const bool is_virgin = initial.state == InitialState::kVirgin;
+  OpenBranches open(path, memory, is_virgin ? initial.asymmetry : 0.0);
   OpenInitialBranches(open, displacement, FirstDirection(displacement, reversals), memory, initial);
 
   std::size_t next_reversal = 0;

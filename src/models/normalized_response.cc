@@ -70,10 +70,44 @@ void DifferentiateRun(const DirectShape& shape, const ScaledBranch<double>& bran
   std::ranges::fill(gradient.log_spring_travel, 0.0);
 }
 
+/// ∂t/∂a. A virgin branch of limit l = 1 ± a is t = ±l·Φ(κ|e|/l), so that it is Φ − YΦ′ in either
+/// sense; on every other it is what it was where the branch starts, which a steady contact has
+/// as 1.
+template <typename Shape>
+void DifferentiateByAsymmetry(const Shape& shape, const LoadingPath& path,
+                              const ScaledBranches& branches, std::span<const double> displacement,
+                              std::vector<double>& per_origin, std::span<double> per_asymmetry) {
+  const auto at = [&](std::size_t b, double x) {
+    if (path.branches[b].start != BranchStart::kUnloaded) return per_origin[b];
+    const ScaledBranch<double>& branch = branches[b];
+    const double e = x - branch.origin;
+    const auto series = ShapeOn(shape, branch).Differentiate(branch.Normalize(e));
+    // Where the two curves are one it is the way on either side, else that of its own sense.
+    const double sense =
+        path.asymmetry == 0 ? 1.0 : std::copysign(1.0, e) * path.branches[b].direction;
+    return sense * series.share * (series.contact.force - series.contact.elastic);
+  };
+  per_origin.resize(branches.size());
+  for (std::size_t b = 0; b < branches.size(); ++b) {
+    const Branch& branch = path.branches[b];
+    const bool is_steady = branch.start == BranchStart::kSteadyCentre;
+    per_origin[b] = branch.start == BranchStart::kReversal
+                        ? at(static_cast<std::size_t>(branch.parent), branch.origin)
+                    : is_steady ? 1.0
+                                : 0.0;
+  }
+  for (const BranchRun& run : path.runs) {
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      per_asymmetry[i] = at(static_cast<std::size_t>(run.branch), displacement[i]);
+    }
+  }
+}
+
 }  // namespace
 
 struct NormalizedResponse::Buffers {
   ScaledBranches branches;
+  std::vector<double> per_asymmetry;  // ∂t/∂a at the branches' origins
   std::vector<RigidDifferentiation::BranchGradient> rigid;
   std::vector<SprungDifferentiation::BranchGradient> sprung;
 
@@ -101,7 +135,7 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
       const std::size_t count = run.end - run.begin;
       const ScaledBranch<double>& branch = branches[static_cast<std::size_t>(run.branch)];
       const auto x = displacement.subspan(run.begin, count);
-      EvaluateRun(branch, ShapeOn(shape, branch), ForceLimit(model), x,
+      EvaluateRun(branch, ShapeOn(shape, branch), ForceLimit(model, path.asymmetry), x,
                   t.subspan(run.begin, count));
     }
   };
@@ -123,13 +157,17 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
   RequireSizes(path, displacement, t);
   ScaledBranches& branches = buffers_->branches;
   const BranchScaling scaling(model, branch_law, law.spring_travel);
-  const double limit = ForceLimit(model);
+  const double limit = ForceLimit(model, path.asymmetry);
   const auto differentiate = [&](const auto& shape) {
     ScaleBranches(scaling, path, shape, branches);
     RequireReach(branch_law, branches, displacement);
     const Differentiation differentiation(scaling, branch_law, shape);
     auto& gradients = buffers_->GradientsOf(differentiation);
     differentiation.Differentiate(path, branches, gradients);
+    if (!gradient.asymmetry.empty()) {
+      DifferentiateByAsymmetry(shape, path, branches, displacement, buffers_->per_asymmetry,
+                               gradient.asymmetry);
+    }
     for (const BranchRun& run : path.runs) {
       const auto b = static_cast<std::size_t>(run.branch);
       const auto part = [&](std::span<double> column) {

@@ -62,8 +62,8 @@ void EvaluateRuns(const FrictionModel& model, const BranchLaw& law, const Loadin
     const std::size_t count = run.end - run.begin;
     const ScaledBranch<double>& branch = branches[static_cast<std::size_t>(run.branch)];
     EvaluateRun(Narrow<Real>(branch), ShapeOn(shape, branch), static_cast<Real>(law.slip_force),
-                static_cast<Real>(ForceLimit(model)), displacement.subspan(run.begin, count),
-                force.subspan(run.begin, count));
+                static_cast<Real>(ForceLimit(model, path.asymmetry)),
+                displacement.subspan(run.begin, count), force.subspan(run.begin, count));
   }
 }
 
@@ -104,7 +104,7 @@ void EvaluateWithGradient(const FrictionModel& model, const BranchLaw& law, cons
   RequireReach(law, branches, displacement);
   const Differentiation differentiation(scaling, law, shape);
   const auto branch_gradients = differentiation.Differentiate(path, branches);
-  const double limit = ForceLimit(model);
+  const double limit = ForceLimit(model, path.asymmetry);
   for (const BranchRun& run : path.runs) {
     const auto branch = static_cast<std::size_t>(run.branch);
     const auto& shape_on_branch = ShapeOn(shape, branches[branch]);

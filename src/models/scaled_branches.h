@@ -106,18 +106,24 @@ class BranchScaling {
     return model_.scale(branch.direction * origin_force, peak.force, IsVirgin(branch.start));
   }
 
-  [[nodiscard]] ScaledBranch<double> Start(const Branch& branch, double origin_force) const {
+  /// @param limit  VirginLimit() of the branch: by as much it is larger, at the same stiffness
+  [[nodiscard]] ScaledBranch<double> Start(const Branch& branch, double origin_force,
+                                           double limit = 1.0) const {
     const BranchScale scale = ScaleOf(branch, origin_force, PeakThatScales(branch));
-    return {branch.origin, origin_force, scale.span * scale.remaining, RateOf(scale)};
+    return {branch.origin, origin_force, scale.span * scale.remaining * limit,
+            RateOf(scale) / limit};
   }
 
   /// Force over Tc at the branch's origin, `force_of_parent` giving that of the parent there.
+  /// @param asymmetry  of the path: a contact that had slipped before carries it everywhere
   template <typename ForceOfParent>
-  [[nodiscard]] double OriginForce(const Branch& branch, ForceOfParent&& force_of_parent) const {
+  [[nodiscard]] double OriginForce(const Branch& branch, ForceOfParent&& force_of_parent,
+                                   double asymmetry = 0.0) const {
     switch (branch.start) {
       case BranchStart::kUnloaded:
-      case BranchStart::kSteadyCentre:
         return 0.0;
+      case BranchStart::kSteadyCentre:
+        return asymmetry;
       case BranchStart::kSteadyExtreme:
         return -branch.direction * Peak(branch).force;
       case BranchStart::kReversal:
@@ -168,13 +174,15 @@ void ScaleBranches(const BranchScaling& scaling, const LoadingPath& path, const 
   scaled.clear();
   scaled.reserve(path.branches.size());
   for (const Branch& branch : path.branches) {
-    const double origin_force = scaling.OriginForce(branch, [&](std::size_t parent_index) {
+    const auto force_of_parent = [&](std::size_t parent_index) {
       const ScaledBranch<double>& parent = scaled[parent_index];
       const double e = branch.origin - parent.origin;
       const double phi = ShapeOn(shape, parent).Force(parent.Normalize(e));
       return parent.force + std::copysign(parent.height * phi, e);
-    });
-    scaled.push_back(scaling.Start(branch, origin_force));
+    };
+    scaled.push_back(scaling.Start(branch,
+                                   scaling.OriginForce(branch, force_of_parent, path.asymmetry),
+                                   VirginLimit(path, branch)));
   }
 }
 
@@ -238,6 +246,8 @@ void EvaluateRun(const ScaledBranch<Real>& branch, const Shape& shape, Real slip
 }
 
 /// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
-inline double ForceLimit(const FrictionModel& model) { return model.bounded ? 1.0 : 2.0; }
+inline double ForceLimit(const FrictionModel& model, double asymmetry = 0.0) {
+  return model.bounded ? 1 + std::abs(asymmetry) : 2.0;
+}
 
 }  // namespace mindahl::models

@@ -56,7 +56,14 @@ struct LoadingPath {
   std::vector<Branch> branches;
   std::vector<BranchRun> runs;     ///< contiguous, covering all samples in order
   std::vector<std::int32_t> open;  ///< branches still open after the last sample, oldest first
+  double asymmetry = 0.0;          ///< of the slip forces in the two senses, InitialContact's
 };
+
+/// Largest force in the sense of a branch [Tc]: that of the slip forces where it is the virgin
+/// curve's; every other is as high as its law has it.
+[[nodiscard]] inline double VirginLimit(const LoadingPath& path, const Branch& branch) {
+  return branch.start == BranchStart::kUnloaded ? 1 + branch.direction * path.asymmetry : 1.0;
+}
 
 /// Where the contact is unloaded, in the unit of what the path is of: where a virgin one begins, or
 /// the middle of a steady loop.
@@ -70,6 +77,11 @@ struct LoadingPath {
 struct InitialContact {
   InitialState state = InitialState::kVirgin;
   double unloaded_displacement = 0.0;  ///< [m], used when virgin: where T = 0
+  /// a of slip forces Tc(1 + a) where the motion is in the sense of positive displacement and
+  /// Tc(1 − a) where it is not, in (−1, 1): elements of those limits are the symmetric ones that
+  /// set out with −a of their slip force, under a constant a·Tc (docs/theory.md §5). A steady
+  /// contact is one that had slipped as a whole before.
+  double asymmetry = 0.0;
 };
 
 /// Path of a record under the rules of `memory`:
@@ -77,15 +89,18 @@ struct InitialContact {
 ///   continues the branch before it; passing the mirror image of the first extremum rejoins the
 ///   virgin curve (Madelung's rules). Reaching it exactly counts as passing.
 /// - kNone: every reversal opens a branch from the last one.
-/// With a virgin contact the way from `unloaded_displacement` to the first sample is the first
-/// loading step. With a steady one the record is taken to go on from a loop between its own
-/// extremes.
+/// Where the slip forces differ, the virgin curve is one branch in either sense, both of which are
+/// there from the start, and the mirror image of an extremum at x is (1 − a)/(1 + a) times as far
+/// on the other side where x > 0, else (1 + a)/(1 − a) times. With a virgin contact the way from
+/// `unloaded_displacement` to the first sample is the first loading step. With a steady one the
+/// record is taken to go on from a loop between its own extremes.
 ///
 /// @param displacement  [m], finite
 /// @param reversals     as from FindReversals on the same displacements; between them samples may
 ///                      step back within the gate
 /// @throws InvalidArgument when a displacement is not finite or beyond ±1e307 m, when the record is
-///   empty or has more than 2147483640 samples
+///   empty or has more than 2147483640 samples, for an asymmetry beyond (−1, 1) or of a law without
+///   memory
 /// Cost: linear in the samples, however deep the nesting; 36 bytes a reversal, and 4 more an
 /// extremum that is remembered.
 LoadingPath MakeLoadingPath(std::span<const double> displacement,

@@ -22,6 +22,7 @@ struct NormalizedGradient {
   std::span<double> shape_exponent;         ///< ∂t/∂α
   std::span<double> unloaded_displacement;  ///< ∂t/∂δ₀ [1/m], of a virgin contact
   std::span<double> log_spring_travel;      ///< ∂t/∂ln c
+  std::span<double> asymmetry = {};         ///< ∂t/∂a of slip forces Tc(1 ± a)
 };
 
 /// How forces over Tc follow the places where branches start, for those who move them.

@@ -1,0 +1,280 @@
+// Slip forces that differ in the two senses of the motion, against elements that know no history.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/loop/reversals.h"
+#include "mindahl/models/friction_model.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/normalized_response.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::models {
+namespace {
+
+constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();  // a few branches deep
+constexpr double kStiffness = 3.0;
+constexpr double kSlipForce = 2.0;
+
+const FrictionModel& Masing() { return *FindFrictionModel("mindlin-dahl"); }
+
+BranchLaw LawOf(double alpha) {
+  return {.tangential_stiffness = kStiffness, .shape_exponent = alpha, .slip_force = kSlipForce};
+}
+
+LoadingPath PathOf(std::span<const double> displacement, const InitialContact& initial) {
+  return MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0), Memory::kReturnPoint,
+                         initial);
+}
+
+std::vector<double> ForceOn(const BranchLaw& law, std::span<const double> displacement,
+                            const InitialContact& initial, const SeriesSpring& rig = {}) {
+  std::vector<double> force(displacement.size());
+  EvaluateForce(Masing(), law, PathOf(displacement, initial), displacement, force, rig);
+  return force;
+}
+
+/// Springs of one stiffness behind sliders with limits f(1 + a) and −f(1 − a), which are all that
+/// they know. Slip displacements are the middles of equal shares of the backbone's slope, whose
+/// inverse is x = δc·(1 − s^{(1−α)/α}), s the share that still sticks.
+class Sliders {
+ public:
+  Sliders(const BranchLaw& law, double asymmetry, std::size_t count)
+      : asymmetry_(asymmetry), stiffness_(law.tangential_stiffness / static_cast<double>(count)) {
+    const double alpha = law.shape_exponent;
+    const double gross_slip = GrossSlipDisplacement(law);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double sticks = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+      limit_.push_back(stiffness_ * gross_slip * (1 - std::pow(sticks, (1 - alpha) / alpha)));
+    }
+    force_.assign(count, 0.0);
+  }
+
+  double MoveTo(double displacement) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < force_.size(); ++i) {
+      force_[i] = std::clamp(force_[i] + stiffness_ * (displacement - displacement_),
+                             -limit_[i] * (1 - asymmetry_), limit_[i] * (1 + asymmetry_));
+      sum += force_[i];
+    }
+    displacement_ = displacement;
+    return sum;
+  }
+
+ private:
+  double asymmetry_;
+  double stiffness_;
+  double displacement_ = 0.0;
+  std::vector<double> limit_;
+  std::vector<double> force_;
+};
+
+/// Turns anywhere within ±reach, with inner loops and strokes that outdo all before.
+std::vector<double> RandomWalk(double reach, std::size_t turns, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  const auto uniform = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+  constexpr int kSamplesAStroke = 7;
+  std::vector<double> walk = {0.0};
+  for (std::size_t k = 0; k < turns; ++k) {
+    const double from = walk.back();
+    const double widening = static_cast<double>(k + 1) / static_cast<double>(turns);
+    const double to = reach * widening * (2 * uniform() - 1);
+    for (int i = 1; i <= kSamplesAStroke; ++i) {
+      walk.push_back(from + (to - from) * i / kSamplesAStroke);
+    }
+  }
+  return walk;
+}
+
+TEST(Asymmetry, IsThatOfElementsOfUnequalLimitsOnAnyHistory) {
+  constexpr std::size_t kElements = 4000;
+  for (const double alpha : {0.2, 1.0 / 3, 0.7}) {
+    const BranchLaw law = LawOf(alpha);
+    const double gross_slip = GrossSlipDisplacement(law);
+    for (const double asymmetry : {-0.6, -0.1, 0.3, 0.8}) {
+      // Each element stands for a range of slip displacements, which together are δc: none is off
+      // by more than its stiffness times its range.
+      const double of_elements =
+          (1 + std::abs(asymmetry)) * kStiffness * gross_slip / static_cast<double>(kElements);
+      for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        const std::vector<double> walk = RandomWalk(2.2 * gross_slip, 40, seed);
+        const std::vector<double> force = ForceOn(law, walk, {.asymmetry = asymmetry});
+        Sliders sliders(law, asymmetry, kElements);
+        for (std::size_t i = 0; i < walk.size(); ++i) {
+          ASSERT_NEAR(force[i], sliders.MoveTo(walk[i]), of_elements)
+              << "alpha " << alpha << ", asymmetry " << asymmetry << ", sample " << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(Asymmetry, LeavesTheStiffnessAndMakesTheVirginCurveLargerOrSmaller) {
+  const BranchLaw law = LawOf(1.0 / 3);
+  constexpr double kAsymmetry = 0.25;
+  for (const double sense : {1.0, -1.0}) {
+    const double limit = 1 + sense * kAsymmetry;
+    const BranchLaw of_sense = {.tangential_stiffness = kStiffness,
+                                .shape_exponent = 1.0 / 3,
+                                .slip_force = kSlipForce * limit};
+    std::vector<double> way;
+    for (int i = 0; i <= 30; ++i) way.push_back(sense * i * GrossSlipDisplacement(law) / 20);
+    const std::vector<double> force = ForceOn(law, way, {.asymmetry = kAsymmetry});
+    const std::vector<double> expected = ForceOn(of_sense, way, {});
+    for (std::size_t i = 0; i < way.size(); ++i) {
+      EXPECT_NEAR(force[i], expected[i], kRounding * kSlipForce);
+    }
+    EXPECT_NEAR(force.back(), sense * kSlipForce * limit, kRounding * kSlipForce);
+  }
+}
+
+TEST(Asymmetry, IsAnOffsetOfTheForceOnceTheContactHasSlippedAsAWhole) {
+  const BranchLaw law = LawOf(0.5);
+  constexpr double kAsymmetry = -0.35;
+  const double gross_slip = GrossSlipDisplacement(law);
+  // Past slip in one sense, every element is at its limit, and goes on as a symmetric one would.
+  std::vector<double> history = {2 * gross_slip};
+  for (const double more : RandomWalk(1.5 * gross_slip, 20, 5)) history.push_back(more);
+  const std::vector<double> force = ForceOn(law, history, {.asymmetry = kAsymmetry});
+  const std::vector<double> symmetric = ForceOn(law, history, {});
+  const InitialContact steady{.state = InitialState::kSteady, .asymmetry = kAsymmetry};
+  const std::vector<double> cycled = ForceOn(law, history, steady);
+  const std::vector<double> cycled_symmetric =
+      ForceOn(law, history, {.state = InitialState::kSteady});
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    EXPECT_NEAR(force[i] - symmetric[i], kAsymmetry * kSlipForce, kRounding * kSlipForce);
+    EXPECT_NEAR(cycled[i] - cycled_symmetric[i], kAsymmetry * kSlipForce, kRounding * kSlipForce);
+  }
+}
+
+TEST(Asymmetry, TurnsThroughTheOriginWithTheMotion) {
+  const BranchLaw law = LawOf(1.0 / 3);
+  const std::vector<double> walk = RandomWalk(2 * GrossSlipDisplacement(law), 30, 11);
+  std::vector<double> turned = walk;
+  for (double& x : turned) x = -x;
+  const std::vector<double> force = ForceOn(law, walk, {.asymmetry = 0.4});
+  const std::vector<double> of_turned = ForceOn(law, turned, {.asymmetry = -0.4});
+  for (std::size_t i = 0; i < walk.size(); ++i) {
+    EXPECT_NEAR(force[i], -of_turned[i], kRounding * kSlipForce);
+  }
+}
+
+TEST(Asymmetry, StaysWithinTheSlipForcesOfBothSenses) {
+  const BranchLaw law = LawOf(1.0 / 3);
+  constexpr double kAsymmetry = 0.7;
+  const std::vector<double> walk = RandomWalk(3 * GrossSlipDisplacement(law), 60, 4);
+  const std::vector<double> force = ForceOn(law, walk, {.asymmetry = kAsymmetry});
+  const auto [lowest, highest] = std::ranges::minmax(force);
+  EXPECT_NEAR(highest, kSlipForce * (1 + kAsymmetry), kRounding * kSlipForce);
+  EXPECT_NEAR(lowest, -kSlipForce * (1 - kAsymmetry), kRounding * kSlipForce);
+}
+
+/// Behind a spring every force belongs to the contact's own displacement, δ − T/k.
+TEST(Asymmetry, BehindARigIsThatOfTheContactsOwnDisplacement) {
+  const BranchLaw law = LawOf(1.0 / 3);
+  constexpr SeriesSpring kRig{.stiffness = 0.8 * kStiffness};
+  constexpr double kSteep = 1e-12;  // of Tc: x is rounded, and T follows it with slope σ and k
+  const std::vector<double> walk = RandomWalk(4 * GrossSlipDisplacement(law), 30, 8);
+  const std::vector<double> force = ForceOn(law, walk, {.asymmetry = 0.3}, kRig);
+  std::vector<double> contact(walk.size());
+  for (std::size_t i = 0; i < walk.size(); ++i) contact[i] = walk[i] - force[i] / kRig.stiffness;
+  const LoadingPath path = MakeLoadingPath(contact, loop::FindReversals(walk, 0.0),
+                                           Memory::kReturnPoint, {.asymmetry = 0.3});
+  std::vector<double> of_contact(walk.size());
+  EvaluateForce(Masing(), law, path, contact, of_contact);
+  for (std::size_t i = 0; i < walk.size(); ++i) {
+    EXPECT_NEAR(force[i], of_contact[i], kSteep * kSlipForce) << i;
+  }
+}
+
+TEST(Asymmetry, HasItsDerivativeOnEveryBranch) {
+  constexpr double kStep = 1e-5;
+  // Central differences: a third of the third derivative, at most 1/(1 − |a|)³ or so, times the
+  // step's square, and rounding over the step. Next to slip of α < 1/2 the second derivative has no
+  // bound, and neither has the difference's error: 1 % of a corner that is a step wide.
+  constexpr double kDifference = 2e-5;
+  for (const double alpha : {0.5, 0.8, 1.0}) {
+    for (const double travel : {0.0, 0.7}) {
+      for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
+        const NormalizedLaw law{.rate = 1.5, .shape_exponent = alpha, .spring_travel = travel};
+        const std::vector<double> walk = RandomWalk(1.8, 30, 21);
+        const auto evaluate = [&](double asymmetry, std::span<double> derivative) {
+          const LoadingPath path = PathOf(walk, {.state = state, .asymmetry = asymmetry});
+          std::vector<double> t(walk.size());
+          NormalizedGradient gradient;
+          gradient.asymmetry = derivative;
+          NormalizedResponse response;
+          response.Differentiate(Masing(), law, path, walk, t, gradient);
+          return t;
+        };
+        for (const double asymmetry : {-0.45, 0.0, 0.2}) {
+          std::vector<double> derivative(walk.size());
+          evaluate(asymmetry, derivative);
+          const std::vector<double> above = evaluate(asymmetry + kStep, {});
+          const std::vector<double> below = evaluate(asymmetry - kStep, {});
+          for (std::size_t i = 0; i < walk.size(); ++i) {
+            EXPECT_NEAR(derivative[i], (above[i] - below[i]) / (2 * kStep), kDifference)
+                << "alpha " << alpha << ", travel " << travel << ", asymmetry " << asymmetry
+                << ", sample " << i;
+          }
+        }
+      }
+    }
+  }
+}
+
+/// The other derivatives are those of a larger or a smaller virgin curve.
+TEST(Asymmetry, LeavesTheOtherDerivativesRight) {
+  constexpr double kStep = 1e-6;
+  constexpr double kDifference = 1e-6;  // as above, of a smooth backbone
+  constexpr double kAsymmetry = 0.3;
+  const std::vector<double> walk = RandomWalk(1.8, 30, 22);
+  const auto evaluate = [&](double log_rate, double alpha, double unloaded,
+                            const NormalizedGradient& gradient) {
+    const LoadingPath path =
+        PathOf(walk, {.unloaded_displacement = unloaded, .asymmetry = kAsymmetry});
+    std::vector<double> t(walk.size());
+    NormalizedResponse response;
+    response.Differentiate(Masing(), {.rate = std::exp(log_rate), .shape_exponent = alpha}, path,
+                           walk, t, gradient);
+    return t;
+  };
+  std::vector<double> by_rate(walk.size());
+  std::vector<double> by_shape(walk.size());
+  std::vector<double> by_origin(walk.size());
+  constexpr double kUnloaded = 0.03;
+  evaluate(0.2, 0.9, kUnloaded,
+           {.log_rate = by_rate,
+            .shape_exponent = by_shape,
+            .unloaded_displacement = by_origin,
+            .log_spring_travel = {}});
+  const auto compare = [&](const std::vector<double>& derivative, double rate, double shape,
+                           double origin) {
+    const auto above = evaluate(0.2 + rate, 0.9 + shape, kUnloaded + origin, {});
+    const auto below = evaluate(0.2 - rate, 0.9 - shape, kUnloaded - origin, {});
+    for (std::size_t i = 0; i < walk.size(); ++i) {
+      EXPECT_NEAR(derivative[i], (above[i] - below[i]) / (2 * kStep), kDifference) << i;
+    }
+  };
+  compare(by_rate, kStep, 0, 0);
+  compare(by_shape, 0, kStep, 0);
+  compare(by_origin, 0, 0, kStep);
+}
+
+TEST(Asymmetry, IsRefusedBeyondOneAndOfALawWithoutMemory) {
+  const std::vector<double> way = {0.0, 1.0};
+  for (const double wrong : {1.0, -1.0, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(PathOf(way, {.asymmetry = wrong}), InvalidArgument);
+  }
+  EXPECT_THROW(MakeLoadingPath(way, {}, Memory::kNone, {.asymmetry = 0.1}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::models
