@@ -62,7 +62,8 @@ def fit(
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     noise_in: str = "force", offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
-    drift: bool = False, covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
+    asymmetry: Optional[Asked] = None, drift: bool = False,
+    covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
     samples: Optional[tuple[int, int]] = None, skip_cycles: int = 0,
@@ -94,7 +95,8 @@ def fit(
         noise_in: "force", or "displacement" where the force is imposed and taken as exact: the
             displacement is fitted, and residuals are in [m].
         offsets: of force [N] and displacement [m], fitted unless False.
-        rig_stiffness [N/m], viscous [N s/m], lag [s]: a known value, or "fit".
+        rig_stiffness [N/m], viscous [N s/m], lag [s], asymmetry [-] of slip forces
+            slip_force·(1 ± asymmetry): a known value, or "fit".
         plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
@@ -122,7 +124,7 @@ def fit(
         model=model, initial_state=initial_state, force_sign=force_sign, noise_in=noise_in,
         offsets=offsets,
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
-               "lag": lag, "drift": drift},
+               "lag": lag, "asymmetry": asymmetry, "drift": drift},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate)

@@ -104,7 +104,7 @@ def track(
     request.fit = request_of(
         model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
-               "lag": lag, "drift": drift},
+               "lag": lag, "asymmetry": None, "drift": drift},  # cycles have no column for it
         covariate=None, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate)

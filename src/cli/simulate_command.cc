@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +23,13 @@
 #include "mindahl/core/error.h"
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/csv_writer.h"
+#include "mindahl/loop/reversals.h"
 #include "mindahl/methods/method.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/imposed_force.h"
 #include "mindahl/models/limit_law.h"
+#include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
 #include "mindahl/models/variable_load.h"
 #include "mindahl/tradeoff/approximation.h"
 
@@ -40,6 +45,7 @@ struct SimulateOptions {
   std::string model = "mindlin";
   LawOptions law;
   DriveOptions drive;
+  double asymmetry = 0.0;
   double force_noise = 0.0;
   double displacement_noise = 0.0;
   std::string method = "exact";
@@ -145,6 +151,36 @@ ImposedMotion FollowForce(const SimulateOptions& options, std::vector<double>& f
   return motion;
 }
 
+/// The force of a contact whose slip forces differ in the two senses of the motion.
+void FollowAsymmetry(const SimulateOptions& options, const models::BranchLaw& law,
+                     std::span<const double> displacement, std::span<double> force) {
+  const FrictionModel& model = *models::FindFrictionModel(options.model);
+  const models::LoadingPath path =
+      models::MakeLoadingPath(displacement, loop::FindReversals(displacement, 0.0), model.memory,
+                              {.asymmetry = options.asymmetry});
+  models::EvaluateForce(model, law, path, displacement, force);
+}
+
+void RequireAsymmetry(const SimulateOptions& options) {
+  if (options.asymmetry == 0) return;
+  if (!(std::abs(options.asymmetry) < 1)) {
+    ThrowInvalid("--asymmetry [-]", options.asymmetry, "must be in (-1, 1)");
+  }
+  const FrictionModel* model = models::FindFrictionModel(options.model);
+  if (model == nullptr || model->memory != models::Memory::kReturnPoint ||
+      options.method != "exact") {
+    throw InputError(
+        fmt::format("--asymmetry does not serve --model {} --method {}: use --model mindlin, "
+                    "mindlin-dahl or jenkins and --method exact",
+                    options.model, options.method));
+  }
+  if (!options.drive.force_path.empty() || !options.drive.load_column.empty()) {
+    throw InputError(
+        fmt::format("--asymmetry does not serve {}: leave one of the two out",
+                    options.drive.force_path.empty() ? "--normal-load-column" : "--force-path"));
+  }
+}
+
 void AddNoise(std::vector<double>& values, double standard_deviation,
               boost::random::mt19937_64& engine) {
   if (standard_deviation == 0) return;
@@ -160,6 +196,7 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, inputs);
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
+  RequireAsymmetry(options);
   const Approximation approximation = ResolveMethod(options);
   ImposedMotion motion;
   std::vector<double> force;
@@ -170,7 +207,11 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
         ResolveLaw(options.law, options.model, PrescribedExponent(options.model));
     motion = MakeMotion(options.drive, law);
     force.resize(motion.displacement.size());
-    Prepare(approximation, law)(motion.drive(), force);
+    if (options.asymmetry != 0) {
+      FollowAsymmetry(options, law, motion.displacement, force);
+    } else {
+      Prepare(approximation, law)(motion.drive(), force);
+    }
   } else {
     const models::LoadDependentLaw law = ResolveLoadedLaw(options);
     motion = MakeMotion(options.drive, models::BranchLawAtLoad(law, law.reference_load));
@@ -211,6 +252,12 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       ->capture_default_str()
       ->check(OneOf(ModelNames()));
   AddLawOptions(*command, options->law);
+  command
+      ->add_option("--asymmetry", options->asymmetry,
+                   "slip forces Tc(1 + A) where the motion is in the sense of positive\n"
+                   "displacement and Tc(1 - A) where it is not [-]")
+      ->type_name("A")
+      ->capture_default_str();
   AddDriveOptions(*command, options->drive);
   AddLoadColumnOptions(*command, options->drive);
   AddForcePathOptions(*command, options->drive);

@@ -376,8 +376,8 @@ bool HasBackbone(const FitResult& fit) {
   const bool is_of_one_load =
       !fit.is_load_series() &&
       std::ranges::none_of(fit.records, [](const RecordFit& record) { return record.load_varies; });
-  const ParameterEstimate* const lag = fit.Find("lag");
-  return !fit.parameters.empty() && is_of_one_load && lag == nullptr &&
+  const bool is_of_one_curve = fit.Find("lag") == nullptr && fit.Find("asymmetry") == nullptr;
+  return !fit.parameters.empty() && is_of_one_load && is_of_one_curve &&
          fit.model->memory == models::Memory::kReturnPoint && fit.response == loop::Channel::kForce;
 }
 
@@ -386,7 +386,7 @@ BackboneEstimate EstimateBackbone(std::span<const loop::RecordView> records,
   if (!HasBackbone(fit)) {
     throw InvalidArgument(
         "the backbone is that of a law of Masing's memory, fitted to forces of records under one "
-        "load, without a lag");
+        "load, without a lag or an asymmetry");
   }
   std::pmr::monotonic_buffer_resource memory;
   const loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &memory);

@@ -87,6 +87,12 @@ void RequireOptions(const FitOptions& options) {
   }
   if (options.force_noise) RequirePositive("force noise [N]", *options.force_noise);
   RequireTermsOfResponse(options);
+  if (options.model->memory == models::Memory::kNone && HasTerm(options, "asymmetry")) {
+    throw InvalidArgument(fmt::format(
+        "asymmetry is of Masing's law, and not of {}: where slip forces differ, that one's "
+        "directions differ in stiffness too; use --model mindlin-dahl, mindlin or jenkins",
+        options.model->name));
+  }
   if (options.max_iterations < 1) {
     ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
   }
@@ -136,6 +142,15 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
   throw TooFewSamples(
       fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
                   problem.data->counted, free, WhatIsLeftOut(prepared, options)));
+}
+
+/// Where the contact had slipped before, an asymmetry is an offset of the force and nothing else.
+void RequireToldAsymmetry(const Problem& problem) {
+  if (!problem.parameters.asymmetry_is_confounded()) return;
+  throw InvalidArgument(
+      "asymmetry cannot be told from force_offset: the contact had slipped before the record, and "
+      "both are a force that is always there; give the force's zero where it is known, --fix "
+      "force_offset=0, or record from the unloaded contact on, --initial-state virgin");
 }
 
 /// What is known of a fit while it is made.
@@ -498,6 +513,7 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
   FillErrors(problem, estimates, result);
   WidenByProfiles(attempt, problem, solution, noise, estimates, result);
   Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
+  Append(result.findings, FindUntoldAsymmetry(result, attempt.options.thresholds));
   for (Finding& finding : FindWideIntervals(result, attempt.options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }
@@ -560,6 +576,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   }
   Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, options.thresholds));
   Append(result.findings, FindFewPlaces(problem, options.thresholds));
+  Append(result.findings, FindUntoldAsymmetry(result, options.thresholds));
   Append(result.findings, FindShapeLimitedByLoad(problem, solution));
   Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
@@ -729,6 +746,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   std::vector<Descent>* const recorded = is_judged ? &descents : nullptr;
   std::optional<Candidate> rival;
   std::optional<Candidate> best(FitBestState(attempt, first, second, recorded, rival));
+  RequireToldAsymmetry(best->problem);
   const DisplacementErrors displacement_errors(prepared, data);
   const bool is_weighted = given.loss != Loss::kNone || displacement_errors.any();
   Noise noise;

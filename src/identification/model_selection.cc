@@ -12,6 +12,7 @@
 #include "identification/free_parameters.h"
 #include "identification/inference/evidence.h"
 #include "identification/inference/reweighting.h"
+#include "identification/problem/parameters.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
 
@@ -61,6 +62,7 @@ std::vector<ModelScore> ListCandidates(const FitOptions& options) {
   std::vector<ModelScore> scores;
   for (const models::FrictionModel& model : models::FrictionModels()) {
     if (model.scaled_by_peak) continue;
+    if (model.memory == models::Memory::kNone && HasTerm(options, "asymmetry")) continue;
     if (model.shape_exponent && alpha != options.fixed.end() &&
         *model.shape_exponent != alpha->second) {
       continue;

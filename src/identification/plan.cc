@@ -30,7 +30,8 @@ using models::InitialState;
 void RequireTerms(const FitOptions& options) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name);
-    if (term != nullptr && (name == "lag" || name == "load_exponent" || term->of_column)) {
+    if (term != nullptr &&
+        (name == "lag" || name == "load_exponent" || name == "asymmetry" || term->of_column)) {
       throw InvalidArgument(fmt::format(
           "'{}' cannot be planned for: must be one of rig_stiffness, plateau_slope, viscous, "
           "force_drift",

@@ -30,6 +30,7 @@ struct FieldTable {
 void AddAdequacyFields(FieldTable& table);
 void AddMeasuredFields(FieldTable& table);
 void AddParameterFields(FieldTable& table);
+void AddSlipForceFields(FieldTable& table);
 void AddResidualFields(FieldTable& table);
 void AddSelectionFields(FieldTable& table);
 void AddSolverFields(FieldTable& table);

@@ -178,6 +178,7 @@ FieldTable MakeTable() {
   AddAdequacyFields(table);
   AddMeasuredFields(table);
   AddParameterFields(table);
+  AddSlipForceFields(table);
   AddLawFields(table);
   AddMemoryFields(table);
   AddResidualFields(table);

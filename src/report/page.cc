@@ -112,8 +112,10 @@ std::string ParameterSection(const Report& report) {
                          Quantity(*fit.normal_load, "N"));
   }
   const std::string wide = WideIntervalStatement(fit, report.units);
+  const std::string slip_forces = SlipForcesStatement(report);
   return Heading("Parameters") + Paragraph(about + ".") + table.Html() +
-         (wide.empty() ? "" : Paragraph(wide + "."));
+         (wide.empty() ? "" : Paragraph(wide + ".")) +
+         (slip_forces.empty() ? "" : Paragraph(slip_forces + "."));
 }
 
 // --- what to do

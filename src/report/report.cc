@@ -111,6 +111,7 @@ Report MakeReport(ReportInput input) {
   for (Warning& note : TrimNotes(report)) report.notes.push_back(std::move(note));
   if (report.failed()) return report;
   report.loop = DescribeLoop(report.fit);
+  report.slip_forces = DescribeSlipForces(report.fit);
   if (report.is_torsional()) return report;
   report.alpha = TestAlpha(report.fit);
   report.contact = IdentifyFittedContact(report.fit, report.known);

@@ -166,6 +166,16 @@ std::string UndeterminedCombination(const Finding& finding, const FitResult& fit
       SeesSlip(fit) ? "sample more densely after the reversals" : "record a larger amplitude");
 }
 
+std::string AsymmetryNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "asymmetry: {:.2g} % of slip_force never slips in this loop, and keeps a force that no "
+      "record "
+      "of a cycled contact tells; raise the amplitude until the contact slips as a whole, or "
+      "record "
+      "from the unloaded contact on",
+      100 * Needed(finding, "never_slips"));
+}
+
 std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "sigma, alpha: all {:.0f} samples lie in {:.0f} places of the loop, the same in every cycle; "
@@ -357,12 +367,13 @@ std::string LoadFollowed(const Finding& finding, const FitResult&, const Units&)
 }
 
 std::string LoadNotFollowed(const Finding& finding, const FitResult& fit, const Units&) {
+  const bool is_rigid = std::isinf(fit.rig.stiffness);
   return fmt::format(
       "{}the normal load varies by ±{:.3g} %, of which {} has no account: the fit takes it for "
-      "constant; keep to one load with --load-window, or use --model mindlin-dahl without a rig",
+      "constant; keep to one load with --load-window, or use --model mindlin-dahl without {}",
       WhichRecord(finding), 100 * Needed(finding, "variation"),
-      std::isinf(fit.rig.stiffness) ? std::string(fit.model->name)
-                                    : fmt::format("{} behind a rig", fit.model->name));
+      is_rigid ? std::string(fit.model->name) : fmt::format("{} behind a rig", fit.model->name),
+      fit.Find("asymmetry") == nullptr ? "a rig" : "a rig or an asymmetry");
 }
 
 std::string RigNotTried(const Finding& finding, const FitResult&, const Units&) {
@@ -408,7 +419,7 @@ struct Row {
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 33> kSentences = {{
+constexpr std::array<Row, 34> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -426,6 +437,7 @@ constexpr std::array<Row, 33> kSentences = {{
     {"model_inadequate", ModelInadequate},
     {"slip_force_extrapolated", SlipForceExtrapolated},
     {"few_places", FewPlaces},
+    {"asymmetry_not_identifiable", AsymmetryNotIdentifiable},
     {"loop_not_seen", LoopNotSeen},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},

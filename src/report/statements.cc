@@ -173,6 +173,24 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
       fmt::join(names, ", "), widest, covered);
 }
 
+std::string SlipForcesStatement(const Report& report) {
+  if (!report.slip_forces) return "";
+  const std::string_view unit = report.units.force;
+  const auto words = [&](const SlipForce& force) {
+    const double error = force.standard_error.value_or(0.0);
+    std::string text = QuantityWithError(force.value, error, unit);
+    if (force.lower95 && force.upper95) {
+      const ScaledUnit scaled = UnitFor(unit, std::max(std::abs(force.value), error));
+      text += fmt::format(" ({} … {})",
+                          RoundedTo(error / scaled.factor, *force.lower95 / scaled.factor),
+                          RoundedTo(error / scaled.factor, *force.upper95 / scaled.factor));
+    }
+    return text;
+  };
+  return fmt::format("slip forces: {} where the displacement grows, {} where it falls",
+                     words(report.slip_forces->positive), words(report.slip_forces->negative));
+}
+
 std::vector<std::string> TrendStatements(const loop::LoopFacts& facts) {
   std::vector<std::string> statements;
   for (const std::string& trend :

@@ -57,6 +57,9 @@ std::string SlipStatement(const LoopDescription& loop, const Units& units);
 /// Why intervals are far wider than standard errors make them, in a sentence; "" where none is.
 std::string WideIntervalStatement(const identification::FitResult& fit, const Units& units);
 
+/// The slip forces in either sense of the motion; "" where they are one, or not known.
+std::string SlipForcesStatement(const Report& report);
+
 /// What changes over the cycles, where it is worth saying.
 std::vector<std::string> TrendStatements(const loop::LoopFacts& facts);
 

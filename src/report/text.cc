@@ -263,6 +263,8 @@ std::string ToText(const Report& report, const TextOptions& options) {
   std::string text = AdequacyText(report, style) + "\n" + ParameterTable(fit, style);
   const std::string wide = WideIntervalStatement(fit, report.units);
   if (!wide.empty()) text += Wrapped(wide, 2);
+  const std::string slip_forces = SlipForcesStatement(report);
+  if (!slip_forces.empty()) text += Wrapped(slip_forces, 13);
   for (const Warning& warning : report.fit_warnings) {
     if (warning.code == "no_model_fits") text += Wrapped(warning.message, 2);
   }

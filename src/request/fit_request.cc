@@ -333,6 +333,11 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
     throw InputError(
         "--noise-in displacement is not read by track: fit a part of the record with fit");
   }
+  if (request.terms.contains("asymmetry")) {
+    throw InputError(
+        "--asymmetry is not read by track: where the contact slips as a whole, force_offset of a "
+        "cycle is (Tc+ - Tc-)/2 beside the sensor's own; fit a part of the record with fit");
+  }
   return MakeFitOptions(request);
 }
 

@@ -292,6 +292,22 @@ TEST_F(FitTerms, LateForceIsPutInItsPlace) {
   EXPECT_EQ(known["parameters"]["lag"]["status"], "fixed");
 }
 
+TEST_F(FitTerms, SlipForcesOfEitherSenseAreFitted) {
+  const std::vector<Sample> loop = Simulate({"--cycles", "2", "--asymmetry", "0.2"});
+  const json fit = Fit(loop, {"--asymmetry", "fit"});
+  ExpectContact(fit, kNoiseFree);
+  EXPECT_NEAR(Value(fit, "asymmetry"), 0.2, kNoiseFree);
+  const json& forces = fit["slip_forces"];
+  EXPECT_NEAR(forces["positive"]["value"].get<double>() / (1.2 * kSlipForce), 1, kNoiseFree);
+  EXPECT_NEAR(forces["negative"]["value"].get<double>() / (0.8 * kSlipForce), 1, kNoiseFree);
+  EXPECT_FALSE(Fit(Simulate({"--cycles", "2"})).contains("slip_forces"));
+  // From the second cycle on the contact has slipped, and only the zero of the force tells.
+  const std::vector<Sample> cycled(loop.begin() + kSamplesPerCycle, loop.end());
+  const json known = Fit(cycled, {"--asymmetry", "fit", "--fix", "force_offset=0"});
+  EXPECT_EQ(known["initial_state"], "steady");
+  EXPECT_NEAR(Value(known, "asymmetry"), 0.2, kNoiseFree);
+}
+
 TEST_F(FitTerms, ForceOfAColumnIsFittedOrTakenOff) {
   constexpr double kPerNewton = 0.3;
   std::vector<Sample> loop = Simulate({"--cycles", "2"});
@@ -547,6 +563,16 @@ INSTANTIATE_TEST_SUITE_P(
                {"--bound", "lag=0:1"},
                "--bound: lag is not fitted, so this has no effect: add --lag fit"},
         Misuse{"LagBeyondTheRecord", {"--lag", "1e6"}, "nothing is left of record 1"},
+        Misuse{"AsymmetryOfOneSense",
+               {"--asymmetry", "1"},
+               "asymmetry [-] = 1 is invalid: must be in (-1, 1)"},
+        Misuse{"AsymmetryOfDahlsLaw",
+               {"--asymmetry", "fit", "--model", "dahl"},
+               "asymmetry is of Masing's law, and not of dahl"},
+        Misuse{"AsymmetryOfACycledContact",
+               {"--asymmetry", "fit", "--initial-state", "steady"},
+               "asymmetry cannot be told from force_offset: the contact had slipped before the "
+               "record"},
         Misuse{"CovariateWithoutAValue",
                {"--covariate", "normal="},
                "--covariate: 'normal=' is incomplete: write COL[=C|fit], e.g. pressure=50"},

@@ -51,6 +51,8 @@ COMMANDS = [
     (f"fit {BALL} --model dahl --loss huber --starts 6", 0),
     (f"fit {BALL} --model auto", 0),
     (f"fit {BALL} --fix sigma=4e7 --drift --plateau-slope --viscous fit --lag fit", 0),
+    (f"fit {BALL} --asymmetry fit", 0),
+    (f"fit {BALL} --asymmetry 0.1 --fix slip_force=15", 0),
     (f"fit {BALL} --backbone backbone.csv", 0),
     (f"fit {BALL} --samples 1:60", 0),
     (f"fit {BALL} --bound alpha=0:0.1", 0),

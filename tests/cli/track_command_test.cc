@@ -418,6 +418,7 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
   for (const Case& refused :
        {Case{{record_, "--model", "auto"}, "--model auto"},
         Case{{record_, "--covariate", "1"}, "--covariate"},
+        Case{{record_, "--asymmetry", "fit"}, "--asymmetry is not read by track"},
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
         Case{{record_, "--resume", "--overwrite"}, "contradict"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},

@@ -76,10 +76,12 @@ struct Contact {
 
   /// @param at_rest  where it is unloaded
   [[nodiscard]] std::vector<double> Force(const History& displacement, double at_rest,
-                                          const SeriesSpring& rig = {}) const {
+                                          const SeriesSpring& rig = {},
+                                          double asymmetry = 0.0) const {
     std::vector<double> force(displacement.size());
     const LoadingPath path =
-        testing::PathOf(*model, displacement, {.state = state, .unloaded_displacement = at_rest});
+        testing::PathOf(*model, displacement,
+                        {.state = state, .unloaded_displacement = at_rest, .asymmetry = asymmetry});
     EvaluateForce(*model, law, path, displacement, force, rig);
     return force;
   }
@@ -371,6 +373,11 @@ std::vector<Case> Cases() {
       {"unequal_directions", 0, 1, made([](auto&, double size, double force, double, double) {
          return force > 0 ? (1 + size) * force : (1 - size) * force;
        })},
+      {"unequal_directions", 1, 1,
+       [](const Departed& departed, double size) {
+         return departed.contact.Force(departed.motion.displacement, departed.contact.unloaded, {},
+                                       size);
+       }},
       {"running_in", 0, 1,
        made([](const Departed& departed, double size, double force, double, double time) {
          return force * (1 + size * time / departed.whole);
@@ -500,10 +507,17 @@ TEST_P(DepartureColumn, IsTheChangeOfTheForceByItsSize) {
   const DepartureColumns columns =
       ColumnsOfDepartures(stages.problem, theta, stages.buffers.response, 100);
   ASSERT_TRUE(columns.timed);
-  ASSERT_EQ(static_cast<std::size_t>(columns.columns.cols()), Cases().size());
+  std::vector<Case> cases = Cases();
+  // Of a contact that had slipped before an asymmetry is an offset, and Dahl's own has none.
+  const bool tells_asymmetry =
+      setting.state == InitialState::kVirgin && contact.model->memory == Memory::kReturnPoint;
+  std::erase_if(cases, [&](const Case& tested) {
+    return tested.code == "unequal_directions" && tested.column == 1 && !tells_asymmetry;
+  });
+  ASSERT_EQ(static_cast<std::size_t>(columns.columns.cols()), cases.size());
 
   std::size_t c = 0;
-  for (const Case& tested : Cases()) {
+  for (const Case& tested : cases) {
     SCOPED_TRACE(std::string(tested.code) + ", column " + std::to_string(tested.column));
     ASSERT_EQ(Departures()[columns.of[c]].code, tested.code);
     ASSERT_TRUE(tested.column == 0 || columns.of[c - tested.column] == columns.of[c]);

@@ -64,11 +64,11 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
       {[](FitOptions& o) { o.starts = 0; }, "starts [-] = 0 is invalid: must be >= 1"},
       {[](FitOptions& o) { o.fixed["stiffness"] = 1; },
        "parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, rig_stiffness, "
-       "load_exponent, plateau_slope, viscous, lag, force_offset, displacement_offset, "
+       "load_exponent, asymmetry, plateau_slope, viscous, lag, force_offset, displacement_offset, "
        "force_drift"},
       {[](FitOptions& o) { o.start["force_offset_2"] = 1; },
        "parameter 'force_offset_2' is unknown: did you mean 'force_offset'? must be one of sigma, "
-       "alpha, slip_force, rig_stiffness, load_exponent, plateau_slope, viscous, lag, "
+       "alpha, slip_force, rig_stiffness, load_exponent, asymmetry, plateau_slope, viscous, lag, "
        "force_offset, "
        "displacement_offset, "
        "force_drift"},

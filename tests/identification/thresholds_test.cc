@@ -150,6 +150,20 @@ bool IsExtrapolated(const Thresholds& thresholds, double share) {
   return FindExtrapolated(result, thresholds).has_value();
 }
 
+/// Of a cycled contact with α = 1, that comes so near to Tc.
+bool AsymmetryIsUntold(const Thresholds& thresholds, double never_slips) {
+  FitResult result = Made();
+  result.model = &Model("mindlin-dahl");
+  result.initial_state = InitialState::kSteady;
+  result.law.shape_exponent = 1.0;
+  result.records[0].measures.amplitude =
+      -std::log(never_slips) * result.law.slip_force / result.law.tangential_stiffness;
+  ParameterEstimate& asymmetry = result.parameters.emplace_back();
+  asymmetry.name = "asymmetry";
+  asymmetry.status = ParameterStatus::kFree;
+  return FindUntoldAsymmetry(result, thresholds).has_value();
+}
+
 /// A push and a way back, of a contact that was unloaded away from the first sample [of X].
 bool PastIsUnknown(const Thresholds& thresholds, double away) {
   History displacement;
@@ -820,6 +834,10 @@ const std::map<std::string_view, Case>& Cases() {
        [](const Thresholds& t) {
          return !NoiseIsInDisplacement(kBelow * 0.05, 0.01, t) &&
                 NoiseIsInDisplacement(kAbove * 0.05, 0.01, t);
+       }},
+      {"never_slips",
+       [](const Thresholds& t) {
+         return !AsymmetryIsUntold(t, kBelow * 0.01) && AsymmetryIsUntold(t, kAbove * 0.01);
        }},
   };
   return cases;

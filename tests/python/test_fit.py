@@ -169,6 +169,18 @@ def test_units_of_arrays_can_be_said(sphere):
     assert torsional.sigma.unit == "N m/rad"
 
 
+def test_slip_forces_of_either_sense_can_be_fitted(sphere):
+    _, displacement, force = sphere
+    cycled = slice(len(force) // 3, None)  # one that had slipped, and whose force has its zero
+    result = mindahl.fit(displacement[cycled], force[cycled], asymmetry="fit",
+                         initial_state="steady", fix={"force_offset": 0})
+    mean, asymmetry = result.slip_force.value, result.asymmetry.value
+    assert result.slip_forces.positive.value == pytest.approx(mean * (1 + asymmetry))
+    assert result.slip_forces.negative.value == pytest.approx(mean * (1 - asymmetry))
+    with pytest.raises(ValueError, match="cannot be told from force_offset"):
+        mindahl.fit(displacement[cycled], force[cycled], asymmetry="fit", initial_state="steady")
+
+
 def test_a_further_array_can_be_a_covariate(sphere):
     _, displacement, force = sphere
     pressure = np.sin(np.arange(len(force)) / 7.0)

@@ -73,7 +73,8 @@ Finding Complete(std::string_view code, std::string_view kind = "") {
                      {"of_displacement", 0.045},
                      {"of_force", 0.005},
                      {"p_value", 0.0035},
-                     {"dahl_p_value", 0.25}};
+                     {"dahl_p_value", 0.25},
+                     {"never_slips", 0.12}};
   return finding;
 }
 
@@ -124,6 +125,7 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"model_inadequate", "", {"jenkins does not describe this record"}},
       {"slip_force_extrapolated", "", {"slip_force: ", "alpha = 0.0625", "36 %"}},
       {"few_places", "", {"sigma, alpha: ", "144 samples", "9 places"}},
+      {"asymmetry_not_identifiable", "", {"asymmetry: 12 % of slip_force", "slips as a whole"}},
       {"loop_not_seen", "", {"sigma, alpha, slip_force: ", "6.2 % of the force's variance"}},
       {"unknown_past", "cut", {"alpha, slip_force: ", "--initial-state virgin"}},
       {"unknown_past", "one_stroke", {"sigma, alpha, slip_force: ", "--initial-state virgin"}},

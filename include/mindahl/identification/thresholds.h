@@ -56,6 +56,7 @@ struct Thresholds {
   double load_variation = 0.01;
   double visible_noise = 0.002;
   double noisier_displacement = 5.0;
+  double never_slips = 0.01;
 };
 
 struct ThresholdRow {

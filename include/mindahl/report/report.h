@@ -13,6 +13,7 @@
 #include "mindahl/report/load_series.h"
 #include "mindahl/report/loop_description.h"
 #include "mindahl/report/mapping_tests.h"
+#include "mindahl/report/slip_forces.h"
 #include "mindahl/report/units.h"
 #include "mindahl/report/warning.h"
 
@@ -40,6 +41,7 @@ struct Report : ReportInput {
   /// By Masing's law where Dahl's own was fitted, and the other way round; empty where the two are
   /// not compared.
   contact::IdentifiedContact contact_by_other_law;
+  std::optional<SlipForces> slip_forces;  ///< empty unless the fit knows that the two differ
   std::optional<LoadSeries> load_series;  ///< empty where the records have one load
   AlphaTest alpha;
   std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit

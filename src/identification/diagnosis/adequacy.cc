@@ -20,6 +20,16 @@ double ChanceOfNoise(const AdequacyTest& test) {
   return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
 }
 
+/// Would a fit be given an asymmetry? Not by Dahl's own law or under a load that varies, nor beside
+/// offsets of a contact that had slipped before, which take it up.
+bool TellsAsymmetry(const Problem& problem) {
+  if (problem.model->memory == models::Memory::kNone || problem.data->load_varies) return false;
+  if (problem.state == models::InitialState::kVirgin) return true;
+  return std::ranges::any_of(problem.parameters, [](const Parameter& parameter) {
+    return parameter.term->name == "force_offset" && parameter.fixed;
+  });
+}
+
 /// What to type: a covariate's has its name, quoted where it has blanks.
 std::string OptionOf(const Problem& problem, const DepartureFit& fit) {
   const Departure& departure = Departures()[fit.departure];
@@ -27,6 +37,7 @@ std::string OptionOf(const Problem& problem, const DepartureFit& fit) {
     // What is beside a force has no place in a fit of the displacement.
     return departure.term == "displacement_drift" ? std::string(departure.option) : "";
   }
+  if (departure.term == "asymmetry" && !TellsAsymmetry(problem)) return "";
   if (!fit.covariate) return std::string(departure.option);
   const std::string_view name = problem.data->covariates[*fit.covariate].name;
   const char* const quote = name.find(' ') == std::string_view::npos ? "" : "'";

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "mindahl/models/steady_loop.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -214,6 +216,22 @@ std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solu
   return Finding{.code = "alpha_limited_by_load",
                  .parameters = {"alpha"},
                  .numbers = {{"bound", kHighestShapeUnderLoad}}};
+}
+
+std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds) {
+  const ParameterEstimate* asymmetry = result.Find("asymmetry");
+  if (asymmetry == nullptr || asymmetry->status == ParameterStatus::kFixed ||
+      result.initial_state == models::InitialState::kVirgin) {
+    return std::nullopt;
+  }
+  const double amplitude = models::ContactAmplitude(*result.model, result.law, result.rig,
+                                                    result.WidestRecord().measures.amplitude);
+  const double never_slips =
+      1 - models::SteadyPeakForce(*result.model, result.law, amplitude) / result.law.slip_force;
+  if (never_slips <= thresholds.never_slips) return std::nullopt;
+  return Finding{.code = "asymmetry_not_identifiable",
+                 .parameters = {"asymmetry"},
+                 .numbers = {{"never_slips", never_slips}}};
 }
 
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {

@@ -49,6 +49,10 @@ std::optional<Finding> FindExtrapolated(const FitResult& result, const Threshold
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds);
 
+/// `asymmetry_not_identifiable`: of a contact that had been cycled before the record, and does not
+/// slip as a whole.
+std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
+
 /// Samples that come back to the same few places of the loop in every cycle, however many they are:
 /// what lies between them, the turning points too, no cycle shows.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);

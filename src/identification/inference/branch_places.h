@@ -59,18 +59,22 @@ std::vector<Place> FollowBranches(const models::FrictionModel& model,
   for (std::size_t b = 0; b < count; ++b) {
     const models::Branch& branch = path.branches[b];
     Place& origin = origins[b];
-    if (!models::IsVirgin(branch.start)) origin.response = sensitivity.origin_force[b];
+    if (branch.start != models::BranchStart::kUnloaded) {
+      origin.response = sensitivity.origin_force[b];
+    }
     origin.displacement = branch.origin;
     origin.slope = sensitivity.slope[b];
     origin.gain = sensitivity.gain[b];
     if (branch.parent < 0) continue;
     const auto parent = static_cast<std::size_t>(branch.parent);
     PutOn(path.branches[parent], origins[parent], model, origin);
+    origin.reach *= models::VirginLimit(path, path.branches[parent]);
   }
   for (const models::BranchRun& run : path.runs) {
     const auto b = static_cast<std::size_t>(run.branch);
     for (std::size_t i = run.begin; i < run.end; ++i) {
       PutOn(path.branches[b], origins[b], model, places[i]);
+      places[i].reach *= models::VirginLimit(path, path.branches[b]);
     }
   }
   return origins;
@@ -82,8 +86,10 @@ Place SteadyExtreme(const Problem& problem, const LawPoint& point, const ScaledR
   const std::span<const double> displacement = record.displacement;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const std::array<double, 2> stroke = {lowest, highest};
-  const models::LoadingPath path = models::MakeLoadingPath(
-      stroke, {}, problem.model->memory, {.state = models::InitialState::kSteady});
+  const models::LoadingPath path =
+      models::MakeLoadingPath(stroke, {}, problem.model->memory,
+                              {.state = models::InitialState::kSteady,
+                               .asymmetry = problem.parameters.AsymmetryAt(point.theta)});
   const models::NormalizedLaw law = LawUnder(problem, point, record);
   models::NormalizedResponse response;
   std::array<double, 2> t{};

@@ -31,6 +31,7 @@ struct Place {
   double curvature = 0.0;    // of the whole force, its second derivative by time
   double missed = 0.0;       // way since the displacement was last read anew, where it is repeated
   double amplitude = 0.0;    // of the stroke, −½ of the narrowest to ½ of the widest
+  double asymmetry = 0.0;    // of the force over the slip force, its derivative by an asymmetry
   double gain = 1.0;         // and by that at the origin of the branch
   // The branch:
   bool sets_out = false;  // on the virgin curve, the way that it was first run
@@ -133,9 +134,11 @@ constexpr std::array<Departure, 21> kDepartures = {{
      .option = "",
      .unit_by_sample = "N samples²/m"},
     {.code = "unequal_directions",
-     .meaning = "(1 ± size)·T, + where it is in the sense of a positive displacement",
+     .meaning = "(1 ± size)·T, + where it is in the sense of a positive displacement; and of a "
+                "virgin contact slip forces Tc(1 ± A)",
      .unit = "-",
-     .option = "",
+     .option = "--asymmetry fit",
+     .term = "asymmetry",
      .apart = 1.0},
     {.code = "running_in",
      .meaning = "growth of the contact's force from the first record's beginning to its end",
@@ -192,7 +195,10 @@ double Bulge(const Place& at) {
   return at.direction * at.reach * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
 }
 
-constexpr std::array<Column, 26> kColumns = {{
+/// Of slip forces that differ; nothing but an offset of the force of a contact that had slipped.
+double ByAsymmetry(const Place& at) { return at.asymmetry; }
+
+constexpr std::array<Column, 27> kColumns = {{
     {kLag, Along::kForce, [](const Place& at) { return -at.force_rate; }},
     {kViscous, Along::kForce, [](const Place& at) { return at.velocity; }},
     {kPlateauSlope, Along::kForce, [](const Place& at) { return at.displacement; }},
@@ -214,6 +220,7 @@ constexpr std::array<Column, 26> kColumns = {{
      [](const Place& at) { return at.slope * (Cube(at.displacement) - Cube(at.origin)); }},
     {kInertia, Along::kForce, [](const Place& at) { return at.acceleration; }},
     {kUnequal, Along::kForce, [](const Place& at) { return std::abs(at.force); }},
+    {kUnequal, Along::kForce, ByAsymmetry},
     {kRunningIn, Along::kForce, [](const Place& at) { return at.force * at.time; }},
     {kSaturation, Along::kForce,
      [](const Place& at) {
@@ -451,6 +458,9 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   const Clock clock = ClockOf(*problem.data, neighbours);
   const bool is_repeated = IsDisplacementRepeated(*problem.data, neighbours);
   const std::vector<std::vector<double>> amplitudes = AmplitudeScale(*problem.data);
+  const bool tells_asymmetry = problem.state == models::InitialState::kVirgin &&
+                               problem.model->memory == models::Memory::kReturnPoint &&
+                               !problem.data->load_varies;
   DepartureColumns result;
   result.timed = clock.timed;
   std::vector<const Column*> wanted;
@@ -464,7 +474,9 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
         });
     const bool is_nothing = (d == kHeld && !is_repeated) || (d == kAmplitude && amplitudes.empty());
     if (is_fitted || is_unknown || is_nothing) continue;
-    const auto is_of = [&](const Column& column) { return column.departure == d; };
+    const auto is_of = [&](const Column& column) {
+      return column.departure == d && (column.value != ByAsymmetry || tells_asymmetry);
+    };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(kColumns, is_of));
     if (wanted.size() + count > most) break;
     if (count > 0) ++result.groups;
@@ -489,7 +501,10 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   std::vector<double> force(problem.size());
   std::vector<double> complete(problem.size());
   response.Bind(problem);
-  response.Evaluate(point, force);
+  std::vector<double> by_asymmetry(tells_asymmetry ? problem.size() : 0);
+  ResponseColumns wanted_of_response;
+  wanted_of_response.asymmetry = by_asymmetry;
+  response.Differentiate(point, force, wanted_of_response);
   Predict(problem, theta, response, complete);
   double peak = 0.0;
   for (const double value : force) peak = std::max(peak, std::abs(value));
@@ -509,6 +524,9 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     }
     if (!amplitudes.empty()) {
       for (std::size_t i = 0; i < record.size(); ++i) places[i].amplitude = amplitudes[r][i];
+    }
+    for (std::size_t i = 0; i < record.size() && tells_asymmetry; ++i) {
+      places[i].asymmetry = by_asymmetry[begin + i];
     }
     const models::LoadingPath& path = response.PathOf(r, theta);
     const Place extreme = problem.state == models::InitialState::kSteady

@@ -32,6 +32,8 @@ const FrictionModel& OtherModel(const FrictionModel& model) {
 bool AreComparable(const Problem& problem) {
   // Dahl's own has no account of a load that varies.
   if (problem.data->load_varies) return false;
+  // Nor of slip forces that differ: its directions would differ in stiffness too.
+  if (problem.parameters.has_asymmetry()) return false;
   if (std::ranges::all_of(problem.data->records,
                           [](const ScaledRecord& record) { return record.reversals.empty(); })) {
     return false;

@@ -31,6 +31,7 @@ constexpr std::array kVerdicts = {
     Row{"few_places", Identifiability::kNotIdentifiable},
     Row{"loop_not_seen", Identifiability::kNotIdentifiable, true},
     Row{"rig_not_tried", Identifiability::kNotIdentifiable},
+    Row{"asymmetry_not_identifiable", Identifiability::kNotIdentifiable},
     Row{"slip_force_bounded_below", Identifiability::kBoundedBelow},
     Row{"sigma_bounded_below", Identifiability::kBoundedBelow},
     Row{"alpha_limited_by_load", Identifiability::kBoundedBelow},

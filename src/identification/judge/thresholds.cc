@@ -173,6 +173,10 @@ constexpr std::array kTable = {
                  "the channel to fit",
                  "along the loop's diagonal the force then makes 1/(1 + 5²) = 4 % of the "
                  "residuals' variance"},
+    ThresholdRow{"never_slips", &Thresholds::never_slips, "of Tc",
+                 "a steady loop that leaves more of the slip force unreached tells no asymmetry",
+                 "what never slips keeps a force between its limits, of which nothing is known: it "
+                 "moves the asymmetry by as much"},
 };
 
 }  // namespace

@@ -153,6 +153,7 @@ void LaggedMotion::MoveTo(const ScaledRecord& record, double lag, models::Memory
 void LaggedMotion::CopyPathOfSamples(models::LoadingPath& path) const {
   path.branches = path_.branches;
   path.open = path_.open;
+  path.asymmetry = path_.asymmetry;
   path.runs.clear();
   std::size_t next = 0;
   for (const models::BranchRun& run : path_.runs) {

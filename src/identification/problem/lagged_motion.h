@@ -38,9 +38,10 @@ class LaggedMotion {
   void MoveTo(const ScaledRecord& record, double lag, models::Memory memory,
               const models::InitialContact& initial);
   void Forget() { valid_ = false; }
-  /// Is it at this lag, and was the contact unloaded there?
-  [[nodiscard]] bool IsAt(double lag, double unloaded) const {
-    return valid_ && lag == lag_ && unloaded == unloaded_;
+  /// Is it at this lag, from this past?
+  [[nodiscard]] bool IsAt(double lag, const models::InitialContact& initial) const {
+    return valid_ && lag == lag_ && initial.unloaded_displacement == unloaded_ &&
+           initial.asymmetry == path_.asymmetry;
   }
 
   /// Of moved samples, reversals and ends, in order of time.

@@ -20,6 +20,8 @@ void RequireInDomain(const Parameter& parameter, std::string_view name, double v
     RequirePositive(quantity, value);
   } else if (parameter.term->name == "alpha") {
     RequireNonNegative(quantity, value);
+  } else if (parameter.term->name == "asymmetry") {
+    if (!(std::abs(value) < 1)) ThrowInvalid(quantity, value, "must be in (-1, 1)");
   } else {
     RequireFinite(quantity, value);
   }
@@ -158,6 +160,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     }
   }
   ApplyOptions(options);
+  if (state == models::InitialState::kSteady) HoldConfoundedAsymmetry();
   if (data.load_varies) KeepShapeBelowOne(options);
   for (const Parameter& parameter : parameters_) {
     if (parameter.absent || !parameter.term->needs_time) continue;
@@ -178,6 +181,17 @@ Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memor
       records_(other.records_),
       origin_term_(other.origin_term_),
       state_(other.state_) {}
+
+/// Of a contact that had slipped before it is a force that is always there, as an offset is.
+void Parameters::HoldConfoundedAsymmetry() {
+  Parameter& asymmetry = parameters_[PositionOf("asymmetry", 0)];
+  const bool any_zero_is_known = std::ranges::any_of(parameters_, [](const Parameter& parameter) {
+    return parameter.term->name == "force_offset" && parameter.fixed;
+  });
+  if (asymmetry.fixed || any_zero_is_known) return;
+  asymmetry.theta = 0.0;
+  asymmetry.fixed = asymmetry.confounded = true;
+}
 
 /// Under a load that varies slip must be complete at a finite displacement.
 void Parameters::KeepShapeBelowOne(const FitOptions& options) {
@@ -362,6 +376,10 @@ models::BranchLaw Parameters::LawAt(std::span<const double> theta) const {
 
 double Parameters::LoadExponentAt(std::span<const double> theta) const {
   return is_load_series() ? theta[kLoadExponent] : 1.0;
+}
+
+double Parameters::AsymmetryAt(std::span<const double> theta) const {
+  return theta[PositionOf("asymmetry", 0)];
 }
 
 models::SeriesSpring Parameters::RigAt(std::span<const double> theta) const {

@@ -33,8 +33,9 @@ struct Parameter {
   double upper = 0.0;
   bool fixed = false;
   bool bounded_by_user = false;
-  bool absent = false;   // a term that was not asked for: not reported
-  bool assumed = false;  // held, not where the file has its zero, but where the record begins
+  bool absent = false;      // a term that was not asked for: not reported
+  bool confounded = false;  // held at 0, as an offset that is fitted says the same
+  bool assumed = false;     // held, not where the file has its zero, but where the record begins
 
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;
@@ -90,6 +91,13 @@ class Parameters {
   [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
   [[nodiscard]] bool has_lag() const { return !parameters_[PositionOf("lag", 0)].absent; }
+  [[nodiscard]] bool has_asymmetry() const {
+    return !parameters_[PositionOf("asymmetry", 0)].absent;
+  }
+  /// Asked for, of a contact whose records tell it from no offset of theirs.
+  [[nodiscard]] bool asymmetry_is_confounded() const {
+    return parameters_[PositionOf("asymmetry", 0)].confounded;
+  }
   /// Are the records under loads that differ?
   [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }
 
@@ -113,11 +121,14 @@ class Parameters {
   [[nodiscard]] models::BranchLaw LawAt(std::span<const double> theta) const;
   /// p of σ ∝ N^p; 1 where the records are under one load.
   [[nodiscard]] double LoadExponentAt(std::span<const double> theta) const;
+  /// a of slip forces Tc(1 ± a); 0 where it is absent.
+  [[nodiscard]] double AsymmetryAt(std::span<const double> theta) const;
   /// The spring in series with the contact, in SI; rigid where it is absent.
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
   void ApplyOptions(const FitOptions& options);
+  void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne(const FitOptions& options);
   void Sort();
   [[nodiscard]] Parameter& Find(std::string_view name);

@@ -46,6 +46,7 @@ void Response::Bind(const Problem& problem) {
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
                               problem.state, histories_[r]);
   }
+  asymmetry_ = problem.parameters.PositionOf("asymmetry", 0);
   lag_ = problem.parameters.PositionOf("lag", 0);
   has_lag_ = problem.parameters.has_lag();
   if (!has_lag_) return;
@@ -55,7 +56,9 @@ void Response::Bind(const Problem& problem) {
 
 models::InitialContact Response::InitialOf(std::size_t r, std::span<const double> theta) const {
   const bool virgin = problem_->state == models::InitialState::kVirgin;
-  return {.state = problem_->state, .unloaded_displacement = virgin ? theta[unloaded_[r]] : 0.0};
+  return {.state = problem_->state,
+          .unloaded_displacement = virgin ? theta[unloaded_[r]] : 0.0,
+          .asymmetry = theta[asymmetry_]};
 }
 
 double Response::LagOf(std::size_t r, std::span<const double> theta) const {
@@ -67,7 +70,7 @@ const LaggedMotion& Response::MotionOf(std::size_t r, std::span<const double> th
   LaggedMotion& motion = motions_[r];
   const models::InitialContact initial = InitialOf(r, theta);
   const double lag = LagOf(r, theta);
-  if (!motion.IsAt(lag, initial.unloaded_displacement)) {
+  if (!motion.IsAt(lag, initial)) {
     motion.MoveTo(problem_->data->records[r], lag, problem_->model->memory, initial);
     paths_[r].valid = false;
   }
@@ -83,11 +86,13 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
     return cached.path;
   }
   const models::InitialContact initial = InitialOf(r, theta);
-  if (!cached.valid || initial.unloaded_displacement != cached.unloaded) {
+  if (!cached.valid || initial.unloaded_displacement != cached.unloaded ||
+      initial.asymmetry != cached.asymmetry) {
     const ScaledRecord& record = problem_->data->records[r];
     models::MakeLoadingPath(record.excitation(), record.reversals, problem_->model->memory, initial,
                             cached.path);
     cached.unloaded = initial.unloaded_displacement;
+    cached.asymmetry = initial.asymmetry;
     cached.valid = true;
   }
   return cached.path;
@@ -125,11 +130,13 @@ void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<
   }
   const models::NormalizedLaw law = LawUnder(*problem_, at, record);
   const bool wants_any = !columns.log_rate.empty() || !columns.shape_exponent.empty() ||
-                         !columns.unloaded.empty() || !columns.log_spring_travel.empty();
+                         !columns.unloaded.empty() || !columns.log_spring_travel.empty() ||
+                         !columns.asymmetry.empty();
   const models::NormalizedGradient gradient{.log_rate = columns.log_rate,
                                             .shape_exponent = columns.shape_exponent,
                                             .unloaded_displacement = columns.unloaded,
-                                            .log_spring_travel = columns.log_spring_travel};
+                                            .log_spring_travel = columns.log_spring_travel,
+                                            .asymmetry = columns.asymmetry};
   if (!record.load_ratio.empty()) {
     const double unloaded = at.theta[unloaded_[r]];
     if (wants_any) {
@@ -167,7 +174,7 @@ void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<
   const LaggedMotion& motion = MotionOf(r, at.theta);
   const std::size_t size = motion.displacement().size();
   const std::array wanted = {columns.log_rate, columns.shape_exponent, columns.unloaded,
-                             columns.log_spring_travel};
+                             columns.log_spring_travel, columns.asymmetry};
   moved_.resize((1 + wanted.size()) * size);
   const auto moved = [&](std::size_t column) {
     return std::span(moved_).subspan(column * size, size);
@@ -182,7 +189,8 @@ void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<
                             {.log_rate = moved_if_wanted(0),
                              .shape_exponent = moved_if_wanted(1),
                              .unloaded_displacement = moved_if_wanted(2),
-                             .log_spring_travel = moved_if_wanted(3)});
+                             .log_spring_travel = moved_if_wanted(3),
+                             .asymmetry = moved_if_wanted(4)});
   } else {
     response_.Evaluate(*problem_->model, law, motion.path(), motion.displacement(), moved(0));
   }
@@ -216,7 +224,8 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
                                 .shape_exponent = part(columns.shape_exponent),
                                 .unloaded = part(columns.unloaded),
                                 .log_spring_travel = part(columns.log_spring_travel),
-                                .lag = part(columns.lag)};
+                                .lag = part(columns.lag),
+                                .asymmetry = part(columns.asymmetry)};
     const std::span<double> values = part(t);
     if (has_lag_) {
       DifferentiateLagged(at, r, values, parts);
@@ -224,8 +233,9 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
       DifferentiateRecord(at, r, values, parts);
     }
     if (record.load != 1) {
-      for (const std::span<double> column : {values, parts.log_rate, parts.shape_exponent,
-                                             parts.unloaded, parts.log_spring_travel, parts.lag}) {
+      for (const std::span<double> column :
+           {values, parts.log_rate, parts.shape_exponent, parts.unloaded, parts.log_spring_travel,
+            parts.lag, parts.asymmetry}) {
         for (double& value : column) value *= record.load;
       }
     }
@@ -303,7 +313,7 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
   const bool by_rate = (asks(kStiffness) && !is_forced) || asks(kSlipForce) || asks(kLoadExponent);
   const bool by_travel = parameters.has_rig() && (asks(kSlipForce) || asks(kRig));
   const std::string_view origin = OriginTerm(problem.data->excitation);
-  constexpr std::size_t kMostDerivatives = 5;
+  constexpr std::size_t kMostDerivatives = 6;
   const std::span<double> scratch = response.Scratch(kMostDerivatives * samples);
   std::size_t used = 0;
   const auto part_if = [&](bool wanted) {
@@ -313,7 +323,8 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
                                  .shape_exponent = part_if(asks(kShape)),
                                  .unloaded = part_if(asks_term(origin)),
                                  .log_spring_travel = part_if(by_travel),
-                                 .lag = part_if(parameters.has_lag() && asks_term("lag"))};
+                                 .lag = part_if(parameters.has_lag() && asks_term("lag")),
+                                 .asymmetry = part_if(asks_term("asymmetry") && !is_forced)};
   response.Differentiate(PointAt(problem, theta), predicted, gradient);
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -352,6 +363,8 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
         add(gradient.unloaded, scale);
       } else if (is_lag) {
         add(gradient.lag, scale);
+      } else if (parameter.term->name == "asymmetry") {
+        add(gradient.asymmetry, scale);
       }
       for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }

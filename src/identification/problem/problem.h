@@ -38,7 +38,7 @@ struct LawPoint {
   double shape = 0.0;          // α
   double log_travel = 0.0;     // ln(Tc/k) of the rig; ignored without one
   double load_exponent = 1.0;  // p; 1 where the records are under one load
-  // Of all parameters, for where each record is unloaded and the lag.
+  // Of all parameters, for where each record is unloaded, the lag and the asymmetry.
   std::span<const double> theta;
 };
 
@@ -58,14 +58,15 @@ struct ResponseColumns {
   std::span<double> shape_exponent;
   std::span<double> unloaded;  // where the contact is unloaded, in the channel that is imposed
   std::span<double> log_spring_travel;
-  std::span<double> lag;  // by θ of the lag; where the problem has one
+  std::span<double> lag;        // by θ of the lag; where the problem has one
+  std::span<double> asymmetry;  // likewise
 };
 
 /// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
 /// where a record is under one load, by the elements' (models/variable_load.h) where it varies. Of
 /// a contact whose force is imposed t = σδ/Tc by the branch law's inverse, NaN of a whole record
 /// that has a force beyond slip. Keeps the loading paths, which depend on the point only where a
-/// contact is unloaded and by its lag, and its buffers.
+/// contact is unloaded, by its lag and its asymmetry, and its buffers.
 class Response {
  public:
   void Bind(const Problem& problem);
@@ -98,6 +99,7 @@ class Response {
   struct CachedPath {
     models::LoadingPath path;
     double unloaded = 0.0;
+    double asymmetry = 0.0;
     bool valid = false;
   };
 
@@ -107,6 +109,7 @@ class Response {
   models::NormalizedResponse response_;
   models::NormalizedDisplacement displacement_;
   std::vector<double> scratch_;
+  std::size_t asymmetry_ = 0;  // position of the parameter
   // Of a problem with a lag:
   std::size_t lag_ = 0;  // its position
   bool has_lag_ = false;

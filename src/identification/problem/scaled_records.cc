@@ -97,10 +97,11 @@ MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
 }
 
 /// Has the law an account of a load that varies? It is of Masing's kind, its displacement that of
-/// the contact alone, and read with the force.
+/// the contact alone, and read with the force, and slips as easily in either sense.
 bool KnowsVaryingLoads(const FitOptions& options) {
   return options.model->memory == models::Memory::kReturnPoint &&
-         !HasTerm(options, "rig_stiffness") && !HasTerm(options, "lag");
+         !HasTerm(options, "rig_stiffness") && !HasTerm(options, "lag") &&
+         !HasTerm(options, "asymmetry");
 }
 
 /// What the columns say of loads within the records.

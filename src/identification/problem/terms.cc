@@ -21,6 +21,10 @@ constexpr double kLongestLag = 0.05;
 // The theories have exponents of the load between 0 and 1.
 constexpr double kLargestLoadExponent = 5.0;
 
+// One slip force is then nine times the other. Nearer to −1 and 1 a virgin branch grows twice as
+// large as the contact's, as branches of a contact are that was cycled.
+constexpr double kLargestAsymmetry = 0.8;
+
 double One(const TermUnits& /*units*/) { return 1.0; }
 double Force(const TermUnits& units) { return units.force; }
 double Length(const TermUnits& units) { return units.length; }
@@ -70,6 +74,19 @@ constexpr std::array kTerms = {
          .lowest = -kLargestLoadExponent,
          .highest = kLargestLoadExponent,
          .scale = One},
+    Term{.name = "asymmetry",
+         .unit = "-",
+         .meaning = "A of slip forces Tc(1 + A) where the motion is in the sense of positive "
+                    "displacement and Tc(1 − A) where it is not",
+         .presence = Presence::kOnDemand,
+         .lowest = -kLargestAsymmetry,
+         .highest = kLargestAsymmetry,
+         .scale = One,
+         .option = "--asymmetry",
+         .argument = "A|fit",
+         .help = "slip forces slip_force·(1 ± A) in the sense of positive and of\n"
+                 "negative displacement, A [-], or fit; told by a virgin branch,\n"
+                 "else it needs --fix force_offset=N"},
     Term{.name = "plateau_slope",
          .unit = "N/m",
          .meaning = "of a force beside the contact's, slope·δ",

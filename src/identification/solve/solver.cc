@@ -140,7 +140,9 @@ void Solver::SearchTheOthers() {
     } else if (p == kLoadExponent) {
       searched_.push_back({Role::kExponentOfLoad, p, parameter.lower, parameter.upper});
     } else if (parameter.term->entry == Entry::kLaw && p > kLoadExponent) {
-      const Role role = parameter.term->name == "lag" ? Role::kLag : Role::kUnloaded;
+      const Role role = parameter.term->name == "lag"         ? Role::kLag
+                        : parameter.term->name == "asymmetry" ? Role::kAsymmetry
+                                                              : Role::kUnloaded;
       searched_.push_back({role, p, parameter.lower, parameter.upper});
     }
   }
@@ -239,6 +241,7 @@ LawPoint Solver::PointOf(std::span<const double> u) const {
         break;
       case Role::kUnloaded:
       case Role::kLag:
+      case Role::kAsymmetry:
         break;  // in held_theta_
       case Role::kLogStiffness:
         log_stiffness = u[j];
@@ -427,6 +430,7 @@ double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
     }
   }
   columns.lag = wants(Role::kLag);
+  columns.asymmetry = wants(Role::kAsymmetry);
   response_->Differentiate(point, response_values_, columns);
   if (Searches(Role::kExponentOfLoad)) FillLoadExponent(columns.log_rate);
   if (tied) {
@@ -528,7 +532,9 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
   constexpr int kSlowSteps = 20;          // ... in as many steps
   const auto longest = [](Role role) {
     constexpr double kLongestStepOfLag = 0.02;  // cycles
+    constexpr double kLongestStepOfAsymmetry = 0.25;
     if (role == Role::kLag) return kLongestStepOfLag;
+    if (role == Role::kAsymmetry) return kLongestStepOfAsymmetry;
     return role == Role::kUnloaded ? 0.5 : role == Role::kShapeExponent ? 1.0 : 1.5;
   };
   const double floor = static_cast<double>(problem_->data->counted) * kRoundingRms * kRoundingRms;

@@ -68,6 +68,7 @@ class Solver {
     kShapeExponent,
     kUnloaded,
     kLag,
+    kAsymmetry,
     kLogStiffness,
     kLogSlipForce,
     kLogRig,
@@ -92,7 +93,7 @@ class Solver {
   [[nodiscard]] bool Searches(Role role) const;
   /// Does the response read it from θ, not from the point of the law?
   [[nodiscard]] static bool IsOfThePath(Role role) {
-    return role == Role::kUnloaded || role == Role::kLag;
+    return role == Role::kUnloaded || role == Role::kLag || role == Role::kAsymmetry;
   }
   [[nodiscard]] LawPoint PointOf(std::span<const double> u) const;
   void Load(std::span<const double> theta, std::span<double> u);

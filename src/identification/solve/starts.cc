@@ -46,8 +46,9 @@ struct Look {
   double reach = 0.0;  // σX/Tc; T*/Tc of an imposed force
   double shape = 0.0;
   double rig_ratio = 1.0;
-  std::size_t guess = 0;  // of where the contact was unloaded
-  double lag = 0.0;       // θ; ignored where none is fitted
+  std::size_t guess = 0;   // of where the contact was unloaded
+  double lag = 0.0;        // θ; ignored where none is fitted
+  double asymmetry = 0.0;  // likewise
 };
 
 class Plane {
@@ -59,10 +60,12 @@ class Plane {
     theta_.resize(parameters.size());
     for (std::size_t p = 0; p < parameters.size(); ++p) theta_[p] = parameters[p].theta;
     lag_ = parameters.PositionOf("lag", 0);
+    asymmetry_ = parameters.PositionOf("asymmetry", 0);
     FindGuesses(memory);
   }
 
   [[nodiscard]] bool lag_is_open() const { return !problem_.parameters[lag_].fixed; }
+  [[nodiscard]] bool asymmetry_is_open() const { return !problem_.parameters[asymmetry_].fixed; }
   [[nodiscard]] const Parameter& lag() const { return problem_.parameters[lag_]; }
   [[nodiscard]] std::size_t guesses() const { return guesses_.size(); }
 
@@ -90,6 +93,10 @@ class Plane {
     }
     if (lag_is_open()) {
       theta_[lag_] = std::clamp(look.lag, parameters[lag_].lower, parameters[lag_].upper);
+    }
+    if (asymmetry_is_open()) {
+      const Parameter& asymmetry = parameters[asymmetry_];
+      theta_[asymmetry_] = std::clamp(look.asymmetry, asymmetry.lower, asymmetry.upper);
     }
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
@@ -191,6 +198,7 @@ class Plane {
   std::pmr::vector<double> theta_;
   std::pmr::vector<Guess> guesses_;
   std::size_t lag_ = 0;  // position of the parameter
+  std::size_t asymmetry_ = 0;
 };
 
 void KeepBetter(Look& best, Plane& plane, Look look) {
@@ -229,6 +237,16 @@ void LookForLag(Look& best, Plane& plane) {
       look.lag = share * end;
       KeepBetter(best, plane, look);
     }
+  }
+}
+
+/// Of a loop far off its centre the symmetric looks are all poor.
+void LookForAsymmetry(Look& best, Plane& plane) {
+  const Look none = best;
+  for (const double asymmetry : {-0.6, -0.3, 0.3, 0.6}) {
+    Look look = none;
+    look.asymmetry = asymmetry;
+    KeepBetter(best, plane, look);
   }
 }
 
@@ -297,7 +315,9 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
     }
   }
   for (Look& look : best) {
-    if (plane.lag_is_open() && std::isfinite(look.cost)) LookForLag(look, plane);
+    if (!std::isfinite(look.cost)) continue;
+    if (plane.lag_is_open()) LookForLag(look, plane);
+    if (plane.asymmetry_is_open()) LookForAsymmetry(look, plane);
   }
   std::ranges::sort(best, {}, &Look::cost);
   return best;
