@@ -22,9 +22,6 @@ using models::BranchLaw;
 
 namespace {
 
-constexpr std::array<std::string_view, Coverage::kParameters> kNames = {
-    "sigma", "alpha", "slip_force", "load_exponent"};
-
 /// Box and Muller: the same on every platform.
 class Normal {
  public:
@@ -54,11 +51,12 @@ constexpr double kDisplacementOffset = 2e-7;
 constexpr double kFrequency = 1.0;  // [Hz]
 constexpr double kTwoPi = 6.283185307179586;
 
-std::vector<double> ForceOn(const BranchLaw& law, std::span<const double> displacement) {
+std::vector<double> ForceOn(const BranchLaw& law, std::span<const double> displacement,
+                            double asymmetry = 0.0) {
   const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
   std::vector<double> force(displacement.size());
   const models::LoadingPath path = models::MakeLoadingPath(
-      displacement, loop::FindReversals(displacement, 0.0), model.memory, {});
+      displacement, loop::FindReversals(displacement, 0.0), model.memory, {.asymmetry = asymmetry});
   models::EvaluateForce(model, law, path, displacement, force);
   return force;
 }
@@ -104,6 +102,13 @@ void AddBeside(const Scenario& scenario, Record& record) {
 
 bool IsForced(const Scenario& scenario) { return scenario.peak_share > 0; }
 
+void LeaveOutFirstCycle(const Scenario& scenario, Record& record) {
+  const auto first = static_cast<std::ptrdiff_t>(scenario.samples_per_cycle);
+  for (std::vector<double>* column : {&record.force, &record.displacement}) {
+    column->erase(column->begin(), column->begin() + first);
+  }
+}
+
 /// Of an imposed force.
 Record ForcedRecord(const Scenario& scenario) {
   const BranchLaw law = LawOf(scenario);
@@ -115,11 +120,7 @@ Record ForcedRecord(const Scenario& scenario) {
   record.displacement.resize(record.force.size());
   models::EvaluateDisplacement(*models::FindFrictionModel(scenario.model), law, record.force,
                                record.displacement);
-  if (!scenario.is_steady) return record;
-  const auto first = static_cast<std::ptrdiff_t>(scenario.samples_per_cycle);
-  for (std::vector<double>* column : {&record.force, &record.displacement}) {
-    column->erase(column->begin(), column->begin() + first);
-  }
+  if (scenario.is_steady) LeaveOutFirstCycle(scenario, record);
   return record;
 }
 
@@ -149,8 +150,9 @@ Record DrivenRecord(const Scenario& scenario, double load) {
                                     .shape_exponent = law.shape_exponent},
                                    record.displacement, record.normal_load, record.force);
   } else {
-    record.force = ForceOn(law, record.displacement);
+    record.force = ForceOn(law, record.displacement, scenario.asymmetry);
   }
+  if (scenario.is_steady) LeaveOutFirstCycle(scenario, record);
   if (scenario.beside != Beside::kNothing) AddBeside(scenario, record);
   return record;
 }
@@ -229,6 +231,9 @@ FitOptions OptionsOf(const Scenario& scenario) {
   if (scenario.noise == Noise::kDisplacement && scenario.noise_is_known) {
     options.preparation.displacement_noise = scenario.displacement_noise * Amplitude(scenario);
   }
+  if (scenario.asymmetry != 0) options.terms.emplace_back("asymmetry");
+  // Of a contact that was cycled before it is told by the force's zero alone.
+  if (scenario.asymmetry != 0 && scenario.is_steady) options.fixed["force_offset"] = kForceOffset;
   if (scenario.beside == Beside::kLag) options.terms.emplace_back("lag");
   if (scenario.beside == Beside::kViscous) options.terms.emplace_back("viscous");
   if (scenario.beside == Beside::kCovariate) options.covariates.emplace_back("pressure");
@@ -339,6 +344,20 @@ std::vector<Scenario> Scenarios() {
        .beside = Beside::kCovariate,
        .lowest_coverage = kWhiteLow,
        .highest_coverage = kWhiteHigh},
+      {.name = "white 1 %, asymmetry 0.2 fitted",
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .asymmetry = 0.2},
+      {.name = "white 1 %, lambda 0.9, asymmetry -0.1 fitted",
+       .lambda = 0.9,
+       .lowest_coverage = kPartialSlipLow,
+       .highest_coverage = kWhiteHigh,
+       .asymmetry = -0.1},
+      {.name = "white 1 %, steady, force's zero known, asymmetry 0.2 fitted",
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .asymmetry = 0.2,
+       .is_steady = true},
       {.name = "imposed force to 0.95 Tc, displacement noise 1 %",
        .noise = Noise::kAnswer,
        .displacement_noise = 0.01,
@@ -392,9 +411,13 @@ std::vector<Scenario> Scenarios() {
 
 Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t first_seed) {
   const BranchLaw law = LawOf(scenario);
+  const bool is_asymmetric = scenario.asymmetry != 0;
   const std::array<double, Coverage::kParameters> truth = {
-      law.tangential_stiffness, law.shape_exponent, law.slip_force, scenario.load_exponent};
-  const std::size_t parameters = scenario.loads.size() > 1 ? truth.size() : truth.size() - 1;
+      law.tangential_stiffness, law.shape_exponent, law.slip_force,
+      is_asymmetric ? scenario.asymmetry : scenario.load_exponent};
+  const std::array<std::string_view, Coverage::kParameters> names = {"sigma", "alpha", "slip_force",
+                                                                     scenario.FourthParameter()};
+  const std::size_t parameters = names.back().empty() ? truth.size() - 1 : truth.size();
   const std::vector<Record> clean = CleanRecords(scenario);
   const FitOptions options = OptionsOf(scenario);
 
@@ -410,7 +433,7 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   }
   const identification::FitResult at_truth = identification::Fit(clean, known);
   for (std::size_t k = 0; k < parameters; ++k) {
-    bound[k] = at_truth.Find(kNames[k])->standard_error.value_or(0.0);
+    bound[k] = at_truth.Find(names[k])->standard_error.value_or(0.0);
   }
 
   Coverage coverage;
@@ -426,7 +449,7 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
     for (const Record& record : clean) records.push_back(NoisyRecord(scenario, record, normal));
     const identification::FitResult fit = identification::Fit(records, options);
     for (std::size_t k = 0; k < parameters; ++k) {
-      const identification::ParameterEstimate& estimate = *fit.Find(kNames[k]);
+      const identification::ParameterEstimate& estimate = *fit.Find(names[k]);
       const bool covers = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&
                           (!estimate.upper95 || truth[k] <= *estimate.upper95);
       if (covers) ++coverage.covered[k];

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/identification/fit.h"
@@ -50,17 +51,25 @@ struct Scenario {
   /// driven to λ at its own load.
   std::vector<double> loads = {1.0};
   double load_exponent = 1.0 / 3;
+  double asymmetry = 0.0;   ///< of the slip forces in the two senses, for which the fit has a term
   double load_swing = 0.0;  ///< of the load about its mean, at twice the drive's frequency
   double peak_share = 0.0;  ///< T*/Tc where the force is imposed, in the place of λ
   bool is_steady = false;   ///< without its first cycle
   bool fits_force = false;  ///< of an imposed force all the same
   std::string model = "mindlin-dahl";
+
+  /// The fourth parameter whose intervals are counted; empty of three.
+  [[nodiscard]] std::string_view FourthParameter() const {
+    if (asymmetry != 0) return "asymmetry";
+    return loads.size() > 1 ? "load_exponent" : "";
+  }
 };
 
 /// The scenarios of docs/coverage.md.
 std::vector<Scenario> Scenarios();
 
-/// Of σ, α, Tc and, of several loads, load_exponent in this order.
+/// Of σ, α, Tc and, of several loads, load_exponent, or of slip forces that differ, asymmetry, in
+/// this order.
 struct Coverage {
   static constexpr std::size_t kParameters = 4;
   std::size_t loops = 0;

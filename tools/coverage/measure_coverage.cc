@@ -51,7 +51,7 @@ void PrintRow(const Scenario& scenario, const Coverage& coverage) {
     fmt::print("\n");
   };
   print(scenario.name, 0, 3);
-  if (coverage.parameters > 3) print("… its load_exponent", 3, 4);
+  if (coverage.parameters > 3) print(fmt::format("… its {}", scenario.FourthParameter()), 3, 4);
   std::fflush(stdout);
 }
 
