@@ -45,7 +45,9 @@ identification::BackboneEstimate BackboneOf(const FitRequest& request,
   if (!identification::HasBackbone(report.fit)) {
     throw InputError(
         "--backbone is of a contact of Masing's memory under one load, by its forces: leave out "
-        "--model dahl, --lag and --noise-in displacement, and fit records of other loads apart");
+        "--model dahl, --lag, --asymmetry and --noise-in displacement, and fit records of other "
+        "loads "
+        "apart");
   }
   std::vector<loop::RecordView> records;
   for (const io::RecordFile& input : report.records) records.emplace_back(input.record);
