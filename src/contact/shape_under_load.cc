@@ -184,9 +184,9 @@ ShapeUnderLoad Sphere(const Question& question) {
           Product(0.75 * question.load.value * equivalent_radius->value / std::pow(radius.value, 3),
                   {{question.load}, {*equivalent_radius}, {radius, -3}}));
     } else {
-      sphere.unidentified = fmt::format("the equivalent radius needs {}, the effective modulus {}",
-                                        fmt::join(MissingElasticConstants(known), ", "),
-                                        fmt::join(MissingRadii(known), ", "));
+      sphere.unidentified = fmt::format(
+          "the equivalent radius needs {}; the effective modulus needs {}",
+          fmt::join(MissingElasticConstants(known), ", "), fmt::join(MissingRadii(known), ", "));
     }
     return sphere;
   }
@@ -204,7 +204,7 @@ ShapeUnderLoad Sphere(const Question& question) {
       missing.emplace_back("one Poisson ratio for both bodies (or E of one and ν of both)");
     }
     sphere.unidentified =
-        fmt::format("the equivalent radius needs {}, the tangential compliance {}",
+        fmt::format("the equivalent radius needs {}; the tangential compliance needs {}",
                     fmt::join(MissingElasticConstants(known), ", "), fmt::join(missing, ", "));
   }
   return sphere;

@@ -148,9 +148,10 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
 void RequireToldAsymmetry(const Problem& problem) {
   if (!problem.parameters.asymmetry_is_confounded()) return;
   throw InvalidArgument(
-      "asymmetry cannot be told from force_offset: the contact had slipped before the record, and "
-      "both are a force that is always there; give the force's zero where it is known, --fix "
-      "force_offset=0, or record from the unloaded contact on, --initial-state virgin");
+      "asymmetry cannot be told from force_offset: the contact had slipped before what is fitted, "
+      "and both are a force that is always there; give the force's zero where it is known, --fix "
+      "force_offset=0, or fit a record from the unloaded contact on, its first loading left in, "
+      "with --initial-state virgin");
 }
 
 /// What is known of a fit while it is made.

@@ -136,7 +136,8 @@ class Trimming {
     if (begin <= first_) return;
     trim_.parts.push_back(
         {.reason = reason, .first = first_, .last = begin, .cycles = cycle - cut_cycles_});
-    trim_.has_first_loading = true;
+    trim_.begins_later = true;
+    trim_.has_first_loading = trim_.has_first_loading || points_.front() > first_;
     first_ = begin;
     cut_cycles_ = cycle;
   }

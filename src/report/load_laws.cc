@@ -7,6 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -132,7 +133,26 @@ std::optional<Interval> IntervalOf(const PropagatedValue& value, const Held& log
   const double of_inputs =
       boost::math::quantile(boost::math::normal(), kUpperEnd) * value.input_error / value.value;
   const double half_width = std::hypot(power * log_stiffness.half_width, of_inputs);
+  if (!(half_width > 0)) return std::nullopt;  // all that it follows from is held
   return Interval{value.value * std::exp(-half_width), value.value * std::exp(half_width)};
+}
+
+/// E follows from σ in no proportion: the nearer to a rigid body, the more. What else is known of
+/// the contact moves σ's ends as it would have to move σ.
+std::optional<Interval> IntervalOfModulus(const PropagatedValue& value, const Held& log_stiffness,
+                                          double stiffness, const KnownContact& known) {
+  if (!(log_stiffness.error > 0) || !(value.fit_error > 0)) return std::nullopt;
+  const double of_inputs = boost::math::quantile(boost::math::normal(), kUpperEnd) *
+                           value.input_error * log_stiffness.error / value.fit_error;
+  const double half_width = std::hypot(log_stiffness.half_width, of_inputs);
+  const auto modulus_at = [&](double log_change) {
+    const ShapeUnderLoad shape = contact::IdentifyShape(
+        ContactShape::kSphere, UncertainValue{stiffness * std::exp(log_change), 0.0}, known);
+    return shape.youngs_modulus ? std::optional(shape.youngs_modulus->value) : std::nullopt;
+  };
+  const std::optional<double> lower = modulus_at(-half_width);
+  if (!lower) return std::nullopt;
+  return Interval{*lower, modulus_at(half_width).value_or(std::numeric_limits<double>::infinity())};
 }
 
 /// The contact at the mean load of the series.
@@ -144,7 +164,7 @@ KnownContact AtMeanLoad(const FitResult& fit, const KnownContact& known) {
 }
 
 std::vector<QuantityUnderLaw> QuantitiesOf(const ShapeUnderLoad& shape, const Held& log_stiffness,
-                                           const KnownContact& known) {
+                                           double stiffness, const KnownContact& known) {
   std::vector<QuantityUnderLaw> quantities;
   const auto add = [&](std::string_view key, std::string_view unit, std::string label,
                        std::string_view formula, const std::optional<PropagatedValue>& value) {
@@ -168,6 +188,10 @@ std::vector<QuantityUnderLaw> QuantitiesOf(const ShapeUnderLoad& shape, const He
   add("effective_modulus", "Pa", "effective modulus", "E* = 3Nρ/(4a³)", shape.effective_modulus);
   add("youngs_modulus", "Pa", fmt::format("Young's modulus {}", shape.body),
       "of E*, ν and the other body", shape.youngs_modulus);
+  if (shape.youngs_modulus) {
+    quantities.back().interval95 =
+        IntervalOfModulus(*shape.youngs_modulus, log_stiffness, stiffness, known);
+  }
   add("slope", "-", "slope of the cone", "tan θ = 2N/(πE*a²)", shape.slope);
   add("load_over_stiffness", "m", "load over stiffness", "N/σ", shape.load_over_stiffness);
   return quantities;
@@ -224,12 +248,12 @@ LoadLaw LawOf(const FitResult& fit, const LoadHypothesis& hypothesis, const Esti
   }
   if (shape) {
     const ShapeUnderLoad contact = contact::IdentifyShape(*shape, law.stiffness, known);
-    law.quantities = QuantitiesOf(contact, log_stiffness, known);
+    law.quantities = QuantitiesOf(contact, log_stiffness, stiffness, known);
     law.unidentified = contact.unidentified;
     return law;
   }
   const Held exponent = Hold(estimate, constraint, kExponent);
-  law.exponent = exponent.value;
+  law.exponent = std::max(exponent.value, 0.0);  // as α
   if (const auto profile = ProfileExponent(exponent)) law.quantities.push_back(*profile);
   return law;
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include "report/field_table.h"
@@ -90,7 +91,10 @@ const std::vector<Field<LoadHypothesis>>& HypothesisFields() {
   return fields;
 }
 
-std::string WhyNoInterval(const QuantityUnderLaw&) { return "the series leaves it open"; }
+std::string WhyNoInterval(const QuantityUnderLaw& item) {
+  return item.value.standard_error > 0 ? "the series leaves it open"
+                                       : "all that it follows from is held";
+}
 
 /// What a quantity has beside the members of every quantity of the contact.
 const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
@@ -103,7 +107,8 @@ const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
        WhyNoInterval},
       {"ci95[1]", "of the quantity", "upper end of the 95 % interval",
        [](const Item& item) {
-         return item.interval95 ? Number(item.interval95->upper) : Missing();
+         const bool is_closed = item.interval95 && std::isfinite(item.interval95->upper);
+         return is_closed ? Number(item.interval95->upper) : Missing();
        },
        WhyNoInterval},
       {"predicted", "of the quantity", "what the bodies say; absent where they are not known",

@@ -168,12 +168,11 @@ std::string UndeterminedCombination(const Finding& finding, const FitResult& fit
 
 std::string AsymmetryNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "asymmetry: {:.2g} % of slip_force never slips in this loop, and keeps a force that no "
-      "record "
-      "of a cycled contact tells; raise the amplitude until the contact slips as a whole, or "
-      "record "
-      "from the unloaded contact on",
-      100 * Needed(finding, "never_slips"));
+      "{}: {:.2g} % of slip_force never slips, and keeps a force that no record of a cycled "
+      "contact "
+      "tells; raise the amplitude until the contact slips as a whole, or record from the unloaded "
+      "contact on",
+      fmt::join(finding.parameters, ", "), 100 * Needed(finding, "never_slips"));
 }
 
 std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {

@@ -357,7 +357,7 @@ std::vector<std::string> LoadLawStatements(const Report& report) {
   }
   for (const LoadLaw& law : LawsToShow(*report.load_series)) {
     if (!law.unidentified.empty()) {
-      statements.push_back("with more known, more would follow: " + law.unidentified);
+      statements.push_back(law.unidentified);
     }
   }
   return statements;
@@ -379,10 +379,12 @@ std::string LawHeading(const LoadLaw& law) {
 }
 
 std::string IntervalWords(const QuantityUnderLaw& quantity) {
-  if (!quantity.interval95) return "open";
+  if (!quantity.interval95) return quantity.value.standard_error > 0 ? "open" : "held";
   const ScaledUnit unit = UnitFor(quantity.unit, std::abs(quantity.value.value));
+  const identification::Interval& ends = *quantity.interval95;
   const std::string interval =
-      IntervalText(quantity.interval95->lower, quantity.interval95->upper, unit.factor);
+      IntervalText(ends.lower, std::isfinite(ends.upper) ? std::optional(ends.upper) : std::nullopt,
+                   unit.factor);
   return unit.name.empty() ? interval : interval + " " + unit.name;
 }
 

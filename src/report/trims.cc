@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <string_view>
 
 namespace mindahl::report {
@@ -22,6 +23,13 @@ bool IsAtStart(const Trim& trim, const TrimmedPart& part) {
   // A ramp at the end is followed by nothing but a rest.
   return part.first == 0 || (trim.parts.front().first == 0 && part.first == trim.parts[0].last) ||
          part.reason == TrimReason::kRunningIn;
+}
+
+/// That which the motion begins with; nullptr where it stays.
+const TrimmedPart* FirstOfMotion(const Trim& trim) {
+  const auto first = std::ranges::find_if(
+      trim.parts, [](const TrimmedPart& part) { return part.reason != TrimReason::kRest; });
+  return first != trim.parts.end() && IsAtStart(trim, *first) ? &*first : nullptr;
 }
 
 std::string InWords(const Trim& trim, const TrimmedPart& part) {
@@ -79,8 +87,13 @@ Warning NoteOf(const Report& report, std::size_t r) {
   if (trim.has_first_loading) {
     text +=
         "; the first loading is among them, which tells Masing's law from Dahl's own and a virgin "
-        "contact from a steady one: what is left is of a steady one, unless --initial-state says "
-        "another";
+        "contact from a steady one";
+  }
+  if (trim.begins_later) {
+    const bool is_steady = report.fit.initial_state == models::InitialState::kSteady;
+    text += fmt::format(
+        "; what is left is fitted as of a {}",
+        is_steady ? "steady contact, unless --initial-state says another" : "virgin contact");
   }
   if (!why.empty()) text += fmt::format("; {}", why);
   return {"trimmed", text};
@@ -99,13 +112,12 @@ std::vector<TrimmedItem> TrimmedItems(const Report& report) {
   for (std::size_t r = 0; r < report.trims.size(); ++r) {
     const Trim& trim = report.trims[r];
     for (const TrimmedPart& part : trim.parts) {
-      items.push_back({.file = report.files[r],
-                       .part = part,
-                       .first_line = LineOf(report.records[r], part.first),
-                       .last_line = LineOf(report.records[r], part.last - 1),
-                       .has_first_loading = trim.has_first_loading &&
-                                            part.reason != TrimReason::kRest &&
-                                            IsAtStart(trim, part)});
+      items.push_back(
+          {.file = report.files[r],
+           .part = part,
+           .first_line = LineOf(report.records[r], part.first),
+           .last_line = LineOf(report.records[r], part.last - 1),
+           .has_first_loading = trim.has_first_loading && &part == FirstOfMotion(trim)});
     }
   }
   return items;

@@ -96,7 +96,9 @@ void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
     return;
   }
   const double value =
-      ParseNumber(text, term.option, fmt::format("a number in {}, or fit", term.unit));
+      ParseNumber(text, term.option,
+                  term.unit == "-" ? std::string("a number, or fit")
+                                   : fmt::format("a number in {}, or fit", term.unit));
   if (term.positive) RequirePositive(fmt::format("{} [{}]", term.option, term.unit), value);
   if (!fit.fixed.emplace(name, value).second) {
     throw InputError(

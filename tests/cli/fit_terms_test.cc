@@ -571,8 +571,8 @@ INSTANTIATE_TEST_SUITE_P(
                "asymmetry is of Masing's law, and not of dahl"},
         Misuse{"AsymmetryOfACycledContact",
                {"--asymmetry", "fit", "--initial-state", "steady"},
-               "asymmetry cannot be told from force_offset: the contact had slipped before the "
-               "record"},
+               "asymmetry cannot be told from force_offset: the contact had slipped before what is "
+               "fitted"},
         Misuse{"CovariateWithoutAValue",
                {"--covariate", "normal="},
                "--covariate: 'normal=' is incomplete: write COL[=C|fit], e.g. pressure=50"},

@@ -141,15 +141,16 @@ TEST(SphereUnderLoad, SaysWhatIsMissing) {
   const auto missing = [](const KnownContact& known) {
     return IdentifyShape(ContactShape::kSphere, 4e7, known).unidentified;
   };
-  EXPECT_EQ(missing({.normal_load = kLoad}),
-            "the equivalent radius needs E and ν of both bodies, the tangential compliance the "
-            "radii of both bodies, one Poisson ratio for both bodies (or E of one and ν of both)");
+  EXPECT_EQ(
+      missing({.normal_load = kLoad}),
+      "the equivalent radius needs E and ν of both bodies; the tangential compliance needs the "
+      "radii of both bodies, one Poisson ratio for both bodies (or E of one and ν of both)");
   KnownContact known = Known(kSteelBall, kGlassSeat);  // two Poisson ratios
   known.body_1.youngs_modulus.reset();
   known.body_2.youngs_modulus.reset();
-  EXPECT_THAT(missing(known), HasSubstr("the tangential compliance one Poisson ratio"));
+  EXPECT_THAT(missing(known), HasSubstr("the tangential compliance needs one Poisson ratio"));
   EXPECT_THAT(missing({.normal_load = kLoad, .tangential_compliance = 4e-11}),
-              HasSubstr("the effective modulus the radii of both bodies"));
+              HasSubstr("the effective modulus needs the radii of both bodies"));
 }
 
 TEST(ShapeUnderLoad, PropagatesEveryInputAsASmallChangeOfItActs) {

@@ -159,6 +159,38 @@ TEST(Asymmetry, OfACycledContactThatNeverSlipsAsAWholeIsNotIdentified) {
   EXPECT_EQ(verdict(1.3), std::pair(Identifiability::kIdentifiable, false));
 }
 
+TEST(Asymmetry, IsToldByEveryRecordWhoseZeroIsKnown) {
+  // One slips as a whole, the other keeps a force that nobody knows.
+  Generator generator(4);
+  const Record slipping = WithForceNoise(From(LoopOf(0.25, 1.5, 3.25), 200), 0.05, generator);
+  const Record partial = WithForceNoise(From(LoopOf(0.25, 0.8, 3.25), 200), 0.05, generator);
+  const auto verdict = [&](const char* known, const char* other = nullptr) {
+    FitOptions options = WithAsymmetry();
+    options.initial_state = InitialState::kSteady;
+    options.fixed[known] = 0.0;
+    if (other != nullptr) options.fixed[other] = 0.0;
+    return identification::Fit(std::vector<Record>{slipping, partial}, options)
+        .Find("asymmetry")
+        ->identifiability;
+  };
+  EXPECT_EQ(verdict("force_offset_1"), Identifiability::kIdentifiable);
+  EXPECT_EQ(verdict("force_offset_2"), Identifiability::kNotIdentifiable);
+  EXPECT_EQ(verdict("force_offset_1", "force_offset_2"), Identifiability::kNotIdentifiable);
+}
+
+TEST(Asymmetry, ThatIsHeldTellsTheOffsetOfALoopThatSlipsOnly) {
+  Generator generator(5);
+  FitOptions options;
+  options.fixed["asymmetry"] = 0.25;
+  options.initial_state = InitialState::kSteady;
+  const auto verdict = [&](double lambda) {
+    const Record loop = WithForceNoise(From(LoopOf(0.25, lambda, 3.25), 200), 0.05, generator);
+    return FitOne(loop, options).Find("force_offset")->identifiability;
+  };
+  EXPECT_EQ(verdict(0.8), Identifiability::kNotIdentifiable);
+  EXPECT_EQ(verdict(1.5), Identifiability::kIdentifiable);
+}
+
 TEST(Asymmetry, IsWhatASymmetricFitOfAVirginLoopLooksFor) {
   Generator generator(9);
   const Record record = WithForceNoise(LoopOf(0.25, 1.3), 0.6, generator);

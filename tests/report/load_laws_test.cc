@@ -331,6 +331,38 @@ TEST(LoadLaws, CarryTheUncertaintyOfInputs) {
   EXPECT_GT(std::log(radius->interval95->upper / radius->value.value), 1.9 * 0.05);
 }
 
+TEST(LoadLaws, LeaveAModulusOpenWhereARigidBodyWouldDoAsWell) {
+  // 1/210 + 1/70 GPa⁻¹ are those of 52.5 GPa against a rigid body.
+  const FitResult fit = FitOf(RadiusOfBall, 1.0 / 3);
+  KnownContact known = Bodies();
+  known.body_2.youngs_modulus.reset();
+  const auto modulus_beside = [&](double other) {
+    known.body_1.youngs_modulus = other;
+    return *Find(*DescribeLoadSeries(fit, known), "sphere", "youngs_modulus");
+  };
+  const QuantityUnderLaw closed = modulus_beside(210e9);
+  EXPECT_LT(closed.interval95->lower, 70e9);
+  EXPECT_GT(closed.interval95->upper, 70e9);
+  EXPECT_LT(closed.interval95->upper, 80e9);
+  const QuantityUnderLaw open = modulus_beside(52.55e9);
+  EXPECT_GT(open.interval95->lower, 52.7e9);
+  EXPECT_LT(open.interval95->lower, open.value.value);
+  EXPECT_TRUE(std::isinf(open.interval95->upper));
+}
+
+TEST(LoadLaws, HaveNoIntervalOfWhatIsHeld) {
+  Generator generator(5);
+  const std::vector<Record> records = Series(RadiusOfBall, 1.0 / 3, generator);
+  FitOptions options;
+  options.normal_loads = {kLoads.begin(), kLoads.end()};
+  options.initial_state = models::InitialState::kVirgin;
+  options.fixed["load_exponent"] = 1.0 / 3;
+  options.fixed["sigma"] = LawUnder(kMeanLoad, RadiusOfBall, 1.0 / 3).tangential_stiffness;
+  const FitResult fit = identification::Fit(records, options, Depth::kIntervals);
+  const auto series = DescribeLoadSeries(fit, WithoutRadius());
+  EXPECT_FALSE(Find(*series, "sphere", "equivalent_radius")->interval95);
+}
+
 Report ReportOf(const Radius& radius, double shape_exponent, const KnownContact& known) {
   Generator generator(5);
   ReportInput input;
@@ -392,7 +424,7 @@ TEST(LoadLaws, SayWhyThereIsNone) {
 
 TEST(LoadLaws, SayWhatWouldHaveToBeKnown) {
   const Report report = ReportOf(RadiusOfBall, 1.0 / 3, {.normal_load = kMeanLoad});
-  EXPECT_THAT(ToText(report), HasSubstr("with more known, more would follow"));
+  EXPECT_THAT(ToText(report), HasSubstr("the equivalent radius needs"));
 }
 
 }  // namespace

@@ -41,7 +41,10 @@ struct Trim {
   std::size_t samples = 0;         ///< of the record
   std::vector<TrimmedPart> parts;  ///< at the beginning, then at the end, in order of time
   Settling settling = Settling::kFewCycles;
-  /// The first loading, which alone is of a contact that may be unloaded, is among them.
+  /// Motion is among them that came before what is left: of that the contact was cycled before.
+  bool begins_later = false;
+  /// The first loading, from where the motion begins to its first turn, is among them: it alone is
+  /// of a contact that may be unloaded. A record that begins at a turn has none.
   bool has_first_loading = false;
 };
 

@@ -37,7 +37,8 @@ struct QuantityUnderLaw {
   std::string_view formula;  ///< "ρ = 4E*a³/(3N)"
   contact::PropagatedValue value;
   /// 95 %, of the fit's widened as that of σ is, and of what is known besides it; empty where the
-  /// error is open.
+  /// error is open, or all that it follows from is held. Of E without an upper end, infinite, where
+  /// a rigid body would do as well.
   std::optional<identification::Interval> interval95;
   /// What is known besides the fit says; empty where that is not enough.
   std::optional<double> predicted;

@@ -220,18 +220,34 @@ std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solu
 
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
-  if (asymmetry == nullptr || asymmetry->status == ParameterStatus::kFixed ||
-      result.initial_state == models::InitialState::kVirgin) {
+  if (asymmetry == nullptr || result.initial_state == models::InitialState::kVirgin) {
     return std::nullopt;
   }
-  const double amplitude = models::ContactAmplitude(*result.model, result.law, result.rig,
-                                                    result.WidestRecord().measures.amplitude);
-  const double never_slips =
-      1 - models::SteadyPeakForce(*result.model, result.law, amplitude) / result.law.slip_force;
-  if (never_slips <= thresholds.never_slips) return std::nullopt;
-  return Finding{.code = "asymmetry_not_identifiable",
-                 .parameters = {"asymmetry"},
-                 .numbers = {{"never_slips", never_slips}}};
+  const bool is_known = asymmetry->status == ParameterStatus::kFixed;
+  if (is_known && asymmetry->value == 0) return std::nullopt;
+  Finding finding{.code = "asymmetry_not_identifiable"};
+  double most = 0.0;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const std::string offset =
+        result.records.size() == 1 ? "force_offset" : fmt::format("force_offset_{}", r + 1);
+    const ParameterEstimate* zero = result.Find(offset);
+    const bool zero_is_known = zero == nullptr || zero->status == ParameterStatus::kFixed;
+    // A zero that is known tells A, and an A that is known the offset: each of its own record.
+    if (zero_is_known == is_known) continue;
+    const RecordFit& record = result.records[r];
+    const models::BranchLaw law = result.LawOf(record);
+    const double amplitude =
+        models::ContactAmplitude(*result.model, law, result.rig, record.measures.amplitude);
+    const double never_slips =
+        1 - models::SteadyPeakForce(*result.model, law, amplitude) / law.slip_force;
+    if (never_slips <= thresholds.never_slips) continue;
+    most = std::max(most, never_slips);
+    if (is_known) finding.parameters.push_back(offset);
+  }
+  if (most == 0) return std::nullopt;
+  if (!is_known) finding.parameters.emplace_back("asymmetry");
+  finding.numbers = {{"never_slips", most}};
+  return finding;
 }
 
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds) {

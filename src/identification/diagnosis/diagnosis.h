@@ -49,8 +49,9 @@ std::optional<Finding> FindExtrapolated(const FitResult& result, const Threshold
 std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& solution,
                                        const Thresholds& thresholds);
 
-/// `asymmetry_not_identifiable`: of a contact that had been cycled before the record, and does not
-/// slip as a whole.
+/// `asymmetry_not_identifiable`: of a contact that had been cycled before the records, and does not
+/// slip as a whole in every one of those whose force has a known zero; of an asymmetry that is
+/// held, the offsets of the records in which it does not.
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds);
 
 /// Samples that come back to the same few places of the loop in every cycle, however many they are:
