@@ -1,5 +1,7 @@
 #include "identification/diagnosis/diagnosis.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
