@@ -118,7 +118,8 @@ void AddInputFields(FieldTable& table) {
          return LoadPieces(report).empty() ? Value{} : Count(BetweenLoads(report));
        }},
       {"input.trimmed", "",
-       "what --trim auto leaves out; may be empty, absent where it was not asked for",
+       "what --trim auto leaves out of the samples under the load that is fitted; may be empty, "
+       "absent where it was not asked for",
        [](const Report& report) {
          return report.trims.empty() ? Value{} : List(TrimmedFields(), TrimmedItems(report));
        }},
