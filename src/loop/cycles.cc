@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "loop/averages.h"
 #include "loop/scratch.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
@@ -150,10 +151,6 @@ double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compar
   if (rising.empty()) return Median(falling);
   if (falling.empty()) return Median(rising);
   return std::max(Median(rising), Median(falling), compare);
-}
-
-double Mean(std::span<const double> values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 int SignOf(double value) { return (value > 0) - (value < 0); }

@@ -6,8 +6,9 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
+#include "loop/averages.h"
+#include "loop/line.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
 
@@ -112,10 +113,6 @@ Cycle CycleOf(const RecordView& record, Points points) {
 template <typename Values>
 double Median(Values values) {
   return boost::math::statistics::median(values.begin(), values.end());
-}
-
-double Mean(Column values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
@@ -257,24 +254,10 @@ std::optional<double> Asymmetry(const RecordView& record, std::span<const Points
 /// Least squares of values against the numbers of their cycles.
 std::optional<Trend> TrendOf(Column numbers, Column values) {
   if (values.size() < 3) return std::nullopt;
-  const double mean_number = Mean(numbers);
-  const double mean_value = Mean(values);
-  double squares = 0.0;
-  double products = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    squares += (numbers[i] - mean_number) * (numbers[i] - mean_number);
-    products += (numbers[i] - mean_number) * (values[i] - mean_value);
-  }
-  Trend trend{.slope = products / squares};
-  double rest = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double fitted = mean_value + trend.slope * (numbers[i] - mean_number);
-    rest += (values[i] - fitted) * (values[i] - fitted);
-  }
-  const auto freedom = static_cast<double>(values.size() - 2);
-  trend.standard_error = std::sqrt(rest / freedom / squares);
+  const Line line = LineThrough(numbers, values);
+  Trend trend{.slope = line.slope, .standard_error = line.slope_error};
   if (trend.standard_error > 0) {
-    const boost::math::students_t student(freedom);
+    const boost::math::students_t student(line.degrees_of_freedom);
     const double t = std::abs(trend.slope) / trend.standard_error;
     trend.p_value = 2 * boost::math::cdf(boost::math::complement(student, t));
   } else if (trend.slope != 0) {

@@ -7,17 +7,12 @@
 #include <optional>
 #include <span>
 
+#include "loop/averages.h"
 #include "loop/load_step_rules.h"
 #include "mindahl/loop/reversals.h"
 
 namespace mindahl::loop {
 namespace {
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// Standard deviation of white noise, from the median of the steps between readings.
 double NoiseOf(std::span<const double> load) {
@@ -25,7 +20,7 @@ double NoiseOf(std::span<const double> load) {
   std::vector<double> steps(load.size() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = std::abs(load[i + 1] - load[i]);
   constexpr double kOfNormal = 1.4826;
-  return kOfNormal / std::sqrt(2.0) * MedianOf(std::move(steps));
+  return kOfNormal / std::sqrt(2.0) * MedianOf(steps);
 }
 
 /// Medians of five, so that single readings end nothing.
@@ -108,7 +103,7 @@ class LoadSteps {
   /// Without the ends of the ramps beside it.
   void Settle(Run& run) const {
     const std::span<const double> load = std::span(load_).subspan(run.first, run.last - run.first);
-    run.load = MedianOf({load.begin(), load.end()});
+    run.load = MedianOf(std::vector<double>(load.begin(), load.end()));
     const double settled = Tolerance(run.load) / 2;
     const auto is_settled = [&](std::size_t i) { return std::abs(load_[i] - run.load) <= settled; };
     while (run.first > 0 && run.first + 1 < run.last && !is_settled(run.first)) ++run.first;

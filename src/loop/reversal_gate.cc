@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "loop/averages.h"
 #include "loop/excursions.h"
 #include "loop/reversal_rules.h"
 #include "loop/scratch.h"
@@ -20,9 +21,7 @@ double MainDuration(Excursions excursions, std::pmr::memory_resource* scratch) {
   for (const Excursion& excursion : excursions) {
     if (excursion.range >= excursions.back().range / 2) durations.push_back(excursion.duration());
   }
-  const auto middle = durations.begin() + static_cast<std::ptrdiff_t>(durations.size() / 2);
-  std::ranges::nth_element(durations, middle);
-  return static_cast<double>(*middle);
+  return static_cast<double>(MedianOf(durations));
 }
 
 /// Widest excursion [m] that white noise or an encoder's last digit makes.

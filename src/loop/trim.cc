@@ -4,53 +4,19 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <memory_resource>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "loop/averages.h"
+#include "loop/line.h"
 #include "loop/strokes.h"
 #include "loop/trim_rules.h"
 #include "mindahl/loop/facts.h"
 
 namespace mindahl::loop {
 namespace {
-
-double MedianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-/// A least-squares line through values at 0, 1, 2 …, three or more.
-struct Line {
-  double mean = 0.0;
-  double slope = 0.0;
-  double slope_error = 0.0;
-  double deviation = 0.0;  ///< standard, of the values from it
-  double degrees_of_freedom = 0.0;
-};
-
-Line LineThrough(std::span<const double> values) {
-  const auto count = static_cast<double>(values.size());
-  const double centre = (count - 1) / 2;
-  Line line{.degrees_of_freedom = count - 2};
-  for (const double value : values) line.mean += value / count;
-  double squares = 0.0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double distance = static_cast<double>(k) - centre;
-    squares += distance * distance;
-    line.slope += distance * (values[k] - line.mean);
-  }
-  line.slope /= squares;
-  double residuals = 0.0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double residual = values[k] - line.mean - line.slope * (static_cast<double>(k) - centre);
-    residuals += residual * residual;
-  }
-  line.deviation = std::sqrt(residuals / line.degrees_of_freedom);
-  line.slope_error = line.deviation / std::sqrt(squares);
-  return line;
-}
 
 /// Student's t beyond which chance lies, to either side.
 double TwoSided(double chance, double degrees_of_freedom) {
@@ -104,7 +70,7 @@ class Trimming {
     for (std::size_t k = 1; k < points_.size(); ++k) {
       lengths.push_back(static_cast<double>(points_[k] - points_[k - 1]));
     }
-    return MedianOf(std::move(lengths));
+    return MedianOf(lengths);
   }
 
   void LeaveOutRest() {
@@ -119,7 +85,8 @@ class Trimming {
     const std::size_t before = RestFrom(displacement_.begin(), displacement_.end(), reach);
     if (is_rest(before)) {
       first_ = before - 1;
-      trim_.parts.push_back({.reason = TrimReason::kRest, .first = 0, .last = first_});
+      trim_.parts.push_back(
+          {.reason = TrimReason::kRest, .first = 0, .last = first_, .at_start = true});
     }
     const std::size_t after = RestFrom(displacement_.rbegin(), displacement_.rend(), reach);
     if (is_rest(after)) {
@@ -134,10 +101,12 @@ class Trimming {
   void CutBefore(TrimReason reason, std::size_t cycle) {
     const std::size_t begin = points_[2 * cycle];
     if (begin <= first_) return;
-    trim_.parts.push_back(
-        {.reason = reason, .first = first_, .last = begin, .cycles = cycle - cut_cycles_});
-    trim_.begins_later = true;
-    trim_.has_first_loading = trim_.has_first_loading || points_.front() > first_;
+    trim_.parts.push_back({.reason = reason,
+                           .first = first_,
+                           .last = begin,
+                           .cycles = cycle - cut_cycles_,
+                           .at_start = true,
+                           .has_first_loading = points_.front() > first_});
     first_ = begin;
     cut_cycles_ = cycle;
   }
@@ -187,7 +156,9 @@ class Trimming {
   /// Cycles at the beginning whose fact is not what it settles to; empty where it does not settle.
   [[nodiscard]] std::optional<std::size_t> Unsettled(const std::vector<double>& values) const {
     const std::span<const double> last = std::span(values).subspan(values.size() / 2);
-    const Line line = LineThrough(last);
+    std::vector<double> numbers(last.size());
+    std::iota(numbers.begin(), numbers.end(), 0.0);
+    const Line line = LineThrough(numbers, last);
     const auto count = static_cast<double>(last.size());
     const double level = line.mean;
     const double settled = rules_.settled * std::abs(level);
@@ -238,6 +209,16 @@ class Trimming {
 };
 
 }  // namespace
+
+bool Trim::begins_later() const {
+  return std::ranges::any_of(parts, [](const TrimmedPart& part) {
+    return part.at_start && part.reason != TrimReason::kRest;
+  });
+}
+
+bool Trim::has_first_loading() const {
+  return std::ranges::any_of(parts, &TrimmedPart::has_first_loading);
+}
 
 std::string_view NameOf(TrimReason reason) {
   switch (reason) {

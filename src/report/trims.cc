@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <string_view>
 
 namespace mindahl::report {
@@ -19,28 +18,14 @@ std::string CyclesText(std::size_t cycles) {
   return fmt::format("{} cycle{}", cycles, cycles == 1 ? "" : "s");
 }
 
-bool IsAtStart(const Trim& trim, const TrimmedPart& part) {
-  // A ramp at the end is followed by nothing but a rest.
-  return part.first == 0 || (trim.parts.front().first == 0 && part.first == trim.parts[0].last) ||
-         part.reason == TrimReason::kRunningIn;
-}
-
-/// That which the motion begins with; nullptr where it stays.
-const TrimmedPart* FirstOfMotion(const Trim& trim) {
-  const auto first = std::ranges::find_if(
-      trim.parts, [](const TrimmedPart& part) { return part.reason != TrimReason::kRest; });
-  return first != trim.parts.end() && IsAtStart(trim, *first) ? &*first : nullptr;
-}
-
-std::string InWords(const Trim& trim, const TrimmedPart& part) {
-  const bool is_at_start = IsAtStart(trim, part);
+std::string InWords(const TrimmedPart& part) {
   switch (part.reason) {
     case TrimReason::kRest:
       return fmt::format("{} samples at rest {}", part.samples(),
-                         is_at_start ? "before the motion" : "after it");
+                         part.at_start ? "before the motion" : "after it");
     case TrimReason::kRamp:
       return fmt::format("{} in which the amplitude {}", CyclesText(part.cycles),
-                         is_at_start ? "grows" : "falls");
+                         part.at_start ? "grows" : "falls");
     case TrimReason::kRunningIn:
       break;
   }
@@ -75,7 +60,7 @@ Warning NoteOf(const Report& report, std::size_t r) {
                     "turning point under it",
                     piece->left_out, piece->normal_load));
   }
-  for (const TrimmedPart& part : trim.parts) parts.push_back(InWords(trim, part));
+  for (const TrimmedPart& part : trim.parts) parts.push_back(InWords(part));
   const std::string_view why = WhyNotSettled(trim.settling);
   if (parts.empty()) {
     return {"nothing_trimmed",
@@ -84,12 +69,12 @@ Warning NoteOf(const Report& report, std::size_t r) {
   }
   std::string text =
       fmt::format("--trim auto leaves out of {}: {}", report.files[r], fmt::join(parts, ", "));
-  if (trim.has_first_loading) {
+  if (trim.has_first_loading()) {
     text +=
         "; the first loading is among them, which tells Masing's law from Dahl's own and a virgin "
         "contact from a steady one";
   }
-  if (trim.begins_later) {
+  if (trim.begins_later()) {
     const bool is_steady = report.fit.initial_state == models::InitialState::kSteady;
     text += fmt::format(
         "; what is left is fitted as of a {}",
@@ -112,12 +97,10 @@ std::vector<TrimmedItem> TrimmedItems(const Report& report) {
   for (std::size_t r = 0; r < report.trims.size(); ++r) {
     const Trim& trim = report.trims[r];
     for (const TrimmedPart& part : trim.parts) {
-      items.push_back(
-          {.file = report.files[r],
-           .part = part,
-           .first_line = LineOf(report.records[r], part.first),
-           .last_line = LineOf(report.records[r], part.last - 1),
-           .has_first_loading = trim.has_first_loading && &part == FirstOfMotion(trim)});
+      items.push_back({.file = report.files[r],
+                       .part = part,
+                       .first_line = LineOf(report.records[r], part.first),
+                       .last_line = LineOf(report.records[r], part.last - 1)});
     }
   }
   return items;
@@ -137,7 +120,7 @@ const std::vector<Field<TrimmedItem>>& TrimmedFields() {
       {"cycles", "", "closed ones among them",
        [](const Item& item) { return Count(item.part.cycles); }},
       {"first_loading", "", "whether what comes before the first turning point is left out by it",
-       [](const Item& item) { return Flag(item.has_first_loading); }},
+       [](const Item& item) { return Flag(item.part.has_first_loading); }},
   };
   return fields;
 }

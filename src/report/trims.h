@@ -20,7 +20,6 @@ struct TrimmedItem {
   loop::TrimmedPart part;
   std::size_t first_line = 0;  ///< of the file, counted from 1
   std::size_t last_line = 0;
-  bool has_first_loading = false;
 };
 
 /// Of all records, in order.

@@ -245,7 +245,7 @@ void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
   held_out.assign(trims.size(), {});
   bool all_begin_later = true;
   for (std::size_t r = 0; r < trims.size(); ++r) {
-    all_begin_later = all_begin_later && trims[r].begins_later;
+    all_begin_later = all_begin_later && trims[r].begins_later();
     if (trims[r].parts.empty()) continue;
     held_out[r].assign(trims[r].samples, false);
     for (const loop::TrimmedPart& part : trims[r].parts) {

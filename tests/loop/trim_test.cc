@@ -68,7 +68,7 @@ TEST(Trim, LeavesARecordOfOneTestWhole) {
   for (const double cycles : {2.0, 5.0, 20.0, 20.4}) {
     const Trim trim = FindTrim(Cycled(cycles));
     EXPECT_TRUE(trim.parts.empty()) << cycles;
-    EXPECT_FALSE(trim.has_first_loading);
+    EXPECT_FALSE(trim.has_first_loading());
     EXPECT_EQ(trim.samples, Cycled(cycles).size());
   }
   EXPECT_EQ(FindTrim(Cycled(5)).settling, Settling::kFewCycles);
@@ -83,7 +83,7 @@ TEST(Trim, LeavesOutRestsButForTheSampleThatTheMotionBeginsFrom) {
   EXPECT_EQ(trim.parts[0].last, 90U);  // the sine's own first sample is at rest too, and stays
   EXPECT_EQ(trim.parts[1].last, 90U + 3 * kCycle + 1 + 40);
   EXPECT_EQ(trim.parts[1].first, trim.parts[1].last - 40);
-  EXPECT_FALSE(trim.has_first_loading);  // it begins after the rest
+  EXPECT_FALSE(trim.has_first_loading());  // it begins after the rest
 }
 
 TEST(Trim, LeavesADwellOfHalfAStrokeIn) {
@@ -110,7 +110,7 @@ TEST(Trim, LeavesOutRampsOfTheAmplitude) {
   ASSERT_EQ(trim.parts.size(), 2U);
   EXPECT_EQ(trim.parts[0].reason, TrimReason::kRamp);
   EXPECT_EQ(trim.parts[1].reason, TrimReason::kRamp);
-  EXPECT_TRUE(trim.has_first_loading);
+  EXPECT_TRUE(trim.has_first_loading());
   // Cycles begin at the upper extremes: the third is the first that is as wide as all, the twelfth
   // ends in a narrower one.
   EXPECT_EQ(trim.parts[0].first, 0U);
@@ -143,7 +143,7 @@ TEST(Trim, LeavesOutWhatHasNotSettledToOnePerCent) {
     const TrimmedPart& part = trim.parts.front();
     EXPECT_EQ(part.reason, TrimReason::kRunningIn);
     EXPECT_EQ(trim.settling, Settling::kSettled);
-    EXPECT_TRUE(trim.has_first_loading);
+    EXPECT_TRUE(trim.has_first_loading());
     EXPECT_EQ(part.first, 0U);
     EXPECT_EQ(part.last, part.cycles * kCycle + kTurn);
     // |factor − 1|·e^{−c/τ} = 0.01; a cycle's facts are of its middle, three quarters past its

@@ -123,9 +123,10 @@ TEST(TrimmedFit, IsTheFitOfTheWholeWhereNothingIsLeftOut) {
 
 TEST(LeaveOutTrimmed, TakesASteadyContactWhereEveryFirstLoadingIsLeftOut) {
   const loop::TrimmedPart rest{.reason = loop::TrimReason::kRest, .first = 0, .last = 3};
-  const loop::TrimmedPart ramp{.reason = loop::TrimReason::kRamp, .first = 3, .last = 5};
+  const loop::TrimmedPart ramp{
+      .reason = loop::TrimReason::kRamp, .first = 3, .last = 5, .at_start = true};
   const loop::Trim rested{.samples = 8, .parts = {rest}};
-  const loop::Trim ramped{.samples = 7, .parts = {ramp}, .begins_later = true};
+  const loop::Trim ramped{.samples = 7, .parts = {ramp}};
   FitOptions options;
   LeaveOutTrimmed(std::vector<loop::Trim>{rested, ramped}, options);
   EXPECT_FALSE(options.initial_state);

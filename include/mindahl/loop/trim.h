@@ -25,6 +25,10 @@ struct TrimmedPart {
   std::size_t first = 0;
   std::size_t last = 0;
   std::size_t cycles = 0;  ///< closed ones within it
+  bool at_start = false;   ///< of the record, not at its end
+  /// The first loading is in it, from where the motion begins to its first turn, which alone is of
+  /// a contact that may be unloaded. A record that begins at a turn has none.
+  bool has_first_loading = false;
 
   [[nodiscard]] std::size_t samples() const { return last - first; }
 };
@@ -41,11 +45,10 @@ struct Trim {
   std::size_t samples = 0;         ///< of the record
   std::vector<TrimmedPart> parts;  ///< at the beginning, then at the end, in order of time
   Settling settling = Settling::kFewCycles;
-  /// Motion is among them that came before what is left: of that the contact was cycled before.
-  bool begins_later = false;
-  /// The first loading, from where the motion begins to its first turn, is among them: it alone is
-  /// of a contact that may be unloaded. A record that begins at a turn has none.
-  bool has_first_loading = false;
+
+  /// Is motion among them that came before what is left? Of that the contact was cycled before.
+  [[nodiscard]] bool begins_later() const;
+  [[nodiscard]] bool has_first_loading() const;
 };
 
 /// Parts at the ends of a record that are not of its test, by its model-free facts, cycle by cycle
