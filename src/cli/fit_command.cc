@@ -46,8 +46,7 @@ identification::BackboneEstimate BackboneOf(const FitRequest& request,
     throw InputError(
         "--backbone is of a contact of Masing's memory under one load, by its forces: leave out "
         "--model dahl, --lag, --asymmetry and --noise-in displacement, and fit records of other "
-        "loads "
-        "apart");
+        "loads apart");
   }
   std::vector<loop::RecordView> records;
   for (const io::RecordFile& input : report.records) records.emplace_back(input.record);

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "core/normal_quantile.h"
 #include "mindahl/contact/hertz.h"
 #include "mindahl/contact/shape_under_load.h"
 #include "mindahl/report/contact.h"
@@ -29,8 +29,6 @@ using identification::ParameterEstimate;
 using identification::ParameterStatus;
 
 namespace {
-
-constexpr double kUpperEnd = 0.975;
 
 /// A parameter as the projection takes it, ln σ in place of σ.
 struct Component {
@@ -60,6 +58,7 @@ double Widened(double value, double error, double quantile, std::optional<double
 
 Estimate EstimateOf(const FitResult& fit) {
   Estimate estimate;
+  constexpr double kUpperEnd = 0.975;
   estimate.quantile =
       boost::math::quantile(boost::math::students_t(fit.residuals.degrees_of_freedom), kUpperEnd);
   constexpr std::array<std::string_view, Estimate::kCount> kNames = {"sigma", "load_exponent",
@@ -130,8 +129,7 @@ std::optional<Interval> IntervalOf(const PropagatedValue& value, const Held& log
   if (!std::isfinite(value.standard_error)) return std::nullopt;
   const double power =
       log_stiffness.error > 0 ? value.fit_error / value.value / log_stiffness.error : 0.0;
-  const double of_inputs =
-      boost::math::quantile(boost::math::normal(), kUpperEnd) * value.input_error / value.value;
+  const double of_inputs = kNormalQuantile95 * value.input_error / value.value;
   const double half_width = std::hypot(power * log_stiffness.half_width, of_inputs);
   if (!(half_width > 0)) return std::nullopt;  // all that it follows from is held
   return Interval{value.value * std::exp(-half_width), value.value * std::exp(half_width)};
@@ -142,8 +140,8 @@ std::optional<Interval> IntervalOf(const PropagatedValue& value, const Held& log
 std::optional<Interval> IntervalOfModulus(const PropagatedValue& value, const Held& log_stiffness,
                                           double stiffness, const KnownContact& known) {
   if (!(log_stiffness.error > 0) || !(value.fit_error > 0)) return std::nullopt;
-  const double of_inputs = boost::math::quantile(boost::math::normal(), kUpperEnd) *
-                           value.input_error * log_stiffness.error / value.fit_error;
+  const double of_inputs =
+      kNormalQuantile95 * value.input_error * log_stiffness.error / value.fit_error;
   const double half_width = std::hypot(log_stiffness.half_width, of_inputs);
   const auto modulus_at = [&](double log_change) {
     const ShapeUnderLoad shape = contact::IdentifyShape(

@@ -24,10 +24,7 @@ double ChanceOfNoise(const AdequacyTest& test) {
 /// offsets of a contact that had slipped before, which take it up.
 bool TellsAsymmetry(const Problem& problem) {
   if (problem.model->memory == models::Memory::kNone || problem.data->load_varies) return false;
-  if (problem.state == models::InitialState::kVirgin) return true;
-  return std::ranges::any_of(problem.parameters, [](const Parameter& parameter) {
-    return parameter.term->name == "force_offset" && parameter.fixed;
-  });
+  return problem.state == models::InitialState::kVirgin || problem.parameters.any_zero_is_known();
 }
 
 /// What to type: a covariate's has its name, quoted where it has blanks.

@@ -182,13 +182,16 @@ Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memor
       origin_term_(other.origin_term_),
       state_(other.state_) {}
 
+bool Parameters::any_zero_is_known() const {
+  return std::ranges::any_of(parameters_, [](const Parameter& parameter) {
+    return parameter.term->name == "force_offset" && parameter.fixed;
+  });
+}
+
 /// Of a contact that had slipped before it is a force that is always there, as an offset is.
 void Parameters::HoldConfoundedAsymmetry() {
   Parameter& asymmetry = parameters_[PositionOf("asymmetry", 0)];
-  const bool any_zero_is_known = std::ranges::any_of(parameters_, [](const Parameter& parameter) {
-    return parameter.term->name == "force_offset" && parameter.fixed;
-  });
-  if (asymmetry.fixed || any_zero_is_known) return;
+  if (asymmetry.fixed || any_zero_is_known()) return;
   asymmetry.theta = 0.0;
   asymmetry.fixed = asymmetry.confounded = true;
 }

@@ -98,6 +98,8 @@ class Parameters {
   [[nodiscard]] bool asymmetry_is_confounded() const {
     return parameters_[PositionOf("asymmetry", 0)].confounded;
   }
+  /// Is the force's offset held in a record?
+  [[nodiscard]] bool any_zero_is_known() const;
   /// Are the records under loads that differ?
   [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }
 
