@@ -20,6 +20,12 @@ using Column = std::array<double, kBlock>;
 
 constexpr std::int64_t kExponentBias = std::int64_t{1023} << 52;
 
+/// By bits, not by a condition: compilers follow each way of one to its end, in vectors both.
+MINDAHL_INLINE double Choose(std::uint64_t all_ones, double one, double other) {
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(one) & all_ones) |
+                               (std::bit_cast<std::uint64_t>(other) & ~all_ones));
+}
+
 /// Of z: log z = k·ln 2 + 2·atanh(s), |s| <= 0.1716. Where k = 0, z = 1 − w is taken from w.
 struct Reduction {
   double k;
@@ -37,9 +43,8 @@ MINDAHL_INLINE Reduction Reduce(double w, double z) {
       std::bit_cast<double>(biased_k | static_cast<std::uint64_t>(kIntegers)) - kBiased;
   const double m =
       std::bit_cast<double>(bits - (biased_k << 52) + static_cast<std::uint64_t>(kExponentBias));
-  const double above = k == 0 ? -w : m - 1;
-  const double below = k == 0 ? 2 - w : m + 1;
-  return {k, above / below};
+  const std::uint64_t is_near = 0 - (((biased_k ^ 1023) - 1) >> 63);  // k = 0
+  return {k, Choose(is_near, -w, m - 1) / Choose(is_near, 2 - w, m + 1)};
 }
 
 /// Σ cᵢxⁱ, even and odd powers side by side: half as long a chain of operations.
