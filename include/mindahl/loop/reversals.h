@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -18,42 +19,47 @@ class ReversalFinder {
   /// @returns the index of the reversal that this sample makes known
   std::optional<std::size_t> Add(double displacement) {
     const std::size_t i = count_++;
-    if (i == 0) {
-      high_ = low_ = displacement;
+    if (sense_ == 0) {
+      SetOut(i, displacement);
       return std::nullopt;
     }
-    if (direction_ >= 0 && displacement > high_) {
-      highest_ = i;
-      high_ = displacement;
+    const double along = sense_ * displacement;
+    if (along > extreme_) {
+      extreme_ = along;
+      place_ = i;
+      return std::nullopt;
     }
-    if (direction_ <= 0 && displacement < low_) {
-      lowest_ = i;
-      low_ = displacement;
-    }
-    if (direction_ >= 0 && high_ - displacement > gate_) {
-      const bool turns = direction_ > 0;
-      direction_ = -1;
-      lowest_ = i;
-      low_ = displacement;
-      if (turns) return highest_;
-    } else if (direction_ <= 0 && displacement - low_ > gate_) {
-      const bool turns = direction_ < 0;
-      direction_ = 1;
-      highest_ = i;
-      high_ = displacement;
-      if (turns) return lowest_;
-    }
-    return std::nullopt;
+    if (!(extreme_ - along > gate_)) return std::nullopt;
+    const std::size_t turn = place_;
+    Go(-sense_, i, displacement);
+    return turn;
   }
 
  private:
+  /// Until the displacement has left the gate it goes neither way.
+  void SetOut(std::size_t i, double displacement) {
+    high_ = i == 0 ? displacement : std::max(high_, displacement);
+    low_ = i == 0 ? displacement : std::min(low_, displacement);
+    if (high_ - displacement > gate_) {
+      Go(-1.0, i, displacement);
+    } else if (displacement - low_ > gate_) {
+      Go(1.0, i, displacement);
+    }
+  }
+
+  void Go(double sense, std::size_t i, double displacement) {
+    sense_ = sense;
+    extreme_ = sense * displacement;
+    place_ = i;
+  }
+
   double gate_;
   std::size_t count_ = 0;
-  std::size_t highest_ = 0;
-  std::size_t lowest_ = 0;
-  double high_ = 0.0;
+  double high_ = 0.0;  // before the displacement goes either way
   double low_ = 0.0;
-  int direction_ = 0;  // unknown until the displacement has left the gate
+  double sense_ = 0.0;    // of the motion, ±1; 0 before it is known
+  double extreme_ = 0.0;  // the outermost displacement of the stroke, times the sense
+  std::size_t place_ = 0;
 };
 
 /// Samples at which the direction of displacement reverses.
