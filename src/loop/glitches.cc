@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/extremes.h"
 #include "loop/mending.h"
 
 namespace mindahl::loop {
@@ -13,10 +14,11 @@ namespace {
 
 using Column = std::span<const double>;
 
-/// The step [unit of the column] that nine in ten of those that are not zero do not exceed; 0
-/// without any.
+/// Share of the steps that are not zero which the usual one is not exceeded by.
+constexpr double kUsualShare = 0.9;
+
+/// The usual step [unit of the column]; 0 where all are zero.
 double UsualStep(Column values, std::pmr::memory_resource* scratch) {
-  constexpr double kShare = 0.9;
   std::pmr::vector<double> steps(scratch);
   steps.reserve(values.size());
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -24,10 +26,24 @@ double UsualStep(Column values, std::pmr::memory_resource* scratch) {
     if (step > 0) steps.push_back(step);
   }
   if (steps.empty()) return 0.0;
-  const auto at =
-      steps.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(steps.size() - 1));
+  const auto at = steps.begin() +
+                  static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(steps.size() - 1));
   std::ranges::nth_element(steps, at);
   return *at;
+}
+
+/// Can a step be so many times the usual one? Not where more than a tenth of the steps are so large
+/// that the largest is less than that beside them: the usual one is among these, or above.
+bool MayLeap(Column values, double factor, std::pmr::memory_resource* scratch) {
+  if (values.size() < 2) return false;
+  std::pmr::vector<double> steps(values.size() - 1, scratch);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = values[i + 1] - values[i];
+  const auto [least, greatest] = ExtremesOf(steps);
+  const double largest = std::max(greatest, -least);
+  std::size_t large = 0;
+  for (const double step : steps) large += factor * std::abs(step) >= largest ? 1U : 0U;
+  const std::size_t last = steps.size() - 1;  // at most, of those that are not zero
+  return large <= last - static_cast<std::size_t>(kUsualShare * static_cast<double>(last));
 }
 
 /// A column, what is wrong in it, and the column with lines over that.
@@ -122,11 +138,19 @@ struct Run {
 
 /// Samples that read 0 and 0.
 std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resource* scratch) {
+  const auto is_zero = [x = record.displacement, force = record.force](std::size_t i) {
+    return x[i] == 0 && force[i] == 0;
+  };
   std::pmr::vector<Run> runs(scratch);
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    if (record.displacement[i] != 0 || record.force[i] != 0) continue;
-    if (runs.empty() || runs.back().end < i) runs.push_back({i, i});
-    runs.back().end = i + 1;
+  const std::size_t size = record.size();
+  bool any = false;
+  for (std::size_t i = 0; i < size; ++i) any |= is_zero(i);
+  for (std::size_t begin = 0; any && begin < size; ++begin) {
+    if (!is_zero(begin)) continue;
+    std::size_t end = begin + 1;
+    while (end < size && is_zero(end)) ++end;
+    runs.push_back({begin, end});
+    begin = end;
   }
   return runs;
 }
@@ -197,14 +221,26 @@ std::size_t SpikeAt(Channel& channel, std::size_t i, const GlitchRules& rules) {
   return 0;
 }
 
+/// The next sample from one on, two or later, that leaves its neighbour by so many times the step
+/// before, as hardly one of a clean record does; the last but one where none does.
+std::size_t NextLeap(Column values, std::size_t from, double factor) {
+  const std::size_t end = values.size() - 2;
+  double before = std::abs(values[from - 1] - values[from - 2]);
+  for (std::size_t i = from; i < end; ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step > factor * before) return i;
+    before = step;
+  }
+  return end;
+}
+
 /// One pass: a spike may hide another, until it is mended.
 bool FindSpikes(Channel& channel, const GlitchRules& rules) {
+  if (channel.size() < 5) return false;
   bool found = false;
   Column values = channel.values();
-  for (std::size_t i = 2; i + 2 < values.size(); ++i) {
-    // Hardly a sample of a clean record leaves its neighbour so.
-    const double step = std::abs(values[i] - values[i - 1]);
-    if (!(step > rules.spike * std::abs(values[i - 1] - values[i - 2]))) continue;
+  for (std::size_t i = NextLeap(values, 2, rules.spike); i + 2 < values.size();
+       i = NextLeap(values, i + 1, rules.spike)) {
     const std::size_t samples = SpikeAt(channel, i, rules);
     if (samples == 0) continue;
     channel.LeaveOut(i, i + samples, Glitch::kSpike);
@@ -307,7 +343,8 @@ Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
   FindDropouts(record, rules, displacement, force, memory);
   for (Channel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
-    for (int pass = 0; pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
+    const bool may_have = MayLeap(channel->values(), rules.spike, memory);
+    for (int pass = 0; may_have && pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
     channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
   }
   FindFlatDropouts(displacement, force, rules);
