@@ -14,6 +14,7 @@
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/law_findings.h"
+#include "identification/diagnosis/main_strokes.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/adequacy_test.h"
 #include "identification/inference/covering.h"
@@ -366,8 +367,8 @@ double DescribeStructures(const Problem& problem, std::span<const double> residu
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     const ScaledRecord& record = problem.data->records[r];
     RecordFit& fit = result.records[r];
-    // Of one stroke each way nothing comes back.
-    if (!is_described && record.reversals.size() < 2) {
+    if (!is_described &&
+        !AnyComesBack(MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke))) {
       begin += record.size();
       continue;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/diagnosis/main_strokes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -12,33 +13,8 @@ namespace {
 
 constexpr std::size_t kBins = 20;
 
-struct Stroke {
-  std::size_t begin = 0;
-  std::size_t end = 0;  // the sample where it ends
-};
-
-std::vector<Stroke> MainStrokes(std::span<const double> displacement,
-                                std::span<const std::size_t> reversals, double main_stroke) {
-  std::vector<Stroke> strokes;
-  std::size_t begin = 0;
-  for (const std::size_t reversal : reversals) {
-    strokes.push_back({begin, reversal});
-    begin = reversal;
-  }
-  strokes.push_back({begin, displacement.size() - 1});
-  const auto length = [&](const Stroke& stroke) {
-    return std::abs(displacement[stroke.end] - displacement[stroke.begin]);
-  };
-  double longest = 0.0;
-  for (const Stroke& stroke : strokes) longest = std::max(longest, length(stroke));
-  std::erase_if(strokes, [&](const Stroke& stroke) {
-    return !(length(stroke) > 0) || length(stroke) < main_stroke * longest;
-  });
-  return strokes;
-}
-
 /// Means of one stroke's residuals over its parts; NaN where a part has none.
-std::array<double, kBins> BinMeans(const Stroke& stroke, std::span<const double> displacement,
+std::array<double, kBins> BinMeans(const MainStroke& stroke, std::span<const double> displacement,
                                    std::span<const double> residual,
                                    std::span<const unsigned char> counts) {
   std::array<double, kBins> sum{};
@@ -85,8 +61,8 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
   std::array<std::vector<std::array<double, kBins>>, 2> means;
   std::array<double, 2> samples{};
   double squares = 0.0;
-  for (const Stroke& stroke : MainStrokes(displacement, reversals, options.main_stroke)) {
-    const std::size_t side = displacement[stroke.end] > displacement[stroke.begin] ? 0 : 1;
+  for (const MainStroke& stroke : MainStrokes(displacement, reversals, options.main_stroke)) {
+    const std::size_t side = stroke.rises ? 0 : 1;
     StrokeResiduals& direction = structure.directions[side];
     double sum = 0.0;
     double sum_of_squares = 0.0;

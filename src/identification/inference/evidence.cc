@@ -58,8 +58,18 @@ double ChiSquaredQuantile(double degrees_of_freedom, double chance) {
 }
 
 double StudentQuantile95(double degrees_of_freedom) {
-  return boost::math::quantile(
-      boost::math::students_t_distribution<double, InDouble>(degrees_of_freedom), 0.975);
+  struct Asked {
+    double degrees_of_freedom = 0.0;
+    double quantile = 0.0;
+  };
+  // Cycle after cycle of a campaign asks for the same.
+  thread_local Asked last;
+  if (last.degrees_of_freedom != degrees_of_freedom) {
+    last = {degrees_of_freedom,
+            boost::math::quantile(
+                boost::math::students_t_distribution<double, InDouble>(degrees_of_freedom), 0.975)};
+  }
+  return last.quantile;
 }
 
 }  // namespace mindahl::identification

@@ -23,25 +23,20 @@ std::span<double> ColumnOf(Eigen::MatrixXd& matrix, Eigen::Index j) {
   return {matrix.col(j).data(), static_cast<std::size_t>(matrix.rows())};
 }
 
-/// To unit norm; nothing where it is zero.
-/// @returns the norm that it had
-double Normalize(std::span<double> column) {
-  const double norm = std::sqrt(Dot(column, column));
-  if (norm < std::numeric_limits<double>::min()) return 0.0;  // its inverse would overflow
-  const double factor = 1 / norm;
-  for (double& value : column) value *= factor;
-  return norm;
-}
-
 /// R of J = QR has J's singular values and is small, however long the record. By Gram and Schmidt's
 /// modified rule, whose R is as good as Householder's (Björck 1967), though its Q is not.
 Eigen::MatrixXd TriangleOf(Eigen::MatrixXd columns) {
   const Eigen::Index count = columns.cols();
   Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index j = 0; j < count; ++j) {
-    triangle(j, j) = Normalize(ColumnOf(columns, j));
+    const std::span<const double> column = ColumnOf(columns, j);
+    const double square = Dot(column, column);
+    if (square < std::numeric_limits<double>::min()) continue;  // its inverse would overflow
+    triangle(j, j) = std::sqrt(square);
     for (Eigen::Index k = j + 1; k < count; ++k) {
-      triangle(j, k) = TakeOut(ColumnOf(columns, k), ColumnOf(columns, j));
+      const double shared = Dot(column, ColumnOf(columns, k));
+      AddMultiple(ColumnOf(columns, k), -shared / square, column);
+      triangle(j, k) = shared / triangle(j, j);
     }
   }
   return triangle;
@@ -179,19 +174,25 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   result.determined.assign(count, true);
   if (count == 0) return result;
 
-  Eigen::VectorXd norms(size);
-  for (Eigen::Index j = 0; j < size; ++j) norms[j] = Normalize(ColumnOf(jacobian, j));
+  const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
+  Eigen::MatrixXd triangle = TriangleOf(is_white ? std::move(jacobian) : jacobian);
+  Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
-  const Eigen::MatrixXd triangle = TriangleOf(jacobian);
+  // As of unit columns, whatever their units.
+  const Eigen::VectorXd inverse_norms = norms.cwiseInverse();
+  triangle *= inverse_norms.asDiagonal();
   const std::optional<Eigen::MatrixXd> inverse = InverseIfRegular(triangle);
   const Eigen::MatrixXd factor =
       inverse ? *inverse * inverse->transpose() : PseudoInverse(triangle, norms, result);
   const Eigen::MatrixXd correlated =
-      displacement.residuals.size() > 0
-          ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, jacobian)
-      : noise.autocorrelation.order > 0
-          ? CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian)
-          : triangle.transpose() * triangle;
+      is_white ? Eigen::MatrixXd(triangle.transpose() * triangle)
+               : Eigen::MatrixXd(
+                     inverse_norms.asDiagonal() *
+                     (displacement.residuals.size() > 0
+                          ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise,
+                                              displacement, jacobian)
+                          : CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian)) *
+                     inverse_norms.asDiagonal());
   result.absorbed = (factor * correlated).trace();
   const Eigen::MatrixXd product = factor * correlated * factor;
   const Eigen::MatrixXd sandwich = (product + product.transpose()) / 2;  // to the last bit

@@ -336,14 +336,24 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const ScaledRecord& record = problem.data->records[r];
       const std::span<double> column = jacobian.subspan(c * samples + k, record.size());
-      std::ranges::fill(column, 0.0);
       const std::size_t begin = k;
       k += record.size();
-      if (parameter.term->scope == Scope::kRecord && parameter.record != r) continue;
-      if (parameter.term->column != Regressor::kNone) AddColumn(problem, p, r, 1.0, column);
+      const bool is_others = parameter.term->scope == Scope::kRecord && parameter.record != r;
+      if (is_others || parameter.term->column != Regressor::kNone) {
+        std::ranges::fill(column, 0.0);
+        if (!is_others) AddColumn(problem, p, r, 1.0, column);
+      }
+      if (is_others) continue;
+      bool is_empty = parameter.term->column == Regressor::kNone;
       const auto add = [&](std::span<const double> derivative, double factor) {
         if (derivative.empty()) return;
-        for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * derivative[begin + i];
+        const std::span<const double> of = derivative.subspan(begin, column.size());
+        if (is_empty) {
+          for (std::size_t i = 0; i < column.size(); ++i) column[i] = factor * of[i];
+        } else {
+          for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * of[i];
+        }
+        is_empty = false;
       };
       if (p == kStiffness) {
         // Of a displacement it is the factor's alone.
@@ -366,6 +376,7 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
       } else if (parameter.term->name == "asymmetry") {
         add(gradient.asymmetry, scale);
       }
+      if (is_empty) std::ranges::fill(column, 0.0);
       for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }
   }

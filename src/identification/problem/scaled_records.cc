@@ -40,15 +40,27 @@ void RequireScale(std::string_view quantity, double half_range) {
 void FillVelocity(ScaledRecord& record, double unit) {
   const double units = record.units.half_duration / unit;
   const std::size_t last = record.size() - 1;
-  record.velocity.reserve(record.size());
+  record.velocity.resize(record.size());
+  const auto fill = [&, x = std::span<const double>(record.displacement),
+                     time = std::span<const double>(record.time)](std::size_t i, std::size_t before,
+                                                                  std::size_t after) {
+    const double duration = units * (time[after] - time[before]);
+    record.velocity[i] = duration > 0 ? (x[after] - x[before]) / duration : 0.0;
+  };
+  // In order of time, as nearly always.
+  const auto stands = [](double one, double other) { return !(other > one); };
+  if (std::ranges::adjacent_find(record.time, stands) == record.time.end()) {
+    for (std::size_t i = 1; i < last; ++i) fill(i, i - 1, i + 1);
+    fill(0, 0, std::min<std::size_t>(1, last));
+    fill(last, std::max<std::size_t>(last, 1) - 1, last);
+    return;
+  }
   for (std::size_t i = 0; i <= last; ++i) {
     std::size_t before = i == 0 ? 0 : i - 1;
     std::size_t after = std::min(i + 1, last);
     while (before > 0 && !(record.time[after] > record.time[before])) --before;
     while (after < last && !(record.time[after] > record.time[before])) ++after;
-    const double duration = units * (record.time[after] - record.time[before]);
-    const double way = record.displacement[after] - record.displacement[before];
-    record.velocity.push_back(duration > 0 ? way / duration : 0.0);
+    fill(i, before, after);
   }
 }
 
