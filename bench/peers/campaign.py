@@ -66,14 +66,19 @@ def main():
             return [program, "track", path, "--output", table, "--overwrite", *more]
 
         record = simulated(arguments.cycles)
-        one_cycle = simulated(1)
+        # From the first reversal on, as the campaign's: one cycle of a contact that had slipped.
+        one_cycle = simulated(1.25)
         os.sched_setaffinity(0, {max(cores)})
         times = {}
         for _ in range(arguments.rounds):
             seconds, rows = subprocess.run([PYTHON, "-c", READ, record], check=True, text=True,
                                            capture_output=True).stdout.split()
             lmfit = json.loads(subprocess.run(
-                [PYTHON, HERE / "lmfit_fit.py", one_cycle, "--repeats", "20"], check=True,
+                [PYTHON, HERE / "lmfit_fit.py", one_cycle, "--repeats", "20",
+                 "--initial-state", "steady"], check=True,
+                text=True, capture_output=True).stdout)
+            fits = json.loads(subprocess.run(
+                [arguments.build / "bench/peers/mindahl_cycles", simulated(400), "5"], check=True,
                 text=True, capture_output=True).stdout)
             cycles = int(rows) // 200
             for name, microseconds in {
@@ -82,6 +87,8 @@ def main():
                         track(record, "--threads", "1"))[0] / cycles,
                     "mindahl track, reading alone": 1e6 * cost_of(
                         track(record, "--threads", "1", "--every", "1000000000"))[0] / cycles,
+                    "mindahl, a cycle's values": fits["estimate_us"],
+                    "mindahl, values and errors": fits["errors_us"],
                     "lmfit, bare fit": 1e3 * lmfit["median_ms"]}.items():
                 times.setdefault(name, []).append(microseconds)
         print(f"{cycles} cycles of 200 samples, {os.path.getsize(record) / cycles / 1e3:.1f} kB "
