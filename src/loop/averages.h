@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <iterator>
 #include <numeric>
 #include <span>
@@ -14,10 +15,16 @@ inline double Mean(std::span<const double> values) {
 
 /// The middle one of values, at least one; of an even number the upper of the two. Reorders them.
 template <typename Values>
-auto MedianOf(Values&& values) {
+auto UpperMedian(Values&& values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::ranges::nth_element(values, middle);
   return *middle;
+}
+
+/// The middle one of values, at least one; of an even number the mean of the two. Reorders them.
+template <typename Values>
+double Median(Values&& values) {
+  return boost::math::statistics::median(values.begin(), values.end());
 }
 
 }  // namespace mindahl::loop

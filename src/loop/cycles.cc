@@ -1,7 +1,6 @@
 #include "mindahl/loop/cycles.h"
 
 #include <algorithm>
-#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -131,11 +130,6 @@ double MeanOf(std::span<const Swing> swings, double Swing::*member) {
   double sum = 0.0;
   for (const Swing& swing : swings) sum += swing.*member;
   return sum / static_cast<double>(swings.size());
-}
-
-/// Reorders the values.
-double Median(std::span<double> values) {
-  return boost::math::statistics::median(values.begin(), values.end());
 }
 
 /// What swings of one direction usually reach, for the direction that reaches further as `compare`

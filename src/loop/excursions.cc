@@ -9,7 +9,7 @@ namespace mindahl::loop {
 namespace {
 
 /// The extremes, with the record's ends.
-std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement,
+std::pmr::vector<std::size_t> LocalExtremes(std::span<const double> displacement,
                                             std::pmr::memory_resource* scratch) {
   std::pmr::vector<std::size_t> points(scratch);
   FindReversals(displacement, 0.0, points);
@@ -24,7 +24,7 @@ std::pmr::vector<std::size_t> TurningPoints(std::span<const double> displacement
 std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
                                            std::pmr::memory_resource* scratch) {
   // What is still open is kept in front of what has not been looked at.
-  std::pmr::vector<std::size_t> points = TurningPoints(displacement, scratch);
+  std::pmr::vector<std::size_t> points = LocalExtremes(displacement, scratch);
   std::pmr::vector<Excursion> excursions(scratch);
   excursions.reserve(points.size());
   std::size_t open = 0;

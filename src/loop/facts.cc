@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/students_t.hpp>
-#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <functional>
 
@@ -110,16 +109,11 @@ Cycle CycleOf(const RecordView& record, Points points) {
   return cycle;
 }
 
-template <typename Values>
-double Median(Values values) {
-  return boost::math::statistics::median(values.begin(), values.end());
-}
-
 void MeasureGap(const Cycle& cycle, CycleFacts& facts) {
   constexpr std::size_t kParts = 5;
   constexpr double kMiddle = 1.0 / 3;  // of the stroke
-  const auto up = PartsOf<kParts>(cycle.rising, cycle.centre, kMiddle * cycle.reach);
-  const auto down = PartsOf<kParts>(cycle.falling, cycle.centre, kMiddle * cycle.reach);
+  auto up = PartsOf<kParts>(cycle.rising, cycle.centre, kMiddle * cycle.reach);
+  auto down = PartsOf<kParts>(cycle.falling, cycle.centre, kMiddle * cycle.reach);
   if (!up || !down) return;
   std::array<double, kParts> gaps{};
   std::ranges::transform(*up, *down, gaps.begin(), std::minus<>());

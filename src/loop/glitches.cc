@@ -12,13 +12,13 @@
 namespace mindahl::loop {
 namespace {
 
-using Column = std::span<const double>;
+using Readings = std::span<const double>;
 
 /// Share of the steps that are not zero which the usual one is not exceeded by.
 constexpr double kUsualShare = 0.9;
 
 /// The usual step [unit of the column]; 0 where all are zero.
-double UsualStep(Column values, std::pmr::memory_resource* scratch) {
+double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
   std::pmr::vector<double> steps(scratch);
   steps.reserve(values.size());
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -34,7 +34,7 @@ double UsualStep(Column values, std::pmr::memory_resource* scratch) {
 
 /// Can a step be so many times the usual one? Not where more than a tenth of the steps are so large
 /// that the largest is less than that beside them: the usual one is among these, or above.
-bool MayLeap(Column values, double factor, std::pmr::memory_resource* scratch) {
+bool MayLeap(Readings values, double factor, std::pmr::memory_resource* scratch) {
   if (values.size() < 2) return false;
   std::pmr::vector<double> steps(values.size() - 1, scratch);
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = values[i + 1] - values[i];
@@ -47,12 +47,12 @@ bool MayLeap(Column values, double factor, std::pmr::memory_resource* scratch) {
 }
 
 /// A column, what is wrong in it, and the column with lines over that.
-class Channel {
+class MendedChannel {
  public:
-  Channel(Column values, std::pmr::memory_resource* memory)
+  MendedChannel(Readings values, std::pmr::memory_resource* memory)
       : values_(values), mended_(memory), glitches_(memory), memory_(memory) {}
 
-  [[nodiscard]] Column values() const { return mended_.empty() ? values_ : Column(mended_); }
+  [[nodiscard]] Readings values() const { return mended_.empty() ? values_ : Readings(mended_); }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
   /// Of the column as it is when this is first asked for.
@@ -105,7 +105,7 @@ class Channel {
     }
   }
 
-  Column values_;
+  Readings values_;
   std::pmr::vector<double> mended_;
   std::pmr::vector<Glitch> glitches_;
   std::optional<double> usual_step_;
@@ -118,7 +118,7 @@ double OutsideOf(double one, double other) {
 }
 
 /// The steps [unit of the column] of neighbours of which neither reads 0 and 0.
-double UsualStepWithoutZeros(Column values, const RecordView& record,
+double UsualStepWithoutZeros(Readings values, const RecordView& record,
                              std::pmr::memory_resource* scratch) {
   std::pmr::vector<double> kept(scratch);
   kept.reserve(values.size());
@@ -155,18 +155,18 @@ std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resour
   return runs;
 }
 
-void FindDropouts(const RecordView& record, const GlitchRules& rules, Channel& displacement,
-                  Channel& force, std::pmr::memory_resource* scratch) {
+void FindDropouts(const RecordView& record, const GlitchRules& rules, MendedChannel& displacement,
+                  MendedChannel& force, std::pmr::memory_resource* scratch) {
   const std::pmr::vector<Run> runs = ZeroRuns(record, scratch);
   if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
-  const Column x = record.displacement;
+  const Readings x = record.displacement;
   const double step_of_x = UsualStepWithoutZeros(x, record, scratch);
   const double step_of_force = UsualStepWithoutZeros(record.force, record, scratch);
   const auto lies_off = [&](const Run& run) {
     if (!run.IsInside(record.size())) {
       return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
     }
-    const auto outside = [&](Column values) {
+    const auto outside = [&](Readings values) {
       return OutsideOf(values[run.begin - 1], values[run.end]);
     };
     return outside(x) > rules.dropout * step_of_x ||
@@ -184,7 +184,7 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules, Channel& d
 
 /// Third largest step about [begin, end), that into it and that out of it aside: a second spike
 /// makes two. 0 with fewer.
-double StepAbout(const Channel& channel, std::size_t begin, std::size_t end,
+double StepAbout(const MendedChannel& channel, std::size_t begin, std::size_t end,
                  const GlitchRules& rules) {
   std::array<double, 3> largest{};
   const auto look_at = [&](std::size_t i) {
@@ -204,8 +204,8 @@ double StepAbout(const Channel& channel, std::size_t begin, std::size_t end,
 }
 
 /// Samples of the spike that begins at i; 0 where none does.
-std::size_t SpikeAt(Channel& channel, std::size_t i, const GlitchRules& rules) {
-  const Column values = channel.values();
+std::size_t SpikeAt(MendedChannel& channel, std::size_t i, const GlitchRules& rules) {
+  const Readings values = channel.values();
   const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
   const double before = sense * values[i - 1];
   double least = sense * values[i];
@@ -223,7 +223,7 @@ std::size_t SpikeAt(Channel& channel, std::size_t i, const GlitchRules& rules) {
 
 /// The next sample from one on, two or later, that leaves its neighbour by so many times the step
 /// before, as hardly one of a clean record does; the last but one where none does.
-std::size_t NextLeap(Column values, std::size_t from, double factor) {
+std::size_t NextLeap(Readings values, std::size_t from, double factor) {
   const std::size_t end = values.size() - 2;
   double before = std::abs(values[from - 1] - values[from - 2]);
   for (std::size_t i = from; i < end; ++i) {
@@ -235,10 +235,10 @@ std::size_t NextLeap(Column values, std::size_t from, double factor) {
 }
 
 /// One pass: a spike may hide another, until it is mended.
-bool FindSpikes(Channel& channel, const GlitchRules& rules) {
+bool FindSpikes(MendedChannel& channel, const GlitchRules& rules) {
   if (channel.size() < 5) return false;
   bool found = false;
-  Column values = channel.values();
+  Readings values = channel.values();
   for (std::size_t i = NextLeap(values, 2, rules.spike); i + 2 < values.size();
        i = NextLeap(values, i + 1, rules.spike)) {
     const std::size_t samples = SpikeAt(channel, i, rules);
@@ -250,7 +250,7 @@ bool FindSpikes(Channel& channel, const GlitchRules& rules) {
   return found;
 }
 
-double LargestStep(const Channel& channel, std::size_t begin, std::size_t end) {
+double LargestStep(const MendedChannel& channel, std::size_t begin, std::size_t end) {
   double largest = 0.0;
   const std::size_t last = std::min(end, channel.size());
   for (std::size_t i = std::max<std::size_t>(begin, 1); i < last; ++i) {
@@ -260,14 +260,14 @@ double LargestStep(const Channel& channel, std::size_t begin, std::size_t end) {
 }
 
 /// Has the column another value at half of the samples of [begin, end) than at the one before?
-bool Moves(const Channel& channel, std::size_t begin, std::size_t end) {
+bool Moves(const MendedChannel& channel, std::size_t begin, std::size_t end) {
   std::size_t moves = 0;
   for (std::size_t i = begin; i < end; ++i) moves += channel.Step(i) > 0 ? 1U : 0U;
   return 2 * moves >= end - begin;
 }
 
 /// Does the column jump where the run [begin, end) of equal values is over?
-bool JumpsAtTheEnd(const Channel& channel, std::size_t begin, std::size_t end,
+bool JumpsAtTheEnd(const MendedChannel& channel, std::size_t begin, std::size_t end,
                    const GlitchRules& rules) {
   const std::size_t length = end - begin;
   const double about = std::max(LargestStep(channel, begin - std::min(begin, length), begin + 1),
@@ -276,7 +276,7 @@ bool JumpsAtTheEnd(const Channel& channel, std::size_t begin, std::size_t end,
 }
 
 /// Does the column go on in the direction that it had in the last samples of [begin, end)?
-bool GoesOn(Column values, std::size_t begin, std::size_t end) {
+bool GoesOn(Readings values, std::size_t begin, std::size_t end) {
   const std::size_t reach = std::min((end - begin) / 2, values.size() - end);
   return (values[end - 1 + reach] - values[end - 1]) * (values[end - 1] - values[end - 1 - reach]) >
          0;
@@ -284,7 +284,7 @@ bool GoesOn(Column values, std::size_t begin, std::size_t end) {
 
 /// The next run of at least so many equal values, two or more, from a sample on; empty at the end.
 /// One of n values has a pair of neighbours at a multiple of n − 1: other pairs are not looked at.
-Run NextRun(Column values, std::size_t from, std::size_t shortest) {
+Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
   for (std::size_t i = from; i + 1 < values.size(); i += shortest - 1) {
     if (values[i] != values[i + 1]) continue;
     std::size_t begin = i;
@@ -297,9 +297,10 @@ Run NextRun(Column values, std::size_t from, std::size_t shortest) {
 }
 
 /// One channel reads one value, away from what it read before and reads again after.
-void FindFlatDropouts(Channel& channel, const Channel& other, const GlitchRules& rules) {
+void FindFlatDropouts(MendedChannel& channel, const MendedChannel& other,
+                      const GlitchRules& rules) {
   const std::size_t size = channel.size();
-  Column values = channel.values();
+  Readings values = channel.values();
   for (Run run = NextRun(values, 1, rules.shortest_held); run.end < size;
        run = NextRun(values, run.end, rules.shortest_held)) {
     const auto& [begin, end] = run;
@@ -318,9 +319,9 @@ void FindFlatDropouts(Channel& channel, const Channel& other, const GlitchRules&
   }
 }
 
-void FindHeld(Channel& channel, const Channel& other, const GlitchRules& rules) {
+void FindHeld(MendedChannel& channel, const MendedChannel& other, const GlitchRules& rules) {
   const std::size_t size = channel.size();
-  Column values = channel.values();
+  Readings values = channel.values();
   for (Run run = NextRun(values, 0, rules.shortest_held); run.end < size;
        run = NextRun(values, run.end, rules.shortest_held)) {
     const auto& [begin, end] = run;
@@ -338,10 +339,10 @@ void FindHeld(Channel& channel, const Channel& other, const GlitchRules& rules) 
 Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
                    std::pmr::memory_resource* memory) {
   constexpr int kPasses = 3;
-  Channel displacement(record.displacement, memory);
-  Channel force(record.force, memory);
+  MendedChannel displacement(record.displacement, memory);
+  MendedChannel force(record.force, memory);
   FindDropouts(record, rules, displacement, force, memory);
-  for (Channel* channel : {&displacement, &force}) {
+  for (MendedChannel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     const bool may_have = MayLeap(channel->values(), rules.spike, memory);
     for (int pass = 0; may_have && pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
@@ -352,7 +353,7 @@ Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
   FindHeld(displacement, force, rules);
   FindHeld(force, displacement, rules);
   Mended mended(memory);
-  for (Channel* channel : {&displacement, &force}) {
+  for (MendedChannel* channel : {&displacement, &force}) {
     channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
     channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
     if (channel->IsWhole()) continue;

@@ -20,7 +20,7 @@ double NoiseOf(std::span<const double> load) {
   std::vector<double> steps(load.size() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = std::abs(load[i + 1] - load[i]);
   constexpr double kOfNormal = 1.4826;
-  return kOfNormal / std::sqrt(2.0) * MedianOf(steps);
+  return kOfNormal / std::sqrt(2.0) * UpperMedian(steps);
 }
 
 /// Medians of five, so that single readings end nothing.
@@ -36,7 +36,7 @@ std::vector<double> WithoutSpikes(std::span<const double> load) {
   return medians;
 }
 
-struct Run {
+struct LoadRun {
   std::size_t first;
   std::size_t last;  // one past
   double load = 0.0;
@@ -54,17 +54,17 @@ class LoadSteps {
   }
 
   [[nodiscard]] std::vector<ConstantLoad> Find() const {
-    std::vector<Run> runs = ConstantRuns();
+    std::vector<LoadRun> runs = ConstantRuns();
     if (runs.size() < 2 || !AreSteps(runs)) return {};
     std::vector<ConstantLoad> pieces;
-    for (const Run& run : runs) pieces.push_back(PieceOf(run));
+    for (const LoadRun& run : runs) pieces.push_back(PieceOf(run));
     return pieces;
   }
 
   [[nodiscard]] std::optional<ConstantLoad> FindSettled() const {
-    const std::vector<Run> runs = ConstantRuns();
+    const std::vector<LoadRun> runs = ConstantRuns();
     const auto longest =
-        std::ranges::max_element(runs, {}, [](const Run& run) { return run.last - run.first; });
+        std::ranges::max_element(runs, {}, [](const LoadRun& run) { return run.last - run.first; });
     if (longest == runs.end()) return std::nullopt;
     const ConstantLoad piece = PieceOf(*longest);
     const auto samples = static_cast<double>(piece.last - piece.first);
@@ -74,7 +74,7 @@ class LoadSteps {
   }
 
  private:
-  [[nodiscard]] ConstantLoad PieceOf(const Run& run) const {
+  [[nodiscard]] ConstantLoad PieceOf(const LoadRun& run) const {
     const std::size_t first = run.first == 0 ? 0 : *std::next(NextTurn(run.first));
     return {.first = first, .last = run.last, .normal_load = run.load};
   }
@@ -86,7 +86,7 @@ class LoadSteps {
   }
 
   /// From a sample on as far as the load stays within the tolerance.
-  [[nodiscard]] Run RunFrom(std::size_t first) const {
+  [[nodiscard]] LoadRun RunFrom(std::size_t first) const {
     double low = load_[first];
     double high = low;
     std::size_t last = first + 1;
@@ -101,9 +101,9 @@ class LoadSteps {
   }
 
   /// Without the ends of the ramps beside it.
-  void Settle(Run& run) const {
+  void Settle(LoadRun& run) const {
     const std::span<const double> load = std::span(load_).subspan(run.first, run.last - run.first);
-    run.load = MedianOf(std::vector<double>(load.begin(), load.end()));
+    run.load = UpperMedian(std::vector<double>(load.begin(), load.end()));
     const double settled = Tolerance(run.load) / 2;
     const auto is_settled = [&](std::size_t i) { return std::abs(load_[i] - run.load) <= settled; };
     while (run.first > 0 && run.first + 1 < run.last && !is_settled(run.first)) ++run.first;
@@ -115,10 +115,10 @@ class LoadSteps {
     run.spread = std::max(high - low - 2 * rules_.noise * noise_, 0.0);
   }
 
-  [[nodiscard]] std::vector<Run> ConstantRuns() const {
-    std::vector<Run> runs;
+  [[nodiscard]] std::vector<LoadRun> ConstantRuns() const {
+    std::vector<LoadRun> runs;
     for (std::size_t i = 0; i < load_.size();) {
-      Run run = RunFrom(i);
+      LoadRun run = RunFrom(i);
       i = run.last;
       Settle(run);
       const auto turns = static_cast<std::size_t>(NextTurn(run.last) - NextTurn(run.first));
@@ -127,7 +127,7 @@ class LoadSteps {
     return runs;
   }
 
-  [[nodiscard]] bool AreSteps(std::span<const Run> runs) const {
+  [[nodiscard]] bool AreSteps(std::span<const LoadRun> runs) const {
     std::size_t samples = runs.front().last - runs.front().first;
     for (std::size_t r = 1; r < runs.size(); ++r) {
       samples += runs[r].last - runs[r].first;

@@ -38,7 +38,7 @@ void RequireOptions(std::size_t records, const PreparationOptions& options) {
 
 /// How far noise that is known spreads [m]: normal noise of n samples reaches √(2 ln n) standard
 /// deviations to either side, and must not make a reversal.
-double ReachOfNoise(const RecordView& record, const PreparationOptions& options) {
+double ReachOfKnownNoise(const RecordView& record, const PreparationOptions& options) {
   if (options.excitation == Channel::kForce) return 0.0;
   const double deviations = std::sqrt(2 * std::log(static_cast<double>(record.size())));
   return 2 * deviations * options.displacement_noise.value_or(0.0);
@@ -90,8 +90,8 @@ void FindTurns(PreparedRecord& prepared, const PreparationOptions& options,
       options.excitation == Channel::kForce ? readings.force : readings.displacement;
   ReversalGate& choice = prepared.gate_choice;
   if (!options.reversal_gate) choice = ChooseReversalGate(excitation, {}, memory);
-  prepared.reversal_gate =
-      options.reversal_gate.value_or(std::max(choice.gate, ReachOfNoise(prepared.record, options)));
+  prepared.reversal_gate = options.reversal_gate.value_or(
+      std::max(choice.gate, ReachOfKnownNoise(prepared.record, options)));
   FindReversals(excitation, prepared.reversal_gate, prepared.reversals);
   choice.gate = prepared.reversal_gate;
   choice.count = prepared.reversals.size();

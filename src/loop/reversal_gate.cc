@@ -21,7 +21,7 @@ double MainDuration(Excursions excursions, std::pmr::memory_resource* scratch) {
   for (const Excursion& excursion : excursions) {
     if (excursion.range >= excursions.back().range / 2) durations.push_back(excursion.duration());
   }
-  return static_cast<double>(MedianOf(durations));
+  return static_cast<double>(UpperMedian(durations));
 }
 
 /// Widest excursion [m] that white noise or an encoder's last digit makes.

@@ -70,7 +70,7 @@ class Trimming {
     for (std::size_t k = 1; k < points_.size(); ++k) {
       lengths.push_back(static_cast<double>(points_[k] - points_[k - 1]));
     }
-    return MedianOf(lengths);
+    return UpperMedian(lengths);
   }
 
   void LeaveOutRest() {
