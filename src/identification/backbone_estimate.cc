@@ -24,12 +24,12 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::size_t kBins = 44;    // of the slip displacement
-constexpr double kNarrowest = 1e-3;  // end of the first, of the largest displacement
-constexpr double kCost = 1.0;        // 2 ln Λ that smoothness may take
-constexpr std::size_t kDraws = 400;  // of noise, for the band
-constexpr double kFirstPart = 0.01;  // of the largest displacement, over which it is stiff
-constexpr double kPlateau = 0.02;    // of the first stiffness
+constexpr std::size_t kBackboneBins = 44;  // of the slip displacement
+constexpr double kNarrowest = 1e-3;        // end of the first, of the largest displacement
+constexpr double kCost = 1.0;              // 2 ln Λ that smoothness may take
+constexpr std::size_t kDraws = 400;        // of noise, for the band
+constexpr double kFirstPart = 0.01;        // of the largest displacement, over which it is stiff
+constexpr double kPlateau = 0.02;          // of the first stiffness
 
 /// Elements with slip displacements spread evenly from one to another, of a stiffness of 1 N/m.
 struct Bin {
@@ -59,8 +59,8 @@ struct Grid {
 Grid MakeGrid(double largest) {
   Grid grid;
   double from = 0.0;
-  for (std::size_t k = 0; k < kBins; ++k) {
-    const double share = static_cast<double>(k) / static_cast<double>(kBins - 1);
+  for (std::size_t k = 0; k < kBackboneBins; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(kBackboneBins - 1);
     const double to = largest * std::pow(kNarrowest, 1 - share);
     grid.bins.push_back({from, to});
     from = to;
@@ -178,7 +178,7 @@ void Center(const std::vector<unsigned char>& counts, Eigen::Ref<Eigen::VectorXd
 }
 
 /// Least squares in the stiffness of every bin, in units of the data.
-struct Series {
+struct BackboneSeries {
   std::vector<Eigen::MatrixXd> columns;  // of each record
   std::vector<Eigen::VectorXd> force;
   Eigen::MatrixXd product;  // AᵀA
@@ -212,7 +212,7 @@ Eigen::MatrixXd SecondDifferences(const Grid& grid) {
   return differences;
 }
 
-Autocorrelation AutocorrelationOf(const Series& series, std::span<const Followed> records,
+Autocorrelation AutocorrelationOf(const BackboneSeries& series, std::span<const Followed> records,
                                   const Eigen::VectorXd& w) {
   std::vector<Eigen::VectorXd> residuals;
   std::vector<std::span<const double>> spans;
@@ -228,8 +228,8 @@ Autocorrelation AutocorrelationOf(const Series& series, std::span<const Followed
 }
 
 /// By how much what comes back in every stroke widens a variance: more strokes tell no more of it.
-double Widening(const Series& series, std::span<const Followed> records, const Eigen::VectorXd& w,
-                const Thresholds& thresholds) {
+double Widening(const BackboneSeries& series, std::span<const Followed> records,
+                const Eigen::VectorXd& w, const Thresholds& thresholds) {
   double widening = 1.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Eigen::VectorXd residual = series.force[r] - series.columns[r] * w;
@@ -243,10 +243,10 @@ double Widening(const Series& series, std::span<const Followed> records, const E
 }
 
 /// Columns and forces over the offset of each record, where it has one.
-Series Assemble(std::span<const Followed> records, const Grid& grid, double force_unit,
-                bool offsets) {
+BackboneSeries Assemble(std::span<const Followed> records, const Grid& grid, double force_unit,
+                        bool offsets) {
   const auto count = static_cast<Eigen::Index>(grid.size());
-  Series series;
+  BackboneSeries series;
   series.product = Eigen::MatrixXd::Zero(count, count);
   series.right = Eigen::VectorXd::Zero(count);
   for (const Followed& record : records) {
@@ -277,7 +277,7 @@ struct Smoothest {
   Eigen::VectorXd w;
 };
 
-Smoothest FindSmoothest(const Series& series, std::span<const Followed> records,
+Smoothest FindSmoothest(const BackboneSeries& series, std::span<const Followed> records,
                         const Eigen::MatrixXd& differences) {
   constexpr double kFree = 1e-12;  // as free as rounding allows
   constexpr double kStiff = 1e6;
@@ -314,9 +314,9 @@ struct SeenNoise {
   Eigen::MatrixXd root;
 };
 
-SeenNoise MeasureNoise(const Series& series, std::span<const Followed> records,
-                       const Smoothest& smoothest, std::optional<double> known,
-                       const Thresholds& thresholds) {
+SeenNoise NoiseAboutBackbone(const BackboneSeries& series, std::span<const Followed> records,
+                             const Smoothest& smoothest, std::optional<double> known,
+                             const Thresholds& thresholds) {
   const Autocorrelation autocorrelation = AutocorrelationOf(series, records, smoothest.w);
   const auto count = smoothest.w.size();
   Eigen::MatrixXd correlated = Eigen::MatrixXd::Zero(count, count);
@@ -338,8 +338,8 @@ SeenNoise MeasureNoise(const Series& series, std::span<const Followed> records,
 
 /// How far drawn stiffnesses are from the found ones, a column a draw. The smoothness is a prior of
 /// second differences whose variance is that of the noise over its weight.
-Eigen::MatrixXd Draw(const Series& series, const Smoothest& smoothest, const SeenNoise& noise,
-                     const Eigen::MatrixXd& differences) {
+Eigen::MatrixXd Draw(const BackboneSeries& series, const Smoothest& smoothest,
+                     const SeenNoise& noise, const Eigen::MatrixXd& differences) {
   const double prior =
       std::sqrt(noise.variance * series.samples / noise.effective_samples * smoothest.weight);
   Eigen::MatrixXd off(smoothest.w.size(), static_cast<Eigen::Index>(kDraws));
@@ -401,12 +401,13 @@ BackboneEstimate EstimateBackbone(std::span<const loop::RecordView> records,
   }
   const Grid grid = MakeGrid(largest);
   const double stiffness_unit = force_unit / largest;
-  const Series series = Assemble(followed, grid, force_unit, options.offsets);
+  const BackboneSeries series = Assemble(followed, grid, force_unit, options.offsets);
   const Eigen::MatrixXd differences = SecondDifferences(grid);
   const Smoothest smoothest = FindSmoothest(series, followed, differences);
   std::optional<double> known;
   if (options.force_noise) known = *options.force_noise / force_unit;
-  const SeenNoise noise = MeasureNoise(series, followed, smoothest, known, options.thresholds);
+  const SeenNoise noise =
+      NoiseAboutBackbone(series, followed, smoothest, known, options.thresholds);
   const Eigen::MatrixXd drawn = Draw(series, smoothest, noise, differences);
 
   BackboneEstimate estimate;

@@ -11,25 +11,25 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::size_t kBins = 20;
+constexpr std::size_t kStrokeBins = 20;
 
 /// Means of one stroke's residuals over its parts; NaN where a part has none.
-std::array<double, kBins> BinMeans(const MainStroke& stroke, std::span<const double> displacement,
-                                   std::span<const double> residual,
-                                   std::span<const unsigned char> counts) {
-  std::array<double, kBins> sum{};
-  std::array<std::size_t, kBins> count{};
+std::array<double, kStrokeBins> BinMeans(const MainStroke& stroke, std::span<const double> displacement,
+                                         std::span<const double> residual,
+                                         std::span<const unsigned char> counts) {
+  std::array<double, kStrokeBins> sum{};
+  std::array<std::size_t, kStrokeBins> count{};
   const double from = displacement[stroke.begin];
   const double way = displacement[stroke.end] - from;
   for (std::size_t i = stroke.begin; i <= stroke.end; ++i) {
     if (counts[i] == 0) continue;
     const double share = std::clamp((displacement[i] - from) / way, 0.0, 1.0);
-    const auto bin = std::min(static_cast<std::size_t>(share * kBins), kBins - 1);
+    const auto bin = std::min(static_cast<std::size_t>(share * kStrokeBins), kStrokeBins - 1);
     sum[bin] += residual[i];
     ++count[bin];
   }
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
+  for (std::size_t bin = 0; bin < kStrokeBins; ++bin) {
     sum[bin] = count[bin] > 0 ? sum[bin] / static_cast<double>(count[bin]) : kNone;
   }
   return sum;
@@ -58,7 +58,7 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
   structure.directions[1].direction = -1;
   if (displacement.empty()) return structure;
 
-  std::array<std::vector<std::array<double, kBins>>, 2> means;
+  std::array<std::vector<std::array<double, kStrokeBins>>, 2> means;
   std::array<double, 2> samples{};
   double squares = 0.0;
   for (const MainStroke& stroke : MainStrokes(displacement, reversals, options.main_stroke)) {
@@ -89,7 +89,7 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
     direction.mean /= samples[side];
     direction.rms = std::sqrt(direction.rms / samples[side]);
     structure.strokes = std::max(structure.strokes, direction.strokes);
-    for (std::size_t bin = 0; bin < kBins; ++bin) {
+    for (std::size_t bin = 0; bin < kStrokeBins; ++bin) {
       double sum = 0.0;
       double count = 0.0;
       for (const auto& stroke : means[side]) {
@@ -105,7 +105,7 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
       }
       const double spread = count > 1 ? scatter / (count - 1) : 0.0;
       direction.bins.push_back(
-          {(static_cast<double>(bin) + 0.5) / kBins, mean, std::sqrt(spread / count)});
+          {(static_cast<double>(bin) + 0.5) / kStrokeBins, mean, std::sqrt(spread / count)});
       if (count < 2) continue;
       variance.between += count * mean * mean;
       variance.within += scatter;

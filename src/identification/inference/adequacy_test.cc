@@ -11,9 +11,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// Each column of departures is paid for by so many samples, or it is not looked for.
-constexpr std::size_t kSamplesAColumn = 8;
-
 /// The Jacobian without the columns of parameters at a bound: what these would still explain, they
 /// may not.
 Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
@@ -92,7 +89,7 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
 namespace {
 
 /// Place of a parameter among those that are free, their number where it is not.
-std::size_t PlaceOf(const Problem& problem, std::size_t parameter) {
+std::size_t PlaceAmongFree(const Problem& problem, std::size_t parameter) {
   const auto& free = problem.parameters.free();
   return static_cast<std::size_t>(std::ranges::find(free, parameter) - free.begin());
 }
@@ -101,7 +98,7 @@ std::size_t PlaceOf(const Problem& problem, std::size_t parameter) {
 
 double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
               std::size_t parameter, const ParameterEstimate& estimate) {
-  const std::size_t place = PlaceOf(problem, parameter);
+  const std::size_t place = PlaceAmongFree(problem, parameter);
   if (place == fit.step.size() || !estimate.lower95 || !estimate.upper95) return 0.0;
   const double half = (*estimate.upper95 - *estimate.lower95) / 2;
   const double moved =
@@ -117,7 +114,7 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
     const std::size_t p = reported[k];
     const Parameter& parameter = problem.parameters[p];
     ParameterEstimate& estimate = estimates[k];
-    const std::size_t place = PlaceOf(problem, p);
+    const std::size_t place = PlaceAmongFree(problem, p);
     for (const DepartureFit& fit : fits) {
       if (place == fit.step.size()) continue;
       // Beyond a factor of e³ a linear step says only that little is known; short of it, it errs

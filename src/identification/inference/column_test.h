@@ -11,6 +11,9 @@
 
 namespace mindahl::identification {
 
+/// Each column is paid for by so many samples, or it is not looked for.
+inline constexpr std::size_t kSamplesAColumn = 8;
+
 /// A linear step from a fit that lets some more columns in.
 struct LinearStep {
   double explains = 0.0;      // share of the sum of squares

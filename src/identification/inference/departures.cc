@@ -15,7 +15,7 @@ namespace mindahl::identification {
 namespace {
 
 /// A sample as the departures see it, in units of the data; time in that of the clock.
-struct Place {
+struct ForcePlace {
   double displacement = 0.0;
   double time = 0.0;  // from the record's middle
   double velocity = 0.0;
@@ -47,15 +47,15 @@ enum class Along {
   kBranch,  // the value is what changes since the branch started, where the force was the parent's
 };
 
-using Value = double (*)(const Place&);
+using ForceDeparture = double (*)(const ForcePlace&);
 
-struct Column {
+struct ForceColumn {
   std::size_t departure;
   Along along;
-  Value value;
+  ForceDeparture value;
 };
 
-enum Row : std::size_t {
+enum DepartureRow : std::size_t {
   kLag,
   kViscous,
   kPlateauSlope,
@@ -183,7 +183,7 @@ constexpr std::array<Departure, 21> kDepartures = {{
 }};
 
 /// How far the branch has come, of the way to slip.
-double Mobilised(const Place& at) {
+double Mobilised(const ForcePlace& at) {
   if (!(at.reach > 0)) return 1.0;
   return std::clamp(std::abs(at.response - at.origin_response) / at.reach, 0.0, 1.0);
 }
@@ -191,53 +191,55 @@ double Mobilised(const Place& at) {
 double Cube(double x) { return x * x * x; }
 
 template <int kHalfWaves>
-double Bulge(const Place& at) {
+double Bulge(const ForcePlace& at) {
   return at.direction * at.reach * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
 }
 
 /// Of slip forces that differ; nothing but an offset of the force of a contact that had slipped.
-double ByAsymmetry(const Place& at) { return at.asymmetry; }
+double ByAsymmetry(const ForcePlace& at) { return at.asymmetry; }
 
-constexpr std::array<Column, 27> kColumns = {{
-    {kLag, Along::kForce, [](const Place& at) { return -at.force_rate; }},
-    {kViscous, Along::kForce, [](const Place& at) { return at.velocity; }},
-    {kPlateauSlope, Along::kForce, [](const Place& at) { return at.displacement; }},
-    {kDrift, Along::kForce, [](const Place& at) { return at.time; }},
-    {kMeasuredLoad, Along::kForce, [](const Place& at) { return at.force * at.load_change; }},
+constexpr std::array<ForceColumn, 27> kForceColumns = {{
+    {kLag, Along::kForce, [](const ForcePlace& at) { return -at.force_rate; }},
+    {kViscous, Along::kForce, [](const ForcePlace& at) { return at.velocity; }},
+    {kPlateauSlope, Along::kForce, [](const ForcePlace& at) { return at.displacement; }},
+    {kDrift, Along::kForce, [](const ForcePlace& at) { return at.time; }},
+    {kMeasuredLoad, Along::kForce, [](const ForcePlace& at) { return at.force * at.load_change; }},
     {kShapeOfLaw, Along::kBranch, Bulge<1>},
     {kShapeOfLaw, Along::kBranch, Bulge<2>},
     {kShapeOfLaw, Along::kBranch, Bulge<3>},
-    {kGuide, Along::kForce, [](const Place& at) { return at.direction; }},
+    {kGuide, Along::kForce, [](const ForcePlace& at) { return at.direction; }},
     {kRig, Along::kBranch,
-     [](const Place& at) { return -at.slope * (at.response - at.origin_response); }},
+     [](const ForcePlace& at) { return -at.slope * (at.response - at.origin_response); }},
     {kBacklash, Along::kBranch,
-     [](const Place& at) { return at.sets_out ? 0.0 : -at.slope * at.direction; }},
+     [](const ForcePlace& at) { return at.sets_out ? 0.0 : -at.slope * at.direction; }},
     {kSensor, Along::kBranch,
-     [](const Place& at) {
+     [](const ForcePlace& at) {
        return at.slope * (at.displacement * at.displacement - at.origin * at.origin);
      }},
     {kSensor, Along::kBranch,
-     [](const Place& at) { return at.slope * (Cube(at.displacement) - Cube(at.origin)); }},
-    {kInertia, Along::kForce, [](const Place& at) { return at.acceleration; }},
-    {kUnequal, Along::kForce, [](const Place& at) { return std::abs(at.force); }},
+     [](const ForcePlace& at) { return at.slope * (Cube(at.displacement) - Cube(at.origin)); }},
+    {kInertia, Along::kForce, [](const ForcePlace& at) { return at.acceleration; }},
+    {kUnequal, Along::kForce, [](const ForcePlace& at) { return std::abs(at.force); }},
     {kUnequal, Along::kForce, ByAsymmetry},
-    {kRunningIn, Along::kForce, [](const Place& at) { return at.force * at.time; }},
+    {kRunningIn, Along::kForce, [](const ForcePlace& at) { return at.force * at.time; }},
     {kSaturation, Along::kForce,
-     [](const Place& at) {
+     [](const ForcePlace& at) {
        constexpr double kFrom = 0.9;  // of the largest force
        return -std::copysign(std::max(0.0, std::abs(at.force) - kFrom * at.peak), at.force);
      }},
-    {kSaturation, Along::kForce, [](const Place& at) { return Cube(at.force); }},
-    {kLoad, Along::kForce, [](const Place& at) { return at.force * at.displacement; }},
+    {kSaturation, Along::kForce, [](const ForcePlace& at) { return Cube(at.force); }},
+    {kLoad, Along::kForce, [](const ForcePlace& at) { return at.force * at.displacement; }},
     {kLoad, Along::kForce,
-     [](const Place& at) { return at.force * at.displacement * at.displacement; }},
-    {kLoad, Along::kForce, [](const Place& at) { return std::abs(at.force) * at.displacement; }},
-    {kPosition, Along::kForce, [](const Place& at) { return at.displacement * at.displacement; }},
-    {kPosition, Along::kForce, [](const Place& at) { return Cube(at.displacement); }},
-    {kSmoothing, Along::kForce, [](const Place& at) { return at.curvature / 2; }},
+     [](const ForcePlace& at) { return at.force * at.displacement * at.displacement; }},
+    {kLoad, Along::kForce,
+     [](const ForcePlace& at) { return std::abs(at.force) * at.displacement; }},
+    {kPosition, Along::kForce,
+     [](const ForcePlace& at) { return at.displacement * at.displacement; }},
+    {kPosition, Along::kForce, [](const ForcePlace& at) { return Cube(at.displacement); }},
+    {kSmoothing, Along::kForce, [](const ForcePlace& at) { return at.curvature / 2; }},
     // A turn is the first of its repeats, where nothing is missed.
-    {kHeld, Along::kBranch, [](const Place& at) { return at.slope * at.missed; }},
-    {kAmplitude, Along::kForce, [](const Place& at) { return at.force * at.amplitude; }},
+    {kHeld, Along::kBranch, [](const ForcePlace& at) { return at.slope * at.missed; }},
+    {kAmplitude, Along::kForce, [](const ForcePlace& at) { return at.force * at.amplitude; }},
 }};
 
 /// Second derivative by time, of the parabola through every other sample: one between neighbours
@@ -335,10 +337,10 @@ std::vector<std::vector<double>> AmplitudeScale(const ScaledRecords& data) {
 /// Places of a record's samples, branches yet unknown.
 /// @param force     of the contact, over the slip force and at its load
 /// @param complete  that of the whole model
-std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> time,
-                            const Neighbours& neighbours, std::span<const double> force,
-                            std::span<const double> complete,
-                            const models::OriginSensitivity& sensitivity, double peak) {
+std::vector<ForcePlace> PlacesOf(const ScaledRecord& record, std::span<const double> time,
+                                 const Neighbours& neighbours, std::span<const double> force,
+                                 std::span<const double> complete,
+                                 const models::OriginSensitivity& sensitivity, double peak) {
   const std::size_t count = record.size();
   std::vector<double> velocity(count);
   std::vector<double> acceleration(count);
@@ -348,7 +350,7 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
   DeriveTwice(record.displacement, time, neighbours.samples, acceleration);
   Derive(complete, time, neighbours, true, rate);
   DeriveTwice(complete, time, neighbours.samples, curvature);
-  std::vector<Place> places(count);
+  std::vector<ForcePlace> places(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double load = record.LoadAt(i);
     places[i] = {.displacement = record.displacement[i],
@@ -367,9 +369,10 @@ std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> 
   return places;
 }
 
-void FillColumn(const Column& column, const models::LoadingPath& path, const Place& extreme,
-                std::span<const Place> places, std::span<const Place> origins,
-                const ScaledRecord& record, std::span<double> values) {
+void FillColumn(const ForceColumn& column, const models::LoadingPath& path,
+                const ForcePlace& extreme, std::span<const ForcePlace> places,
+                std::span<const ForcePlace> origins, const ScaledRecord& record,
+                std::span<double> values) {
   if (column.along == Along::kForce) {
     for (std::size_t i = 0; i < places.size(); ++i) values[i] = column.value(places[i]);
     return;
@@ -463,7 +466,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
                                !problem.data->load_varies;
   DepartureColumns result;
   result.timed = clock.timed;
-  std::vector<const Column*> wanted;
+  std::vector<const ForceColumn*> wanted;
   for (std::size_t d = 0; d < kDepartures.size(); ++d) {
     const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
       return problem.parameters[p].term->name == kDepartures[d].term;
@@ -474,13 +477,13 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
         });
     const bool is_nothing = (d == kHeld && !is_repeated) || (d == kAmplitude && amplitudes.empty());
     if (is_fitted || is_unknown || is_nothing) continue;
-    const auto is_of = [&](const Column& column) {
+    const auto is_of = [&](const ForceColumn& column) {
       return column.departure == d && (column.value != ByAsymmetry || tells_asymmetry);
     };
-    const auto count = static_cast<std::size_t>(std::ranges::count_if(kColumns, is_of));
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(kForceColumns, is_of));
     if (wanted.size() + count > most) break;
     if (count > 0) ++result.groups;
-    for (const Column& column : kColumns | std::views::filter(is_of)) {
+    for (const ForceColumn& column : kForceColumns | std::views::filter(is_of)) {
       wanted.push_back(&column);
       result.of.push_back(d);
       result.group.push_back(result.groups - 1);
@@ -515,7 +518,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     const ScaledRecord& record = records[r];
     models::OriginSensitivity sensitivity;
     response.DifferentiateByOrigins(point, r, sensitivity);
-    std::vector<Place> places = PlacesOf(
+    std::vector<ForcePlace> places = PlacesOf(
         record, clock.time[r], neighbours[r], std::span(force).subspan(begin, record.size()),
         std::span(complete).subspan(begin, record.size()), sensitivity, peak);
     if (is_repeated) {
@@ -529,10 +532,10 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       places[i].asymmetry = by_asymmetry[begin + i];
     }
     const models::LoadingPath& path = response.PathOf(r, theta);
-    const Place extreme = problem.state == models::InitialState::kSteady
-                              ? SteadyExtreme<Place>(problem, point, record)
-                              : Place{};
-    const std::vector<Place> origins =
+    const ForcePlace extreme = problem.state == models::InitialState::kSteady
+                                   ? SteadyExtreme<ForcePlace>(problem, point, record)
+                                   : ForcePlace{};
+    const std::vector<ForcePlace> origins =
         FollowBranches(*problem.model, path, sensitivity, std::span(places));
     for (std::size_t c = 0; c < wanted.size(); ++c) {
       const std::span<double> values(

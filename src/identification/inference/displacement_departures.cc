@@ -13,7 +13,7 @@ namespace mindahl::identification {
 namespace {
 
 /// A sample as the departures see it, in units of the data; time in that of the clock.
-struct Place {
+struct DisplacementPlace {
   double time = 0.0;  // from the record's middle
   double force = 0.0;
   double displacement = 0.0;  // of the contact, from where it is unloaded
@@ -22,33 +22,35 @@ struct Place {
   std::array<double, 3> bulges{};
 };
 
-using Value = double (*)(const Place&);
+using DisplacementDeparture = double (*)(const DisplacementPlace&);
 
 /// What a factor of one is, in units of the data.
 enum class Size { kOne, kTime, kCompliance, kLength, kRate };
 
-struct Column {
+struct DisplacementColumn {
   std::string_view departure;
   Size size;
-  Value value;
+  DisplacementDeparture value;
 };
 
-constexpr std::array<Column, 9> kColumns = {{
+constexpr std::array<DisplacementColumn, 9> kDisplacementColumns = {{
     // A force that is read late meets the displacement of later.
-    {"channel_lag", Size::kTime, [](const Place& at) { return at.rate; }},
-    {"shape_of_law", Size::kOne, [](const Place& at) { return at.bulges[0]; }},
-    {"shape_of_law", Size::kOne, [](const Place& at) { return at.bulges[1]; }},
-    {"shape_of_law", Size::kOne, [](const Place& at) { return at.bulges[2]; }},
-    {"rig_in_series", Size::kCompliance, [](const Place& at) { return at.force; }},
-    {"backlash", Size::kLength, [](const Place& at) { return at.gap; }},
+    {"channel_lag", Size::kTime, [](const DisplacementPlace& at) { return at.rate; }},
+    {"shape_of_law", Size::kOne, [](const DisplacementPlace& at) { return at.bulges[0]; }},
+    {"shape_of_law", Size::kOne, [](const DisplacementPlace& at) { return at.bulges[1]; }},
+    {"shape_of_law", Size::kOne, [](const DisplacementPlace& at) { return at.bulges[2]; }},
+    {"rig_in_series", Size::kCompliance, [](const DisplacementPlace& at) { return at.force; }},
+    {"backlash", Size::kLength, [](const DisplacementPlace& at) { return at.gap; }},
     {"displacement_sensor", Size::kOne,
-     [](const Place& at) { return -at.displacement * at.displacement; }},
+     [](const DisplacementPlace& at) { return -at.displacement * at.displacement; }},
     {"displacement_sensor", Size::kOne,
-     [](const Place& at) { return -at.displacement * at.displacement * at.displacement; }},
-    {"displacement_drift", Size::kRate, [](const Place& at) { return at.time; }},
+     [](const DisplacementPlace& at) {
+       return -at.displacement * at.displacement * at.displacement;
+     }},
+    {"displacement_drift", Size::kRate, [](const DisplacementPlace& at) { return at.time; }},
 }};
 
-std::size_t PlaceOf(std::string_view code) {
+std::size_t IndexOfDeparture(std::string_view code) {
   return static_cast<std::size_t>(std::ranges::find(Departures(), code, &Departure::code) -
                                   Departures().begin());
 }
@@ -91,7 +93,7 @@ struct Run {
 
 /// Each half wave along each branch, which goes on from what it was where the branch starts.
 void FillBulges(const Problem& problem, const models::LoadingPath& path, double slip_force,
-                double unit, std::span<const double> force, std::span<Place> places) {
+                double unit, std::span<const double> force, std::span<DisplacementPlace> places) {
   const double unloaded = models::UnloadedAt(path);
   std::vector<Run> runs;
   for (const models::Branch& branch : path.branches) {
@@ -117,14 +119,15 @@ void FillBulges(const Problem& problem, const models::LoadingPath& path, double 
   }
 }
 
-std::vector<const Column*> Wanted(const Problem& problem, std::size_t most) {
-  std::vector<const Column*> wanted;
-  for (auto begin = kColumns.begin(); begin != kColumns.end();) {
-    const auto end = std::find_if(begin, kColumns.end(), [&](const Column& column) {
-      return column.departure != begin->departure;
-    });
+std::vector<const DisplacementColumn*> Wanted(const Problem& problem, std::size_t most) {
+  std::vector<const DisplacementColumn*> wanted;
+  for (auto begin = kDisplacementColumns.begin(); begin != kDisplacementColumns.end();) {
+    const auto end = std::find_if(
+        begin, kDisplacementColumns.end(),
+        [&](const DisplacementColumn& column) { return column.departure != begin->departure; });
     const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
-      return problem.parameters[p].term->name == Departures()[PlaceOf(begin->departure)].term;
+      return problem.parameters[p].term->name ==
+             Departures()[IndexOfDeparture(begin->departure)].term;
     });
     if (!is_fitted) {
       if (wanted.size() + static_cast<std::size_t>(end - begin) > most) break;
@@ -146,9 +149,9 @@ DepartureColumns ColumnsOfDisplacementDepartures(const Problem& problem,
   const Clock clock = ClockOf(data, neighbours);
   DepartureColumns result;
   result.timed = clock.timed;
-  const std::vector<const Column*> wanted = Wanted(problem, most);
-  for (const Column* const column : wanted) {
-    const std::size_t departure = PlaceOf(column->departure);
+  const std::vector<const DisplacementColumn*> wanted = Wanted(problem, most);
+  for (const DisplacementColumn* const column : wanted) {
+    const std::size_t departure = IndexOfDeparture(column->departure);
     if (result.of.empty() || result.of.back() != departure) ++result.groups;
     result.of.push_back(departure);
     result.group.push_back(result.groups - 1);
@@ -168,7 +171,7 @@ DepartureColumns ColumnsOfDisplacementDepartures(const Problem& problem,
     for (double& value : displacement) value *= scale;
     std::vector<double> rate(record.size());
     Derive(displacement, clock.time[r], neighbours[r], true, rate);
-    std::vector<Place> places(record.size());
+    std::vector<DisplacementPlace> places(record.size());
     for (std::size_t i = 0; i < record.size(); ++i) {
       places[i].time = clock.time[r][i];
       places[i].force = record.force[i];

@@ -12,7 +12,7 @@
 namespace mindahl::identification {
 namespace {
 
-enum Row : std::size_t { kHeavyTails, kStickSlip };
+enum IrregularityRow : std::size_t { kHeavyTails, kStickSlip };
 
 constexpr std::array<Irregularity, 2> kIrregularities = {{
     {.code = "heavy_tails",

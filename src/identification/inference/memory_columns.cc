@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "identification/inference/branch_places.h"
+#include "identification/inference/column_test.h"
 #include "identification/solve/turning_points.h"
 #include "mindahl/identification/memory.h"
 
 namespace mindahl::identification {
 namespace {
 
-/// Each column is paid for by so many samples.
-constexpr std::size_t kSamplesAColumn = 8;
 constexpr std::size_t kMostShapes = 10;
 constexpr std::size_t kMostWaves = 4;
 constexpr std::size_t kFewestShapes = 3;
@@ -28,7 +27,7 @@ constexpr double kSeenWay = 0.25;
 constexpr double kEarly = 0.1;
 
 /// A sample on its branch, or the origin of a branch on the one before (OnBranch).
-struct Place {
+struct BranchPlace {
   double displacement = 0.0;
   double response = 0.0;
   double slope = 0.0;
@@ -47,18 +46,20 @@ struct Extent {
   double force = 0.0;   // the largest response
 };
 
-double Way(const Place& at) { return std::abs(at.displacement - at.origin); }
+double Way(const BranchPlace& at) { return std::abs(at.displacement - at.origin); }
 
 /// Way on the branch over that of the widest, whose virgin branch has half the way of a stroke.
-double ShareOfStroke(const Place& at, const Extent& extent) {
+double ShareOfStroke(const BranchPlace& at, const Extent& extent) {
   return Way(at) * (at.virgin ? 2 : 1) / extent.stroke;
 }
 
 /// By how much a branch of Masing's law is larger than the virgin one.
-double ScaleOf(const Place& at) { return at.virgin ? 1.0 : 2.0; }
+double ScaleOf(const BranchPlace& at) { return at.virgin ? 1.0 : 2.0; }
 
 /// Against the sense of the branch, where it starts, over Tc: T*/Tc of a steady loop.
-double HeightOf(const Place& at) { return at.virgin ? 0.0 : -at.direction * at.origin_response; }
+double HeightOf(const BranchPlace& at) {
+  return at.virgin ? 0.0 : -at.direction * at.origin_response;
+}
 
 double Wave(std::size_t number, double share) {
   return std::cos(static_cast<double>(number) * std::numbers::pi * std::min(share, 1.0));
@@ -66,22 +67,22 @@ double Wave(std::size_t number, double share) {
 
 /// A change of the backbone, F + εB, added up along branches: s·m·B(way/m), m = 1 or 2. Densest
 /// where branches begin: B is a cosine of the root of the way.
-double ChangeOfBackbone(std::size_t number, const Place& at, const Extent& extent) {
+double ChangeOfBackbone(std::size_t number, const BranchPlace& at, const Extent& extent) {
   return at.direction * ScaleOf(at) * (Wave(number, std::sqrt(ShareOfStroke(at, extent))) - 1.0);
 }
 
 /// A change of the curve dT/dδ = g(sT) by B(sT), of which a branch has what lies between its
 /// start and here; what it was at the start is carried on by the gain.
-double ChangeOfCurve(std::size_t number, const Place& at, const Extent& extent) {
+double ChangeOfCurve(std::size_t number, const BranchPlace& at, const Extent& extent) {
   const auto wave = [&](double response) {
     return Wave(number, std::clamp((1 + at.direction * response / extent.force) / 2, 0.0, 1.0));
   };
   return at.direction * (wave(at.response) - at.gain * wave(at.origin_response));
 }
 
-std::vector<Place> PlacesOf(const ScaledRecord& record, std::span<const double> response,
-                            const models::OriginSensitivity& sensitivity) {
-  std::vector<Place> places(record.size());
+std::vector<BranchPlace> PlacesOf(const ScaledRecord& record, std::span<const double> response,
+                                  const models::OriginSensitivity& sensitivity) {
+  std::vector<BranchPlace> places(record.size());
   for (std::size_t i = 0; i < record.size(); ++i) {
     places[i].displacement = record.displacement[i];
     places[i].response = response[i];
@@ -112,7 +113,7 @@ std::vector<double> WaySinceReturn(const ScaledRecord& record, models::InitialSt
 
 /// All samples of all records on the branches of a law.
 struct Samples {
-  std::vector<Place> places;
+  std::vector<BranchPlace> places;
   std::vector<double> way_since_return;
   Extent extent;
 };
@@ -167,7 +168,7 @@ void AddDifferences(const Samples& samples, std::size_t waves, double rate, Memo
   Spread virgin;
   Spread after_reversal;
   Spread directions;
-  for (const Place& at : samples.places) {
+  for (const BranchPlace& at : samples.places) {
     if (at.virgin) virgin.Add(ShareOfStroke(at, extent));
     directions.Add(at.direction);
     if (!at.virgin) after_reversal.Add(HeightOf(at));
@@ -176,20 +177,21 @@ void AddDifferences(const Samples& samples, std::size_t waves, double rate, Memo
   const bool has_heights = after_reversal.range() > kOneForce * extent.force;
   if (has_virgin) {
     for (std::size_t k = 0; k < waves; ++k) {
-      columns.Add(kVirginBranch, [&](const Place& at, double) {
+      columns.Add(kVirginBranch, [&](const BranchPlace& at, double) {
         return at.virgin ? at.direction * Wave(k, ShareOfStroke(at, extent)) : 0.0;
       });
     }
   }
   if (directions.range() > 0) {
     for (std::size_t k = 0; k < waves; ++k) {
-      columns.Add(kDirections,
-                  [&](const Place& at, double) { return Wave(k, ShareOfStroke(at, extent)); });
+      columns.Add(kDirections, [&](const BranchPlace& at, double) {
+        return Wave(k, ShareOfStroke(at, extent));
+      });
     }
   }
   if (has_heights) {
     for (std::size_t k = 0; k < waves; ++k) {
-      columns.Add(kAmplitudes, [&](const Place& at, double) {
+      columns.Add(kAmplitudes, [&](const BranchPlace& at, double) {
         if (at.virgin) return 0.0;
         return at.direction * (HeightOf(at) - after_reversal.mean()) *
                Wave(k, ShareOfStroke(at, extent));
@@ -197,15 +199,15 @@ void AddDifferences(const Samples& samples, std::size_t waves, double rate, Memo
     }
   }
   if (has_virgin || has_heights) {
-    columns.Add(kSlopeAtReversal, [&](const Place& at, double) {
+    columns.Add(kSlopeAtReversal, [&](const BranchPlace& at, double) {
       const double way = Way(at);
       return at.direction * HeightOf(at) * rate * way * std::exp(-way / (kEarly * extent.stroke));
     });
   }
   if (std::ranges::any_of(samples.way_since_return, [](double way) { return way >= 0; })) {
     columns.Add(kReturnPoint,
-                [&](const Place& at, double way) { return way >= 0 ? at.direction : 0.0; });
-    columns.Add(kReturnPoint, [&](const Place& at, double way) {
+                [&](const BranchPlace& at, double way) { return way >= 0 ? at.direction : 0.0; });
+    columns.Add(kReturnPoint, [&](const BranchPlace& at, double way) {
       return way >= 0 ? at.direction * std::exp(-way / (kEarly * extent.stroke)) : 0.0;
     });
   }
@@ -264,18 +266,19 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
     const ScaledRecord& record = records[r];
     models::OriginSensitivity sensitivity;
     response.DifferentiateByOrigins(point, r, sensitivity);
-    std::vector<Place> places =
+    std::vector<BranchPlace> places =
         PlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity);
     const models::LoadingPath& path = response.PathOf(r, theta);
-    const Place extreme = problem.state == models::InitialState::kSteady
-                              ? SteadyExtreme<Place>(problem, point, record)
-                              : Place{};
-    const std::vector<Place> origins =
+    const BranchPlace extreme = problem.state == models::InitialState::kSteady
+                                    ? SteadyExtreme<BranchPlace>(problem, point, record)
+                                    : BranchPlace{};
+    const std::vector<BranchPlace> origins =
         FollowBranches(*problem.model, path, sensitivity, std::span(places));
     for (std::size_t j = 0; j < resolution.shapes; ++j) {
-      const auto value = [&](const Place& at) { return change(j + 1, at, extent); };
+      const auto value = [&](const BranchPlace& at) { return change(j + 1, at, extent); };
       FillAlongBranches(
-          value, path, extreme, std::span<const Place>(places), std::span<const Place>(origins),
+          value, path, extreme, std::span<const BranchPlace>(places),
+          std::span<const BranchPlace>(origins),
           {result.shape.col(static_cast<Eigen::Index>(j)).data() + begin, record.size()});
     }
     const std::vector<double> since = WaySinceReturn(record, problem.state, extent.stroke);

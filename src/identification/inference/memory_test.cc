@@ -39,11 +39,11 @@ struct Answer {
 };
 
 /// A law's memory, its shape let free, before the comparisons.
-class Memory {
+class MemoryTrial {
  public:
   /// @param other  null where the two laws are one curve
-  Memory(const FittedLaw& law, const FittedLaw* other, const MemoryResolution& resolution,
-         const Noise& noise, const DisplacementEffect& displacement, Response& response)
+  MemoryTrial(const FittedLaw& law, const FittedLaw* other, const MemoryResolution& resolution,
+              const Noise& noise, const DisplacementEffect& displacement, Response& response)
       : law_(law),
         noise_(noise),
         displacement_(displacement),
@@ -54,7 +54,7 @@ class Memory {
         test_(Test(nullptr)) {}
 
   /// By the noise of its own, or that of the law which leaves less.
-  [[nodiscard]] Answer Ask(const Memory* other) const {
+  [[nodiscard]] Answer Ask(const MemoryTrial* other) const {
     return other != nullptr && other->test_.variance() < test_.variance()
                ? AskOf(Test(&other->test_))
                : AskOf(test_);
@@ -121,8 +121,8 @@ MemoryTest TestMemory(const FittedLaw& masing, const FittedLaw* dahl, const Nois
   MemoryTest test;
   const MemoryResolution resolution = ResolutionOf(*masing.problem);
   if (resolution.waves == 0) return test;
-  const Memory of_masing(masing, dahl, resolution, noise, displacement, response);
-  std::optional<Memory> of_dahl;
+  const MemoryTrial of_masing(masing, dahl, resolution, noise, displacement, response);
+  std::optional<MemoryTrial> of_dahl;
   if (dahl != nullptr) of_dahl.emplace(*dahl, &masing, resolution, noise, displacement, response);
   const Answer by_masing = of_masing.Ask(of_dahl ? &*of_dahl : nullptr);
   const Answer by_dahl = of_dahl ? of_dahl->Ask(&of_masing) : by_masing;

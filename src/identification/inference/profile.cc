@@ -15,7 +15,7 @@ namespace {
 constexpr std::array kGrid = {0.9, 0.95, 1.0, 1.03, 1.1, 1.25, 1.5, 2.0, 3.0, 6.0, 20.0};
 /// A barrier this many times the critical ratio high has no valley behind it.
 constexpr double kHopeless = 100.0;
-constexpr int kBisections = 6;
+constexpr int kProfileBisections = 6;
 constexpr double kRigid = 1e3;
 
 /// As a likelihood ratio of one parameter counts.
@@ -242,7 +242,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
         far_end_is_open && upwards && (grid.empty() || parameter.upper >= std::log(kGrid.back()));
     if (!any_rejected) return open;
     double outside = rejected;
-    for (int i = 0; i < kBisections; ++i) {
+    for (int i = 0; i < kProfileBisections; ++i) {
       const double middle = accepted_theta[kSlipForce] / 2 + outside / 2;
       if (look_at(middle, Continue(problem.parameters, accepted_theta, middle)) < critical) {
         Include(profile.ranges, held.solution().theta);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMindlin = 1.0 / 3;
 constexpr std::array kNames = {"virgin", "unloading", "reloading"};
-constexpr std::size_t kFewest = 10;
+constexpr std::size_t kFewestOfKind = 10;
 
 /// Of α.
 Evidence EvidenceOfShape(const Noise& noise, const Estimates& estimates) {
@@ -115,7 +115,7 @@ std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution&
   }
   std::vector<std::size_t> present;
   for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
-    if (samples[kind] >= kFewest) present.push_back(kind);
+    if (samples[kind] >= kFewestOfKind) present.push_back(kind);
   }
   if (present.size() < 2) return {};
 

@@ -12,10 +12,10 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr double kSliding = 0.8;     // of the largest force: the plateau
-constexpr double kLarge = 5.0;       // deviations of the steps
-constexpr double kNormal = 1.4826;   // standard deviation over median deviation
-constexpr std::size_t kFewest = 20;  // steps that tell their own deviation
+constexpr double kSliding = 0.8;          // of the largest force: the plateau
+constexpr double kLarge = 5.0;            // deviations of the steps
+constexpr double kNormal = 1.4826;        // standard deviation over median deviation
+constexpr std::size_t kFewestSteps = 20;  // steps that tell their own deviation
 
 /// The residual's change from one sample to the next while the contact slides, as the measured
 /// force grows along the motion.
@@ -87,7 +87,7 @@ Teeth FitTeeth(std::span<const FittedSample> samples, std::span<const Step> step
 
 std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> samples) {
   const std::vector<Step> steps = StepsOfSliding(samples);
-  if (steps.size() < kFewest) return std::nullopt;
+  if (steps.size() < kFewestSteps) return std::nullopt;
   std::vector<double> growths;
   for (const Step& step : steps) growths.push_back(step.growth);
   std::vector<double> work = growths;

@@ -11,41 +11,41 @@ namespace mindahl::identification {
 namespace {
 
 /// What a finding means for the parameters that it names.
-struct Row {
+struct VerdictRow {
   std::string_view code;
   Identifiability verdict;
   bool holds_without_model = false;  // also where the model is inadequate
 };
 
 constexpr std::array kVerdicts = {
-    Row{"no_model_fits", Identifiability::kNotIdentifiable, true},
-    Row{"energy_contradiction", Identifiability::kNotIdentifiable, true},
-    Row{"model_inadequate", Identifiability::kNotIdentifiable, true},
-    Row{"undetermined_parameter", Identifiability::kNotIdentifiable},
-    Row{"undetermined_combination", Identifiability::kNotIdentifiable},
-    Row{"sigma_not_identifiable", Identifiability::kNotIdentifiable},
-    Row{"alpha_not_identifiable", Identifiability::kNotIdentifiable},
-    Row{"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
-    Row{"shape_or_rig", Identifiability::kNotIdentifiable},
-    Row{"unknown_past", Identifiability::kNotIdentifiable},
-    Row{"few_places", Identifiability::kNotIdentifiable},
-    Row{"loop_not_seen", Identifiability::kNotIdentifiable, true},
-    Row{"rig_not_tried", Identifiability::kNotIdentifiable},
-    Row{"asymmetry_not_identifiable", Identifiability::kNotIdentifiable},
-    Row{"slip_force_bounded_below", Identifiability::kBoundedBelow},
-    Row{"sigma_bounded_below", Identifiability::kBoundedBelow},
-    Row{"alpha_limited_by_load", Identifiability::kBoundedBelow},
-    Row{"slip_force_extrapolated", Identifiability::kExtrapolated},
-    Row{"initial_state_undecided", Identifiability::kIdentifiable, true},
-    Row{"systematic_residual", Identifiability::kIdentifiable, true},
-    Row{"turning_points_between_samples", Identifiability::kIdentifiable, true},
+    VerdictRow{"no_model_fits", Identifiability::kNotIdentifiable, true},
+    VerdictRow{"energy_contradiction", Identifiability::kNotIdentifiable, true},
+    VerdictRow{"model_inadequate", Identifiability::kNotIdentifiable, true},
+    VerdictRow{"undetermined_parameter", Identifiability::kNotIdentifiable},
+    VerdictRow{"undetermined_combination", Identifiability::kNotIdentifiable},
+    VerdictRow{"sigma_not_identifiable", Identifiability::kNotIdentifiable},
+    VerdictRow{"alpha_not_identifiable", Identifiability::kNotIdentifiable},
+    VerdictRow{"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
+    VerdictRow{"shape_or_rig", Identifiability::kNotIdentifiable},
+    VerdictRow{"unknown_past", Identifiability::kNotIdentifiable},
+    VerdictRow{"few_places", Identifiability::kNotIdentifiable},
+    VerdictRow{"loop_not_seen", Identifiability::kNotIdentifiable, true},
+    VerdictRow{"rig_not_tried", Identifiability::kNotIdentifiable},
+    VerdictRow{"asymmetry_not_identifiable", Identifiability::kNotIdentifiable},
+    VerdictRow{"slip_force_bounded_below", Identifiability::kBoundedBelow},
+    VerdictRow{"sigma_bounded_below", Identifiability::kBoundedBelow},
+    VerdictRow{"alpha_limited_by_load", Identifiability::kBoundedBelow},
+    VerdictRow{"slip_force_extrapolated", Identifiability::kExtrapolated},
+    VerdictRow{"initial_state_undecided", Identifiability::kIdentifiable, true},
+    VerdictRow{"systematic_residual", Identifiability::kIdentifiable, true},
+    VerdictRow{"turning_points_between_samples", Identifiability::kIdentifiable, true},
     // Of its own law a parameter is as well known as before.
-    Row{"law_undecided", Identifiability::kIdentifiable},
-    Row{"other_law_fits_better", Identifiability::kIdentifiable, true},
+    VerdictRow{"law_undecided", Identifiability::kIdentifiable},
+    VerdictRow{"other_law_fits_better", Identifiability::kIdentifiable, true},
 };
 
-const Row& RowOf(const Finding& finding) {
-  const auto row = std::ranges::find(kVerdicts, finding.code, &Row::code);
+const VerdictRow& RowOf(const Finding& finding) {
+  const auto row = std::ranges::find(kVerdicts, finding.code, &VerdictRow::code);
   if (row == kVerdicts.end()) {
     throw std::logic_error("the finding has no verdict: " + std::string(finding.code));
   }

@@ -14,12 +14,12 @@
 namespace mindahl::identification {
 namespace {
 
-struct Range {
+struct ColumnRange {
   double middle;
   double half;
 };
 
-Range RangeOf(std::span<const double> values) {
+ColumnRange RangeOf(std::span<const double> values) {
   const auto [lowest, highest] = ExtremesOf(values);
   const double half = highest / 2 - lowest / 2;
   return {lowest + half, half};
@@ -179,7 +179,7 @@ const loop::Covariate* FindCovariate(const loop::RecordView& record, std::string
 }
 
 /// Half the largest range that a column has in a record.
-double ScaleOf(std::string_view name, const loop::PreparedRecords& records) {
+double CovariateScale(std::string_view name, const loop::PreparedRecords& records) {
   double scale = 0.0;
   for (std::size_t r = 0; r < records.records.size(); ++r) {
     const loop::Covariate* covariate = FindCovariate(records.records[r].record, name);
@@ -291,8 +291,8 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
   scaled.force = 0.0;
   scaled.counted = records.counted();
   struct Ranges {
-    Range displacement;
-    Range force;
+    ColumnRange displacement;
+    ColumnRange force;
   };
   std::pmr::vector<Ranges> ranges(memory);
   ranges.reserve(records.records.size());
@@ -369,7 +369,7 @@ void AddCovariates(std::span<const std::string> fitted, bool with_others,
     }
   };
   for (const std::string& name : fitted) {
-    const double scale = ScaleOf(name, records);
+    const double scale = CovariateScale(name, records);
     RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
     add(name, scale);
   }
@@ -380,7 +380,7 @@ void AddCovariates(std::span<const std::string> fitted, bool with_others,
       return FindCovariate(record.record, covariate.name) != nullptr;
     });
     if (!all_have_it) continue;
-    const double scale = ScaleOf(covariate.name, records);
+    const double scale = CovariateScale(covariate.name, records);
     if (scale >= kSmallestScale && scale <= kLargestScale) add(covariate.name, scale);
   }
 }

@@ -15,19 +15,20 @@ namespace {
 
 /// Where the plane is looked at: σX/Tc for some α, closer where loops of that shape differ. The
 /// first two cost square roots and divisions only.
-struct Row {
+struct StartRow {
   double shape;
   std::size_t count;
   std::array<double, 10> reaches;  // σX/Tc
 };
 constexpr std::array kRows = {
-    Row{1.0 / 3.0, 10, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 150.}},
-    Row{0.0, 8, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}}, Row{1.0, 5, {0.5, 1.5, 4.0, 12., 60.}},
-    Row{2.5, 4, {0.7, 3.0, 12., 60.}}};
+    StartRow{1.0 / 3.0, 10, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 150.}},
+    StartRow{0.0, 8, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}},
+    StartRow{1.0, 5, {0.5, 1.5, 4.0, 12., 60.}}, StartRow{2.5, 4, {0.7, 3.0, 12., 60.}}};
 /// Of an imposed force, which stays below slip: T*/Tc, closer where loops differ.
-constexpr std::array<Row, 4> kMobilisedRows = {
-    Row{1.0 / 3.0, 7, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}}, Row{0.0, 2, {0.5, 0.99}},
-    Row{1.0, 6, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}}, Row{2.5, 6, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
+constexpr std::array<StartRow, 4> kMobilisedRows = {
+    StartRow{1.0 / 3.0, 7, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}},
+    StartRow{0.0, 2, {0.5, 0.99}}, StartRow{1.0, 6, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
+    StartRow{2.5, 6, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
 /// Where α is held, all of one row.
 constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};
 constexpr double kNear = 4.0;
