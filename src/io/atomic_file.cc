@@ -7,27 +7,22 @@
 
 #include <atomic>
 #include <cerrno>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "io/temporary_names.h"
-#include "mindahl/core/error.h"
+#include "io/write_fault.h"
 
 namespace mindahl::io {
 namespace {
-
-[[noreturn]] void Fail(const std::filesystem::path& path, int error) {
-  throw InputError(fmt::format("cannot write '{}': {}", path.string(), std::strerror(error)));
-}
 
 /// An open file, closed with it. `path` is the name the user knows it by, for messages.
 class OutputFile {
  public:
   OutputFile(const std::string& name, int flags, const std::filesystem::path& path)
       : path_(path), descriptor_(::open(name.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666)) {
-    if (descriptor_ < 0) Fail(path_, errno);
+    if (descriptor_ < 0) ThrowCannotWrite(path_, errno);
   }
   ~OutputFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -36,21 +31,21 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void SetPermissions(mode_t mode) {
-    if (::fchmod(descriptor_, mode & 07777) != 0) Fail(path_, errno);
+    if (::fchmod(descriptor_, mode & 07777) != 0) ThrowCannotWrite(path_, errno);
   }
 
   void Write(std::string_view content) {
     while (!content.empty()) {
       const ssize_t written = ::write(descriptor_, content.data(), content.size());
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) Fail(path_, errno);
+      if (written < 0) ThrowCannotWrite(path_, errno);
       content.remove_prefix(static_cast<std::size_t>(written));
     }
   }
 
   /// A full disk may show only here.
   void Close() {
-    if (::close(std::exchange(descriptor_, -1)) != 0) Fail(path_, errno);
+    if (::close(std::exchange(descriptor_, -1)) != 0) ThrowCannotWrite(path_, errno);
   }
 
  private:
@@ -70,8 +65,8 @@ bool IsBelowDevOrProc(const std::filesystem::path& path) {
   return name.starts_with("/dev/") || name.starts_with("/proc/");
 }
 
-void Replace(const std::filesystem::path& target, const std::optional<struct stat>& old,
-             std::string_view content, const std::filesystem::path& path) {
+void ReplaceFile(const std::filesystem::path& target, const std::optional<struct stat>& old,
+                 std::string_view content, const std::filesystem::path& path) {
   static std::atomic<unsigned> counter = 0;
   const std::string name =
       (target.parent_path() /
@@ -82,7 +77,7 @@ void Replace(const std::filesystem::path& target, const std::optional<struct sta
   if (old) file.SetPermissions(old->st_mode);
   file.Write(content);
   file.Close();
-  if (::rename(name.c_str(), target.c_str()) != 0) Fail(path, errno);
+  if (::rename(name.c_str(), target.c_str()) != 0) ThrowCannotWrite(path, errno);
   temporary.Keep();
 }
 
@@ -90,7 +85,7 @@ void Replace(const std::filesystem::path& target, const std::optional<struct sta
 
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {
   const std::optional<struct stat> old = Status(path);
-  if (old && S_ISDIR(old->st_mode)) Fail(path, EISDIR);
+  if (old && S_ISDIR(old->st_mode)) ThrowCannotWrite(path, EISDIR);
   if (IsBelowDevOrProc(path) || (old && !S_ISREG(old->st_mode))) {
     OutputFile file(path.string(), O_APPEND, path);
     file.Write(content);
@@ -100,7 +95,7 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   std::error_code error;
   const bool is_link = std::filesystem::is_symlink(path, error);
   const std::filesystem::path target = is_link && old ? std::filesystem::canonical(path) : path;
-  Replace(target, old, content, path);
+  ReplaceFile(target, old, content, path);
 }
 
 }  // namespace mindahl::io

@@ -9,6 +9,9 @@
 
 namespace mindahl::io {
 
+/// What some programs begin a file in UTF-8 with.
+inline constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
+
 /// How a text is to be read as a table; csv_table.h states the rules by which it is found.
 struct CsvLayout {
   Delimiter delimiter = Delimiter::kComma;

@@ -23,8 +23,6 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
-
 std::string ReadFile(const std::filesystem::path& path) {
   const auto fail = [&] {
     throw InputError(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));

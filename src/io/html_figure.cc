@@ -19,17 +19,17 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::size_t kMostPoints = 6000;
-constexpr std::size_t kLeastPoints = 64;  // of each of many series
-constexpr std::size_t kColours = 6;       // classes s0 … s5
-constexpr std::size_t kShades = 8;        // classes h0 … h7
+constexpr std::size_t kMostPointsOnPage = 6000;
+constexpr std::size_t kLeastPoints = 64;   // of each of many series
+constexpr std::size_t kColourClasses = 6;  // classes s0 … s5
+constexpr std::size_t kShadeClasses = 8;   // classes h0 … h7
 
 // The drawing [px], where it is not scaled to the page.
 constexpr double kWidth = 560;
 constexpr double kTop = 30;     // the label of the vertical axis
 constexpr double kBottom = 52;  // tics and the label of the horizontal axis
-constexpr double kRight = 16;
-constexpr double kCharacter = 9.6;  // of a tic on a narrow screen, where letters are larger
+constexpr double kRightMargin = 16;
+constexpr double kTicCharacter = 9.6;  // of a tic on a narrow screen, where letters are larger
 
 constexpr std::string_view kStyle = R"css(
 :root{color-scheme:light dark;--paper:#fff;--panel:#f5f6f8;--ink:#1b1f24;--faint:#57606a;--grid:#d8dde3;
@@ -210,7 +210,7 @@ class Drawing {
  public:
   Drawing(const PlotPanel& panel, const Frame& frame) : frame_(frame) {
     AddAxes(panel);
-    const std::size_t most = std::max(kLeastPoints, kMostPoints / panel.series.size());
+    const std::size_t most = std::max(kLeastPoints, kMostPointsOnPage / panel.series.size());
     const std::vector<std::string> colours = Colours(panel);
     for (std::size_t k = 0; k < panel.series.size(); ++k) {
       AddSeries(panel.series[k], colours[k], most);
@@ -227,11 +227,11 @@ class Drawing {
     std::size_t without_shade = 0;
     for (const PlotSeries& series : panel.series) {
       if (series.shade) {
-        const double shade = std::clamp(*series.shade, 0.0, 1.0) * (kShades - 1);
+        const double shade = std::clamp(*series.shade, 0.0, 1.0) * (kShadeClasses - 1);
         colours.push_back(fmt::format("h{}", static_cast<std::size_t>(shade + 0.5)));
       } else {
         if (!series.label.empty() || without_shade == 0) ++without_shade;
-        colours.push_back(fmt::format("s{}", (without_shade - 1) % kColours));
+        colours.push_back(fmt::format("s{}", (without_shade - 1) % kColourClasses));
       }
     }
     return colours;
@@ -299,7 +299,7 @@ class Drawing {
     double last_end = -kWidth;
     for (const double tic : frame_.x.tics()) {
       const std::string label = frame_.x.Label(tic);
-      const double half = kCharacter * static_cast<double>(label.size()) / 2;
+      const double half = kTicCharacter * static_cast<double>(label.size()) / 2;
       const double at = frame_.x.Pixel(tic);
       if (at - half < last_end || at + half > kWidth) continue;
       last_end = at + half;
@@ -396,7 +396,7 @@ class Drawing {
       Add("<path class=\"mark\" d=\"M{} {}V{}\"/>", Coordinate(at), Coordinate(frame_.top),
           Coordinate(frame_.bottom));
       if (mark.label.empty()) continue;
-      const double width = kCharacter * static_cast<double>(mark.label.size());
+      const double width = kTicCharacter * static_cast<double>(mark.label.size());
       line = at < last_end ? line + kLine : 0;
       const bool is_left = at + width > kWidth;
       last_end = at + (is_left ? 0 : width);
@@ -410,7 +410,7 @@ class Drawing {
   std::string text_;
 };
 
-std::string Legend(const PlotPanel& panel) {
+std::string HtmlLegend(const PlotPanel& panel) {
   std::string entries;
   const std::vector<std::string> colours = Drawing::Colours(panel);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
@@ -435,10 +435,10 @@ std::string HtmlFigure(const PlotPanel& panel, const FigureText& text) {
   Frame frame{.x = Axis(left, right, kMarginX, panel.log_x),
               .y = Axis(bottom, top, kMarginY, panel.log_y),
               .left = 0,
-              .right = kWidth - kRight,
+              .right = kWidth - kRightMargin,
               .top = kTop,
               .bottom = kTop + height};
-  frame.left = 14 + kCharacter * static_cast<double>(frame.y.LongestLabel());
+  frame.left = 14 + kTicCharacter * static_cast<double>(frame.y.LongestLabel());
   frame.x.Place(frame.left, frame.right);
   frame.y.Place(frame.bottom, frame.top);
   const std::string id = HtmlText(text.id);
@@ -447,7 +447,7 @@ std::string HtmlFigure(const PlotPanel& panel, const FigureText& text) {
       "<svg class=\"plot\" viewBox=\"0 0 {4} {5}\" role=\"img\" aria-labelledby=\"{0}-title "
       "{0}-text\"><title id=\"{0}-title\">{1}</title><desc id=\"{0}-text\">{2}</desc>{6}</svg>\n"
       "</figure>\n",
-      id, HtmlText(text.title), HtmlText(text.description), Legend(panel), kWidth,
+      id, HtmlText(text.title), HtmlText(text.description), HtmlLegend(panel), kWidth,
       Coordinate(frame.bottom + kBottom), Drawing(panel, frame).Text());
 }
 

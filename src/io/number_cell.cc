@@ -9,8 +9,6 @@
 namespace mindahl::io {
 namespace {
 
-bool IsDigit(char character) { return character >= '0' && character <= '9'; }
-
 bool EqualsIgnoringCase(std::string_view text, std::string_view lower_case) {
   return std::ranges::equal(text, lower_case, [](char a, char b) {
     return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;

@@ -30,6 +30,9 @@ NumberCell ReadNumber(std::string_view cell, bool decimal_comma);
 /// "#DIV/0!". That is a broken number, where another '#' begins a remark.
 bool BeginsWithErrorValue(std::string_view text);
 
+/// Of the ten of ASCII.
+constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
+
 /// `text` without the blanks and tabs around it.
 std::string_view Trimmed(std::string_view text);
 

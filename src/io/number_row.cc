@@ -13,8 +13,6 @@ namespace {
 
 bool IsBlank(char character) { return character == ' ' || character == '\t'; }
 
-bool IsDigit(char character) { return character >= '0' && character <= '9'; }
-
 const char* SkipBlanks(const char* at, const char* end) {
   while (at != end && IsBlank(*at)) ++at;
   return at;

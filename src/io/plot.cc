@@ -181,7 +181,7 @@ Legend LegendOf(const PlotPanel& panel) {
 }
 
 /// Where the axes of a panel are, from the top left of the page [px].
-struct Frame {
+struct PanelFrame {
   double left;
   double right;
   double top;
@@ -338,7 +338,7 @@ class Script {
   }
 
   /// Above the axes in a row that ends with them, or beside them in a column.
-  void AddKey(const PlotPanel& panel, const Frame& frame) {
+  void AddKey(const PlotPanel& panel, const PanelFrame& frame) {
     if (IsLegendBeside(panel)) {
       Add("set key at screen {:.6f}, screen {:.6f} left top vertical Left reverse samplen 3\n",
           FromLeft(frame.right + kRight / 2), FromBottom(frame.top));
@@ -350,7 +350,7 @@ class Script {
 
   /// Labels that would meet stand one under the other, and those that would leave the panel on the
   /// left of their line.
-  void AddMarks(const PlotPanel& panel, const Frame& frame) {
+  void AddMarks(const PlotPanel& panel, const PanelFrame& frame) {
     const auto along = [&](double x) { return panel.log_x ? std::log10(x) : x; };
     double least = std::numeric_limits<double>::infinity();
     double greatest = -least;
@@ -380,7 +380,7 @@ class Script {
     }
   }
 
-  void AddPanel(std::size_t index, const Frame& frame) {
+  void AddPanel(std::size_t index, const PanelFrame& frame) {
     const PlotPanel& panel = plot_.panels[index];
     Add("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n", FromLeft(frame.left),
         FromLeft(frame.right));

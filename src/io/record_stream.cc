@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -15,6 +13,7 @@
 #include <vector>
 
 #include "io/csv_layout.h"
+#include "io/line_pieces.h"
 #include "io/number_row.h"
 #include "io/record_columns.h"
 #include "mindahl/core/error.h"
@@ -24,67 +23,8 @@
 namespace mindahl::io {
 namespace {
 
-constexpr std::size_t kPiece = 1 << 20;  // bytes read at a time
-
 /// Of the first rows: what columns hold is judged from these.
-constexpr std::size_t kJudged = kPiece / 8;
-
-/// A line longer than that is no row of a record.
-constexpr std::size_t kLongestLine = 16 * kPiece;
-
-constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
-
-/// A text in pieces of whole lines.
-class LinePieces {
- public:
-  explicit LinePieces(const std::filesystem::path& path)
-      : name_(path.string()), file_(std::fopen(path.c_str(), "rb"), &std::fclose) {
-    if (!file_) Fail();
-  }
-
-  /// @returns whole lines, the last of the file perhaps without its end; empty at the end. Valid
-  ///   until the next call
-  std::string_view Next() {
-    size_ -= given_;
-    std::memmove(buffer_.data(), buffer_.data() + given_, size_);
-    given_ = 0;
-    std::size_t end = std::string::npos;  // of the last line's end
-    while (end == std::string::npos && !at_end_) {
-      if (size_ > kLongestLine) {
-        throw InputError(
-            fmt::format("{}: has a line of more than {} bytes: lines must end in LF or CRLF", name_,
-                        kLongestLine));
-      }
-      if (buffer_.size() < size_ + kPiece) buffer_.resize(size_ + kPiece);
-      const std::size_t size = std::fread(buffer_.data() + size_, 1, kPiece, file_.get());
-      if (std::ferror(file_.get()) != 0) Fail();
-      size_ += size;
-      bytes_ += size;
-      at_end_ = size < kPiece;
-      end = Text().rfind('\n');
-    }
-    given_ = at_end_ ? size_ : end + 1;
-    return Text().substr(0, given_);
-  }
-
-  [[nodiscard]] bool at_end() const { return at_end_; }
-  [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
-
- private:
-  [[noreturn]] void Fail() const {
-    throw InputError(fmt::format("cannot read '{}': {}", name_, std::strerror(errno)));
-  }
-
-  [[nodiscard]] std::string_view Text() const { return {buffer_.data(), size_}; }
-
-  std::string name_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
-  std::vector<char> buffer_ = std::vector<char>(kPiece);
-  std::size_t size_ = 0;   // bytes of it that were read
-  std::size_t given_ = 0;  // bytes of these that were returned
-  bool at_end_ = false;
-  std::uintmax_t bytes_ = 0;
-};
+constexpr std::size_t kJudged = LinePieces::kPiece / 8;
 
 /// Takes the first line off a text, without its end.
 std::string_view TakeLine(std::string_view& text) {
@@ -98,16 +38,16 @@ std::string_view TakeLine(std::string_view& text) {
   return line;
 }
 
-struct Channel {
-  std::size_t column;  // from 0
-  Unit unit;
-  std::vector<double> Samples::*values;
-  std::string_view name;
-};
-
 }  // namespace
 
 struct RecordStream::State {
+  struct StreamedColumn {
+    std::size_t column;  // from 0
+    Unit unit;
+    std::vector<double> Samples::*values;
+    std::string_view name;
+  };
+
   State(const std::filesystem::path& path, const RecordColumns& columns, BrokenRows policy)
       : name(path.string()), pieces(path), broken(policy) {
     Open(pieces.Next(), columns);
@@ -123,7 +63,7 @@ struct RecordStream::State {
   LinePieces pieces;
   BrokenRows broken;
   RecordFile layout;
-  std::vector<Channel> channels;
+  std::vector<StreamedColumn> channels;
   std::optional<NumberRowReader> rows;
   std::string_view first;  // rows of the first piece
   std::size_t line = 0;    // last that was read
@@ -161,7 +101,7 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
         "normal load");
   }
   std::vector<std::size_t> wanted;
-  for (const Channel& channel : channels) wanted.push_back(channel.column);
+  for (const StreamedColumn& channel : channels) wanted.push_back(channel.column);
   rows.emplace(found.delimiter, table.columns(), std::move(wanted));
   layout.record = {};
   layout.lines.clear();
@@ -196,7 +136,7 @@ std::string RecordStream::State::WholeRows(std::string_view text, const CsvLayou
 
 bool RecordStream::State::Next(Samples& samples) {
   samples.lines.clear();
-  for (const Channel& channel : channels) (samples.*channel.values).clear();
+  for (const StreamedColumn& channel : channels) (samples.*channel.values).clear();
   while (samples.lines.empty()) {
     if (!refusal.empty()) throw InputError(refusal);
     const std::string_view text = first.empty() ? pieces.Next() : std::exchange(first, {});

@@ -17,7 +17,7 @@ constexpr std::size_t kMostNames = 32;
 std::array<std::atomic<const char*>, kMostNames> registered_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-void Replace(const char* old_name, const char* new_name) {
+void ReplaceName(const char* old_name, const char* new_name) {
   for (std::atomic<const char*>& slot : registered_names) {
     const char* expected = old_name;
     if (slot.compare_exchange_strong(expected, new_name)) return;
@@ -39,18 +39,18 @@ void RemoveAndRaise(int signal) {
 }  // namespace
 
 TemporaryName::TemporaryName(std::string name) : name_(std::move(name)) {
-  Replace(nullptr, name_.c_str());
+  ReplaceName(nullptr, name_.c_str());
 }
 
 TemporaryName::~TemporaryName() {
   if (kept_) return;
   if (::unlink(name_.c_str()) != 0) ::rmdir(name_.c_str());
-  Replace(name_.c_str(), nullptr);
+  ReplaceName(name_.c_str(), nullptr);
 }
 
 void TemporaryName::Keep() {
   kept_ = true;
-  Replace(name_.c_str(), nullptr);
+  ReplaceName(name_.c_str(), nullptr);
 }
 
 void RemoveTemporaryFilesOnSignals() {
