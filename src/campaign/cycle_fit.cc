@@ -62,8 +62,8 @@ void FillFacts(const loop::LoopFacts& facts, CycleFit& fit) {
   }
 }
 
-FittedValue ValueOf(const FitResult& result, std::string_view name, const char* open_flag,
-                    CycleFit& fit) {
+FittedValue FittedValueOf(const FitResult& result, std::string_view name, const char* open_flag,
+                          CycleFit& fit) {
   const ParameterEstimate* estimate = result.Find(name);
   if (estimate == nullptr) return {};
   if (open_flag != nullptr && !estimate->is_known()) fit.flags.emplace_back(open_flag);
@@ -103,10 +103,10 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   if (fitted.glitches.total() > 0) fit.flags.emplace_back("glitches");
   FillFacts(FactsOf(record, *result), fit);
   if (result->parameters.empty()) return fit;  // no start had the force's sense
-  fit.sigma = ValueOf(*result, "sigma", "sigma_open", fit);
-  fit.alpha = ValueOf(*result, "alpha", "alpha_open", fit);
-  fit.slip_force = ValueOf(*result, "slip_force", "slip_force_open", fit);
-  fit.force_offset = ValueOf(*result, "force_offset", nullptr, fit);
+  fit.sigma = FittedValueOf(*result, "sigma", "sigma_open", fit);
+  fit.alpha = FittedValueOf(*result, "alpha", "alpha_open", fit);
+  fit.slip_force = FittedValueOf(*result, "slip_force", "slip_force_open", fit);
+  fit.force_offset = FittedValueOf(*result, "force_offset", nullptr, fit);
   fit.rms = result->rms;
   const bool is_known = result->Find("slip_force")->is_known();
   if (is_known && fit.normal_load && *fit.normal_load > 0) {

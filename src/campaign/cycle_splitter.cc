@@ -11,7 +11,7 @@ namespace mindahl::campaign {
 namespace {
 
 template <typename Value>
-void Append(std::span<const Value> from, std::vector<Value>& to) {
+void AppendColumn(std::span<const Value> from, std::vector<Value>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
@@ -38,11 +38,11 @@ CycleSplitter::CycleSplitter(double gate, std::size_t together)
 
 void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::size_t> lines,
                         std::vector<Cycle>& cycles) {
-  Append(samples.displacement, kept_.displacement);
-  Append(samples.force, kept_.force);
-  Append(samples.time, kept_.time);
-  Append(samples.normal_load, kept_.normal_load);
-  Append(lines, lines_);
+  AppendColumn(samples.displacement, kept_.displacement);
+  AppendColumn(samples.force, kept_.force);
+  AppendColumn(samples.time, kept_.time);
+  AppendColumn(samples.normal_load, kept_.normal_load);
+  AppendColumn(lines, lines_);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::optional<std::size_t> turn = finder_.Add(samples.displacement[i]);
     if (turn) Complete(*turn, cycles);

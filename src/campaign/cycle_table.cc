@@ -17,38 +17,41 @@
 namespace mindahl::campaign {
 namespace {
 
-using Number = std::optional<double>;
+using OptionalNumber = std::optional<double>;
 
 constexpr std::array kNumbers = {
-    CycleNumber{"start_time", "s", [](CycleFit& fit) -> Number& { return fit.start_time; }},
-    CycleNumber{"amplitude", "m", [](CycleFit& fit) -> Number& { return fit.amplitude; }},
-    CycleNumber{"peak_force", "N", [](CycleFit& fit) -> Number& { return fit.peak_force; }},
+    CycleNumber{"start_time", "s", [](CycleFit& fit) -> OptionalNumber& { return fit.start_time; }},
+    CycleNumber{"amplitude", "m", [](CycleFit& fit) -> OptionalNumber& { return fit.amplitude; }},
+    CycleNumber{"peak_force", "N", [](CycleFit& fit) -> OptionalNumber& { return fit.peak_force; }},
     CycleNumber{"sliding_amplitude", "m",
-                [](CycleFit& fit) -> Number& { return fit.sliding_amplitude; }},
-    CycleNumber{"half_gap", "N", [](CycleFit& fit) -> Number& { return fit.half_gap; }},
-    CycleNumber{"energy", "J", [](CycleFit& fit) -> Number& { return fit.energy; }},
-    CycleNumber{"energy_ratio", "", [](CycleFit& fit) -> Number& { return fit.energy_ratio; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.sliding_amplitude; }},
+    CycleNumber{"half_gap", "N", [](CycleFit& fit) -> OptionalNumber& { return fit.half_gap; }},
+    CycleNumber{"energy", "J", [](CycleFit& fit) -> OptionalNumber& { return fit.energy; }},
+    CycleNumber{"energy_ratio", "",
+                [](CycleFit& fit) -> OptionalNumber& { return fit.energy_ratio; }},
     CycleNumber{"energy_friction_coefficient", "",
-                [](CycleFit& fit) -> Number& { return fit.energy_friction_coefficient; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.energy_friction_coefficient; }},
     CycleNumber{"slope_after_reversal", "N/m",
-                [](CycleFit& fit) -> Number& { return fit.slope_after_reversal; }},
-    CycleNumber{"normal_load", "N", [](CycleFit& fit) -> Number& { return fit.normal_load; }},
-    CycleNumber{"sigma", "N/m", [](CycleFit& fit) -> Number& { return fit.sigma.value; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.slope_after_reversal; }},
+    CycleNumber{"normal_load", "N",
+                [](CycleFit& fit) -> OptionalNumber& { return fit.normal_load; }},
+    CycleNumber{"sigma", "N/m", [](CycleFit& fit) -> OptionalNumber& { return fit.sigma.value; }},
     CycleNumber{"sigma_error", "N/m",
-                [](CycleFit& fit) -> Number& { return fit.sigma.standard_error; }},
-    CycleNumber{"alpha", "", [](CycleFit& fit) -> Number& { return fit.alpha.value; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.sigma.standard_error; }},
+    CycleNumber{"alpha", "", [](CycleFit& fit) -> OptionalNumber& { return fit.alpha.value; }},
     CycleNumber{"alpha_error", "",
-                [](CycleFit& fit) -> Number& { return fit.alpha.standard_error; }},
-    CycleNumber{"slip_force", "N", [](CycleFit& fit) -> Number& { return fit.slip_force.value; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.alpha.standard_error; }},
+    CycleNumber{"slip_force", "N",
+                [](CycleFit& fit) -> OptionalNumber& { return fit.slip_force.value; }},
     CycleNumber{"slip_force_error", "N",
-                [](CycleFit& fit) -> Number& { return fit.slip_force.standard_error; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.slip_force.standard_error; }},
     CycleNumber{"force_offset", "N",
-                [](CycleFit& fit) -> Number& { return fit.force_offset.value; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.force_offset.value; }},
     CycleNumber{"force_offset_error", "N",
-                [](CycleFit& fit) -> Number& { return fit.force_offset.standard_error; }},
-    CycleNumber{"rms", "N", [](CycleFit& fit) -> Number& { return fit.rms; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.force_offset.standard_error; }},
+    CycleNumber{"rms", "N", [](CycleFit& fit) -> OptionalNumber& { return fit.rms; }},
     CycleNumber{"friction_coefficient", "",
-                [](CycleFit& fit) -> Number& { return fit.friction_coefficient; }},
+                [](CycleFit& fit) -> OptionalNumber& { return fit.friction_coefficient; }},
 };
 
 constexpr std::string_view kPartial = "partial";
@@ -68,7 +71,7 @@ std::vector<std::string_view> CellsOf(std::string_view line) {
 }
 
 template <typename Value>
-Value ValueOf(std::string_view cell) {
+Value CellValue(std::string_view cell) {
   Value value{};
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size()) {
@@ -98,7 +101,8 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
   fmt::format_to(end, "{},{},{}", fit.number, fit.first_line, fit.samples);
   for (const CycleNumber& column : kNumbers) {
     row.push_back(',');
-    if (const Number& number = column.of(values)) fmt::format_to(end, FMT_COMPILE("{}"), *number);
+    if (const OptionalNumber& number = column.of(values))
+      fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
   const std::string_view regime = !fit.slips_grossly ? "" : *fit.slips_grossly ? kGross : kPartial;
   fmt::format_to(end, ",{},{},{}\n", regime, accumulated_energy, fmt::join(fit.flags, " "));
@@ -111,15 +115,15 @@ CycleTableEntry ReadCycleTableRow(std::string_view line) {
     throw InputError(fmt::format("has {} cells of {}", cells.size(), kColumns));
   }
   CycleTableEntry entry;
-  entry.fit.number = ValueOf<std::size_t>(cells[0]);
-  entry.fit.first_line = ValueOf<std::size_t>(cells[1]);
-  entry.fit.samples = ValueOf<std::size_t>(cells[2]);
+  entry.fit.number = CellValue<std::size_t>(cells[0]);
+  entry.fit.first_line = CellValue<std::size_t>(cells[1]);
+  entry.fit.samples = CellValue<std::size_t>(cells[2]);
   for (std::size_t k = 0; k < kNumbers.size(); ++k) {
-    if (!cells[3 + k].empty()) kNumbers[k].of(entry.fit) = ValueOf<double>(cells[3 + k]);
+    if (!cells[3 + k].empty()) kNumbers[k].of(entry.fit) = CellValue<double>(cells[3 + k]);
   }
   const std::string_view regime = cells[kColumns - 3];
   if (!regime.empty()) entry.fit.slips_grossly = regime == kGross;
-  entry.accumulated_energy = ValueOf<double>(cells[kColumns - 2]);
+  entry.accumulated_energy = CellValue<double>(cells[kColumns - 2]);
   std::string_view flags = cells[kColumns - 1];
   while (!flags.empty()) {
     const std::size_t blank = std::min(flags.find(' '), flags.size());

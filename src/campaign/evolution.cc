@@ -28,7 +28,7 @@ std::string_view Words(ChangeKind kind) {
   return "change";
 }
 
-io::PlotPanel PanelOf(const Evolution& evolution) {
+io::PlotPanel EvolutionPanel(const Evolution& evolution) {
   const std::span<const Course::Bin> bins = evolution.course.bins();
   double largest = 0.0;
   for (const Course::Bin& bin : bins) largest = std::max(largest, std::abs(bin.value));
@@ -75,7 +75,7 @@ io::PlotPanel PanelOf(const Evolution& evolution) {
 std::vector<io::PlotPanel> EvolutionPanels(std::span<const Evolution> evolutions) {
   std::vector<io::PlotPanel> panels;
   for (const Evolution& evolution : evolutions) {
-    if (evolution.course.bins().size() > 1) panels.push_back(PanelOf(evolution));
+    if (evolution.course.bins().size() > 1) panels.push_back(EvolutionPanel(evolution));
   }
   return panels;
 }

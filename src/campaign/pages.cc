@@ -57,7 +57,8 @@ Cell ParameterCell(const std::vector<ParameterEstimate>& parameters, std::string
 }
 
 /// A parameter of every file that identifies it, with its interval, over the file's place.
-std::optional<io::PlotPanel> PanelOf(std::span<const FileResult> files, std::string_view name) {
+std::optional<io::PlotPanel> QuantityPanel(std::span<const FileResult> files,
+                                           std::string_view name) {
   io::PlotSeries series{"95 % interval", {}, {}, io::PlotStyle::kIntervals};
   series.shade = 0.3;
   std::string_view unit;
@@ -206,7 +207,7 @@ std::string BatchIndexPage(std::span<const FileResult> files,
   if (!scatter.empty()) body += Heading("If these are repeats") + scatter.Html();
   std::string figures;
   for (const std::string_view parameter : kParameters) {
-    if (const auto panel = PanelOf(files, parameter)) {
+    if (const auto panel = QuantityPanel(files, parameter)) {
       figures += io::HtmlFigure(*panel, {.id = fmt::format("files-{}", parameter),
                                          .title = std::string(parameter),
                                          .description = "Of each file that identifies it, by its "

@@ -13,7 +13,7 @@ using identification::FitOptions;
 
 namespace {
 
-void Append(const io::Samples& from, io::Samples& to) {
+void AppendSamples(const io::Samples& from, io::Samples& to) {
   const auto append = [](const auto& source, auto& target) {
     target.insert(target.end(), source.begin(), source.end());
   };
@@ -37,7 +37,7 @@ io::Samples ReadHead(io::RecordStream& stream) {
   io::Samples piece;
   std::size_t next_look = 1;  // at twice as much each time: a look is at all of it
   while (head.size() < kMostSamples && stream.Next(piece)) {
-    Append(piece, head);
+    AppendSamples(piece, head);
     if (head.size() < next_look) continue;
     if (loop::ChooseReversalGate(head.displacement).count >= kReversals) break;
     next_look = 2 * head.size();

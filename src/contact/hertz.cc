@@ -12,8 +12,8 @@
 namespace mindahl::contact {
 namespace {
 
-constexpr std::string_view kNormalLoad = "normal load [N]";
-constexpr std::string_view kContactRadius = "contact radius [m]";
+constexpr std::string_view kNormalLoadName = "normal load [N]";
+constexpr std::string_view kContactRadiusName = "contact radius [m]";
 constexpr std::string_view kEquivalentRadius = "equivalent radius [m]";
 constexpr std::string_view kEffectiveModulus = "effective modulus [Pa]";
 
@@ -65,16 +65,17 @@ double EquivalentRadius(double radius_1, double radius_2) {
 }
 
 double HertzContactRadius(double normal_load, double equivalent_radius, double effective_modulus) {
-  RequirePositive(kNormalLoad, normal_load);
+  RequirePositive(kNormalLoadName, normal_load);
   RequirePositive(kEquivalentRadius, equivalent_radius);
   RequirePositive(kEffectiveModulus, effective_modulus);
   const long double load = normal_load;
-  return InRange(kContactRadius, std::cbrt(0.75L * load * equivalent_radius / effective_modulus));
+  return InRange(kContactRadiusName,
+                 std::cbrt(0.75L * load * equivalent_radius / effective_modulus));
 }
 
 double HertzEquivalentRadius(double normal_load, double contact_radius, double effective_modulus) {
-  RequirePositive(kNormalLoad, normal_load);
-  RequirePositive(kContactRadius, contact_radius);
+  RequirePositive(kNormalLoadName, normal_load);
+  RequirePositive(kContactRadiusName, contact_radius);
   RequirePositive(kEffectiveModulus, effective_modulus);
   const long double radius = contact_radius;
   return InRange(kEquivalentRadius,
@@ -82,24 +83,24 @@ double HertzEquivalentRadius(double normal_load, double contact_radius, double e
 }
 
 double HertzNormalLoad(double contact_radius, double equivalent_radius, double effective_modulus) {
-  RequirePositive(kContactRadius, contact_radius);
+  RequirePositive(kContactRadiusName, contact_radius);
   RequirePositive(kEquivalentRadius, equivalent_radius);
   RequirePositive(kEffectiveModulus, effective_modulus);
   const long double radius = contact_radius;
-  return InRange(kNormalLoad,
+  return InRange(kNormalLoadName,
                  4 * effective_modulus * (radius * radius * radius) / (3.0L * equivalent_radius));
 }
 
 double HertzMaximumPressure(double normal_load, double contact_radius) {
-  RequirePositive(kNormalLoad, normal_load);
-  RequirePositive(kContactRadius, contact_radius);
+  RequirePositive(kNormalLoadName, normal_load);
+  RequirePositive(kContactRadiusName, contact_radius);
   const long double radius = contact_radius;
   return InRange("maximum pressure [Pa]",
                  1.5L * normal_load / (std::numbers::pi_v<long double> * radius * radius));
 }
 
 double HertzApproach(double contact_radius, double equivalent_radius) {
-  RequirePositive(kContactRadius, contact_radius);
+  RequirePositive(kContactRadiusName, contact_radius);
   RequirePositive(kEquivalentRadius, equivalent_radius);
   const long double radius = contact_radius;
   return InRange("approach [m]", radius * radius / equivalent_radius);

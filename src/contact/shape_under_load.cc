@@ -30,12 +30,12 @@ Quantity Compliance(const KnownContact& known) {
                                      : TangentialComplianceOf(known);
 }
 
-bool IsElastic(const KnownContact& known) {
+bool HasElasticBodies(const KnownContact& known) {
   return IsElastic(known.body_1) && IsElastic(known.body_2);
 }
 
 bool KnowsCompliance(const KnownContact& known) {
-  return known.tangential_compliance.has_value() || IsElastic(known);
+  return known.tangential_compliance.has_value() || HasElasticBodies(known);
 }
 
 /// a = σG*/8
@@ -174,7 +174,7 @@ ShapeUnderLoad Sphere(const Question& question) {
   if (KnowsCompliance(known)) {
     const Quantity radius = ContactRadiusOf(question.stiffness, Compliance(known));
     sphere.contact_radius = Total(radius);
-    if (IsElastic(known)) {
+    if (HasElasticBodies(known)) {
       const Quantity effective = EffectiveModulusOf(known);
       sphere.equivalent_radius =
           Total(Product(HertzEquivalentRadius(question.load.value, radius.value, effective.value),
@@ -215,7 +215,7 @@ ShapeUnderLoad Cone(const Question& question) {
   if (KnowsCompliance(question.known)) {
     const Quantity radius = ContactRadiusOf(question.stiffness, Compliance(question.known));
     cone.contact_radius = Total(radius);
-    if (IsElastic(question.known)) {
+    if (HasElasticBodies(question.known)) {
       const Quantity effective = EffectiveModulusOf(question.known);
       cone.slope =
           Total(Product(2 * question.load.value /

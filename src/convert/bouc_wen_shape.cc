@@ -8,16 +8,16 @@ namespace {
 
 // e^{−q²} < 2⁻⁵³ at the end.
 constexpr double kLast = 6.1;
-constexpr std::size_t kIntervals = 1220;
-constexpr double kStep = kLast / kIntervals;
+constexpr std::size_t kTableIntervals = 1220;
+constexpr double kStep = kLast / kTableIntervals;
 
 double ForceAt(double q) { return -std::expm1(-q * q); }
 
 }  // namespace
 
 BoucWenShape::BoucWenShape(double exponent, double beta)
-    : exponent_(exponent), back_(1 - 2 * beta), nodes_(kIntervals + 1) {
-  for (std::size_t i = 1; i <= kIntervals; ++i) {
+    : exponent_(exponent), back_(1 - 2 * beta), nodes_(kTableIntervals + 1) {
+  for (std::size_t i = 1; i <= kTableIntervals; ++i) {
     Node& node = nodes_[i];
     node.q = kStep * static_cast<double>(i);
     node.slope = SlopesAt(node.q);
@@ -74,7 +74,7 @@ double BoucWenShape::Interpolate(std::size_t interval, double q, Column column) 
 }
 
 double BoucWenShape::At(double q, Column column) const {
-  return Interpolate(std::min(static_cast<std::size_t>(q / kStep), kIntervals - 1), q, column);
+  return Interpolate(std::min(static_cast<std::size_t>(q / kStep), kTableIntervals - 1), q, column);
 }
 
 /// q at which an integral reaches the target.
@@ -114,7 +114,7 @@ double BoucWenShape::Rising(const Loop& loop, double distance) const {
 
 double BoucWenShape::Energy(double y) const {
   const double q = Solve(2 * y, kWay);
-  const auto interval = std::min(static_cast<std::size_t>(q / kStep), kIntervals - 1);
+  const auto interval = std::min(static_cast<std::size_t>(q / kStep), kTableIntervals - 1);
   const Node& node = nodes_[interval];
   const double lost = node.integral[kLost] + Integrate(node.q, q)[kLost];
   // What is beyond the table slides at the limit, either way.

@@ -28,7 +28,7 @@ constexpr std::array kTargets = {
 const models::FrictionModel& Dahl() { return *models::FindFrictionModel("dahl"); }
 const models::FrictionModel& Masing() { return *models::FindFrictionModel("mindlin-dahl"); }
 
-void Require(const ModelLaw& contact, const ConversionOptions& options) {
+void RequireConversion(const ModelLaw& contact, const ConversionOptions& options) {
   if (contact.model == nullptr || contact.model->scaled_by_peak) {
     throw InvalidArgument("the contact must follow Masing's law or Dahl's own");
   }
@@ -112,7 +112,7 @@ double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
 std::span<const TargetRow> Targets() { return kTargets; }
 
 Conversion Convert(const ModelLaw& contact, Target target, const ConversionOptions& options) {
-  Require(contact, options);
+  RequireConversion(contact, options);
   const std::vector<double> amplitudes = AmplitudesOf(options);
   Conversion conversion;
   conversion.law = LawOf(contact, target, options, amplitudes);

@@ -19,7 +19,7 @@ using models::BranchLaw;
 
 namespace {
 
-void Require(const BoucWenLaw& law) {
+void RequireBoucWen(const BoucWenLaw& law) {
   constexpr double kLargestExponent = 20.0;
   RequirePositive("Bouc-Wen stiffness [N/m]", law.stiffness);
   RequirePositive("Bouc-Wen slip force [N]", law.slip_force);
@@ -95,7 +95,7 @@ struct Rising {
   }
 
   void operator()(const BoucWenLaw& law) const {
-    Require(law);
+    RequireBoucWen(law);
     const BoucWenShape shape(law.exponent, law.beta);
     const double rate = law.stiffness / law.slip_force;
     const BoucWenShape::Loop loop = shape.LoopOf(rate * amplitude);
@@ -188,7 +188,7 @@ struct Energy {
     return models::SteadyLoopEnergy(*of.model, of.law, amplitude);
   }
   double operator()(const BoucWenLaw& law) const {
-    Require(law);
+    RequireBoucWen(law);
     const BoucWenShape shape(law.exponent, law.beta);
     return law.slip_force * law.slip_force / law.stiffness *
            shape.Energy(law.stiffness / law.slip_force * amplitude);

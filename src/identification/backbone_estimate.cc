@@ -212,8 +212,9 @@ Eigen::MatrixXd SecondDifferences(const Grid& grid) {
   return differences;
 }
 
-Autocorrelation AutocorrelationOf(const BackboneSeries& series, std::span<const Followed> records,
-                                  const Eigen::VectorXd& w) {
+Autocorrelation BackboneAutocorrelation(const BackboneSeries& series,
+                                        std::span<const Followed> records,
+                                        const Eigen::VectorXd& w) {
   std::vector<Eigen::VectorXd> residuals;
   std::vector<std::span<const double>> spans;
   std::vector<std::span<const unsigned char>> counts;
@@ -296,7 +297,7 @@ Smoothest FindSmoothest(const BackboneSeries& series, std::span<const Followed> 
   const Smoothest free = solve(kFree);
   const double least = std::max(series.SumOfSquares(free.w), series.samples * kRoundingSquares);
   const double effective =
-      series.samples / AutocorrelationOf(series, records, free.w).SquaredCorrelations();
+      series.samples / BackboneAutocorrelation(series, records, free.w).SquaredCorrelations();
   double low = std::log(kFree);
   double high = std::log(kStiff);
   for (int i = 0; i < kHalvings; ++i) {
@@ -317,7 +318,7 @@ struct SeenNoise {
 SeenNoise NoiseAboutBackbone(const BackboneSeries& series, std::span<const Followed> records,
                              const Smoothest& smoothest, std::optional<double> known,
                              const Thresholds& thresholds) {
-  const Autocorrelation autocorrelation = AutocorrelationOf(series, records, smoothest.w);
+  const Autocorrelation autocorrelation = BackboneAutocorrelation(series, records, smoothest.w);
   const auto count = smoothest.w.size();
   Eigen::MatrixXd correlated = Eigen::MatrixXd::Zero(count, count);
   for (const Eigen::MatrixXd& columns : series.columns) {

@@ -234,7 +234,7 @@ struct RowBuilder {
   }
 };
 
-void Require(const ValidationOptions& options) {
+void RequireValidation(const ValidationOptions& options) {
   if (options.cases < 1) ThrowInvalid("cases [-]", 0, "must be >= 1");
   if (options.lambdas.empty() || options.noise_levels.empty()) {
     throw InvalidArgument("amplitudes and noise levels must not be empty");
@@ -266,7 +266,7 @@ double NoiseFreeTolerance(double lambda) {
 
 ValidationReport ValidateMapping(const ValidationOptions& options,
                                  const std::function<void(std::size_t)>& progress) {
-  Require(options);
+  RequireValidation(options);
   std::vector<RowBuilder> rows;
   std::vector<RowBuilder> dahl_rows;
   for (const double noise : options.noise_levels) {

@@ -119,7 +119,7 @@ double Rms(const FitResult& fit, const SampleMask& mask) {
   return std::sqrt(sum / count);
 }
 
-double RobustScale(const FitResult& fit, const SampleMask& mask) {
+double ScoredRobustScale(const FitResult& fit, const SampleMask& mask) {
   std::vector<double> residuals;
   for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
     residuals.insert(residuals.end(), series.begin(), series.end());
@@ -138,8 +138,8 @@ const FitResult& Best(std::span<const FitResult> fits, Measure measure) {
 void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
   constexpr double kOutlier = 4.685;  // where Tukey's loss ends
   const FitResult& best =
-      Best(fits, [&](const FitResult& fit) { return RobustScale(fit, samples.mask); });
-  const double limit = kOutlier * std::max(RobustScale(best, samples.mask), samples.rounding);
+      Best(fits, [&](const FitResult& fit) { return ScoredRobustScale(fit, samples.mask); });
+  const double limit = kOutlier * std::max(ScoredRobustScale(best, samples.mask), samples.rounding);
   for (std::size_t r = 0; r < samples.mask.size(); ++r) {
     for (std::size_t i = 0; i < samples.mask[r].size(); ++i) {
       if (samples.mask[r][i] == 0 || std::abs(best.records[r].residual[i]) <= limit) continue;
@@ -350,8 +350,8 @@ std::vector<std::size_t> Rank(std::span<const ModelScore> scores) {
   return eligible.empty() ? ranking : eligible;
 }
 
-std::string Judge(const ModelSelection& selection, const Thresholds& thresholds,
-                  std::span<const std::size_t> ranking) {
+std::string VerdictOn(const ModelSelection& selection, const Thresholds& thresholds,
+                      std::span<const std::size_t> ranking) {
   const std::vector<ModelScore>& scores = selection.scores;
   const ModelScore& chosen = scores[selection.chosen];
   if (ranking.empty()) {
@@ -433,7 +433,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   }
   if (std::ranges::none_of(fits, IsFitted)) {
     result.fit = std::move(fits.front());
-    result.verdict = Judge(result, options.thresholds, {});
+    result.verdict = VerdictOn(result, options.thresholds, {});
     return result;
   }
 
@@ -497,7 +497,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   }
   Fitter chosen(OptionsOf(result.scores[result.chosen], options));
   result.fit = chosen.Fit(records, Depth::kThorough);
-  result.verdict = Judge(result, options.thresholds, ranking);
+  result.verdict = VerdictOn(result, options.thresholds, ranking);
   return result;
 }
 

@@ -43,7 +43,7 @@ void RequireTerms(const FitOptions& options) {
   }
 }
 
-void Require(const Expectation& expected, const Protocol& protocol, const FitOptions& options) {
+void RequirePlan(const Expectation& expected, const Protocol& protocol, const FitOptions& options) {
   models::Validate(expected.law);
   models::Validate(expected.rig);
   RequireFinite("load exponent [-]", expected.load_exponent);
@@ -173,7 +173,7 @@ const ParameterEstimate* ExpectedFit::Find(std::string_view name) const {
 
 ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
                       const FitOptions& given) {
-  Require(expected, protocol, given);
+  RequirePlan(expected, protocol, given);
   const std::vector<loop::Record> records = LoopsOf(expected, protocol);
   FitOptions options = given;
   options.normal_loads = protocol.loads;

@@ -42,7 +42,7 @@ double GrossSlipDisplacement(const BranchLaw& law) {
 
 namespace {
 
-using Shape = backbone::GeneralShape<long double>;
+using ExtendedShape = backbone::GeneralShape<long double>;
 
 void RequireNumber(double x) {
   if (std::isnan(x)) ThrowInvalid("displacement [m]", x, "must be a number");
@@ -59,17 +59,17 @@ backbone::Reduced<long double> ReducedAt(const BranchLaw& law, double x) {
 }  // namespace
 
 double BackboneForce(const BranchLaw& law, double x) {
-  const long double force = Shape{law.shape_exponent}.Force(ReducedAt(law, x));
+  const long double force = ExtendedShape{law.shape_exponent}.Force(ReducedAt(law, x));
   return std::copysign(static_cast<double>(law.slip_force * force), x);
 }
 
 double BackboneRemaining(const BranchLaw& law, double x) {
-  return static_cast<double>(Shape{law.shape_exponent}.Remaining(ReducedAt(law, x)));
+  return static_cast<double>(ExtendedShape{law.shape_exponent}.Remaining(ReducedAt(law, x)));
 }
 
 double BackboneSlope(const BranchLaw& law, double x) {
   return static_cast<double>(law.tangential_stiffness *
-                             Shape{law.shape_exponent}.Slope(ReducedAt(law, x)));
+                             ExtendedShape{law.shape_exponent}.Slope(ReducedAt(law, x)));
 }
 
 double BackboneWork(const BranchLaw& law, double x) {

@@ -5,14 +5,10 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/steady_loop.h"
+#include "models/law_and_amplitude.h"
 
 namespace mindahl::models {
 namespace {
-
-void Require(const BranchLaw& law, double amplitude) {
-  Validate(law);
-  RequireNonNegative("amplitude [m]", amplitude);
-}
 
 /// In long double: a power of α multiplies the error of its logarithm by α.
 BranchLaw Made(long double stiffness, double shape_exponent, long double slip_force) {
@@ -26,7 +22,7 @@ BranchLaw Made(long double stiffness, double shape_exponent, long double slip_fo
 }  // namespace
 
 BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude) {
-  Require(masing, amplitude);
+  RequireLawAndAmplitude(masing, amplitude);
   // 1 − T*/(2Tc) = (1 + u)/2 has the digits that T* → Tc would lose.
   const long double remaining = BackboneRemaining(masing, amplitude);
   return Made(masing.tangential_stiffness *
@@ -35,7 +31,7 @@ BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude) {
 }
 
 BranchLaw MasingEquivalent(const BranchLaw& dahl, double amplitude) {
-  Require(dahl, amplitude);
+  RequireLawAndAmplitude(dahl, amplitude);
   const long double peak = SteadyPeakForce(*FindFrictionModel("dahl"), dahl, amplitude);
   return Made(dahl.tangential_stiffness * std::pow(1 + peak / dahl.slip_force,
                                                    static_cast<long double>(dahl.shape_exponent)),

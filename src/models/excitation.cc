@@ -85,7 +85,7 @@ UnitSample JoinExtremes(const std::vector<double>& extremes, std::size_t sample,
   return {std::lerp(from, to, weight), std::lerp(std::abs(from), std::abs(to), weight)};
 }
 
-void Validate(const ExcitationOptions& options) {
+void RequireExcitation(const ExcitationOptions& options) {
   RequirePositive("amplitude [m]", options.amplitude);
   RequirePositive("cycles [-]", options.cycles);
   RequirePositive("frequency [Hz]", options.frequency);
@@ -125,7 +125,7 @@ std::optional<Waveform> FindWaveform(std::string_view name) {
 }
 
 Excitation MakeExcitation(const ExcitationOptions& options) {
-  Validate(options);
+  RequireExcitation(options);
   const auto per_cycle = static_cast<double>(options.samples_per_cycle);
   const auto steps = static_cast<std::size_t>(std::llround(options.cycles * per_cycle));
   const std::size_t reached =

@@ -12,7 +12,8 @@
 namespace mindahl::models {
 namespace {
 
-void Require(const BranchLaw& law, std::span<const double> displacement, std::span<double> force) {
+void RequireLawAndSamples(const BranchLaw& law, std::span<const double> displacement,
+                          std::span<double> force) {
   Validate(law);
   RequireSameSize("displacement", displacement.size(), "force", force.size());
   for (std::size_t i = 0; i < displacement.size(); ++i) {
@@ -25,7 +26,7 @@ void Require(const BranchLaw& law, std::span<const double> displacement, std::sp
 
 void EvaluateSpring(const BranchLaw& law, std::span<const double> displacement,
                     std::span<double> force) {
-  Require(law, displacement, force);
+  RequireLawAndSamples(law, displacement, force);
   bool finite = true;
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     force[i] = law.tangential_stiffness * displacement[i];
@@ -36,7 +37,7 @@ void EvaluateSpring(const BranchLaw& law, std::span<const double> displacement,
 
 void EvaluateCoulomb(const BranchLaw& law, std::span<const double> displacement,
                      std::span<double> force) {
-  Require(law, displacement, force);
+  RequireLawAndSamples(law, displacement, force);
   double last = 0.0;
   double present = 0.0;
   for (std::size_t i = 0; i < displacement.size(); ++i) {

@@ -103,7 +103,8 @@ void Follow(const LoadedHistory& history, const RimLaw& law, const Share& share,
   }
 }
 
-void Require(const NormalizedLaw& law, const LoadedHistory& history, std::span<const double> t) {
+void RequireLawUnderLoad(const NormalizedLaw& law, const LoadedHistory& history,
+                         std::span<const double> t) {
   Validate(BranchLaw{law.rate, law.shape_exponent, 1.0});
   if (law.shape_exponent >= 1) {
     ThrowInvalid("shape exponent [-]", law.shape_exponent,
@@ -202,7 +203,7 @@ NormalizedLoadedResponse::~NormalizedLoadedResponse() = default;
 
 void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHistory& history,
                                         double unloaded, std::span<double> t) {
-  Require(law, history, t);
+  RequireLawUnderLoad(law, history, t);
   const double at_rest = history.before.empty() ? unloaded : 0.0;
   backbone::WithShape(law.shape_exponent, [&](const auto& shape) {
     Follow(history, RimLaw(std::log(law.rate), law.shape_exponent),
@@ -214,7 +215,7 @@ void NormalizedLoadedResponse::Evaluate(const NormalizedLaw& law, const LoadedHi
 void NormalizedLoadedResponse::Differentiate(const NormalizedLaw& law, const LoadedHistory& history,
                                              double unloaded, std::span<double> t,
                                              const NormalizedGradient& gradient) {
-  Require(law, history, t);
+  RequireLawUnderLoad(law, history, t);
   const auto keep = [](std::span<double> column, std::size_t i, double value) {
     if (!column.empty()) column[i] = value;
   };

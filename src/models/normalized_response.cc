@@ -24,8 +24,8 @@ BranchLaw LawOf(const NormalizedLaw& law) {
       .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
 }
 
-void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
-                  std::span<const double> t) {
+void RequireResponseSizes(const LoadingPath& path, std::span<const double> displacement,
+                          std::span<const double> t) {
   RequireSameSize("displacement", displacement.size(), "response", t.size());
   RequireSameSize("displacement", displacement.size(), "loading path",
                   path.runs.empty() ? 0 : path.runs.back().end);
@@ -33,12 +33,13 @@ void RequireSizes(const LoadingPath& path, std::span<const double> displacement,
 
 /// Forces over Tc of one run.
 template <typename ShapeOnBranch>
-void EvaluateRun(const ScaledBranch<double>& branch, const ShapeOnBranch& shape, double limit,
-                 std::span<const double> displacement, std::span<double> t) {
+void EvaluateResponseRun(const ScaledBranch<double>& branch, const ShapeOnBranch& shape,
+                         double limit, std::span<const double> displacement, std::span<double> t) {
   models::EvaluateRun(branch, shape, 1.0, limit, displacement, t);
 }
-void EvaluateRun(const ScaledBranch<double>& branch, const backbone::GeneralShape<double>& shape,
-                 double limit, std::span<const double> displacement, std::span<double> t) {
+void EvaluateResponseRun(const ScaledBranch<double>& branch,
+                         const backbone::GeneralShape<double>& shape, double limit,
+                         std::span<const double> displacement, std::span<double> t) {
   EvaluateGeneralRun(branch, shape.shape_exponent, limit, displacement, t);
 }
 
@@ -125,7 +126,7 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
                                   std::span<double> t) {
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
-  RequireSizes(path, displacement, t);
+  RequireResponseSizes(path, displacement, t);
   ScaledBranches& branches = buffers_->branches;
   const BranchScaling scaling(model, branch_law, law.spring_travel);
   const auto evaluate = [&](const auto& shape) {
@@ -135,8 +136,8 @@ void NormalizedResponse::Evaluate(const FrictionModel& model, const NormalizedLa
       const std::size_t count = run.end - run.begin;
       const ScaledBranch<double>& branch = branches[static_cast<std::size_t>(run.branch)];
       const auto x = displacement.subspan(run.begin, count);
-      EvaluateRun(branch, ShapeOn(shape, branch), ForceLimit(model, path.asymmetry), x,
-                  t.subspan(run.begin, count));
+      EvaluateResponseRun(branch, ShapeOn(shape, branch), ForceLimit(model, path.asymmetry), x,
+                          t.subspan(run.begin, count));
     }
   };
   backbone::WithShape(law.shape_exponent, [&](const auto& contact) {
@@ -154,7 +155,7 @@ void NormalizedResponse::Differentiate(const FrictionModel& model, const Normali
                                        const NormalizedGradient& gradient) {
   const BranchLaw branch_law = LawOf(law);
   Validate(branch_law);
-  RequireSizes(path, displacement, t);
+  RequireResponseSizes(path, displacement, t);
   ScaledBranches& branches = buffers_->branches;
   const BranchScaling scaling(model, branch_law, law.spring_travel);
   const double limit = ForceLimit(model, path.asymmetry);

@@ -6,15 +6,11 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone_integrals.h"
+#include "models/law_and_amplitude.h"
 #include "models/representable.h"
 
 namespace mindahl::models {
 namespace {
-
-void Require(const BranchLaw& law, double amplitude) {
-  Validate(law);
-  RequireNonNegative("amplitude [m]", amplitude);
-}
 
 /// t* at the amplitude.
 double Peak(const FrictionModel& model, const BranchLaw& law, double amplitude) {
@@ -26,12 +22,12 @@ double Peak(const FrictionModel& model, const BranchLaw& law, double amplitude) 
 }  // namespace
 
 double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double amplitude) {
-  Require(law, amplitude);
+  RequireLawAndAmplitude(law, amplitude);
   return law.slip_force * Peak(model, law, amplitude);
 }
 
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude) {
-  Require(law, amplitude);
+  RequireLawAndAmplitude(law, amplitude);
   const auto y = backbone::Normalize(law.tangential_stiffness, amplitude, law.slip_force);
   const long double unit =
       static_cast<long double>(law.slip_force) * law.slip_force / law.tangential_stiffness;
@@ -52,7 +48,7 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
 
 double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
                         double amplitude) {
-  Require(law, amplitude);
+  RequireLawAndAmplitude(law, amplitude);
   if (std::isinf(rig.stiffness)) return amplitude;
   // X − T*(X_c)/k_r falls in X_c.
   double low = 0.0;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLambdasPerDecade = 12;
 constexpr double kBoundTolerance = 1e-3;  // relative, of λ
 
-void Validate(const BranchLaw& law, const ModelRegionOptions& options) {
+void RequireRegionOptions(const BranchLaw& law, const ModelRegionOptions& options) {
   models::Validate(law);
   if (law.shape_exponent >= 1) {
     ThrowInvalid("shape exponent [-]", law.shape_exponent,
@@ -114,7 +114,7 @@ std::vector<Precision> ErrorsByCycle(const Scene& scene, const methods::Evaluato
 }  // namespace
 
 std::vector<ModelRegion> FindModelRegions(const BranchLaw& law, const ModelRegionOptions& options) {
-  Validate(law, options);
+  RequireRegionOptions(law, options);
   std::vector<double> lambdas;
   const double decades = std::log10(options.greatest_lambda / options.least_lambda);
   const auto steps = static_cast<std::size_t>(std::ceil(decades * kLambdasPerDecade));

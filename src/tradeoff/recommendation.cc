@@ -14,7 +14,7 @@ namespace {
 /// Of a cycle, in counting whole ones.
 constexpr double kRounding = 1e-9;
 
-void Validate(const RecommendOptions& options) {
+void RequireRecommendOptions(const RecommendOptions& options) {
   RequirePositive("tolerance [-]", options.tolerance);
   if (options.largest_cost) RequirePositive("largest cost [ns/sample]", *options.largest_cost);
 }
@@ -55,7 +55,7 @@ std::optional<std::size_t> MostPrecise(const std::vector<Candidate>& candidates,
 
 Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& drive,
                          const RecommendOptions& options) {
-  Validate(options);
+  RequireRecommendOptions(options);
   const ReferenceResponse reference = MakeReferenceResponse(law, drive);
   const std::vector<double> cycles = CyclesPassed(drive.displacement);
   const auto transient = static_cast<double>(options.transient_cycles);

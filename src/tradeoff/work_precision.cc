@@ -90,7 +90,7 @@ double Work(std::span<const double> displacement, std::span<const double> force,
 
 /// ns a sample; `run` once before, so that memory is warm.
 template <typename Run>
-double MeasureCost(std::size_t samples, Run&& run) {
+double CostOfRun(std::size_t samples, Run&& run) {
   using Clock = std::chrono::steady_clock;
   constexpr double kBudget = 1e7;  // [ns]
   constexpr int kLeastRuns = 3;
@@ -180,11 +180,11 @@ CostFloor MeasureCostFloor(const Drive& drive) {
   const std::span<const double> displacement = drive.displacement;
   std::vector<double> force(displacement.size());
   CostFloor floor;
-  floor.memory = MeasureCost(force.size(), [&] {
+  floor.memory = CostOfRun(force.size(), [&] {
     for (std::size_t i = 0; i < force.size(); ++i) force[i] = 2 * displacement[i];
     Keep(force);
   });
-  floor.arithmetic = MeasureCost(force.size(), [&] {
+  floor.arithmetic = CostOfRun(force.size(), [&] {
     for (std::size_t i = 0; i < force.size(); ++i) {
       force[i] = displacement[i] / (1 + std::sqrt(std::abs(displacement[i])));
     }
@@ -195,7 +195,7 @@ CostFloor MeasureCostFloor(const Drive& drive) {
 
 double MeasureCost(const methods::Evaluator& evaluate, const Drive& drive,
                    std::span<double> force) {
-  return MeasureCost(force.size(), [&] {
+  return CostOfRun(force.size(), [&] {
     evaluate(drive, force);
     Keep(force);
   });

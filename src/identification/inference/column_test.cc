@@ -32,7 +32,7 @@ Eigen::MatrixXd Inverse(const Eigen::MatrixXd& symmetric) {
   return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(symmetric).pseudoInverse();
 }
 
-std::span<const double> ColumnOf(const Eigen::MatrixXd& matrix, Eigen::Index j) {
+std::span<const double> ColumnValues(const Eigen::MatrixXd& matrix, Eigen::Index j) {
   return {matrix.col(j).data(), static_cast<std::size_t>(matrix.rows())};
 }
 
@@ -45,7 +45,7 @@ Eigen::MatrixXd ProductsOf(const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd products(columns.cols(), columns.cols());
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
     for (Eigen::Index k = 0; k <= j; ++k) {
-      products(j, k) = products(k, j) = Dot(ColumnOf(columns, j), ColumnOf(columns, k));
+      products(j, k) = products(k, j) = Dot(ColumnValues(columns, j), ColumnValues(columns, k));
     }
   }
   return products;
@@ -75,7 +75,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   norms_.resize(columns.cols());
   residual_.resize(columns.cols());
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    const double square = Dot(ColumnOf(columns, j), ColumnOf(columns, j));
+    const double square = Dot(ColumnValues(columns, j), ColumnValues(columns, j));
     const bool is_told = std::isfinite(square) && square > 0;
     norms_[j] = is_told ? std::sqrt(square) : 1.0;
     if (is_told) {
@@ -83,7 +83,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
     } else {
       columns.col(j).setZero();  // overflow: nothing to be told
     }
-    residual_[j] = Dot(ColumnOf(columns, j), SpanOf(residual));
+    residual_[j] = Dot(ColumnValues(columns, j), SpanOf(residual));
   }
   plain_ = ProductsOf(columns);
   inverse_of_law_ = Inverse(plain_.topLeftCorner(law_, law_));
@@ -100,7 +100,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   in_columns.head(law_) = -shares_ * in_columns.tail(others.cols());
   Eigen::VectorXd rest = residual;
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    AddMultiple({rest.data(), problem.size()}, -in_columns[j], ColumnOf(columns, j));
+    AddMultiple({rest.data(), problem.size()}, -in_columns[j], ColumnValues(columns, j));
   }
   autocorrelation_ = quieter != nullptr
                          ? quieter->autocorrelation_

@@ -337,10 +337,10 @@ std::vector<std::vector<double>> AmplitudeScale(const ScaledRecords& data) {
 /// Places of a record's samples, branches yet unknown.
 /// @param force     of the contact, over the slip force and at its load
 /// @param complete  that of the whole model
-std::vector<ForcePlace> PlacesOf(const ScaledRecord& record, std::span<const double> time,
-                                 const Neighbours& neighbours, std::span<const double> force,
-                                 std::span<const double> complete,
-                                 const models::OriginSensitivity& sensitivity, double peak) {
+std::vector<ForcePlace> ForcePlacesOf(const ScaledRecord& record, std::span<const double> time,
+                                      const Neighbours& neighbours, std::span<const double> force,
+                                      std::span<const double> complete,
+                                      const models::OriginSensitivity& sensitivity, double peak) {
   const std::size_t count = record.size();
   std::vector<double> velocity(count);
   std::vector<double> acceleration(count);
@@ -518,7 +518,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
     const ScaledRecord& record = records[r];
     models::OriginSensitivity sensitivity;
     response.DifferentiateByOrigins(point, r, sensitivity);
-    std::vector<ForcePlace> places = PlacesOf(
+    std::vector<ForcePlace> places = ForcePlacesOf(
         record, clock.time[r], neighbours[r], std::span(force).subspan(begin, record.size()),
         std::span(complete).subspan(begin, record.size()), sensitivity, peak);
     if (is_repeated) {

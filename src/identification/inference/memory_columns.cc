@@ -54,7 +54,7 @@ double ShareOfStroke(const BranchPlace& at, const Extent& extent) {
 }
 
 /// By how much a branch of Masing's law is larger than the virgin one.
-double ScaleOf(const BranchPlace& at) { return at.virgin ? 1.0 : 2.0; }
+double MasingScaleOf(const BranchPlace& at) { return at.virgin ? 1.0 : 2.0; }
 
 /// Against the sense of the branch, where it starts, over Tc: T*/Tc of a steady loop.
 double HeightOf(const BranchPlace& at) {
@@ -68,7 +68,8 @@ double Wave(std::size_t number, double share) {
 /// A change of the backbone, F + εB, added up along branches: s·m·B(way/m), m = 1 or 2. Densest
 /// where branches begin: B is a cosine of the root of the way.
 double ChangeOfBackbone(std::size_t number, const BranchPlace& at, const Extent& extent) {
-  return at.direction * ScaleOf(at) * (Wave(number, std::sqrt(ShareOfStroke(at, extent))) - 1.0);
+  return at.direction * MasingScaleOf(at) *
+         (Wave(number, std::sqrt(ShareOfStroke(at, extent))) - 1.0);
 }
 
 /// A change of the curve dT/dδ = g(sT) by B(sT), of which a branch has what lies between its
@@ -80,8 +81,9 @@ double ChangeOfCurve(std::size_t number, const BranchPlace& at, const Extent& ex
   return at.direction * (wave(at.response) - at.gain * wave(at.origin_response));
 }
 
-std::vector<BranchPlace> PlacesOf(const ScaledRecord& record, std::span<const double> response,
-                                  const models::OriginSensitivity& sensitivity) {
+std::vector<BranchPlace> BranchPlacesOf(const ScaledRecord& record,
+                                        std::span<const double> response,
+                                        const models::OriginSensitivity& sensitivity) {
   std::vector<BranchPlace> places(record.size());
   for (std::size_t i = 0; i < record.size(); ++i) {
     places[i].displacement = record.displacement[i];
@@ -267,7 +269,7 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
     models::OriginSensitivity sensitivity;
     response.DifferentiateByOrigins(point, r, sensitivity);
     std::vector<BranchPlace> places =
-        PlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity);
+        BranchPlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity);
     const models::LoadingPath& path = response.PathOf(r, theta);
     const BranchPlace extreme = problem.state == models::InitialState::kSteady
                                     ? SteadyExtreme<BranchPlace>(problem, point, record)
