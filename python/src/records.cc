@@ -43,7 +43,7 @@ py::dict CovariatesOf(const py::object& self) {
   return columns;
 }
 
-py::dict ColumnsOf(const NamedRecord& record) {
+py::dict ColumnsUsed(const NamedRecord& record) {
   py::dict columns;
   const auto add = [&](const char* role, const std::optional<io::ChosenColumn>& column) {
     if (!column) return;
@@ -61,7 +61,7 @@ py::dict ColumnsOf(const NamedRecord& record) {
 }
 
 template <auto kColumn>
-py::object ColumnOf(const py::object& self) {
+py::object RecordColumn(const py::object& self) {
   return ViewUnlessEmpty(self, self.cast<const NamedRecord&>().file.record.*kColumn);
 }
 
@@ -84,15 +84,16 @@ void AddRecords(py::module_& module) {
   py::class_<NamedRecord>(module, "Record",
                           "A hysteresis record in SI units, as it was read; arrays are read-only.")
       .def_readonly("name", &NamedRecord::name, "what messages and reports call it")
-      .def_property_readonly("displacement", &ColumnOf<&loop::Record::displacement>,
+      .def_property_readonly("displacement", &RecordColumn<&loop::Record::displacement>,
                              "[m]; of a torsional record the angle [rad]")
-      .def_property_readonly("force", &ColumnOf<&loop::Record::force>,
+      .def_property_readonly("force", &RecordColumn<&loop::Record::force>,
                              "[N]; of a torsional record the torque [N m]")
-      .def_property_readonly("time", &ColumnOf<&loop::Record::time>, "[s], or None")
-      .def_property_readonly("normal_load", &ColumnOf<&loop::Record::normal_load>, "[N], or None")
+      .def_property_readonly("time", &RecordColumn<&loop::Record::time>, "[s], or None")
+      .def_property_readonly("normal_load", &RecordColumn<&loop::Record::normal_load>,
+                             "[N], or None")
       .def_property_readonly("covariates", &CovariatesOf,
                              "other columns by name, in units of their own")
-      .def_property_readonly("columns", &ColumnsOf,
+      .def_property_readonly("columns", &ColumnsUsed,
                              "which column each quantity was read from: name, number, unit")
       .def_property_readonly(
           "is_torsional", [](const NamedRecord& record) { return record.file.is_torsional; },

@@ -188,7 +188,7 @@ Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>
 }
 
 template <typename Value, typename Of>
-py::array_t<Value> ColumnOf(const std::vector<CycleFit>& fits, Of of) {
+py::array_t<Value> CycleColumn(const std::vector<CycleFit>& fits, Of of) {
   py::array_t<Value> column(static_cast<py::ssize_t>(fits.size()));
   Value* const values = column.mutable_data();
   for (std::size_t k = 0; k < fits.size(); ++k) values[k] = of(fits[k]);
@@ -278,14 +278,14 @@ py::dict SummaryOf(const campaign::EnergyCounts& counts,
 
 /// The columns of the command line's table, with NaN for what is not known; their units; what is to
 /// be warned of; the courses, which are described when they are asked for; and SummaryOf().
-std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest, py::dict> ColumnsOf(
+std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest, py::dict> TrackedColumns(
     Tracked tracked) {
   py::dict columns;
   py::dict units;
   const report::Units& names =
       tracked.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
   const auto number = [&](const char* name, std::size_t CycleFit::*member) {
-    columns[name] = ColumnOf<std::int64_t>(tracked.fits, [member](const CycleFit& fit) {
+    columns[name] = CycleColumn<std::int64_t>(tracked.fits, [member](const CycleFit& fit) {
       return static_cast<std::int64_t>(fit.*member);
     });
   };
@@ -307,7 +307,7 @@ std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest, py::dict
   py::list regimes;
   py::list flags;
   campaign::DissipatedEnergy energy(tracked.cycles_per_row);
-  columns["accumulated_energy"] = ColumnOf<double>(tracked.fits, [&](const CycleFit& fit) {
+  columns["accumulated_energy"] = CycleColumn<double>(tracked.fits, [&](const CycleFit& fit) {
     energy.Add(fit);
     return energy.total();
   });
@@ -348,7 +348,7 @@ void AddTrack(py::module_& module) {
             return TrackFiles(request, files, skip, alpha);
           });
         }
-        return ColumnsOf(std::move(tracked));
+        return TrackedColumns(std::move(tracked));
       },
       py::arg("request"), py::arg("files"), py::arg("skip_broken_rows"));
   module.def(
@@ -361,7 +361,7 @@ void AddTrack(py::module_& module) {
             return TrackRecords(request, records, alpha);
           });
         }
-        return ColumnsOf(std::move(tracked));
+        return TrackedColumns(std::move(tracked));
       },
       py::arg("request"), py::arg("records"));
 }

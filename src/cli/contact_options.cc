@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "cli/trimmed.h"
 #include "mindahl/contact/plausibility.h"
 #include "mindahl/core/error.h"
 
@@ -19,13 +20,6 @@ using contact::UncertainValue;
 namespace {
 
 constexpr const char* kGroup = "What is known of the contact";
-
-std::string_view Trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 /// A number as CLI11 reads it for every other option.
 std::optional<double> ReadNumber(std::string_view text) {

@@ -58,13 +58,13 @@ const TargetRow& FindTarget(std::string_view name) {
   return *std::ranges::find(convert::Targets(), name, &TargetRow::name);
 }
 
-nlohmann::ordered_json ToJson(const LoopError& error) {
+nlohmann::ordered_json LoopErrorJson(const LoopError& error) {
   return {{"force", NumberOrNull(error.force)}, {"energy", NumberOrNull(error.energy)}};
 }
 
-nlohmann::ordered_json ToJson(const ConvertCommandOptions& options, const TargetRow& target,
-                              const Conversion& conversion,
-                              const std::vector<Parameter>& parameters) {
+nlohmann::ordered_json LoopErrorJson(const ConvertCommandOptions& options, const TargetRow& target,
+                                     const Conversion& conversion,
+                                     const std::vector<Parameter>& parameters) {
   nlohmann::ordered_json json = {{"schema", "mindahl.convert/1"},
                                  {"version", Version()},
                                  {"from",
@@ -90,8 +90,8 @@ nlohmann::ordered_json ToJson(const ConvertCommandOptions& options, const Target
           {{"stiffness", elements->stiffness[j]}, {"slip_force", elements->slip_force[j]}});
     }
   }
-  json["error_at_amplitude"] = ToJson(conversion.at_amplitude);
-  json["largest_error"] = ToJson(conversion.largest);
+  json["error_at_amplitude"] = LoopErrorJson(conversion.at_amplitude);
+  json["largest_error"] = LoopErrorJson(conversion.largest);
   json["within"] = nullptr;
   if (conversion.within) json["within"] = {conversion.within->lower, conversion.within->upper};
   return json;
@@ -136,7 +136,7 @@ std::string ToText(const ConvertCommandOptions& options, const TargetRow& target
 }
 
 /// @throws InputError for options that belong to another target or contradict
-void RequireOptions(const ConvertCommandOptions& options, Target target) {
+void RequireConvertOptions(const ConvertCommandOptions& options, Target target) {
   Validate(options.lammps, target);
   if (options.json_path == "-" && options.input_lines_path == "-") {
     throw InputError("--json - and --input-lines - both write to standard output: give a file");
@@ -145,7 +145,7 @@ void RequireOptions(const ConvertCommandOptions& options, Target target) {
 
 void RunConvert(ConvertCommandOptions options, Console& console) {
   const TargetRow& target = FindTarget(options.to);
-  RequireOptions(options, target.target);
+  RequireConvertOptions(options, target.target);
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true},
                       {"--input-lines", options.input_lines_path, /*dash_is_stdout=*/true}},
                      console.inputs);
@@ -167,7 +167,7 @@ void RunConvert(ConvertCommandOptions options, Console& console) {
     WriteText(lines, options.input_lines_path, console);
   }
   if (!options.json_path.empty()) {
-    WriteJson(ToJson(options, target, conversion, parameters), options.json_path, console);
+    WriteJson(LoopErrorJson(options, target, conversion, parameters), options.json_path, console);
   }
   if (options.json_path != "-" && options.input_lines_path != "-") {
     console.out << ToText(options, target, conversion, parameters);

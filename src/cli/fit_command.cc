@@ -56,9 +56,9 @@ identification::BackboneEstimate BackboneOf(const FitRequest& request,
 }
 
 /// @param provenance  asked for where a page is written: it reads the files once more
-void Write(const FitCommandOptions& options, const report::Report& report,
-           const std::function<report::Provenance()>& provenance, const Messages& messages,
-           Console& console) {
+void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
+                     const std::function<report::Provenance()>& provenance,
+                     const Messages& messages, Console& console) {
   for (const report::Warning& warning : report.fit_warnings) {
     if (warning.code == "fit_failed") continue;  // an error, below
     messages.Warn(warning.message);
@@ -115,7 +115,7 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
   }
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
-  Write(options, report, provenance, messages, console);
+  WriteFitOutputs(options, report, provenance, messages, console);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ using request::kFitIt;
 
 constexpr std::string_view kColumnGroup = "Columns and units";
 
-CLI::Validator OneOf(std::span<const std::string_view> words) {
+CLI::Validator OneOfWords(std::span<const std::string_view> words) {
   return cli::OneOf(std::vector<std::string>(words.begin(), words.end()));
 }
 
@@ -63,7 +63,7 @@ void AddWindowOptions(CLI::App& command, FitRequest& options) {
                   "auto leaves out, and says, what at the ends is not the test:\n"
                   "rests, ramps of load and amplitude, cycles of running in")
       ->capture_default_str()
-      ->check(OneOf(request::kTrims))
+      ->check(OneOfWords(request::kTrims))
       ->group(group);
 }
 
@@ -141,14 +141,14 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   description += " auto (chosen by AICc and held-out cycles, each with and without a rig).";
   command.add_option("--model", options.model, description)
       ->capture_default_str()
-      ->check(OneOf(models))
+      ->check(OneOfWords(models))
       ->group(group);
   command
       .add_option("--initial-state", options.initial_state,
                   "does the record start from an unloaded contact; auto fits both and keeps the "
                   "smaller AICc")
       ->capture_default_str()
-      ->check(OneOf(request::kInitialStates))
+      ->check(OneOfWords(request::kInitialStates))
       ->group(group);
   command
       .add_option(
@@ -156,18 +156,18 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
           "have force and displacement the same sign in the file; auto decides from the sign of "
           "the loop's energy")
       ->capture_default_str()
-      ->check(OneOf(request::kForceSigns))
+      ->check(OneOfWords(request::kForceSigns))
       ->group(group);
   command
       .add_option("--noise-in", options.noise_in,
                   "the channel that is fitted, and whose noise the residuals are: the\n"
                   "displacement where a force is imposed, which is taken as exact")
       ->capture_default_str()
-      ->check(OneOf(request::kNoiseIn))
+      ->check(OneOfWords(request::kNoiseIn))
       ->group(group);
   command.add_option("--offsets", options.offsets, "fit offsets of force and displacement")
       ->capture_default_str()
-      ->check(OneOf(request::kOnOff))
+      ->check(OneOfWords(request::kOnOff))
       ->group(group);
   AddTermOptions(command, options, group);
   command
@@ -202,7 +202,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                   "what large residuals count; the scale is the data's: huber and cauchy less, "
                   "tukey in the end nothing")
       ->capture_default_str()
-      ->check(OneOf(request::kLosses))
+      ->check(OneOfWords(request::kLosses))
       ->group(group);
   command
       .add_option("--starts", options.starts,

@@ -70,7 +70,7 @@ struct Column {
 };
 
 /// Between these shares of the displacement at gross slip amplitudes are looked at.
-constexpr double kLeast = 0.1;
+constexpr double kLeastOfSlip = 0.1;
 constexpr double kMost = 10.0;
 
 /// What λ counts: the displacement at gross slip behind the rig, or three elastic limits where slip
@@ -260,7 +260,7 @@ bool IsLawDecided(const ExpectedFit& fit) {
   return fit.law_evidence > identification::Thresholds().rival_past;
 }
 
-std::string InWords(const WantedPrecision& wanted) {
+std::string WantedInWords(const WantedPrecision& wanted) {
   std::vector<std::string> parts;
   for (const auto& [name, precision] : wanted) {
     parts.push_back(precision.is_relative ? fmt::format("{} to {:g} %", name, 100 * precision.value)
@@ -319,7 +319,7 @@ void PrintPlan(const PlanOptions& options, const Expectation& expected, double s
       identification::Thresholds().rival_past, slip,
       options.load_ratios.empty() ? "" : " at that load");
   if (wanted.empty()) return;
-  out << fmt::format("\nwanted: {}\n", InWords(wanted));
+  out << fmt::format("\nwanted: {}\n", WantedInWords(wanted));
   for (const Column& column : columns) {
     if (column.reached) {
       const double amplitude = column.reached->protocol.amplitude;
@@ -335,8 +335,9 @@ void PrintPlan(const PlanOptions& options, const Expectation& expected, double s
   }
 }
 
-nlohmann::ordered_json ToJson(const PlanOptions& options, const Expectation& expected, double slip,
-                              const std::vector<Column>& columns, const WantedPrecision& wanted) {
+nlohmann::ordered_json PlanJson(const PlanOptions& options, const Expectation& expected,
+                                double slip, const std::vector<Column>& columns,
+                                const WantedPrecision& wanted) {
   nlohmann::ordered_json json;
   json["schema"] = "mindahl.plan/1";
   json["version"] = Version();
@@ -418,7 +419,8 @@ io::Plot ErrorPlot(const Expectation& expected, const PlanOptions& options, doub
     std::vector<Shown> shown;
     std::vector<io::PlotSeries> series;
     for (int i = 0; i <= kPoints; ++i) {
-      const double share = kLeast * std::pow(kMost / kLeast, static_cast<double>(i) / kPoints);
+      const double share =
+          kLeastOfSlip * std::pow(kMost / kLeastOfSlip, static_cast<double>(i) / kPoints);
       protocol.amplitude = share * slip;
       const ExpectedFit fit = identification::ExpectFit(expected, protocol, fit_options);
       if (i == 0) {
@@ -483,13 +485,13 @@ void RunPlan(const PlanOptions& options, Console& console) {
       column.loops.push_back(identification::ExpectFit(expected, protocol, fit_options));
     }
     if (wanted.empty()) continue;
-    column.reached = identification::LeastAmplitude(expected, protocol, wanted, kLeast * slip,
+    column.reached = identification::LeastAmplitude(expected, protocol, wanted, kLeastOfSlip * slip,
                                                     kMost * slip, fit_options, &column.fewest);
   }
   if (!options.plot.empty()) io::WritePlot(ErrorPlot(expected, options, slip), options.plot);
   if (options.json != "-") PrintPlan(options, expected, slip, columns, wanted, console.out);
   if (!options.json.empty()) {
-    WriteJson(ToJson(options, expected, slip, columns, wanted), options.json, console);
+    WriteJson(PlanJson(options, expected, slip, columns, wanted), options.json, console);
   }
   const bool reached =
       std::ranges::any_of(columns, [](const Column& column) { return column.reached.has_value(); });

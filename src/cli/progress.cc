@@ -11,7 +11,7 @@ namespace mindahl::cli {
 namespace {
 
 /// What a terminal does not take is no fault: the result is elsewhere.
-void Write(std::string_view text) {
+void WriteToTerminal(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
     if (written <= 0) return;
@@ -50,10 +50,10 @@ void Progress::Run(const std::stop_token& stop, std::chrono::milliseconds patien
   };
   for (auto next = start_ + patience; wait_until(next); next += kEvery) {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(next - start_).count();
-    Write(fmt::format("{}mindahl: {}, {} s", kErase, what_, seconds));
+    WriteToTerminal(fmt::format("{}mindahl: {}, {} s", kErase, what_, seconds));
     is_shown = true;
   }
-  if (is_shown) Write(kErase);
+  if (is_shown) WriteToTerminal(kErase);
 }
 
 }  // namespace mindahl::cli

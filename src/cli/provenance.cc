@@ -21,7 +21,7 @@ std::vector<const CLI::Option*> GivenOptions(const CLI::App& command) {
   return given;
 }
 
-std::string NameOf(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
+std::string OptionName(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
 
 bool IsFlag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
 
@@ -38,7 +38,7 @@ report::Provenance OptionsAndInputs(const CLI::App& command, const Console& cons
   }
   for (const CLI::Option* option : GivenOptions(command)) {
     provenance.options.emplace_back(
-        NameOf(*option),
+        OptionName(*option),
         IsFlag(*option) ? "on" : fmt::format("{}", fmt::join(option->results(), ", ")));
   }
   return provenance;
@@ -86,7 +86,7 @@ report::Provenance ProvenanceOfOneFit(const CLI::App& batch, const Console& cons
   });
   provenance.command = "mindahl fit " + ShellWord(file);
   for (const CLI::Option* option : GivenOptions(batch)) {
-    const std::string name = NameOf(*option);
+    const std::string name = OptionName(*option);
     if (std::ranges::find(kOfBatch, name) != kOfBatch.end()) continue;
     if (IsFlag(*option)) {
       provenance.command += " " + name;

@@ -53,7 +53,7 @@ const std::map<std::string, Criterion>& Criteria() {
   return kCriteria;
 }
 
-std::string_view InWords(Criterion criterion) {
+std::string_view CriterionInWords(Criterion criterion) {
   switch (criterion) {
     case Criterion::kMaxForce:
       return "largest force error, of the peak force";
@@ -126,7 +126,7 @@ std::string LibraryCall(const Approximation& approximation, const BranchLaw& con
 }
 
 /// What the choice says of the scene.
-std::string Verdict(const Recommendation& recommendation) {
+std::string RecommendationVerdict(const Recommendation& recommendation) {
   if (!recommendation.choice) return "nothing meets what is asked";
   const std::size_t choice = *recommendation.choice;
   const Approximation& approximation = recommendation.candidates[choice].point.approximation;
@@ -147,9 +147,10 @@ std::string AfterTransient(const Recommendation& recommendation) {
                      *candidate.settles_after == 1 ? "" : "s", candidate.point.cost);
 }
 
-nlohmann::ordered_json ToJson(const RecommendCommandOptions& options, const BranchLaw& law,
-                              const RecommendOptions& asked, std::size_t samples,
-                              const Recommendation& recommendation) {
+nlohmann::ordered_json RecommendationJson(const RecommendCommandOptions& options,
+                                          const BranchLaw& law, const RecommendOptions& asked,
+                                          std::size_t samples,
+                                          const Recommendation& recommendation) {
   nlohmann::ordered_json json;
   json["schema"] = "mindahl.recommend/1";
   json["version"] = Version();
@@ -172,7 +173,7 @@ nlohmann::ordered_json ToJson(const RecommendCommandOptions& options, const Bran
     if (candidate.settles_after) entry["settles_after_cycles"] = *candidate.settles_after;
     return entry;
   };
-  json["verdict"] = Verdict(recommendation);
+  json["verdict"] = RecommendationVerdict(recommendation);
   json["choice"] = nullptr;
   json["command"] = nullptr;
   json["cpp"] = nullptr;
@@ -201,15 +202,15 @@ void PrintReport(const RecommendCommandOptions& options, const BranchLaw& law,
                      recommendation.cycles, recommendation.peak_force);
   if (asked.largest_cost) {
     out << fmt::format("asked: the most precise within {:g} ns/sample ({})\n", *asked.largest_cost,
-                       InWords(asked.criterion));
+                       CriterionInWords(asked.criterion));
   } else {
     out << fmt::format("asked: the cheapest within {:g} % ({})\n", 100 * asked.tolerance,
-                       InWords(asked.criterion));
+                       CriterionInWords(asked.criterion));
   }
   if (asked.transient_cycles > 0) {
     out << fmt::format("       errors count after {} cycles\n", asked.transient_cycles);
   }
-  out << fmt::format("\n-> {}\n", Verdict(recommendation));
+  out << fmt::format("\n-> {}\n", RecommendationVerdict(recommendation));
   if (recommendation.after_transient) {
     out << fmt::format("   or, once its transient is over: {}\n", AfterTransient(recommendation));
   }
@@ -295,7 +296,8 @@ void RunRecommend(const RecommendCommandOptions& options, Console& console) {
     PrintReport(options, law, asked, samples, recommendation, console.out);
   }
   if (!options.json.empty()) {
-    WriteJson(ToJson(options, law, asked, samples, recommendation), options.json, console);
+    WriteJson(RecommendationJson(options, law, asked, samples, recommendation), options.json,
+              console);
   }
   if (!recommendation.choice) console.exit_status = kNotEstablished;
 }

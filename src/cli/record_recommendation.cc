@@ -46,7 +46,7 @@ Priced PriceLaws(const loop::Record& record) {
   return priced;
 }
 
-std::string NameOf(const LawScore& score) {
+std::string LawName(const LawScore& score) {
   return score.model + (score.exponent_is_one ? " with alpha = 1" : "");
 }
 
@@ -54,17 +54,17 @@ std::string InPercent(double force, const SimplerLaws& laws) {
   return fmt::format("{:.2g} % of the peak force", 100 * force / laws.peak_force);
 }
 
-std::string Verdict(const Priced& priced) {
+std::string RecordVerdict(const Priced& priced) {
   const LawScore& choice = priced.laws.scores[priced.choice];
   const LawScore& best = priced.laws.scores[priced.laws.best];
   if (priced.choice == priced.laws.best) {
-    return fmt::format("{}: the best, and nothing cheaper will do", NameOf(choice));
+    return fmt::format("{}: the best, and nothing cheaper will do", LawName(choice));
   }
   return fmt::format(
       "{}: the record does not tell it from {}, the best (dAICc = {:.2g}); what it lacks is {:.2g} "
       "N "
       "rms, {}, beside noise of {:.2g} N",
-      NameOf(choice), NameOf(best), choice.delta_aicc, choice.misfit,
+      LawName(choice), LawName(best), choice.delta_aicc, choice.misfit,
       InPercent(choice.misfit, priced.laws), best.rms);
 }
 
@@ -85,7 +85,7 @@ std::string OptionsOf(const LawScore& score) {
   return options;
 }
 
-void Print(const std::string& record, const Priced& priced, std::ostream& out) {
+void PrintRecommendation(const std::string& record, const Priced& priced, std::ostream& out) {
   const SimplerLaws& laws = priced.laws;
   out << fmt::format(
       "{}: {} samples that say as much as {:.0f} independent ones; peak force {:.5g} N\n", record,
@@ -93,14 +93,14 @@ void Print(const std::string& record, const Priced& priced, std::ostream& out) {
   out << fmt::format(
       "asked: the cheapest law that the record does not tell from the best (dAICc below {:g})\n\n",
       priced.indistinguishable);
-  out << fmt::format("-> {}\n   as options of simulate: {}\n\n", Verdict(priced),
+  out << fmt::format("-> {}\n   as options of simulate: {}\n\n", RecordVerdict(priced),
                      OptionsOf(laws.scores[priced.choice]));
   out << fmt::format("  {:<24} {:>9} {:>5} {:>10} {:>10} {:>9} {:>9} {:>9}\n", "", "ns/sample",
                      "free", "rms [N]", "lacks [N]", "dAICc", "2 ln L", "p");
   for (std::size_t i = 0; i < laws.scores.size(); ++i) {
     const LawScore& score = laws.scores[i];
     if (!score.converged) {
-      out << fmt::format("  {:<24} {:>9.2f} {:>5}  no fit\n", NameOf(score), priced.cost[i],
+      out << fmt::format("  {:<24} {:>9.2f} {:>5}  no fit\n", LawName(score), priced.cost[i],
                          score.free_parameters);
       continue;
     }
@@ -108,13 +108,13 @@ void Print(const std::string& record, const Priced& priced, std::ostream& out) {
     if (i == laws.best) remark = "best";
     if (i == priced.choice) remark += " <- this";
     out << fmt::format("  {:<24} {:>9.2f} {:>5} {:>10.3g} {:>10.2g} {:>9.3g} {:>9.3g} {:>9}  {}\n",
-                       NameOf(score), priced.cost[i], score.free_parameters, score.rms,
+                       LawName(score), priced.cost[i], score.free_parameters, score.rms,
                        score.misfit, score.delta_aicc, score.likelihood_ratio,
                        Chance(score.p_value), remark);
   }
 }
 
-nlohmann::ordered_json ToJson(const std::string& record, const Priced& priced) {
+nlohmann::ordered_json RecordRecommendationJson(const std::string& record, const Priced& priced) {
   const SimplerLaws& laws = priced.laws;
   nlohmann::ordered_json json;
   json["schema"] = "mindahl.recommend/1";
@@ -125,7 +125,7 @@ nlohmann::ordered_json ToJson(const std::string& record, const Priced& priced) {
                     {"peak_force", laws.peak_force},
                     {"is_described", laws.describes_record}};
   json["indistinguishable"] = priced.indistinguishable;
-  json["verdict"] = Verdict(priced);
+  json["verdict"] = RecordVerdict(priced);
   json["law_options"] = OptionsOf(laws.scores[priced.choice]);
   json["laws"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < laws.scores.size(); ++i) {
@@ -175,8 +175,8 @@ void RecommendForRecord(const std::string& record, const std::string& json, Cons
         record);
     console.exit_status = kNotEstablished;
   }
-  if (json != "-") Print(record, priced, console.out);
-  if (!json.empty()) WriteJson(ToJson(record, priced), json, console);
+  if (json != "-") PrintRecommendation(record, priced, console.out);
+  if (!json.empty()) WriteJson(RecordRecommendationJson(record, priced), json, console);
 }
 
 }  // namespace mindahl::cli

@@ -4,18 +4,13 @@
 
 #include <algorithm>
 
+#include "cli/trimmed.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
-}
 
 class TomlReader {
  public:

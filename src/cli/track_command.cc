@@ -96,7 +96,7 @@ struct WhatWasRead {
   campaign::Reading of_head;
 };
 
-void RequireOptions(const TrackCommandOptions& options) {
+void RequireTrackOptions(const TrackCommandOptions& options) {
   request::MakeCycleFitOptions(options.request);
   if (options.normal_load) RequirePositive("--normal-load [N]", *options.normal_load);
   if (options.alpha == kSharedAlpha) {
@@ -121,9 +121,9 @@ io::BrokenRows BrokenRowsOf(const TrackCommandOptions& options) {
   return options.broken_rows == "skip" ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
 }
 
-class Run {
+class TrackRun {
  public:
-  Run(const TrackCommandOptions& options, const CLI::App& command, Console& console)
+  TrackRun(const TrackCommandOptions& options, const CLI::App& command, Console& console)
       : options_(options),
         command_(command),
         console_(console),
@@ -175,7 +175,7 @@ class Run {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-FitOptions Run::OptionsFor(const io::Samples& head, campaign::Reading& reading) const {
+FitOptions TrackRun::OptionsFor(const io::Samples& head, campaign::Reading& reading) const {
   FitOptions fit = request::MakeCycleFitOptions(options_.request);
   if (options_.normal_load) fit.normal_loads = {*options_.normal_load};
   reading = campaign::ChooseReading(campaign::ViewOf(head), fit);
@@ -183,7 +183,7 @@ FitOptions Run::OptionsFor(const io::Samples& head, campaign::Reading& reading) 
 }
 
 /// Fits every cycle with an alpha of its own, for what they have in common.
-void Run::PoolAlpha() {
+void TrackRun::PoolAlpha() {
   campaign::PooledValue alpha;
   std::optional<campaign::Tracker> tracker;
   Progress progress(console_.err, "fitting alpha, the first of two passes");
@@ -215,7 +215,7 @@ void Run::PoolAlpha() {
   shared_alpha_ = alpha;
 }
 
-void Run::Begin(io::RecordStream& stream, const io::Samples& head) {
+void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
   is_torsional_ = stream.layout().is_torsional;
   fit_ = OptionsFor(head, reading_.of_head);
   if (shared_alpha_) fit_.fixed["alpha"] = shared_alpha_->mean();
@@ -241,7 +241,7 @@ void Run::Begin(io::RecordStream& stream, const io::Samples& head) {
   progress_.emplace(console_.err, "tracking cycles");
 }
 
-void Run::SayReading() const {
+void TrackRun::SayReading() const {
   const campaign::Reading& reading = reading_.of_head;
   const double gate = *fit_.preparation.reversal_gate;
   if (!reading.gate_is_given && gate > 0) {
@@ -255,7 +255,7 @@ void Run::SayReading() const {
 }
 
 /// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
-void Run::Take(std::span<const CycleFit> fits) {
+void TrackRun::Take(std::span<const CycleFit> fits) {
   std::string rows;
   for (const CycleFit& fit : fits) {
     energy_.Add(fit);
@@ -276,7 +276,7 @@ void Run::Take(std::span<const CycleFit> fits) {
   SayProgress();
 }
 
-void Run::ThrowOther() const {
+void TrackRun::ThrowOther() const {
   throw InputError(
       fmt::format("--resume: {} was made from another record or with other options, its row {} or "
                   "one soon after comes out differently: give those, another --output, or "
@@ -284,7 +284,7 @@ void Run::ThrowOther() const {
                   options_.output, kept_->fits - campaign::kBatch + 1));
 }
 
-void Run::SayProgress() {
+void TrackRun::SayProgress() {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double share = static_cast<double>(bytes_before_ + stream_->bytes()) /
@@ -295,7 +295,7 @@ void Run::SayProgress() {
                              made / seconds, seconds * (1 - share) / std::max(share, 1e-3)));
 }
 
-void Run::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
+void TrackRun::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
   stream_ = &stream;
   while (piece.size() > 0) {
     reading_.samples += piece.size();
@@ -311,8 +311,8 @@ void Run::ReadFile(const std::string& file, io::Samples piece, io::RecordStream&
   }
 }
 
-void Run::Go() {
-  RequireOptions(options_);
+void TrackRun::Go() {
+  RequireTrackOptions(options_);
   const std::vector<std::string>& files = options_.request.files;
   for (const std::string& file : files) {
     std::error_code error;
@@ -366,7 +366,7 @@ void Run::Go() {
   if (options_.json_path != "-") WriteSummary();
 }
 
-std::vector<campaign::Evolution> Run::Evolutions() const {
+std::vector<campaign::Evolution> TrackRun::Evolutions() const {
   std::vector<campaign::Evolution> evolutions;
   const auto is_known = [this](std::string_view name) {
     const auto found = std::ranges::find(tracked_, name, &campaign::TrackedQuantity::name);
@@ -387,7 +387,7 @@ std::vector<campaign::Evolution> Run::Evolutions() const {
   return evolutions;
 }
 
-campaign::TestSummary Run::Summary() const {
+campaign::TestSummary TrackRun::Summary() const {
   campaign::TestSummary test{.files = options_.request.files,
                              .cycles = reading_.cycles,
                              .samples = reading_.samples,
@@ -412,7 +412,7 @@ campaign::TestSummary Run::Summary() const {
   return test;
 }
 
-void Run::Draw() {
+void TrackRun::Draw() {
   if (options_.plot_path.empty() && options_.report_path.empty()) return;
   const campaign::TestSummary test = Summary();
   if (!options_.plot_path.empty()) {
@@ -429,7 +429,7 @@ void Run::Draw() {
   }
 }
 
-void Run::WriteSummary() {
+void TrackRun::WriteSummary() {
   std::string text = fmt::format("{} cycles of {} samples, {} fits in {}\n", reading_.cycles,
                                  reading_.samples, totals_.fits, options_.output);
   if (resumed_ > 0) text += fmt::format("{} of them were there already\n", resumed_);
@@ -469,7 +469,7 @@ void Run::WriteSummary() {
   console_.out << text;
 }
 
-nlohmann::ordered_json Run::Json() const {
+nlohmann::ordered_json TrackRun::Json() const {
   nlohmann::ordered_json json;
   json["schema"] = "mindahl.track/1";
   json["version"] = Version();
@@ -544,7 +544,7 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
                       {"--report", options.report_path}},
                      read);
   if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
-  Run(options, command, console).Go();
+  TrackRun(options, command, console).Go();
 }
 
 }  // namespace

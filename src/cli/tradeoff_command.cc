@@ -98,7 +98,7 @@ BranchLaw PaperContact() {
 
 /// What λ counts: the gross-slip displacement, or three elastic limits where slip is only
 /// approached.
-double SlipReach(const BranchLaw& law) {
+double SlipReachOfLaw(const BranchLaw& law) {
   const double gross_slip = GrossSlipDisplacement(law);
   return std::isfinite(gross_slip) ? gross_slip : 3 * law.slip_force / law.tangential_stiffness;
 }
@@ -131,7 +131,7 @@ std::vector<MeasuredScene> MeasureScenes(const TradeoffOptions& options, const B
     if (!chosen) continue;
     const models::Excitation excitation =
         models::MakeExcitation({.waveform = scene.waveform,
-                                .amplitude = scene.lambda * SlipReach(law),
+                                .amplitude = scene.lambda * SlipReachOfLaw(law),
                                 .cycles = scene.cycles});
     methods::Drive drive{.displacement = excitation.displacement};
     if (scene.waveform == Waveform::kGrowingSine) drive.envelope = excitation.envelope;
@@ -156,7 +156,8 @@ void PrintScene(const MeasuredScene& scene, std::ostream& out) {
 }
 
 /// "0.003 … 0.02, > 1.2"
-std::string InWords(const std::vector<LambdaRange>& ranges, const ModelRegionOptions& studied) {
+std::string RangesInWords(const std::vector<LambdaRange>& ranges,
+                          const ModelRegionOptions& studied) {
   std::string text;
   for (const LambdaRange& range : ranges) {
     const bool from_least = range.from <= studied.least_lambda;
@@ -175,7 +176,7 @@ std::string InWords(const std::vector<LambdaRange>& ranges, const ModelRegionOpt
   return text.empty() ? "-" : text;
 }
 
-std::string_view InWords(Criterion criterion) {
+std::string_view CriterionName(Criterion criterion) {
   return criterion == Criterion::kEnergy ? "energy" : "force";
 }
 
@@ -198,13 +199,13 @@ void PrintRegions(const std::vector<ModelRegion>& regions, const ModelRegionOpti
     const ModelRegion& region = regions[i];
     std::string row;
     for (std::size_t k = 0; k < tolerances; ++k) {
-      row += fmt::format(" {:<22}", InWords(regions[i + k].ranges, studied));
+      row += fmt::format(" {:<22}", RangesInWords(regions[i + k].ranges, studied));
     }
-    const std::string key = fmt::format("{}/{}", region.model, InWords(region.criterion));
+    const std::string key = fmt::format("{}/{}", region.model, CriterionName(region.criterion));
     if (last[key] == row) continue;
     last[key] = row;
     out << fmt::format("  {:<16} {:>5} {:<7}{}\n", region.model, region.cycle,
-                       InWords(region.criterion), row);
+                       CriterionName(region.criterion), row);
   }
   out << "  (a cycle without a row is like the one before it)\n";
 }
@@ -245,7 +246,7 @@ std::string RegionsCsv(const std::vector<ModelRegion>& regions) {
   for (const ModelRegion& region : regions) {
     for (const LambdaRange& range : region.ranges) {
       text += fmt::format("{},{},{},{},{},{}\n", region.model, region.cycle,
-                          InWords(region.criterion), region.tolerance, range.from, range.to);
+                          CriterionName(region.criterion), region.tolerance, range.from, range.to);
     }
   }
   return text;
@@ -296,8 +297,8 @@ io::Plot WorkPrecisionPlot(const std::vector<MeasuredScene>& scenes) {
   return plot;
 }
 
-nlohmann::ordered_json ToJson(const BranchLaw& law, const std::vector<MeasuredScene>& scenes,
-                              const std::vector<ModelRegion>& regions) {
+nlohmann::ordered_json TradeoffJson(const BranchLaw& law, const std::vector<MeasuredScene>& scenes,
+                                    const std::vector<ModelRegion>& regions) {
   nlohmann::ordered_json json;
   json["schema"] = "mindahl.tradeoff/1";
   json["version"] = Version();
@@ -323,7 +324,7 @@ nlohmann::ordered_json ToJson(const BranchLaw& law, const std::vector<MeasuredSc
   for (const ModelRegion& region : regions) {
     nlohmann::ordered_json entry = {{"model", region.model},
                                     {"cycle", region.cycle},
-                                    {"criterion", InWords(region.criterion)},
+                                    {"criterion", CriterionName(region.criterion)},
                                     {"tolerance", region.tolerance},
                                     {"lambda", nlohmann::ordered_json::array()}};
     for (const LambdaRange& range : region.ranges)
@@ -370,7 +371,7 @@ void RunTradeoff(const TradeoffOptions& options, Console& console) {
     for (const MeasuredScene& scene : scenes) PrintScene(scene, console.out);
     if (!regions.empty()) PrintRegions(regions, studied, console.out);
   }
-  if (!options.json.empty()) WriteJson(ToJson(law, scenes, regions), options.json, console);
+  if (!options.json.empty()) WriteJson(TradeoffJson(law, scenes, regions), options.json, console);
 }
 
 }  // namespace

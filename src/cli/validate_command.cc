@@ -59,8 +59,8 @@ nlohmann::ordered_json RowsToJson(const std::vector<identification::ValidationRo
   return json;
 }
 
-nlohmann::ordered_json ToJson(const ValidationReport& report,
-                              const identification::ValidationOptions& options) {
+nlohmann::ordered_json ValidationJson(const ValidationReport& report,
+                                      const identification::ValidationOptions& options) {
   nlohmann::ordered_json json = {
       {"schema", "mindahl.validate/1"}, {"version", Version()}, {"cases", options.cases},
       {"seed", options.seed},           {"fits", report.fits},  {"failures", report.failures},
@@ -110,7 +110,7 @@ void RunValidate(const ValidateOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
   const ValidationReport report = ValidateContacts(options.validation, console);
   if (!options.json_path.empty()) {
-    WriteJson(ToJson(report, options.validation), options.json_path, console);
+    WriteJson(ValidationJson(report, options.validation), options.json_path, console);
   }
   if (options.json_path != "-") {
     console.out << fmt::format(

@@ -36,7 +36,7 @@ const std::vector<Field<Cause>>& CauseFields() {
 
 /// Of the adequacy, where there is a verdict.
 template <typename Get>
-Field<Report> Row(const char* path, const char* unit, const char* label, Get get) {
+Field<Report> AdequacyRow(const char* path, const char* unit, const char* label, Get get) {
   return {path, unit, label,
           [get](const Report& report) {
             return IsJudged(report) ? get(report.fit.adequacy) : Missing();
@@ -48,14 +48,16 @@ Field<Report> Row(const char* path, const char* unit, const char* label, Get get
 
 void AddAdequacyFields(FieldTable& table) {
   table.Add({
-      Row("adequacy.verdict", "", "adequate, doubtful or inadequate",
-          [](const Adequacy& adequacy) { return Text(Name(adequacy.verdict)); }),
-      Row("adequacy.misfit_over_noise", "-", "rms of what the model misses over that of the noise",
-          [](const Adequacy& adequacy) { return Number(adequacy.misfit_over_noise); }),
-      Row("adequacy.p_value", "-", "that noise alone looks like that",
-          [](const Adequacy& adequacy) { return Number(adequacy.p_value); }),
-      Row("adequacy.causes", "", "what the residuals look like, the best first; may be empty",
-          [](const Adequacy& adequacy) { return List(CauseFields(), adequacy.causes); }),
+      AdequacyRow("adequacy.verdict", "", "adequate, doubtful or inadequate",
+                  [](const Adequacy& adequacy) { return Text(Name(adequacy.verdict)); }),
+      AdequacyRow("adequacy.misfit_over_noise", "-",
+                  "rms of what the model misses over that of the noise",
+                  [](const Adequacy& adequacy) { return Number(adequacy.misfit_over_noise); }),
+      AdequacyRow("adequacy.p_value", "-", "that noise alone looks like that",
+                  [](const Adequacy& adequacy) { return Number(adequacy.p_value); }),
+      AdequacyRow("adequacy.causes", "",
+                  "what the residuals look like, the best first; may be empty",
+                  [](const Adequacy& adequacy) { return List(CauseFields(), adequacy.causes); }),
   });
   table.Describe("adequacy.causes[].", CauseFields());
 }

@@ -25,7 +25,7 @@ std::string WithBand(const BandValue& value, std::string_view unit) {
 }
 
 /// "sigma = 40 N/µm, alpha = 0.333" of what the fit knows.
-std::string LawText(const identification::FitResult& fit, const Units& units) {
+std::string FittedLawText(const identification::FitResult& fit, const Units& units) {
   std::vector<std::string> known;
   const auto add = [&](std::string_view name, double value, std::string_view unit, int digits) {
     if (!fit.Find(name)->is_known()) return;
@@ -81,7 +81,7 @@ std::string BackboneText(const BackboneEstimate& backbone, const identification:
       "  {} beside it: {}\n",
       WithBand(backbone.first_stiffness, units.stiffness),
       Quantity(last.displacement, units.displacement, 4), WithBand(last.force, units.force),
-      WithBand(backbone.elastic, units.stiffness), fit.model->name, LawText(fit, units));
+      WithBand(backbone.elastic, units.stiffness), fit.model->name, FittedLawText(fit, units));
   const auto left = std::ranges::count_if(backbone.points, LeavesBand);
   text += left == 0 ? std::string("  the law keeps to the band\n")
                     : fmt::format("  the law leaves the band at {} of {} displacements\n", left,

@@ -26,7 +26,7 @@ const std::vector<Field<BackbonePoint>>& PointFields() {
 }
 
 template <typename Get>
-Field<Report> Row(const std::string& path, const char* unit, const char* label, Get get) {
+Field<Report> BackboneRow(const std::string& path, const char* unit, const char* label, Get get) {
   return {path, unit, label, [get](const Report& report) {
             return report.backbone ? get(*report.backbone) : Value{};
           }};
@@ -34,12 +34,13 @@ Field<Report> Row(const std::string& path, const char* unit, const char* label, 
 
 void AddBand(FieldTable& table, const std::string& path, const char* label,
              BandValue BackboneEstimate::*band) {
-  table.Add({Row(path + ".value", "N/m", label,
-                 [band](const BackboneEstimate& item) { return Number((item.*band).value); }),
-             Row(path + ".ci95[0]", "N/m", "lower end of the 95 % interval",
-                 [band](const BackboneEstimate& item) { return Number((item.*band).lower95); }),
-             Row(path + ".ci95[1]", "N/m", "upper end of the 95 % interval",
-                 [band](const BackboneEstimate& item) { return Number((item.*band).upper95); })});
+  table.Add(
+      {BackboneRow(path + ".value", "N/m", label,
+                   [band](const BackboneEstimate& item) { return Number((item.*band).value); }),
+       BackboneRow(path + ".ci95[0]", "N/m", "lower end of the 95 % interval",
+                   [band](const BackboneEstimate& item) { return Number((item.*band).lower95); }),
+       BackboneRow(path + ".ci95[1]", "N/m", "upper end of the 95 % interval",
+                   [band](const BackboneEstimate& item) { return Number((item.*band).upper95); })});
 }
 
 }  // namespace
@@ -50,13 +51,13 @@ void AddBackboneFields(FieldTable& table) {
   AddBand(table, "backbone.elastic", "of what does not slip within the record",
           &BackboneEstimate::elastic);
   table.Add({
-      Row("backbone.reaches_plateau", "",
-          "false: slip_force is the law's extrapolation beyond the record",
-          [](const BackboneEstimate& item) { return Flag(item.reaches_plateau); }),
-      Row("backbone.rms", "N", "root mean square of what the backbone leaves",
-          [](const BackboneEstimate& item) { return Number(item.rms); }),
-      Row("backbone.points", "", "from 0 to the largest displacement",
-          [](const BackboneEstimate& item) { return List(PointFields(), item.points); }),
+      BackboneRow("backbone.reaches_plateau", "",
+                  "false: slip_force is the law's extrapolation beyond the record",
+                  [](const BackboneEstimate& item) { return Flag(item.reaches_plateau); }),
+      BackboneRow("backbone.rms", "N", "root mean square of what the backbone leaves",
+                  [](const BackboneEstimate& item) { return Number(item.rms); }),
+      BackboneRow("backbone.points", "", "from 0 to the largest displacement",
+                  [](const BackboneEstimate& item) { return List(PointFields(), item.points); }),
   });
   table.Describe("backbone.points[].", PointFields());
 }

@@ -202,7 +202,7 @@ FieldTable MakeTable() {
   return table;
 }
 
-const FieldTable& Table() {
+const FieldTable& AllFields() {
   static const FieldTable table = MakeTable();
   return table;
 }
@@ -231,10 +231,10 @@ std::string WhyFailed(const Report& report) { return "the fit failed: " + report
 
 std::vector<FieldDescription> DescribeFields() {
   std::vector<FieldDescription> descriptions;
-  for (const Field<Report>& row : Table().rows) {
+  for (const Field<Report>& row : AllFields().rows) {
     descriptions.push_back({row.path, row.unit, row.label});
   }
-  descriptions.insert(descriptions.end(), Table().items.begin(), Table().items.end());
+  descriptions.insert(descriptions.end(), AllFields().items.begin(), AllFields().items.end());
   descriptions.push_back({"nulls[].path", "", "where the null is"});
   descriptions.push_back({"nulls[].why", "", "why it is one"});
   for (const char* list : {"warnings", "notes"}) {
@@ -248,7 +248,7 @@ std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view p
   const std::vector<FieldDescription> descriptions = DescribeFields();
   std::vector<DescribedValue> described;
   const std::string_view subject = prefix.substr(0, prefix.find('.'));
-  for (const Field<Report>& row : Table().rows) {
+  for (const Field<Report>& row : AllFields().rows) {
     if (row.path.substr(0, row.path.find('.')) != subject) continue;
     Describe(report, row.get(report), row.path, descriptions, described);
   }
@@ -258,6 +258,6 @@ std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view p
   return described;
 }
 
-Value::Object Document(const Report& report) { return Render(Table().rows, report); }
+Value::Object Document(const Report& report) { return Render(AllFields().rows, report); }
 
 }  // namespace mindahl::report

@@ -34,7 +34,7 @@ struct Converter {
 
 Json Convert(const Value& value) { return std::visit(Converter{}, value.content); }
 
-void Append(const std::vector<Warning>& warnings, Json& list) {
+void AppendWarnings(const std::vector<Warning>& warnings, Json& list) {
   for (const Warning& warning : warnings) {
     list.push_back({{"code", warning.code}, {"message", warning.message}});
   }
@@ -50,10 +50,10 @@ std::string ToJson(const Report& report) {
     json["nulls"].push_back({{"path", null.path}, {"why", null.why}});
   }
   json["warnings"] = Json::array();
-  Append(report.fit_warnings, json["warnings"]);
-  Append(report.contact_warnings, json["warnings"]);
+  AppendWarnings(report.fit_warnings, json["warnings"]);
+  AppendWarnings(report.contact_warnings, json["warnings"]);
   json["notes"] = Json::array();
-  Append(report.notes, json["notes"]);
+  AppendWarnings(report.notes, json["notes"]);
   // A file name need not be UTF-8; JSON must.
   return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
 }

@@ -59,8 +59,8 @@ std::string WhyNotPreferred(const Report& report) {
 }
 
 template <typename Get>
-Field<Report> Row(const char* path, const char* unit, const char* label, Get get,
-                  std::string (*why)(const Report&)) {
+Field<Report> LawRow(const char* path, const char* unit, const char* label, Get get,
+                     std::string (*why)(const Report&)) {
   return {path, unit, label,
           [get](const Report& report) {
             return report.fit.law_choice ? get(*report.fit.law_choice) : Missing();
@@ -81,19 +81,19 @@ Value Alternatives(const Report& report) {
 
 void AddLawFields(FieldTable& table) {
   table.Add({
-      Row(
+      LawRow(
           "law.decided", "", "whether the record tells Masing's law from Dahl's own",
           [](const LawChoice& choice) { return Flag(choice.decided); }, WhyNoChoice),
-      Row(
+      LawRow(
           "law.preferred", "", "the law that it is of, as --model takes it",
           [](const LawChoice& choice) {
             return choice.preferred != nullptr ? Text(choice.preferred->name) : Missing();
           },
           WhyNotPreferred),
-      Row(
+      LawRow(
           "law.delta_aicc", "-", "of the other law less the fitted one",
           [](const LawChoice& choice) { return Number(choice.delta_aicc); }, WhyNoDifference),
-      Row(
+      LawRow(
           "law.likelihood_ratio", "-", "of the fitted law against the other, twice its logarithm",
           [](const LawChoice& choice) { return Number(choice.likelihood_ratio); }, WhyNoDifference),
       {"law.alternatives", "", "the other law; empty where the two are not compared", Alternatives},

@@ -11,7 +11,7 @@ using identification::ParameterEstimate;
 
 namespace {
 
-std::string WhyOpen(const ContactUnderLoad&) { return "the series leaves it open"; }
+std::string WhySeriesOpen(const ContactUnderLoad&) { return "the series leaves it open"; }
 
 std::string WhyNotAlone(const ContactUnderLoad& item) {
   return item.alone ? "the record by itself leaves it open" : "the record by itself is no fit";
@@ -29,7 +29,7 @@ const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
                       [member](const Item& item) { return Number((item.*member).value); }});
       rows.push_back({name + ".standard_error", unit, "standard error",
                       [member](const Item& item) { return Number((item.*member).standard_error); },
-                      WhyOpen});
+                      WhySeriesOpen});
     };
     of_series("sigma", "N/m", "σ at this load, of the whole series", &Item::stiffness);
     of_series("slip_force", "N", "Tc at this load, of the whole series", &Item::slip_force);
@@ -69,7 +69,7 @@ const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
   return fields;
 }
 
-std::string WhyNotTested(const LoadHypothesis& item) {
+std::string WhyHypothesisNotTested(const LoadHypothesis& item) {
   return item.difference ? "load_exponent is at a bound or not identifiable"
                          : "load_exponent was held";
 }
@@ -82,11 +82,11 @@ const std::vector<Field<LoadHypothesis>>& HypothesisFields() {
       {"exponent", "-", "that it has; of elements in parallel the fitted α",
        [](const Item& item) { return Number(item.exponent); }},
       {"difference", "-", "p less that", [](const Item& item) { return Number(item.difference); },
-       WhyNotTested},
+       WhyHypothesisNotTested},
       {"z", "-", "difference over its standard error",
-       [](const Item& item) { return Number(item.z); }, WhyNotTested},
+       [](const Item& item) { return Number(item.z); }, WhyHypothesisNotTested},
       {"p_value", "-", "two-sided, of z", [](const Item& item) { return Number(item.p_value); },
-       WhyNotTested},
+       WhyHypothesisNotTested},
   };
   return fields;
 }
@@ -117,7 +117,7 @@ const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
   return fields;
 }
 
-Value QuantitiesOf(const LoadLaw& law) {
+Value QuantityValues(const LoadLaw& law) {
   Value::Object quantities;
   for (const QuantityUnderLaw& quantity : law.quantities) {
     Value::Object members = PropagatedMembers(quantity.value, quantity.unit);
@@ -127,7 +127,7 @@ Value QuantitiesOf(const LoadLaw& law) {
   return {std::move(quantities)};
 }
 
-const std::vector<Field<LoadLaw>>& LawFields() {
+const std::vector<Field<LoadLaw>>& LoadLawFields() {
   using Item = LoadLaw;
   const auto why_exact = [](const Item&) { return std::string("sigma was held"); };
   static const std::vector<Field<Item>> fields = {
@@ -148,7 +148,7 @@ const std::vector<Field<LoadLaw>>& LawFields() {
          return item.stiffness95 ? Number(item.stiffness95->upper) : Missing();
        },
        why_exact},
-      {"quantities", "", "what follows of the contact, by name; may be empty", QuantitiesOf},
+      {"quantities", "", "what follows of the contact, by name; may be empty", QuantityValues},
   };
   return fields;
 }
@@ -175,12 +175,12 @@ void AddLoadSeriesFields(FieldTable& table) {
        }},
       {"load_series.laws", "", "the hypotheses that are tenable, each held over all loads",
        [](const Report& report) {
-         return report.load_series ? List(LawFields(), report.load_series->laws) : Value{};
+         return report.load_series ? List(LoadLawFields(), report.load_series->laws) : Value{};
        }},
   });
   table.Describe("load_series.records[].", ContactFieldsUnderLoad());
   table.Describe("load_series.hypotheses[].", HypothesisFields());
-  table.Describe("load_series.laws[].", LawFields());
+  table.Describe("load_series.laws[].", LoadLawFields());
   table.Describe("load_series.laws[].quantities.NAME.", PropagatedFields());
   table.Describe("load_series.laws[].quantities.NAME.", QuantityFields());
 }

@@ -28,7 +28,7 @@ const std::vector<Field<identification::BranchShape>>& BranchFields() {
   return fields;
 }
 
-std::string WhyNotTested(const StiffnessTest& test) {
+std::string WhyStiffnessNotTested(const StiffnessTest& test) {
   return test.ratio.standard_error > 0 ? "the record leaves sigma open"
                                        : "neither sigma nor an input is uncertain";
 }
@@ -41,16 +41,19 @@ const std::vector<Field<StiffnessTest>>& StiffnessFields() {
     };
   };
   static const std::vector<Field<Item>> fields = {
-      {"ci95[0]", "-", "lower end of the 95 % interval", end(&Interval::lower), WhyNotTested},
-      {"ci95[1]", "-", "upper end of the 95 % interval", end(&Interval::upper), WhyNotTested},
-      {"z", "-", "(ratio − 1)/SE", [](const Item& item) { return Number(item.z); }, WhyNotTested},
+      {"ci95[0]", "-", "lower end of the 95 % interval", end(&Interval::lower),
+       WhyStiffnessNotTested},
+      {"ci95[1]", "-", "upper end of the 95 % interval", end(&Interval::upper),
+       WhyStiffnessNotTested},
+      {"z", "-", "(ratio − 1)/SE", [](const Item& item) { return Number(item.z); },
+       WhyStiffnessNotTested},
       {"p_value", "-", "two-sided", [](const Item& item) { return Number(item.p_value); },
-       WhyNotTested},
+       WhyStiffnessNotTested},
   };
   return fields;
 }
 
-void Append(Value::Object& object, Value::Object more) {
+void AppendMembers(Value::Object& object, Value::Object more) {
   for (auto& member : more) object.push_back(std::move(member));
 }
 
@@ -59,8 +62,8 @@ Value StiffnessTests(const Report& report) {
   for (const StiffnessTest& test : report.stiffness) {
     Value::Object object;
     object.emplace_back("radius", Text(test.radius));
-    Append(object, PropagatedMembers(test.ratio, "-"));
-    Append(object, Render(StiffnessFields(), test));
+    AppendMembers(object, PropagatedMembers(test.ratio, "-"));
+    AppendMembers(object, Render(StiffnessFields(), test));
     array.push_back({std::move(object)});
   }
   return {std::move(array)};

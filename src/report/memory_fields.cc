@@ -32,7 +32,7 @@ std::string WhyNoMemory(const Report& report) {
 }
 
 template <typename Get>
-Field<Report> Row(const char* path, const char* unit, const char* label, Get get) {
+Field<Report> MemoryRow(const char* path, const char* unit, const char* label, Get get) {
   return {path, unit, label,
           [get](const Report& report) {
             return report.fit.memory ? get(*report.fit.memory) : Missing();
@@ -44,12 +44,12 @@ Field<Report> Row(const char* path, const char* unit, const char* label, Get get
 
 void AddMemoryFields(FieldTable& table) {
   table.Add({
-      Row("memory.verdict", "", "masing, dahl, neither or undecided",
-          [](const MemoryTest& memory) { return Text(Name(memory.verdict)); }),
-      Row("memory.p_value", "-", "of Masing's memory, by all comparisons",
-          [](const MemoryTest& memory) { return Number(memory.p_value); }),
-      Row("memory.dahl_p_value", "-", "of Dahl's",
-          [](const MemoryTest& memory) { return Number(memory.dahl_p_value); }),
+      MemoryRow("memory.verdict", "", "masing, dahl, neither or undecided",
+                [](const MemoryTest& memory) { return Text(Name(memory.verdict)); }),
+      MemoryRow("memory.p_value", "-", "of Masing's memory, by all comparisons",
+                [](const MemoryTest& memory) { return Number(memory.p_value); }),
+      MemoryRow("memory.dahl_p_value", "-", "of Dahl's",
+                [](const MemoryTest& memory) { return Number(memory.dahl_p_value); }),
       {"memory.tests", "", "comparisons that the record has; may be empty",
        [](const Report& report) {
          return report.fit.memory ? List(ComparisonFields(), report.fit.memory->comparisons)

@@ -35,7 +35,7 @@ std::string Prose(std::string_view text) {
 }
 
 /// A name that a narrow screen breaks at its underscores and points, not within words.
-std::string Name(std::string_view text) {
+std::string HtmlName(std::string_view text) {
   std::string html;
   for (const char character : Prose(text)) {
     html += character;
@@ -95,7 +95,7 @@ Table::Table(std::string_view caption, std::initializer_list<std::string_view> c
 }
 
 void Table::Row(std::string_view name, const std::vector<Cell>& cells) {
-  rows_ += fmt::format("<tr><th scope=\"row\">{}</th>", Name(name));
+  rows_ += fmt::format("<tr><th scope=\"row\">{}</th>", HtmlName(name));
   for (const Cell& cell : cells) {
     rows_ += fmt::format("<td class=\"{}{}{}\">{}</td>",
                          cell.kind == Cell::Kind::kNumber ? "number" : "words",

@@ -31,7 +31,7 @@ std::string WhyNoError(const ReportedParameter& item) {
   return "the record leaves it open";
 }
 
-std::string WhyOpen(const ReportedParameter& item) {
+std::string WhyIntervalOpen(const ReportedParameter& item) {
   if (item.report.failed()) return WhyFailed(item.report);
   return item.estimate.status == ParameterStatus::kFixed ? "held, not fitted"
                                                          : "the record sets no limit there";
@@ -48,9 +48,9 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
       {"standard_error", "of the parameter", "standard error",
        [](const Item& item) { return Number(item.estimate.standard_error); }, WhyNoError},
       {"ci95[0]", "of the parameter", "lower end of the 95 % interval",
-       [](const Item& item) { return Number(item.estimate.lower95); }, WhyOpen},
+       [](const Item& item) { return Number(item.estimate.lower95); }, WhyIntervalOpen},
       {"ci95[1]", "of the parameter", "upper end of the 95 % interval",
-       [](const Item& item) { return Number(item.estimate.upper95); }, WhyOpen},
+       [](const Item& item) { return Number(item.estimate.upper95); }, WhyIntervalOpen},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
        [](const Item& item) { return Text(Name(item.estimate.status)); }},
       {"identifiability", "", "identifiable, bounded_below or not_identifiable",

@@ -413,12 +413,12 @@ std::string FitFailed(const Finding&, const FitResult& fit, const Units&) {
       fit.termination);
 }
 
-struct Row {
+struct SentenceRow {
   std::string_view code;
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<Row, 34> kSentences = {{
+constexpr std::array<SentenceRow, 34> kSentences = {{
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
@@ -458,7 +458,7 @@ constexpr std::array<Row, 34> kSentences = {{
 }  // namespace
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
-  for (const Row& row : kSentences) {
+  for (const SentenceRow& row : kSentences) {
     if (row.code == finding.code) return row.sentence(finding, fit, units);
   }
   throw std::logic_error(fmt::format("the finding '{}' has no sentence", finding.code));
@@ -466,7 +466,7 @@ std::string Sentence(const Finding& finding, const FitResult& fit, const Units& 
 
 std::vector<std::string_view> FindingCodes() {
   std::vector<std::string_view> codes;
-  for (const Row& row : kSentences) codes.push_back(row.code);
+  for (const SentenceRow& row : kSentences) codes.push_back(row.code);
   return codes;
 }
 

@@ -6,33 +6,35 @@ namespace mindahl::report {
 
 namespace {
 
-std::string WhyOpen(const Report& report) {
+std::string WhySlipForceOpen(const Report& report) {
   return report.slip_forces ? "slip_force and asymmetry are held, or the record leaves it open"
                             : "slip_force or asymmetry is not identifiable";
 }
 
 /// Absent of a fit that has one slip force.
 template <typename Get>
-Field<Report> Row(const std::string& path, const char* label, Get get) {
+Field<Report> SlipForceRow(const std::string& path, const char* label, Get get) {
   return {path, "N", label,
           [get](const Report& report) {
             if (report.fit.Find("asymmetry") == nullptr) return Value{};
             return report.slip_forces ? get(*report.slip_forces) : Missing();
           },
-          WhyOpen};
+          WhySlipForceOpen};
 }
 
 std::vector<Field<Report>> RowsOf(const std::string& sense, const char* label,
                                   SlipForce SlipForces::*member) {
   const std::string path = "slip_forces." + sense;
   return {
-      Row(path + ".value", label,
-          [member](const SlipForces& forces) { return Number((forces.*member).value); }),
-      Row(path + ".standard_error", "standard error",
+      SlipForceRow(path + ".value", label,
+                   [member](const SlipForces& forces) { return Number((forces.*member).value); }),
+      SlipForceRow(
+          path + ".standard_error", "standard error",
           [member](const SlipForces& forces) { return Number((forces.*member).standard_error); }),
-      Row(path + ".ci95[0]", "lower end of the 95 % interval",
-          [member](const SlipForces& forces) { return Number((forces.*member).lower95); }),
-      Row(path + ".ci95[1]", "upper end of the 95 % interval",
+      SlipForceRow(path + ".ci95[0]", "lower end of the 95 % interval",
+                   [member](const SlipForces& forces) { return Number((forces.*member).lower95); }),
+      SlipForceRow(
+          path + ".ci95[1]", "upper end of the 95 % interval",
           [member](const SlipForces& forces) { return Number((forces.*member).upper95); })};
 }
 

@@ -9,8 +9,8 @@ using models::BranchLaw;
 
 namespace {
 
-std::vector<Field<StartReport>> LawFields(const std::string& prefix, const char* where,
-                                          BranchLaw StartReport::*law) {
+std::vector<Field<StartReport>> StartLawFields(const std::string& prefix, const char* where,
+                                               BranchLaw StartReport::*law) {
   const auto why = [](const StartReport&) {
     return std::string("the solver came to nothing finite from here");
   };
@@ -34,10 +34,10 @@ const std::vector<Field<StartReport>>& StartFields() {
     const auto append = [&](const std::vector<Field<Item>>& more) {
       rows.insert(rows.end(), more.begin(), more.end());
     };
-    append(LawFields("start", "at the start", &Item::start));
+    append(StartLawFields("start", "at the start", &Item::start));
     append({{"initial_rms", "N", "root mean square residual at the start",
              [](const Item& item) { return Number(item.initial_rms); }, why}});
-    append(LawFields("reached", "where it ended", &Item::reached));
+    append(StartLawFields("reached", "where it ended", &Item::reached));
     append({{"final_rms", "N", "root mean square residual where it ended",
              [](const Item& item) { return Number(item.final_rms); }, why},
             {"converged", "", "whether the solver converged from here",

@@ -35,7 +35,7 @@ struct ParameterWords {
 };
 
 /// Of one that is fitted.
-ParameterWords InWords(const ParameterEstimate& estimate) {
+ParameterWords ParameterInWords(const ParameterEstimate& estimate) {
   switch (WhatIsShown(estimate)) {
     case Shown::kNothing:
       return {"-", "-"};
@@ -66,7 +66,7 @@ std::string ParameterTable(const FitResult& fit, const Style& style) {
           fmt::format("{} = {}", estimate.name, Quantity(estimate.value, estimate.unit, 6)));
       continue;
     }
-    const ParameterWords words = InWords(estimate);
+    const ParameterWords words = ParameterInWords(estimate);
     text += fmt::format("{:<22} {:<27} {:<24} {}\n", estimate.name, words.value, words.interval,
                         style.Judged(JudgementOf(estimate), VerdictWords(estimate)));
   }

@@ -18,7 +18,7 @@ std::string CyclesText(std::size_t cycles) {
   return fmt::format("{} cycle{}", cycles, cycles == 1 ? "" : "s");
 }
 
-std::string InWords(const TrimmedPart& part) {
+std::string TrimmedPartInWords(const TrimmedPart& part) {
   switch (part.reason) {
     case TrimReason::kRest:
       return fmt::format("{} samples at rest {}", part.samples(),
@@ -60,7 +60,7 @@ Warning NoteOf(const Report& report, std::size_t r) {
                     "turning point under it",
                     piece->left_out, piece->normal_load));
   }
-  for (const TrimmedPart& part : trim.parts) parts.push_back(InWords(part));
+  for (const TrimmedPart& part : trim.parts) parts.push_back(TrimmedPartInWords(part));
   const std::string_view why = WhyNotSettled(trim.settling);
   if (parts.empty()) {
     return {"nothing_trimmed",
