@@ -25,7 +25,7 @@ Loop NearSlip(const Truth& truth, std::size_t level, Draws& draws) {
   return Clean(clean, draws);
 }
 
-Loop PartialSlip(const Truth& truth, std::size_t level, Draws& draws) {
+Loop CleanPartialSlip(const Truth& truth, std::size_t level, Draws& draws) {
   Truth clean = Quiet(truth, level);
   clean.reach = draws.Uniform(0.3, 0.7);
   return Clean(clean, draws);
@@ -70,7 +70,7 @@ std::vector<Kind> CleanKinds() {
   return {
       {"clean, gross slip", Half::kClean, GrossSlip, "reach 1.3 to 4"},
       {"clean, near slip", Half::kClean, NearSlip, "reach 0.8 to 1.2"},
-      {"clean, partial slip", Half::kClean, PartialSlip, "reach 0.3 to 0.7"},
+      {"clean, partial slip", Half::kClean, CleanPartialSlip, "reach 0.3 to 0.7"},
       {"clean, Mindlin's contact", Half::kClean, Mindlin, "alpha = 1/3"},
       {"clean, Jenkins' element", Half::kClean, Jenkins, "alpha = 0"},
       {"clean, alpha above 1", Half::kClean, LargeShape, "1 to 1.5, reach 1 to 3"},

@@ -44,7 +44,7 @@ Loop UnderLoad(const Truth& truth, double variation, Draws& draws, Load load) {
   return {record, expected};
 }
 
-Loop InStep(const Truth& truth, std::size_t level, Draws& draws) {
+Loop LoadInStep(const Truth& truth, std::size_t level, Draws& draws) {
   const double phase = draws.Uniform(0.0, 2 * std::numbers::pi);
   return UnderLoad(truth, At(level, {0.05, 0.20, 0.60}), draws, [phase](double cycles, double) {
     return std::sin(2 * std::numbers::pi * cycles + phase);
@@ -74,7 +74,7 @@ Loop Unseen(const Truth& truth, std::size_t level, Draws& draws) {
 
 std::vector<Kind> LoadKinds() {
   return {
-      {"load varies in step", Half::kHeldOut, InStep,
+      {"load varies in step", Half::kHeldOut, LoadInStep,
        "by 5, 20, 60 % at the frequency of the drive; sigma and Tc may be those of any load"},
       {"load varies twice as fast", Half::kDevelopment, TwiceAsFast,
        "by 5, 20, 60 % at twice the frequency; sigma and Tc may be those of any load"},

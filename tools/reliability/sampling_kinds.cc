@@ -26,12 +26,12 @@ Loop Sparse(const Truth& truth, double cycles, double rows_per_cycle, double fir
   return {record, AllOf(truth.law)};
 }
 
-Loop InStep(const Truth& truth, std::size_t level, Draws& draws) {
+Loop SampledInStep(const Truth& truth, std::size_t level, Draws& draws) {
   const double rows = At(level, {10, 8, 5});
   return Sparse(truth, 20, rows, draws.Uniform(0.0, 1 / rows), draws);
 }
 
-Loop ManyCycles(const Truth& truth, std::size_t level, Draws& draws) {
+Loop TenSamplesACycle(const Truth& truth, std::size_t level, Draws& draws) {
   const double rows = 10 + draws.Uniform(-0.5, 0.5);  // not in step
   return Sparse(truth, At(level, {10, 30, 100}), rows, 0.0, draws);
 }
@@ -116,9 +116,9 @@ Loop ThinnedAtTurns(const Truth& truth, std::size_t level, Draws& draws) {
 
 std::vector<Kind> SamplingKinds() {
   return {
-      {"sampled in step with the motion", Half::kDevelopment, InStep,
+      {"sampled in step with the motion", Half::kDevelopment, SampledInStep,
        "10, 8, 5 samples a cycle, 20 cycles"},
-      {"ten samples a cycle", Half::kHeldOut, ManyCycles, "10, 30, 100 cycles", false},
+      {"ten samples a cycle", Half::kHeldOut, TenSamplesACycle, "10, 30, 100 cycles", false},
       {"few samples", Half::kDevelopment, FewRows, "60, 30, 12 over one and a half cycles"},
       {"one stroke", Half::kHeldOut, OneStroke, "from rest; from turn to turn; without its ends"},
       {"part of a cycle", Half::kDevelopment, HalfCycle, "0.75, 0.5, 0.4 cycles"},
