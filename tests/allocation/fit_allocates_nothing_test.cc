@@ -35,7 +35,7 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
-namespace mindahl::identification {
+namespace mindahl::identification::fit_allocates_nothing_test {
 namespace {
 
 using namespace loop;
@@ -112,4 +112,4 @@ TEST(WarmFit, IsCounted) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::fit_allocates_nothing_test

@@ -10,7 +10,7 @@
 
 #include "support/histories.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::changes_test {
 namespace {
 
 using testing::Generator;
@@ -381,4 +381,4 @@ TEST(ChangeKinds, HaveNames) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::changes_test

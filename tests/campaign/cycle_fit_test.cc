@@ -11,7 +11,7 @@
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::cycle_fit_test {
 namespace {
 
 using testing::kCycleLaw;
@@ -209,4 +209,4 @@ TEST(CycleFitter, NamesEachFlagOnce) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::cycle_fit_test

@@ -8,7 +8,7 @@
 #include "campaign/test_record.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::cycle_splitter_test {
 namespace {
 
 using testing::Generator;
@@ -124,4 +124,4 @@ TEST(CycleSplitter, RefusesWhatNothingCanBeSplitBy) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::cycle_splitter_test

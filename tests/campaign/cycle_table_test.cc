@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::cycle_table_test {
 namespace {
 
 CycleFit Filled() {
@@ -85,4 +85,4 @@ TEST(CycleTable, RefusesWhatIsNoRow) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::cycle_table_test

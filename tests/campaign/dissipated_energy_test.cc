@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::dissipated_energy_test {
 namespace {
 
 constexpr double kEnergy = 2e-5;  // J
@@ -66,4 +66,4 @@ TEST(DissipatedEnergy, LeavesOutWhatNobodyKnows) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::dissipated_energy_test

@@ -9,7 +9,7 @@
 #include "mindahl/core/error.h"
 #include "support/page_text.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::pages_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -146,4 +146,4 @@ TEST(BatchIndex, LinksPagesSaysFaultsAndShowsOnlyWhatIsIdentified) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::pages_test

@@ -9,7 +9,7 @@
 #include "mindahl/core/error.h"
 #include "support/histories.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::pooled_value_test {
 namespace {
 
 using testing::Generator;
@@ -91,4 +91,4 @@ TEST(PooledValue, RefusesWhatHasNoWeight) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::pooled_value_test

@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::reading_test {
 namespace {
 
 /// Three cycles of a loop that dissipates, one hundred samples each.
@@ -67,4 +67,4 @@ TEST(Reading, AsksForFewerCyclesToAverageOnlyWhereThereAreSome) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::reading_test

@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::repeats_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -36,4 +36,4 @@ TEST(Repeats, AreTwoAtLeast) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::repeats_test

@@ -10,7 +10,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::shared_alpha_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -58,4 +58,4 @@ TEST(SharedAlpha, NeedsAnAlphaThatIsFittedAndFilesThatAreThereTwice) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::shared_alpha_test

@@ -10,7 +10,7 @@
 #include "mindahl/campaign/cycle_table.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::campaign {
+namespace mindahl::campaign::tracker_test {
 namespace {
 
 using testing::LinesOf;
@@ -95,4 +95,4 @@ TEST(Tracker, RefusesOptionsBeforeItBegins) {
 }
 
 }  // namespace
-}  // namespace mindahl::campaign
+}  // namespace mindahl::campaign::tracker_test

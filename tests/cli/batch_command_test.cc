@@ -12,7 +12,7 @@
 #include "io/temporary_directory.h"
 
 // mindahl batch: each file a fit of its own.
-namespace mindahl {
+namespace mindahl::batch_command_test {
 namespace {
 
 using testing::Cells;
@@ -178,4 +178,4 @@ TEST_F(BatchCommand, RefusesOptionsBeforeAnyFile) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::batch_command_test

@@ -7,7 +7,7 @@
 #include "io/temporary_directory.h"
 
 // What is measured of a contact that is the model's is not to be doubted.
-namespace mindahl::cli {
+namespace mindahl::cli::clean_records_test {
 namespace {
 
 using testing::Outcome;
@@ -56,4 +56,4 @@ TEST(CleanRecord, WhoseExponentIsHeldElsewhereByABoundIsDoubted) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::clean_records_test

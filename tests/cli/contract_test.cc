@@ -15,7 +15,7 @@
 #include "report/fields.h"
 
 // docs/contract.md against the program: it names every option, key and code, and none besides.
-namespace mindahl::cli {
+namespace mindahl::cli::contract_test {
 namespace {
 
 using nlohmann::json;
@@ -259,4 +259,4 @@ TEST(Contract, DocumentsEveryKeyOfTheOtherCommands) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::contract_test

@@ -14,7 +14,7 @@
 #include "io/temporary_directory.h"
 #include "mindahl/models/equivalent_law.h"
 
-namespace mindahl::cli {
+namespace mindahl::cli::convert_command_test {
 namespace {
 
 using nlohmann::json;
@@ -169,4 +169,4 @@ TEST(Convert, TakesItsOptionsFromAFile) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::convert_command_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace mindahl::cli {
+namespace mindahl::cli::established_test {
 namespace {
 
 using namespace identification;
@@ -43,4 +43,4 @@ TEST(Established, StrictlyTheModelIsNotInadequate) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::established_test

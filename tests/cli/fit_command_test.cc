@@ -13,7 +13,7 @@
 #include "io/temporary_directory.h"
 
 // fit: the JSON that scripts rely on, files in every unit and format, outputs, exit status.
-namespace mindahl::cli {
+namespace mindahl::cli::fit_command_test {
 namespace {
 
 using nlohmann::json;
@@ -464,4 +464,4 @@ TEST(FitCommand, JointFitNumbersTheOffsetsOfItsRecords) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::fit_command_test

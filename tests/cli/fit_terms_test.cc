@@ -17,7 +17,7 @@
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
 // between models, and what the report says of each.
-namespace mindahl::cli {
+namespace mindahl::cli::fit_terms_test {
 namespace {
 
 using nlohmann::json;
@@ -642,4 +642,4 @@ TEST(FitCommand, LoadsThatHaveNoMeaningAreRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::fit_terms_test

@@ -13,7 +13,7 @@
 
 // docs/identification.md against the library: its tables are those of the parameters, of the
 // departures and of the thresholds, row by row.
-namespace mindahl::identification {
+namespace mindahl::identification::identification_page_test {
 namespace {
 
 using testing::PageSections;
@@ -96,4 +96,4 @@ TEST(IdentificationPage, HasARowForEveryIrregularityAndNoOther) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::identification_page_test

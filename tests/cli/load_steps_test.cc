@@ -15,7 +15,7 @@
 #include "io/temporary_directory.h"
 
 // fit: one file under several constant loads.
-namespace mindahl::cli {
+namespace mindahl::cli::load_steps_test {
 namespace {
 
 using nlohmann::json;
@@ -150,4 +150,4 @@ TEST_F(LoadStepsOfFit, AreNotSeenInALoadThatChangesSlowlyOrSwings) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::load_steps_test

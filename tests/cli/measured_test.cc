@@ -13,7 +13,7 @@
 
 // Measured records of other people, in place: what a good tool must notice in each
 // (../shared/measured/README.md). Reference values are those of the README, found by others.
-namespace mindahl::cli {
+namespace mindahl::cli::measured_test {
 namespace {
 
 using nlohmann::json;
@@ -179,4 +179,4 @@ TEST_F(MeasuredRecord, BandBrakeWithBacklashLeavesTheResidualThatNoModelFollows)
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::measured_test

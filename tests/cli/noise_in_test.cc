@@ -13,7 +13,7 @@
 #include "io/temporary_directory.h"
 
 // fit --noise-in displacement: loops whose force is imposed.
-namespace mindahl::cli {
+namespace mindahl::cli::noise_in_test {
 namespace {
 
 using nlohmann::json;
@@ -142,4 +142,4 @@ TEST_F(NoiseIn, DisplacementIsNotReadByTrack) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::noise_in_test

@@ -10,7 +10,7 @@
 #include "io/temporary_directory.h"
 
 // simulate, contact and validate.
-namespace mindahl::cli {
+namespace mindahl::cli::other_commands_test {
 namespace {
 
 using nlohmann::json;
@@ -356,4 +356,4 @@ TEST(Validate, PrintsATableAndTheVerdict) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::other_commands_test

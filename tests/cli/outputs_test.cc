@@ -12,7 +12,7 @@
 
 // Where results go: no output replaces an input or another output, and what cannot be written is an
 // error that is said.
-namespace mindahl::cli {
+namespace mindahl::cli::outputs_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -131,4 +131,4 @@ TEST_F(Outputs, OnStandardOutputThatIsFullOrClosedAreAnError) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::outputs_test

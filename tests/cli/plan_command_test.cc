@@ -8,7 +8,7 @@
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
 
-namespace mindahl::cli {
+namespace mindahl::cli::plan_command_test {
 namespace {
 
 using nlohmann::json;
@@ -113,4 +113,4 @@ TEST(PlanCommand, RefusesWhatItDoesNotUnderstandInOneLine) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::plan_command_test

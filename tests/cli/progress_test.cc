@@ -14,7 +14,7 @@
 #include <thread>
 
 // What whoever waits at a terminal sees, and that nobody else does.
-namespace mindahl::cli {
+namespace mindahl::cli::progress_test {
 namespace {
 
 using ::testing::EndsWith;
@@ -130,4 +130,4 @@ TEST(Progress, IsNotShownInAPipeNorBesideOtherMessages) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::progress_test

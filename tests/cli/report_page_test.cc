@@ -13,7 +13,7 @@
 #include "support/page_text.h"
 
 // --report of fit, batch and track: pages for people.
-namespace mindahl::cli {
+namespace mindahl::cli::report_page_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -136,4 +136,4 @@ TEST(ShellWord, IsQuotedWhereAShellWouldTakeItApart) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::report_page_test

@@ -9,7 +9,7 @@
 #include "io/temporary_directory.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::cli {
+namespace mindahl::cli::toml_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -69,4 +69,4 @@ TEST(Toml, NamesFileAndLineOfAFault) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::toml_test

@@ -17,7 +17,7 @@
 #include "mindahl/campaign/tracker.h"
 
 // mindahl track: a table that nothing ends half-way.
-namespace mindahl {
+namespace mindahl::track_command_test {
 namespace {
 
 using testing::Cells;
@@ -439,4 +439,4 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::track_command_test

@@ -13,7 +13,7 @@
 #include "io/temporary_directory.h"
 
 // simulate --method, tradeoff and recommend.
-namespace mindahl::cli {
+namespace mindahl::cli::tradeoff_commands_test {
 namespace {
 
 using nlohmann::json;
@@ -362,4 +362,4 @@ TEST(Recommend, RefusesAToleranceThatIsNone) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::tradeoff_commands_test

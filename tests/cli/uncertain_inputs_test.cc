@@ -12,7 +12,7 @@
 
 // What is known of the contact, with its standard uncertainty: how it is read, and what becomes of
 // it in every command that takes it.
-namespace mindahl::cli {
+namespace mindahl::cli::uncertain_inputs_test {
 namespace {
 
 using namespace contact;
@@ -357,4 +357,4 @@ TEST(Simulate, RefusesAnUncertaintyOfParametersThatAreNoMeasurement) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::uncertain_inputs_test

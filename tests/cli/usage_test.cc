@@ -9,7 +9,7 @@
 #include "io/temporary_directory.h"
 
 // Help, exit status and messages, of good usage and bad.
-namespace mindahl::cli {
+namespace mindahl::cli::usage_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -460,4 +460,4 @@ TEST_F(Config, RefusesWhatItDoesNotKnow) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli
+}  // namespace mindahl::cli::usage_test

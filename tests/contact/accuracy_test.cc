@@ -14,7 +14,7 @@
 #include "mindahl/contact/hertz.h"
 #include "support/message_of.h"
 
-namespace mindahl::contact {
+namespace mindahl::contact::accuracy_test {
 namespace {
 
 using Real = boost::multiprecision::cpp_bin_float_50;
@@ -100,4 +100,4 @@ TEST(ContactAccuracy, RefusesWhatNoDoubleHolds) {
 }
 
 }  // namespace
-}  // namespace mindahl::contact
+}  // namespace mindahl::contact::accuracy_test

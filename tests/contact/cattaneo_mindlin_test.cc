@@ -10,7 +10,7 @@
 #include "printed_equations.h"
 #include "support/message_of.h"
 
-namespace mindahl::contact {
+namespace mindahl::contact::cattaneo_mindlin_test {
 namespace {
 
 using printed::ErrorInUlps;
@@ -397,4 +397,4 @@ TEST(MindlinInput, RefusesFrictionlessAndUnloadedContacts) {
 }
 
 }  // namespace
-}  // namespace mindahl::contact
+}  // namespace mindahl::contact::cattaneo_mindlin_test

@@ -12,7 +12,7 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "printed_equations.h"
 
-namespace mindahl::contact {
+namespace mindahl::contact::errata_test {
 namespace {
 
 using printed::Real;
@@ -214,4 +214,4 @@ TEST(MindlinEnergy, IsFourTimesWhatTheFirstLoadingDissipates) {
 }
 
 }  // namespace
-}  // namespace mindahl::contact
+}  // namespace mindahl::contact::errata_test

@@ -8,7 +8,7 @@
 
 #include "support/message_of.h"
 
-namespace mindahl::contact {
+namespace mindahl::contact::hertz_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -196,4 +196,4 @@ TEST(HertzInput, NamesTheQuantityThatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace mindahl::contact
+}  // namespace mindahl::contact::hertz_test

@@ -15,7 +15,7 @@
 
 #include "support/message_of.h"
 
-namespace mindahl::contact {
+namespace mindahl::contact::mindlin_dahl_mapping_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -713,4 +713,4 @@ TEST(IdentifyContactInput, NamesTheKnowledgeThatIsInvalidEvenWhereItIsNotNeeded)
 }
 
 }  // namespace
-}  // namespace mindahl::contact
+}  // namespace mindahl::contact::mindlin_dahl_mapping_test

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace mindahl::contact {
+namespace mindahl::contact::plausibility_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -71,4 +71,4 @@ TEST(Doubts, AreOfAFrictionBeyondWhatSlides) {
 }
 
 }  // namespace
-}  // namespace mindahl::contact
+}  // namespace mindahl::contact::plausibility_test

@@ -13,7 +13,7 @@
 
 // What a stiffness under a load says of a contact of a known kind of shape: a contact is made
 // forward by Hertz and Mindlin, and its parts are taken away one by one.
-namespace mindahl::contact {
+namespace mindahl::contact::shape_under_load_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -282,4 +282,4 @@ TEST(ShapeUnderLoad, RefusesWhatIsNoStiffnessOrHasNoLoad) {
 }
 
 }  // namespace
-}  // namespace mindahl::contact
+}  // namespace mindahl::contact::shape_under_load_test

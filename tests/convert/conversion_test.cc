@@ -14,7 +14,7 @@
 #include "mindahl/models/steady_loop.h"
 #include "support/histories.h"
 
-namespace mindahl::convert {
+namespace mindahl::convert::conversion_test {
 namespace {
 
 using models::BranchLaw;
@@ -306,4 +306,4 @@ TEST(Conversion, RefusesOptionsThatBreakARule) {
 }
 
 }  // namespace
-}  // namespace mindahl::convert
+}  // namespace mindahl::convert::conversion_test

@@ -7,7 +7,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 
-namespace mindahl::convert {
+namespace mindahl::convert::parameters_test {
 namespace {
 
 Conversion To(Target target) {
@@ -47,4 +47,4 @@ TEST(LammpsContact, IsOfLammpsAlone) {
 }
 
 }  // namespace
-}  // namespace mindahl::convert
+}  // namespace mindahl::convert::parameters_test

@@ -14,7 +14,7 @@
 #include "mindahl/models/steady_loop.h"
 #include "support/histories.h"
 
-namespace mindahl::convert {
+namespace mindahl::convert::steady_law_test {
 namespace {
 
 using models::BranchLaw;
@@ -202,4 +202,4 @@ TEST(SteadyLaw, RefusesWhatIsNoLaw) {
 }
 
 }  // namespace
-}  // namespace mindahl::convert
+}  // namespace mindahl::convert::steady_law_test

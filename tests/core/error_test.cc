@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace mindahl {
+namespace mindahl::error_test {
 namespace {
 
 using testing::StrEq;
@@ -49,4 +49,4 @@ TEST(Error, LetsValidValuesPass) {
 TEST(Error, ZeroIsNotPositive) { EXPECT_THROW(RequirePositive("x", 0.0), InvalidArgument); }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::error_test

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::extremes_test {
 namespace {
 
 TEST(Extremes, AreFoundWhereverTheyLie) {
@@ -32,4 +32,4 @@ TEST(Extremes, OfOneValueAreThatValue) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::extremes_test

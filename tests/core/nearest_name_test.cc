@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace mindahl {
+namespace mindahl::nearest_name_test {
 namespace {
 
 const std::vector<std::string> kOptions = {
@@ -70,4 +70,4 @@ TEST(UnknownAmong, NamesTheNearestAndAll) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::nearest_name_test

@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-namespace mindahl {
+namespace mindahl::units_test {
 namespace {
 
 TEST(Units, ReadTheSymbolsOfTheCommandLine) {
@@ -94,4 +94,4 @@ TEST(Units, ListTheirSymbolsForMessages) {
 }
 
 }  // namespace
-}  // namespace mindahl
+}  // namespace mindahl::units_test

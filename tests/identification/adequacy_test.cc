@@ -15,7 +15,7 @@
 #include "recovery/recovered.h"
 
 // Whether a fit knows that its model is the wrong one, and what is beside it.
-namespace mindahl::identification {
+namespace mindahl::identification::adequacy_test {
 namespace {
 
 using namespace loop;
@@ -373,4 +373,4 @@ TEST(Adequacy, CauseThatIsFittedIsNoneAnyLonger) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::adequacy_test

@@ -14,7 +14,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/model_selection.h"
 
-namespace mindahl::identification {
+namespace mindahl::identification::asymmetry_test {
 namespace {
 
 using namespace loop;
@@ -321,4 +321,4 @@ TEST(Asymmetry, LeavesALoadThatVariesUnfollowed) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::asymmetry_test

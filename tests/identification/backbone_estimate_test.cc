@@ -13,7 +13,7 @@
 #include "support/masing_record.h"
 
 // The backbone of a contact whose law nobody has written down.
-namespace mindahl::identification {
+namespace mindahl::identification::backbone_estimate_test {
 namespace {
 
 using loop::Record;
@@ -253,4 +253,4 @@ TEST(BackboneBand, CoversTheTruthAtNineteenOfTwentyDisplacements) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::backbone_estimate_test

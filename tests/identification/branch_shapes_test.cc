@@ -12,7 +12,7 @@
 #include "recovery/recovered.h"
 
 // Whether one shape fits all branches, and whether it is Mindlin's.
-namespace mindahl::identification {
+namespace mindahl::identification::branch_shapes_test {
 namespace {
 
 using namespace loop;
@@ -227,4 +227,4 @@ TEST(MindlinTest, ContactOfASmallerExponentIsToldFromARigWhereTheNoiseAllows) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::branch_shapes_test

@@ -12,7 +12,7 @@
 #include "mindahl/identification/terms.h"
 
 // Forces in proportion to other columns of a record: as terms, and as what a fit finds unasked.
-namespace mindahl::identification {
+namespace mindahl::identification::covariate_test {
 namespace {
 
 using namespace loop;
@@ -183,4 +183,4 @@ TEST(Covariate, HasANameThatNeedsNoQuoting) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::covariate_test

@@ -15,7 +15,7 @@
 #include "identification/stages.h"
 
 // Each column against records in which the contact departs so, by a little.
-namespace mindahl::identification {
+namespace mindahl::identification::departures_test {
 namespace {
 
 using namespace loop;
@@ -775,4 +775,4 @@ TEST(Departures, AreGivenUpFromTheLastWhereTheColumnsAreFew) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::departures_test

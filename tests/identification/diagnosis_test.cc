@@ -9,7 +9,7 @@
 #include "identification/stages.h"
 
 // Findings from results made by hand.
-namespace mindahl::identification {
+namespace mindahl::identification::diagnosis_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -129,4 +129,4 @@ TEST(FoundRigAlternative, HasBothReadings) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::diagnosis_test

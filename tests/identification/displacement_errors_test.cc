@@ -10,7 +10,7 @@
 #include "identification/stages.h"
 
 // Drawn readings against readings that are drawn here.
-namespace mindahl::identification {
+namespace mindahl::identification::displacement_errors_test {
 namespace {
 
 using namespace loop;
@@ -181,4 +181,4 @@ TEST(DisplacementErrors, MoveTheTurningPointToWhatIsTheOutermostThen) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::displacement_errors_test

@@ -12,7 +12,7 @@
 #include "recovery/recovered.h"
 
 // What noise of the displacement does to a fit, and what the fit says of it.
-namespace mindahl::identification {
+namespace mindahl::identification::displacement_noise_test {
 namespace {
 
 using namespace loop;
@@ -173,4 +173,4 @@ TEST(DisplacementNoise, GivesTheSameResultEveryTime) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::displacement_noise_test

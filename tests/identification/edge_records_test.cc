@@ -14,7 +14,7 @@
 
 // Records of which next to nothing follows, and options that no loop can be under: a result that
 // says so, or a refusal in words; never a broken number.
-namespace mindahl::identification {
+namespace mindahl::identification::edge_records_test {
 namespace {
 
 using loop::Record;
@@ -124,4 +124,4 @@ TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::edge_records_test

@@ -14,7 +14,7 @@
 
 // Standard errors, intervals and correlations against the formulas of a linearised fit, whose
 // Jacobian is found here by central differences of the model's force.
-namespace mindahl::identification {
+namespace mindahl::identification::estimates_test {
 namespace {
 
 using namespace loop;
@@ -331,4 +331,4 @@ TEST(Estimates, OfADirectionWithoutEffectAreNone) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::estimates_test

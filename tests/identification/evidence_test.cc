@@ -9,7 +9,7 @@
 #include "identification/stages.h"
 
 // The one comparison of fits, by hand.
-namespace mindahl::identification {
+namespace mindahl::identification::evidence_test {
 namespace {
 
 constexpr double kRounding = 1e-13;  // of numbers up to a hundred
@@ -83,4 +83,4 @@ TEST(Distributions, AreThoseOfClosedForms) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::evidence_test

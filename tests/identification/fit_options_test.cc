@@ -13,7 +13,7 @@
 #include "recovery/recovered.h"
 
 // What Fit accepts, what it refuses with which words, and what each option does.
-namespace mindahl::identification {
+namespace mindahl::identification::fit_options_test {
 namespace {
 
 using namespace loop;
@@ -283,4 +283,4 @@ TEST(FitOptions, WrongForceSenseIsAFailedFitAndNotACrash) {
 TEST(FitOptions, DefaultResultHasNotConverged) { EXPECT_FALSE(FitResult{}.converged); }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::fit_options_test

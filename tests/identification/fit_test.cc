@@ -12,7 +12,7 @@
 #include "recovery/recovered.h"
 
 // What a fit reports beside the parameters: state, drift, correlation, residuals, verdicts.
-namespace mindahl::identification {
+namespace mindahl::identification::fit_test {
 namespace {
 
 using namespace loop;
@@ -265,4 +265,4 @@ TEST(Fit, OpenIntervalStillHoldsItsOwnValue) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::fit_test

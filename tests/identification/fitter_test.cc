@@ -9,7 +9,7 @@
 #include "mindahl/identification/fit.h"
 
 // One fitter for many records, at the depth that is wanted.
-namespace mindahl::identification {
+namespace mindahl::identification::fitter_test {
 namespace {
 
 using namespace loop;
@@ -273,4 +273,4 @@ TEST(Fitter, GoesOnAfterAFitThatFailedAsIfItHadNotBeen) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::fitter_test

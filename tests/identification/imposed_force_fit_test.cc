@@ -15,7 +15,7 @@
 #include "support/message_of.h"
 
 // Fits of the displacement that answers an imposed force.
-namespace mindahl::identification {
+namespace mindahl::identification::imposed_force_fit_test {
 namespace {
 
 using loop::Channel;
@@ -306,4 +306,4 @@ TEST(ImposedForceFit, SeveralRecordsShareTheContact) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::imposed_force_fit_test

@@ -12,7 +12,7 @@
 #include "recovery/recovered.h"
 
 // What comes and goes in a record: that it is found where it is, with its size, and nowhere else.
-namespace mindahl::identification {
+namespace mindahl::identification::irregularities_test {
 namespace {
 
 using namespace loop;
@@ -164,4 +164,4 @@ TEST(Irregularities, AreNotLookedForInRoundingErrors) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::irregularities_test

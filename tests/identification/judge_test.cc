@@ -11,7 +11,7 @@
 #include <vector>
 
 // Verdicts from estimates and findings alone, by precedence.
-namespace mindahl::identification {
+namespace mindahl::identification::judge_test {
 namespace {
 
 ParameterEstimate Known(const char* name) {
@@ -120,4 +120,4 @@ TEST(Judge, CodeWithoutAVerdictIsAMistakeOfTheProgram) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::judge_test

@@ -13,7 +13,7 @@
 #include "mindahl/core/error.h"
 
 // A force that is read some time after the displacement: what a fit makes of it.
-namespace mindahl::identification {
+namespace mindahl::identification::lag_test {
 namespace {
 
 using namespace loop;
@@ -357,4 +357,4 @@ TEST(LaggedMotion, PutsReversalsWhereTheyAreAndSamplesWhereTheyWere) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::lag_test

@@ -14,7 +14,7 @@
 #include "mindahl/models/steady_loop.h"
 
 // Which of the two laws a record is of.
-namespace mindahl::identification {
+namespace mindahl::identification::law_choice_test {
 namespace {
 
 using namespace models;
@@ -226,4 +226,4 @@ TEST(LawChoice, IsAmongLoopsOfOneAmplitudeWhereNoSwingIsShorter) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::law_choice_test

@@ -13,7 +13,7 @@
 #include "recovery/recovered.h"
 
 // Records of one contact under several loads: Tc = μN, σ ∝ N^p, α shared.
-namespace mindahl::identification {
+namespace mindahl::identification::load_series_test {
 namespace {
 
 using loop::Record;
@@ -233,4 +233,4 @@ TEST(LoadSeriesFit, NamesTheRecordThatComesNearestToSlip) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::load_series_test

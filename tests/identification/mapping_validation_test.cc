@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::identification {
+namespace mindahl::identification::mapping_validation_test {
 namespace {
 
 TEST(MappingValidation, NoiseFreeLoopsReturnTheContactAtEveryAmplitude) {
@@ -102,4 +102,4 @@ TEST(MappingValidation, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::mapping_validation_test

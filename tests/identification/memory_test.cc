@@ -15,7 +15,7 @@
 #include "recovery/recovered.h"
 
 // Branches compared with each other: is a record of Masing's memory, of Dahl's, or of neither?
-namespace mindahl::identification {
+namespace mindahl::identification::memory_test {
 namespace {
 
 using namespace models;
@@ -297,4 +297,4 @@ TEST(Memory, ContradictsALawThatIsBetterWithTheOtherMemory) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::memory_test

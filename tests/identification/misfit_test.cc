@@ -11,7 +11,7 @@
 #include "recovery/recovered.h"
 
 // Records that no choice of parameters follows, and what the fit then says of them.
-namespace mindahl::identification {
+namespace mindahl::identification::misfit_test {
 namespace {
 
 using namespace loop;
@@ -49,7 +49,7 @@ Record LoopWithBacklash(double b) {
 }
 
 /// Code and kind of `no_model_fits` or `systematic_residual`, or nothing.
-std::string MisfitOf(const FitResult& fit) {
+std::string CodeAndStructure(const FitResult& fit) {
   for (const Finding& finding : fit.findings) {
     if (finding.code == "no_model_fits" || finding.code == "systematic_residual") {
       return std::string(finding.code) + ": " + std::string(finding.kind);
@@ -71,8 +71,8 @@ TEST(Misfit, BacklashIsNamed) {
                                        {0.25, "no_model_fits"}}) {
     for (const std::uint64_t seed : {1U, 2U}) {
       Generator generator(seed);
-      const std::string misfit =
-          MisfitOf(FitOne(WithForceNoise(LoopWithBacklash(half_gap * kReach), kNoise, generator)));
+      const std::string misfit = CodeAndStructure(
+          FitOne(WithForceNoise(LoopWithBacklash(half_gap * kReach), kNoise, generator)));
       EXPECT_THAT(misfit, StartsWith(code)) << half_gap;
       EXPECT_THAT(misfit, HasSubstr("mirrored_early")) << half_gap;
     }
@@ -97,7 +97,7 @@ TEST(Misfit, ForceOfPositionIsNamed) {
       record.force[i] += size * kLaw.slip_force * std::sin(phase);
     }
     Generator generator(2);
-    const std::string misfit = MisfitOf(FitOne(WithForceNoise(record, kNoise, generator)));
+    const std::string misfit = CodeAndStructure(FitOne(WithForceNoise(record, kNoise, generator)));
     EXPECT_THAT(misfit, StartsWith(code)) << size << ", " << waves;
     EXPECT_THAT(misfit, HasSubstr("same_on_return")) << size << ", " << waves;
   }
@@ -109,10 +109,10 @@ TEST(Misfit, GoodFitIsNotBlamed) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       Generator generator(seed);
       const FitResult fit = FitOne(WithForceNoise(CleanLoop(), noise * kLaw.slip_force, generator));
-      EXPECT_EQ(MisfitOf(fit), "") << noise << ", seed " << seed;
+      EXPECT_EQ(CodeAndStructure(fit), "") << noise << ", seed " << seed;
     }
   }
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::misfit_test

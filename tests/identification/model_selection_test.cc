@@ -14,7 +14,7 @@
 #include "support/measured.h"
 
 // Which model SelectModel finds behind records of known contacts, and when it says that it cannot.
-namespace mindahl::identification {
+namespace mindahl::identification::model_selection_test {
 namespace {
 
 using namespace loop;
@@ -321,4 +321,4 @@ TEST(ModelSelection, TheTribometerDoesNotTellAFreeShapeFromASoftRig) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::model_selection_test

@@ -14,7 +14,7 @@
 
 // What a fit may add to the contact - a rig's spring, a sloped plateau, drift, a varying load - and
 // what it may leave out.
-namespace mindahl::identification {
+namespace mindahl::identification::model_terms_test {
 namespace {
 
 using namespace loop;
@@ -287,4 +287,4 @@ TEST(ModelTerms, StartsBeyondTheGridAreDrawnAndReachTheSameResult) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::model_terms_test

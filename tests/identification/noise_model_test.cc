@@ -13,7 +13,7 @@
 #include "recovery/recovered.h"
 
 // The noise of a loop as an autoregressive process, and the standard errors that follow from it.
-namespace mindahl::identification {
+namespace mindahl::identification::noise_model_test {
 namespace {
 
 using namespace loop;
@@ -291,4 +291,4 @@ TEST(NoiseModel, StandardErrorsAreTheScatterOfLoopsWithCorrelatedNoise) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::noise_model_test

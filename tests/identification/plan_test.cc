@@ -12,7 +12,7 @@
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl::identification {
+namespace mindahl::identification::plan_test {
 namespace {
 
 using loop::Record;
@@ -277,4 +277,4 @@ TEST(Plan, RefusesWhatMeansNothing) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::plan_test

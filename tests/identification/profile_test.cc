@@ -11,7 +11,7 @@
 #include "identification/stages.h"
 
 // Where the likelihood is profiled, what that gives, and what it does to intervals.
-namespace mindahl::identification {
+namespace mindahl::identification::profile_test {
 namespace {
 
 using namespace loop;
@@ -243,4 +243,4 @@ TEST(Profile, IsAskedForAtABoundAndNotForAHeldSlipForce) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::profile_test

@@ -12,7 +12,7 @@
 #include "mindahl/models/steady_loop.h"
 
 // What is found in records, from facts made by hand, and what a whole fit makes of them.
-namespace mindahl::identification {
+namespace mindahl::identification::record_findings_test {
 namespace {
 
 using namespace loop;
@@ -231,4 +231,4 @@ TEST(FitOfARecord, WhoseNoiseTheContactIsTakenToFollowIsWarnedOf) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::record_findings_test

@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::identification {
+namespace mindahl::identification::residual_statistics_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -73,4 +73,4 @@ TEST(ResidualStatistics, NoSampleIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::residual_statistics_test

@@ -13,7 +13,7 @@
 #include "recovery/recovered.h"
 
 // What comes back in every stroke, told from noise.
-namespace mindahl::identification {
+namespace mindahl::identification::residual_structure_test {
 namespace {
 
 using namespace loop;
@@ -229,4 +229,4 @@ TEST(ResidualStructure, SamplesThatDoNotCountChangeNothing) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::residual_structure_test

@@ -11,7 +11,7 @@
 #include "identification/stages.h"
 
 // The variance that weighted residuals stand for, by hand.
-namespace mindahl::identification {
+namespace mindahl::identification::reweighting_test {
 namespace {
 
 using namespace loop;
@@ -96,4 +96,4 @@ TEST(Reweighting, RobustScaleIsTheMedianMagnitudeOfNormalValues) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::reweighting_test

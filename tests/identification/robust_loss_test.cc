@@ -12,7 +12,7 @@
 #include "recovery/recovered.h"
 
 // Outliers must not move the parameters, and expecting them must cost little where there are none.
-namespace mindahl::identification {
+namespace mindahl::identification::robust_loss_test {
 namespace {
 
 using namespace loop;
@@ -163,4 +163,4 @@ TEST(RobustLoss, WithoutOutliersLittleIsLost) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::robust_loss_test

@@ -12,7 +12,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/excitation.h"
 
-namespace mindahl::identification {
+namespace mindahl::identification::simpler_laws_test {
 namespace {
 
 using models::BranchLaw;
@@ -153,4 +153,4 @@ TEST(SimplerLaws, RefuseAFixedExponent) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::simpler_laws_test

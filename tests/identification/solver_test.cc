@@ -13,7 +13,7 @@
 #include "identification/stages.h"
 
 // Variable projection against what it stands for: the least squares of all parameters.
-namespace mindahl::identification {
+namespace mindahl::identification::solver_test {
 namespace {
 
 using namespace loop;
@@ -216,4 +216,4 @@ TEST(Starts, RespectTheMaskAndARowThatIsLoadedFirst) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::solver_test

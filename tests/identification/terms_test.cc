@@ -13,7 +13,7 @@
 #include "identification/stages.h"
 
 // The table of parameters, and θ of each.
-namespace mindahl::identification {
+namespace mindahl::identification::terms_test {
 namespace {
 
 using loop::Record;
@@ -167,4 +167,4 @@ TEST(Parameters, LieAtABoundWithinABillionthOfTheWay) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::terms_test

@@ -29,7 +29,7 @@
 
 // What each threshold decides: a case a row, whose expectations are written for the value that the
 // row states, and which no longer hold when it is twice or half of it.
-namespace mindahl::identification {
+namespace mindahl::identification::thresholds_test {
 namespace {
 
 using namespace loop;
@@ -885,4 +885,4 @@ INSTANTIATE_TEST_SUITE_P(Rows, Threshold,
                          [](const auto& row) { return std::string(row.param.name); });
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::thresholds_test

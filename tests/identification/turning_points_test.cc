@@ -12,7 +12,7 @@
 #include "identification/stages.h"
 
 // Turning points between samples: what an overshoot does to the forces, and when it is fitted.
-namespace mindahl::identification {
+namespace mindahl::identification::turning_points_test {
 namespace {
 
 using namespace loop;
@@ -236,4 +236,4 @@ TEST(TurningPoints, ThatWouldLieInsideAreRefusedAfterAll) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::turning_points_test

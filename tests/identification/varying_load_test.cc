@@ -14,7 +14,7 @@
 #include "recovery/recovered.h"
 
 // Loads that vary within a record: the fit's law is that of elements in parallel.
-namespace mindahl::identification {
+namespace mindahl::identification::varying_load_test {
 namespace {
 
 using loop::Record;
@@ -256,4 +256,4 @@ TEST(VaryingLoad, AndOneThatDiffersBetweenRecordsAreOneContact) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::varying_load_test

@@ -11,7 +11,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::atomic_file_test {
 namespace {
 
 mode_t Permissions(const std::filesystem::path& path) {
@@ -150,4 +150,4 @@ TEST(AtomicFile, LeavesOldFileAndNothingElseWhenWritingFails) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::atomic_file_test

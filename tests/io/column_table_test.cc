@@ -9,7 +9,7 @@
 #include "mindahl/io/csv_table.h"
 #include "mindahl/io/record_reader.h"
 
-namespace mindahl::io {
+namespace mindahl::io::column_table_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -56,4 +56,4 @@ TEST(ColumnTable, RefusesColumnsOfTwoLengthsAndNone) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::column_table_test

@@ -11,7 +11,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::csv_table_test {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -364,4 +364,4 @@ TEST(CsvTable, NamesUnreadableFileAndReason) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::csv_table_test

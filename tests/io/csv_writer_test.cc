@@ -11,7 +11,7 @@
 #include "mindahl/io/csv_table.h"
 #include "temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::csv_writer_test {
 namespace {
 
 using Numbers = std::vector<double>;
@@ -84,4 +84,4 @@ TEST(CsvWriter, RefusesColumnsOfUnequalLength) {
 TEST(CsvWriter, RefusesTableWithoutColumns) { EXPECT_THROW(CsvText({}), InvalidArgument); }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::csv_writer_test

@@ -7,7 +7,7 @@
 
 #include "io/temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::digest_test {
 namespace {
 
 std::optional<std::string> DigestOf(const std::string& content) {
@@ -33,4 +33,4 @@ TEST(Sha256, IsEmptyOfWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::digest_test

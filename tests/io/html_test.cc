@@ -12,7 +12,7 @@
 #include "io/thinning.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::io {
+namespace mindahl::io::html_test {
 namespace {
 
 using ::testing::Contains;
@@ -207,4 +207,4 @@ TEST(Thinning, LeavesShortSeriesAlone) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::html_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace mindahl::io {
+namespace mindahl::io::load_pieces_test {
 namespace {
 
 using ::testing::IsEmpty;
@@ -77,4 +77,4 @@ TEST(LoadPieces, BetweenRampsAreOneWithItsLines) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::load_pieces_test

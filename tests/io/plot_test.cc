@@ -13,7 +13,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::plot_test {
 namespace {
 
 /// Sets an environment variable for one test.
@@ -354,4 +354,4 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::plot_test

@@ -11,7 +11,7 @@
 #include "mindahl/core/error.h"
 #include "temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::record_reader_test {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -552,4 +552,4 @@ TEST_F(MeasuredRecord, BandBrakeIsReadByItsHeader) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::record_reader_test

@@ -13,7 +13,7 @@
 #include "mindahl/io/record_reader.h"
 #include "temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::record_stream_test {
 namespace {
 
 template <typename Call>
@@ -192,4 +192,4 @@ TEST_F(RecordStreamTest, RefusesWhatHoldsNoRecord) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::record_stream_test

@@ -10,7 +10,7 @@
 #include "mindahl/io/atomic_file.h"
 #include "temporary_directory.h"
 
-namespace mindahl::io {
+namespace mindahl::io::temporary_names_test {
 namespace {
 
 TEST(TemporaryName, GoesWithItsObjectUnlessItIsKept) {
@@ -72,4 +72,4 @@ TEST(TemporaryName, LeavesASignalThatIsIgnoredAlone) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::temporary_names_test

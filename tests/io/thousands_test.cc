@@ -12,7 +12,7 @@
 #include "mindahl/io/csv_table.h"
 
 // Marks that separate thousands in a file that has no decimals, and decimals that look like them.
-namespace mindahl::io {
+namespace mindahl::io::thousands_test {
 namespace {
 
 /// 1234 as "1.234", 999 as "999".
@@ -97,4 +97,4 @@ TEST(Thousands, MayBeOnlyWhereValuesAllow) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::thousands_test

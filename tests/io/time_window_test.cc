@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::io {
+namespace mindahl::io::time_window_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -54,4 +54,4 @@ TEST(TimeWindow, WithoutTimeOrSamplesIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::io
+}  // namespace mindahl::io::time_window_test

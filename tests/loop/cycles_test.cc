@@ -15,7 +15,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl::loop {
+namespace mindahl::loop::cycles_test {
 namespace {
 
 using testing::Generator;
@@ -336,4 +336,4 @@ TEST(CycleEnergies, RefuseAnEnergyThatNoDoubleHolds) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::cycles_test

@@ -12,7 +12,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl::loop {
+namespace mindahl::loop::displacement_noise_test {
 namespace {
 
 using testing::Generator;
@@ -192,4 +192,4 @@ TEST(MoveReversals, DropsOneThatTheRecordBeginsAt) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::displacement_noise_test

@@ -8,7 +8,7 @@
 #include "support/histories.h"
 
 // The staircase of the number of reversals over the gate.
-namespace mindahl::loop {
+namespace mindahl::loop::excursions_test {
 namespace {
 
 using testing::Generator;
@@ -57,4 +57,4 @@ TEST(FindExcursions, AreNoneWhereNothingTurnsOrMoves) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::excursions_test

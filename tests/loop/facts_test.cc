@@ -17,7 +17,7 @@
 #include "support/measured.h"
 
 // What a record says before any model is asked, on loops whose facts are known in closed form.
-namespace mindahl::loop {
+namespace mindahl::loop::facts_test {
 namespace {
 
 using testing::Generator;
@@ -301,4 +301,4 @@ TEST(MeasureFacts, OfTheMeasuredTribometerAreItsEnergyAndFriction) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::facts_test

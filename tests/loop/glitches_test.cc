@@ -20,7 +20,7 @@
 #include "support/measured.h"
 
 // Samples that no contact and no drive has made, and those that some contact or drive has.
-namespace mindahl::loop {
+namespace mindahl::loop::glitches_test {
 namespace {
 
 using testing::Generator;
@@ -489,4 +489,4 @@ INSTANTIATE_TEST_SUITE_P(All, GlitchRule, ::testing::ValuesIn(Rules()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::glitches_test

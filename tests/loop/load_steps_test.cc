@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-namespace mindahl::loop {
+namespace mindahl::loop::load_steps_test {
 namespace {
 
 constexpr std::size_t kCycle = 200;                  // samples
@@ -168,4 +168,4 @@ TEST(SettledLoad, IsNoneOfALoadThatIsConstantThroughoutOrForTooLittle) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::load_steps_test

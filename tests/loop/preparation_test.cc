@@ -13,7 +13,7 @@
 #include "support/histories.h"
 
 // What is known of records before any model is asked.
-namespace mindahl::loop {
+namespace mindahl::loop::preparation_test {
 namespace {
 
 using testing::Generator;
@@ -257,4 +257,4 @@ TEST(Preparation, SaysHowSureTheGateIs) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::preparation_test

@@ -7,7 +7,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::loop {
+namespace mindahl::loop::record_test {
 namespace {
 
 std::string MessageOf(const Record& record) {
@@ -39,4 +39,4 @@ TEST(Record, NamesTheSampleThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::record_test

@@ -18,7 +18,7 @@
 
 // Each rule of the gate between a record on which it just holds and one on which it just does not:
 // at twice or half of it one of them comes out otherwise.
-namespace mindahl::loop {
+namespace mindahl::loop::reversal_rules_test {
 namespace {
 
 using testing::Generator;
@@ -256,4 +256,4 @@ INSTANTIATE_TEST_SUITE_P(All, ReversalRule, ::testing::ValuesIn(Cases()),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::reversal_rules_test

@@ -13,7 +13,7 @@
 #include "../support/measured.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::loop {
+namespace mindahl::loop::reversals_test {
 namespace {
 
 using testing::Generator;
@@ -473,4 +473,4 @@ TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::reversals_test

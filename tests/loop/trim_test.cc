@@ -12,7 +12,7 @@
 #include "mindahl/models/friction_model.h"
 #include "support/histories.h"
 
-namespace mindahl::loop {
+namespace mindahl::loop::trim_test {
 namespace {
 
 using models::BranchLaw;
@@ -256,4 +256,4 @@ TEST(Trim, NamesItsReasons) {
 }
 
 }  // namespace
-}  // namespace mindahl::loop
+}  // namespace mindahl::loop::trim_test

@@ -11,7 +11,7 @@
 #include "mindahl/core/error.h"
 #include "responses.h"
 
-namespace mindahl::methods {
+namespace mindahl::methods::iwan_test {
 namespace {
 
 using namespace models;
@@ -189,4 +189,4 @@ TEST(Iwan, RefusesNoElementAndSizesThatDiffer) {
 }
 
 }  // namespace
-}  // namespace mindahl::methods
+}  // namespace mindahl::methods::iwan_test

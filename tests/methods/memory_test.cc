@@ -13,7 +13,7 @@
 #include "mindahl/models/response.h"
 #include "responses.h"
 
-namespace mindahl::methods {
+namespace mindahl::methods::memory_test {
 namespace {
 
 using namespace models;
@@ -126,4 +126,4 @@ TEST(Envelope, IsOnlyLookedAtByModelsThatReferToTheirSteadyLoop) {
 }
 
 }  // namespace
-}  // namespace mindahl::methods
+}  // namespace mindahl::methods::memory_test

@@ -13,7 +13,7 @@
 #include "mindahl/core/error.h"
 #include "responses.h"
 
-namespace mindahl::methods {
+namespace mindahl::methods::method_test {
 namespace {
 
 using namespace models;
@@ -322,4 +322,4 @@ TEST(Method, IsFoundByItsNameOnly) {
 }
 
 }  // namespace
-}  // namespace mindahl::methods
+}  // namespace mindahl::methods::method_test

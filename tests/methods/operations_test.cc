@@ -9,7 +9,7 @@
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::methods {
+namespace mindahl::methods::operations_test {
 namespace {
 
 using models::BranchLaw;
@@ -105,4 +105,4 @@ TEST(Operations, OfAMethodThatDoesNotServeTheModelAreRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::methods
+}  // namespace mindahl::methods::operations_test

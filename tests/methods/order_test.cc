@@ -9,7 +9,7 @@
 
 #include "responses.h"
 
-namespace mindahl::methods {
+namespace mindahl::methods::order_test {
 namespace {
 
 using namespace models;
@@ -198,4 +198,4 @@ TEST(Table, IsExactForTheHyperbolaItIsSpacedBy) {
 }
 
 }  // namespace
-}  // namespace mindahl::methods
+}  // namespace mindahl::methods::order_test

@@ -16,7 +16,7 @@
 #include "mindahl/models/normalized_response.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl::models {
+namespace mindahl::models::asymmetry_test {
 namespace {
 
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();  // a few branches deep
@@ -277,4 +277,4 @@ TEST(Asymmetry, IsRefusedBeyondOneAndOfALawWithoutMemory) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::asymmetry_test

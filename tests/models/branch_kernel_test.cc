@@ -14,7 +14,7 @@
 #include "../support/worst.h"
 #include "mindahl/models/backbone.h"
 
-namespace mindahl::models {
+namespace mindahl::models::branch_kernel_test {
 namespace {
 
 using testing::Worst;
@@ -130,4 +130,4 @@ TEST(BranchKernel, StaysFiniteAtTheEndsOfTheRange) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::branch_kernel_test

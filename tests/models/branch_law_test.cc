@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::models {
+namespace mindahl::models::branch_law_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -149,4 +149,4 @@ TEST(BranchLaw, ValidationNamesParameterUnitValueAndRule) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::branch_law_test

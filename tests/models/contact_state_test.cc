@@ -37,7 +37,7 @@ std::size_t allocations = 0;
   std::free(memory);
 }
 
-namespace mindahl::models {
+namespace mindahl::models::contact_state_test {
 namespace {
 
 using mindahl::testing::Generator;
@@ -529,4 +529,4 @@ TEST(ContactState, RefusesALawASpringOrAnOriginThatIsNone) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::contact_state_test

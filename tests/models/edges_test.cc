@@ -16,7 +16,7 @@
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl::models {
+namespace mindahl::models::edges_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -272,4 +272,4 @@ TEST(Edges, ExcitationsRefuseWhatNoDoubleHolds) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::edges_test

@@ -15,7 +15,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl::models {
+namespace mindahl::models::equivalent_law_test {
 namespace {
 
 using testing::History;
@@ -190,4 +190,4 @@ TEST(EquivalentLaw, RefusesWhatIsNoLoopOrNoLaw) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::equivalent_law_test

@@ -15,7 +15,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::models {
+namespace mindahl::models::excitation_test {
 namespace {
 
 TEST(Excitation, SineIsExactAtZerosAndExtremesAndRepeatsBitForBit) {
@@ -299,4 +299,4 @@ TEST(Excitation, RandomDoesNotRepeatTheNumbersOfTheNoise) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::excitation_test

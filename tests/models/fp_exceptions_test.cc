@@ -16,7 +16,7 @@
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl::models {
+namespace mindahl::models::fp_exceptions_test {
 namespace {
 
 using testing::History;
@@ -145,4 +145,4 @@ TEST(FloatingPointExceptions, ComeFromNoExcitation) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::fp_exceptions_test

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace mindahl::models {
+namespace mindahl::models::friction_model_test {
 namespace {
 
 TEST(FrictionModels, AreFoundByTheNamesOfTheCommandLine) {
@@ -86,4 +86,4 @@ TEST(FrictionModels, SteadyPeakDerivativesAreThoseOfThePeak) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::friction_model_test

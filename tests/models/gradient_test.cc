@@ -18,7 +18,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl::models {
+namespace mindahl::models::gradient_test {
 namespace {
 
 using testing::Generator;
@@ -301,4 +301,4 @@ TEST(Gradient, NeedsARowOfAllColumnsASample) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::gradient_test

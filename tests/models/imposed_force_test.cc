@@ -17,7 +17,7 @@
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::models {
+namespace mindahl::models::imposed_force_test {
 namespace {
 
 using testing::Generator;
@@ -297,4 +297,4 @@ TEST(ImposedForce, RefusesWhatHasNoInverse) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::imposed_force_test

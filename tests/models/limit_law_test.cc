@@ -8,7 +8,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::models {
+namespace mindahl::models::limit_law_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(LimitLaw, RefusesWhatItCannotServe) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::limit_law_test

@@ -16,7 +16,7 @@
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/variable_load.h"
 
-namespace mindahl::models {
+namespace mindahl::models::loaded_contact_state_test {
 namespace {
 
 using mindahl::testing::Generator;
@@ -179,4 +179,4 @@ TEST(LoadedContactState, RefusesWhatIsNoContact) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::loaded_contact_state_test

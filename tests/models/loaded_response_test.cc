@@ -15,7 +15,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/variable_load.h"
 
-namespace mindahl::models {
+namespace mindahl::models::loaded_response_test {
 namespace {
 
 using testing::Generator;
@@ -251,4 +251,4 @@ TEST(NormalizedLoadedResponse, RefusesWhatTheLawHasNoAccountOf) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::loaded_response_test

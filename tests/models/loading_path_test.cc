@@ -10,7 +10,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 
-namespace mindahl::models {
+namespace mindahl::models::loading_path_test {
 namespace {
 
 using namespace loop;
@@ -275,4 +275,4 @@ TEST(LoadingPath, NamesTheSampleThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::loading_path_test

@@ -13,7 +13,7 @@
 #include "mindahl/models/imposed_force.h"
 #include "support/histories.h"
 
-namespace mindahl::models {
+namespace mindahl::models::normalized_displacement_test {
 namespace {
 
 using testing::Generator;
@@ -173,4 +173,4 @@ TEST(NormalizedDisplacement, OfAModelThatIsScaledByThePeakIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::normalized_displacement_test

@@ -17,7 +17,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 
-namespace mindahl::models {
+namespace mindahl::models::response_test {
 namespace {
 
 using testing::Generator;
@@ -399,4 +399,4 @@ TEST(EvaluateForce, RejectsSizesThatDiffer) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::response_test

@@ -23,7 +23,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
 
-namespace mindahl::models {
+namespace mindahl::models::rig_test {
 namespace {
 
 using testing::Generator;
@@ -545,4 +545,4 @@ TEST(RigGradient, OfARigidRigHasNoEntryForIt) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::rig_test

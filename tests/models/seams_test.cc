@@ -15,7 +15,7 @@
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl::models {
+namespace mindahl::models::seams_test {
 namespace {
 
 using testing::History;
@@ -233,4 +233,4 @@ TEST(Seams, AreNotSeenBySinglePrecision) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::seams_test

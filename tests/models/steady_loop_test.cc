@@ -12,7 +12,7 @@
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::models {
+namespace mindahl::models::steady_loop_test {
 namespace {
 
 using testing::History;
@@ -274,4 +274,4 @@ TEST(SteadyLoop, EnergyRatioAtTheOnsetIsThatOfASimulatedLoop) {
 
 void PrintTo(const FrictionModel& model, std::ostream* out) { *out << model.name; }
 
-}  // namespace mindahl::models
+}  // namespace mindahl::models::steady_loop_test

@@ -17,7 +17,7 @@
 #include "../support/worst.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::models {
+namespace mindahl::models::variable_load_test {
 namespace {
 
 using testing::Generator;
@@ -695,4 +695,4 @@ TEST(VariableLoad, RefusesALawByItsParameter) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::variable_load_test

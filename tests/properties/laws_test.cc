@@ -16,7 +16,7 @@
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl::models {
+namespace mindahl::models::laws_test {
 namespace {
 
 using testing::Generator;
@@ -611,4 +611,4 @@ INSTANTIATE_TEST_SUITE_P(Laws, EveryModel,
 
 void PrintTo(const FrictionModel& model, std::ostream* out) { *out << model.name; }
 
-}  // namespace mindahl::models
+}  // namespace mindahl::models::laws_test

@@ -12,7 +12,7 @@
 // Mindlin's contact must come back from any correct source of its loops: the equations for an
 // imposed displacement, those for an imposed force, and an ensemble of spring-slider elements that
 // knows neither.
-namespace mindahl::identification {
+namespace mindahl::identification::mindlin_source_test {
 namespace {
 
 using namespace contact;
@@ -232,4 +232,4 @@ TEST(MindlinSource, ContactsFromAtomicToTectonicScaleAreAllTheSameToTheFit) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::mindlin_source_test

@@ -8,7 +8,7 @@
 
 // Every identifiable model, and every way in which a correct record may be cut, shifted, mirrored
 // or sampled.
-namespace mindahl::identification {
+namespace mindahl::identification::model_and_sampling_test {
 namespace {
 
 using namespace loop;
@@ -284,4 +284,4 @@ TEST(UnitInvariance, MirroredShiftedAndRescaledNoisyRecordsGiveTheSameFit) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::model_and_sampling_test

@@ -13,7 +13,7 @@
 
 // What the fit says of itself when the record is noisy or says little: intervals that hold the
 // truth as often as they state, and verdicts that do not claim what the record does not show.
-namespace mindahl::identification {
+namespace mindahl::identification::noise_test {
 namespace {
 
 using namespace loop;
@@ -302,4 +302,4 @@ TEST(Noise, JointFitOfRecordsWithTheirOwnOffsetsSharesTheContact) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::noise_test

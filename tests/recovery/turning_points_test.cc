@@ -10,7 +10,7 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "recovered.h"
 
-namespace mindahl::identification {
+namespace mindahl::identification::turning_points_test {
 namespace {
 
 using namespace contact;
@@ -132,4 +132,4 @@ TEST(TurningPoints, KeepDahlsOwnLawExactToo) {
 }
 
 }  // namespace
-}  // namespace mindahl::identification
+}  // namespace mindahl::identification::turning_points_test

@@ -16,7 +16,7 @@
 #include "../support/worst.h"
 #include "mindahl/models/branch_law.h"
 
-namespace mindahl::models {
+namespace mindahl::models::accuracy_bounds_test {
 namespace {
 
 using testing::Model;
@@ -111,4 +111,4 @@ TEST(AccuracyBounds, SinglePrecisionHoldsOverTheBoxWhereFloatReaches) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::accuracy_bounds_test

@@ -12,7 +12,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl::models {
+namespace mindahl::models::branch_law_table_test {
 namespace {
 
 using testing::Model;
@@ -160,4 +160,4 @@ TEST(BranchLawTable, SinglePrecisionKernelKeepsSevenDigits) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::branch_law_table_test

@@ -9,7 +9,7 @@
 #include "../support/reference_table.h"
 #include "mindahl/models/branch_law.h"
 
-namespace mindahl::models {
+namespace mindahl::models::history_table_test {
 namespace {
 
 using testing::Model;
@@ -105,4 +105,4 @@ TEST_F(HistoryTable, TellsTheLawsApart) {
 }
 
 }  // namespace
-}  // namespace mindahl::models
+}  // namespace mindahl::models::history_table_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace mindahl::reliability {
+namespace mindahl::reliability::apart_test {
 namespace {
 
 using testing::HasSubstr;
@@ -55,4 +55,4 @@ TEST(Apart, GoesOnAfterAPieceThatEndsTheProgramOrThrows) {
 }
 
 }  // namespace
-}  // namespace mindahl::reliability
+}  // namespace mindahl::reliability::apart_test

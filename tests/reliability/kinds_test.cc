@@ -9,7 +9,7 @@
 #include "kind.h"
 #include "mindahl/loop/record.h"
 
-namespace mindahl::reliability {
+namespace mindahl::reliability::kinds_test {
 namespace {
 
 constexpr std::uint64_t kSeed = 7;
@@ -63,4 +63,4 @@ TEST(Kinds, OfEveryFamilyAreInBothHalves) {
 }
 
 }  // namespace
-}  // namespace mindahl::reliability
+}  // namespace mindahl::reliability::kinds_test

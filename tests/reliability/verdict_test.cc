@@ -5,7 +5,7 @@
 
 #include "mindahl/identification/fit.h"
 
-namespace mindahl::reliability {
+namespace mindahl::reliability::verdict_test {
 namespace {
 
 using identification::Finding;
@@ -116,4 +116,4 @@ TEST(Verdict, AlarmsAtMoreThanWhatARecordLeavesOpen) {
 }
 
 }  // namespace
-}  // namespace mindahl::reliability
+}  // namespace mindahl::reliability::verdict_test

@@ -18,7 +18,7 @@
 #include "support/contract.h"
 
 // The verdict on the model and what the residuals look like, in words and in the JSON.
-namespace mindahl::report {
+namespace mindahl::report::adequacy_test {
 namespace {
 
 using namespace identification;
@@ -206,4 +206,4 @@ TEST(AdequacyJson, SaysWhyThereIsNoOptionNoSizeAndNoVerdict) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::adequacy_test

@@ -11,7 +11,7 @@
 #include "report/made_report.h"
 
 // The backbone without a law, as a table and in words.
-namespace mindahl::report {
+namespace mindahl::report::backbone_test {
 namespace {
 
 using identification::BackboneEstimate;
@@ -76,4 +76,4 @@ TEST(BackboneText, OfATorqueIsInItsUnits) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::backbone_test

@@ -13,7 +13,7 @@
 #include "report/made_report.h"
 
 // From a fit to the contact, by rules that hold for every caller of the library.
-namespace mindahl::report {
+namespace mindahl::report::contact_test {
 namespace {
 
 using namespace contact;
@@ -116,4 +116,4 @@ TEST(MeanNormalLoad, IsThatOfTheSamplesInTheWindow) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::contact_test

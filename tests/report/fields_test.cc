@@ -9,7 +9,7 @@
 #include "support/contract.h"
 
 // The table of a report's fields, as the contract has it.
-namespace mindahl::report {
+namespace mindahl::report::fields_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -44,4 +44,4 @@ TEST(Fields, HaveAPathOfTheirOwnAndAMeaning) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::fields_test

@@ -11,7 +11,7 @@
 #include "mindahl/core/error.h"
 #include "report/made_report.h"
 
-namespace mindahl::report {
+namespace mindahl::report::figure_test {
 namespace {
 
 using namespace loop;
@@ -158,4 +158,4 @@ TEST(Figure, OfAFitThatFailedIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::figure_test

@@ -11,7 +11,7 @@
 #include "report/made_report.h"
 
 // The JSON from the library's side. tests/cli walks that of many runs of the program.
-namespace mindahl::report {
+namespace mindahl::report::json_test {
 namespace {
 
 using namespace contact;
@@ -118,4 +118,4 @@ TEST(MakeReport, RefusesWhatDoesNotBelongTogether) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::json_test

@@ -10,7 +10,7 @@
 #include "report/made_report.h"
 
 // Masing's law or Dahl's own, in the JSON and in the text.
-namespace mindahl::report {
+namespace mindahl::report::law_test {
 namespace {
 
 using nlohmann::json;
@@ -109,4 +109,4 @@ TEST(Law, ThatWasNotLookedForIsNullWithTheReason) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::law_test

@@ -24,7 +24,7 @@
 
 // What a whole load series says of a contact by a law of the load: loops are made of contacts under
 // several loads, by Hertz's law or another, and what is taken away of the bodies comes back.
-namespace mindahl::report {
+namespace mindahl::report::load_laws_test {
 namespace {
 
 using contact::Body;
@@ -428,4 +428,4 @@ TEST(LoadLaws, SayWhatWouldHaveToBeKnown) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::load_laws_test

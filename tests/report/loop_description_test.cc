@@ -11,7 +11,7 @@
 
 // The steady loop of a fitted law: its energy and whether it slips, with the rig's travel taken
 // off.
-namespace mindahl::report {
+namespace mindahl::report::loop_description_test {
 namespace {
 
 using namespace loop;
@@ -175,4 +175,4 @@ TEST(LoopDescription, IsMeasuredOnTheWidestSteadyCyclesWhereOneIsClosed) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::loop_description_test

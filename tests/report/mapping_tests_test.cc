@@ -10,7 +10,7 @@
 #include "report/made_report.h"
 
 // Is the fitted contact Mindlin's? Student's t with the degrees of freedom that each error has.
-namespace mindahl::report {
+namespace mindahl::report::mapping_tests_test {
 namespace {
 
 using namespace contact;
@@ -89,4 +89,4 @@ TEST(AlphaTest, SaysNothingOfAHeldExponentAndNoZWithoutAnError) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::mapping_tests_test

@@ -10,7 +10,7 @@
 #include "report/made_report.h"
 
 // What needs no model, in the JSON and at the head of the text.
-namespace mindahl::report {
+namespace mindahl::report::measured_test {
 namespace {
 
 using nlohmann::json;
@@ -141,4 +141,4 @@ TEST(Notes, StandAtTheEndOfTheText) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::measured_test

@@ -12,7 +12,7 @@
 #include "support/contract.h"
 
 // Of which memory a record is, in the JSON and in the text.
-namespace mindahl::report {
+namespace mindahl::report::memory_test {
 namespace {
 
 using identification::MemoryTest;
@@ -87,4 +87,4 @@ TEST(Memory, ThatWasNotAskedForIsNullWithAReason) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::memory_test

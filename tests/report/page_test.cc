@@ -13,7 +13,7 @@
 #include "support/histories.h"
 #include "support/page_text.h"
 
-namespace mindahl::report {
+namespace mindahl::report::page_test {
 namespace {
 
 using identification::AdequacyVerdict;
@@ -230,4 +230,4 @@ TEST(Page, OfARealFitDrawsItsCycles) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::page_test

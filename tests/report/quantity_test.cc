@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-namespace mindahl::report {
+namespace mindahl::report::quantity_test {
 namespace {
 
 TEST(Quantity, IsInTheUnitThatMakesANumberFromOneToAThousand) {
@@ -102,4 +102,4 @@ TEST(QuantityWithError, IsTheValueToWithinATwentiethOfItsError) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::quantity_test

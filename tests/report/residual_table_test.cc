@@ -9,7 +9,7 @@
 #include "mindahl/core/error.h"
 #include "report/made_report.h"
 
-namespace mindahl::report {
+namespace mindahl::report::residual_table_test {
 namespace {
 
 using namespace loop;
@@ -47,4 +47,4 @@ TEST(ResidualTable, OfAFitThatFailedIsRefused) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::residual_table_test

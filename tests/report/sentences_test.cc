@@ -16,7 +16,7 @@
 
 #include "report/made_report.h"
 
-namespace mindahl::report {
+namespace mindahl::report::sentences_test {
 namespace {
 
 using namespace models;
@@ -288,4 +288,4 @@ TEST(FindingCodes, HaveALineInTheDocumentation) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::sentences_test

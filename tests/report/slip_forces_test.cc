@@ -13,7 +13,7 @@
 #include "recovery/recovered.h"
 #include "report/made_report.h"
 
-namespace mindahl::report {
+namespace mindahl::report::slip_forces_test {
 namespace {
 
 using identification::FitResult;
@@ -129,4 +129,4 @@ TEST(SlipForces, HaveIntervalsThatCoverTheTruth) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::slip_forces_test

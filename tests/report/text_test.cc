@@ -9,7 +9,7 @@
 #include "report/made_report.h"
 #include "report/wrapped.h"
 
-namespace mindahl::report {
+namespace mindahl::report::text_test {
 namespace {
 
 using identification::Identifiability;
@@ -130,4 +130,4 @@ TEST(Wrapped, KeepsANumberWithItsErrorAndItsUnit) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::text_test

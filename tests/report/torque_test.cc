@@ -13,7 +13,7 @@
 #include "report/made_report.h"
 
 // A torque against an angle: the same law, in N m and rad, and no contact behind it.
-namespace mindahl::report {
+namespace mindahl::report::torque_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -88,4 +88,4 @@ TEST(Torque, HasItsUnitsInWarningsTableAndFigure) {
 }
 
 }  // namespace
-}  // namespace mindahl::report
+}  // namespace mindahl::report::torque_test

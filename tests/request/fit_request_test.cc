@@ -8,7 +8,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/request/fit_records.h"
 
-namespace mindahl::request {
+namespace mindahl::request::fit_request_test {
 namespace {
 
 TEST(FitRequest, RefusesAChoiceThatIsNone) {
@@ -57,4 +57,4 @@ TEST(FitRecords, NeedsARecordAndANameForEach) {
 }
 
 }  // namespace
-}  // namespace mindahl::request
+}  // namespace mindahl::request::fit_request_test

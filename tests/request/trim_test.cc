@@ -22,7 +22,7 @@
 #include "support/histories.h"
 
 // --trim auto: a fit of a record without what is no part of its test, and what is said of it.
-namespace mindahl::request {
+namespace mindahl::request::trim_test {
 namespace {
 
 using identification::FitOptions;
@@ -220,4 +220,4 @@ TEST(TrimmedFit, IsRefusedBesideWhatSaysToo) {
 }
 
 }  // namespace
-}  // namespace mindahl::request
+}  // namespace mindahl::request::trim_test

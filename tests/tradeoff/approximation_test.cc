@@ -9,7 +9,7 @@
 
 #include "mindahl/core/error.h"
 
-namespace mindahl::tradeoff {
+namespace mindahl::tradeoff::approximation_test {
 namespace {
 
 using namespace models;
@@ -92,4 +92,4 @@ TEST(Ladder, HoldsEveryMethodAndEachWayOnce) {
 }
 
 }  // namespace
-}  // namespace mindahl::tradeoff
+}  // namespace mindahl::tradeoff::approximation_test

@@ -7,7 +7,7 @@
 #include "../methods/responses.h"
 #include "mindahl/tradeoff/recommendation.h"
 
-namespace mindahl::tradeoff {
+namespace mindahl::tradeoff::cost_model_test {
 namespace {
 
 using methods::Operation;
@@ -58,4 +58,4 @@ TEST(CostModel, GivesOneAnswerInEveryRun) {
 }
 
 }  // namespace
-}  // namespace mindahl::tradeoff
+}  // namespace mindahl::tradeoff::cost_model_test

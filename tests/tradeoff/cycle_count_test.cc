@@ -7,7 +7,7 @@
 
 #include "mindahl/models/excitation.h"
 
-namespace mindahl::tradeoff {
+namespace mindahl::tradeoff::cycle_count_test {
 namespace {
 
 using namespace models;
@@ -61,4 +61,4 @@ TEST(CyclesPassed, StandsStillWhereTheDriveDwells) {
 }
 
 }  // namespace
-}  // namespace mindahl::tradeoff
+}  // namespace mindahl::tradeoff::cycle_count_test

@@ -12,7 +12,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 
-namespace mindahl::tradeoff {
+namespace mindahl::tradeoff::model_regions_test {
 namespace {
 
 using namespace models;
@@ -184,4 +184,4 @@ TEST(ModelRegions, RefuseWhatHasNoLambdaAndOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mindahl::tradeoff
+}  // namespace mindahl::tradeoff::model_regions_test

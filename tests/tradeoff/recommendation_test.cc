@@ -14,7 +14,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 
-namespace mindahl::tradeoff {
+namespace mindahl::tradeoff::recommendation_test {
 namespace {
 
 using namespace models;
@@ -198,4 +198,4 @@ TEST(Recommend, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace mindahl::tradeoff
+}  // namespace mindahl::tradeoff::recommendation_test

@@ -13,7 +13,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/equivalent_law.h"
 
-namespace mindahl::tradeoff {
+namespace mindahl::tradeoff::refit_test {
 namespace {
 
 using namespace models;
@@ -165,4 +165,4 @@ TEST(Refit, StandsAfterTheModelAtTheContactsOwnParameters) {
 }
 
 }  // namespace
-}  // namespace mindahl::tradeoff
+}  // namespace mindahl::tradeoff::refit_test

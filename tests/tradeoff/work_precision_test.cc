@@ -11,7 +11,7 @@
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
 
-namespace mindahl::tradeoff {
+namespace mindahl::tradeoff::work_precision_test {
 namespace {
 
 using namespace models;
@@ -184,4 +184,4 @@ TEST(MeasureWorkPrecision, MeasuresEachInItsOrder) {
 }
 
 }  // namespace
-}  // namespace mindahl::tradeoff
+}  // namespace mindahl::tradeoff::work_precision_test
