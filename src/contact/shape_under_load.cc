@@ -110,9 +110,11 @@ std::optional<double> ModulusOfStiffness(const StiffnessOverModulus& stiffness, 
 void IdentifyModulus(const Question& question, const Quantity& equivalent_radius, int body,
                      ShapeUnderLoad& shape) {
   KnownContact known = question.known;
-  const double other = ModulusOf(known, 3 - body)->value;
-  const std::optional<double> modulus = ModulusOfStiffness(
-      StiffnessOverModulus(question, equivalent_radius, body), question.stiffness.value, other);
+  const std::optional<UncertainValue> other = ModulusOf(known, 3 - body);
+  if (!other) return;
+  const std::optional<double> modulus =
+      ModulusOfStiffness(StiffnessOverModulus(question, equivalent_radius, body),
+                         question.stiffness.value, other->value);
   if (!modulus) {
     shape.unidentified = fmt::format(
         "no Young's modulus of body {} makes a contact so stiff: it is stiffer than against a "

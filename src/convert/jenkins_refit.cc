@@ -221,6 +221,7 @@ class Loops {
   }
   static std::vector<double> ForcesAt(const Polygon& polygon, const std::vector<Point>& points) {
     std::vector<double> force;
+    force.reserve(points.size());
     for (const Point& point : points) force.push_back(ForceAt(polygon, point));
     return force;
   }

@@ -228,7 +228,7 @@ class Drawing {
     for (const PlotSeries& series : panel.series) {
       if (series.shade) {
         const double shade = std::clamp(*series.shade, 0.0, 1.0) * (kShadeClasses - 1);
-        colours.push_back(fmt::format("h{}", static_cast<std::size_t>(shade + 0.5)));
+        colours.push_back(fmt::format("h{}", std::lround(shade)));
       } else {
         if (!series.label.empty() || without_shade == 0) ++without_shade;
         colours.push_back(fmt::format("s{}", (without_shade - 1) % kColourClasses));

@@ -13,7 +13,17 @@ std::vector<double> Part(const std::vector<double>& column, const loop::Constant
           column.begin() + static_cast<std::ptrdiff_t>(piece.last)};
 }
 
-RecordFile PieceOf(const RecordFile& input, const loop::ConstantLoad& piece) {
+LoadPiece Described(const RecordFile& input, const loop::ConstantLoad& piece) {
+  const auto line = [&](std::size_t sample) {
+    return sample < input.lines.size() ? input.lines[sample] : sample + 1;
+  };
+  return {.normal_load = piece.normal_load,
+          .first_line = line(piece.first),
+          .last_line = line(piece.last - 1)};
+}
+
+NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piece,
+                         const LoadPiece& description, const std::string& file) {
   RecordFile part = input;
   loop::Record& record = part.record;
   record.displacement = Part(input.record.displacement, piece);
@@ -24,23 +34,12 @@ RecordFile PieceOf(const RecordFile& input, const loop::ConstantLoad& piece) {
     covariate.values = Part(covariate.values, piece);
   }
   part.notes.clear();
-  const auto line = [&](std::size_t sample) {
-    return sample < input.lines.size() ? input.lines[sample] : sample + 1;
-  };
   part.lines.clear();
   for (std::size_t i = piece.first; i < piece.last && i < input.lines.size(); ++i) {
     part.lines.push_back(input.lines[i]);
   }
-  part.piece = LoadPiece{.normal_load = piece.normal_load,
-                         .first_line = line(piece.first),
-                         .last_line = line(piece.last - 1)};
-  return part;
-}
-
-NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piece,
-                         const std::string& file) {
-  RecordFile part = PieceOf(input, piece);
-  std::string name = fmt::format("{}:{}-{}", file, part.piece->first_line, part.piece->last_line);
+  part.piece = description;
+  std::string name = fmt::format("{}:{}-{}", file, description.first_line, description.last_line);
   return {.name = std::move(name), .file = std::move(part)};
 }
 
@@ -49,10 +48,10 @@ NamedRecord NamedPieceOf(const RecordFile& input, const loop::ConstantLoad& piec
 NamedRecord CutAtLoadRamps(const RecordFile& input, const std::string& file) {
   const std::optional<loop::ConstantLoad> piece = loop::FindSettledLoad(input.record);
   if (!piece) return {.name = file, .file = input};
-  NamedRecord record = NamedPieceOf(input, *piece, file);
-  record.file.piece->is_between_ramps = true;
-  record.file.piece->left_out = input.record.size() - (piece->last - piece->first);
-  return record;
+  LoadPiece description = Described(input, *piece);
+  description.is_between_ramps = true;
+  description.left_out = input.record.size() - (piece->last - piece->first);
+  return NamedPieceOf(input, *piece, description, file);
 }
 
 std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file) {
@@ -61,10 +60,11 @@ std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::st
   std::vector<NamedRecord> records;
   std::size_t kept = 0;
   for (const loop::ConstantLoad& piece : pieces) {
-    records.push_back(NamedPieceOf(input, piece, file));
     kept += piece.last - piece.first;
+    LoadPiece description = Described(input, piece);
+    if (&piece == &pieces.back()) description.left_out = input.record.size() - kept;
+    records.push_back(NamedPieceOf(input, piece, description, file));
   }
-  records.back().file.piece->left_out = input.record.size() - kept;
   return records;
 }
 

@@ -28,9 +28,10 @@ bool IsMissingValueMark(std::string_view text) {
 
 NumberCell ReadWithPoint(std::string_view unsigned_text, bool negative) {
   NumberCell cell{.kind = NumberCell::Kind::kBroken};
-  const char* const end = unsigned_text.data() + unsigned_text.size();
+  const char* const begin = unsigned_text.data();
+  const char* const end = begin + unsigned_text.size();
   double magnitude = 0.0;
-  const auto [stop, error] = std::from_chars(unsigned_text.data(), end, magnitude);
+  const auto [stop, error] = std::from_chars(begin, end, magnitude);
   if (stop != end) return cell;
   if (error == std::errc::result_out_of_range) {
     // from_chars does not say on which side; only a negative exponent can make a number too small.

@@ -77,7 +77,7 @@ std::string Quoted(std::string_view text) {
 
 std::string_view ColourOf(const PlotSeries& curve, std::size_t series) {
   if (!curve.shade) return kColours[series % kColours.size()];
-  const auto shade = static_cast<std::size_t>(*curve.shade * (kShades.size() - 1) + 0.5);
+  const auto shade = static_cast<std::size_t>(std::lround(*curve.shade * (kShades.size() - 1)));
   return kShades[std::min(shade, kShades.size() - 1)];
 }
 

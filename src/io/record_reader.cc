@@ -252,6 +252,7 @@ class ColumnFinder {
   /// As a message shows them, without their units.
   [[nodiscard]] std::vector<std::string> Names() const {
     std::vector<std::string> names;
+    names.reserve(split_.size());
     for (const ColumnName& column : split_) names.push_back(ForMessage(column.name));
     return names;
   }

@@ -64,9 +64,9 @@ struct RecordStream::State {
   BrokenRows broken;
   RecordFile layout;
   std::vector<StreamedColumn> channels;
-  std::optional<NumberRowReader> rows;
-  std::string_view first;  // rows of the first piece
-  std::size_t line = 0;    // last that was read
+  NumberRowReader rows{Delimiter::kComma, 0, {}};  // of no columns until the layout is known
+  std::string_view first;                          // rows of the first piece
+  std::size_t line = 0;                            // last that was read
   std::size_t broken_rows = 0;
   std::string first_broken_row;
   std::string refusal;                                     // of a row that is reached next
@@ -101,8 +101,9 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
         "normal load");
   }
   std::vector<std::size_t> wanted;
+  wanted.reserve(channels.size());
   for (const StreamedColumn& channel : channels) wanted.push_back(channel.column);
-  rows.emplace(found.delimiter, table.columns(), std::move(wanted));
+  rows = NumberRowReader(found.delimiter, table.columns(), std::move(wanted));
   layout.record = {};
   layout.lines.clear();
   layout.covariates.clear();
@@ -148,25 +149,25 @@ bool RecordStream::State::Next(Samples& samples) {
 
 void RecordStream::State::Read(std::string_view text, Samples& samples) {
   std::array<double, 4> values{};  // of displacement, force, time and normal load
-  constexpr std::size_t kTime = 2;
+  constexpr std::size_t kTimeChannel = 2;
   const std::span<double> wanted(values.data(), channels.size());
   while (!text.empty() && refusal.empty()) {
     const std::string_view row = TakeLine(text);
     ++line;
-    switch (rows->Read(row, line, wanted)) {
+    switch (rows.Read(row, line, wanted)) {
       case NumberRowReader::Row::kNone:
         continue;
       case NumberRowReader::Row::kBroken:
-        MindBrokenRow(rows->fault_column(), rows->fault());
+        MindBrokenRow(rows.fault_column(), rows.fault());
         continue;
       case NumberRowReader::Row::kNumbers:
         break;
     }
     if (layout.time) {
-      const double above = std::exchange(time, values[kTime]);
+      const double above = std::exchange(time, values[kTimeChannel]);
       const std::string fault = DescribeTimeFault(time, above, layout.time->unit);
       if (!fault.empty()) {
-        MindBrokenRow(channels[kTime].column, fault);
+        MindBrokenRow(channels[kTimeChannel].column, fault);
         continue;
       }
     }

@@ -57,6 +57,7 @@ class LoadSteps {
     std::vector<LoadRun> runs = ConstantRuns();
     if (runs.size() < 2 || !AreSteps(runs)) return {};
     std::vector<ConstantLoad> pieces;
+    pieces.reserve(runs.size());
     for (const LoadRun& run : runs) pieces.push_back(PieceOf(run));
     return pieces;
   }

@@ -6,6 +6,7 @@
 #include <memory_resource>
 #include <numeric>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <utility>
 
@@ -24,13 +25,13 @@ double TwoSided(double chance, double degrees_of_freedom) {
       boost::math::complement(boost::math::students_t(degrees_of_freedom), chance / 2));
 }
 
-/// Samples that the displacement rests for from its first one on.
-template <typename Iterator>
-std::size_t RestFrom(Iterator first, Iterator last, double reach) {
-  const double at_rest = *first;
-  const auto moves = std::find_if(
-      first, last, [&](double displacement) { return std::abs(displacement - at_rest) > reach; });
-  return static_cast<std::size_t>(moves - first);
+/// Samples, one or more, that the displacement rests for from its first one on.
+template <typename Displacements>
+std::size_t Resting(const Displacements& displacements, double reach) {
+  const double at_rest = *displacements.begin();
+  const auto moves = std::ranges::find_if(
+      displacements, [&](double displacement) { return std::abs(displacement - at_rest) > reach; });
+  return static_cast<std::size_t>(moves - displacements.begin());
 }
 
 class Trimming {
@@ -82,13 +83,13 @@ class Trimming {
       return static_cast<double>(samples) > rules_.longest_dwell * usual && samples > 1;
     };
     // One sample stays, from which the motion begins and at which it ends.
-    const std::size_t before = RestFrom(displacement_.begin(), displacement_.end(), reach);
+    const std::size_t before = Resting(displacement_, reach);
     if (is_rest(before)) {
       first_ = before - 1;
       trim_.parts.push_back(
           {.reason = TrimReason::kRest, .first = 0, .last = first_, .at_start = true});
     }
-    const std::size_t after = RestFrom(displacement_.rbegin(), displacement_.rend(), reach);
+    const std::size_t after = Resting(std::views::reverse(displacement_), reach);
     if (is_rest(after)) {
       at_end_.push_back({.reason = TrimReason::kRest,
                          .first = displacement_.size() - after + 1,

@@ -36,7 +36,7 @@ using ScaledBranches = std::vector<ScaledBranch<double>>;
 /// φ on a branch. A shape is the same on all of them, ...
 template <typename Shape>
 const Shape& ShapeOn(const Shape& shape, const ScaledBranch<double>& /*branch*/) {
-  return shape;
+  return shape;  // NOLINT(bugprone-return-const-ref-from-parameter): lives as long as the shape
 }
 
 /// ... but behind a spring each has its own stiffness in proportion to the spring's.

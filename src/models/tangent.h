@@ -48,7 +48,7 @@ struct Tangent {
   }
   friend Tangent operator*(double a, Tangent b) {
     b.value *= a;
-    for (double& slope : b.slope) slope *= a;
+    for (double& each : b.slope) each *= a;
     return b;
   }
   friend Tangent operator/(const Tangent& a, const Tangent& b) {

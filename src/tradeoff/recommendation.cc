@@ -88,6 +88,7 @@ Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& dri
     return result;
   }
   std::vector<double> costs;
+  costs.reserve(result.candidates.size());
   for (const Candidate& candidate : result.candidates) costs.push_back(candidate.point.cost);
   result.choice = CheapestOf(costs, [&](std::size_t i) { return result.candidates[i].meets; });
   // Simpler is what stands before it in the ladder.
