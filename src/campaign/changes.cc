@@ -303,7 +303,7 @@ class Describer {
       description.changes.push_back(ChangeAt(best, k));
     }
     NameKinds(description);
-    if (best.settling) DivideWhereItHasSettled(best, description);
+    if (best.settling) DivideWhereItHasSettled(best, *best.settling, description);
     return description;
   }
 
@@ -462,9 +462,9 @@ class Describer {
   }
 
   /// Where a curve has settled before its stretch ends, that is a change.
-  void DivideWhereItHasSettled(const Cut& cut, CourseDescription& description) const {
+  void DivideWhereItHasSettled(const Cut& cut, const Settling& curve,
+                               CourseDescription& description) const {
     const std::size_t end = cut.parts.front().end;
-    const Settling& curve = *cut.settling;
     const double last = static_cast<double>(bins_[end - 1].last_cycle);
     const double settled_at = SettledCycle(curve.time_constant);
     const auto place = static_cast<std::size_t>(

@@ -109,7 +109,7 @@ CycleFit CycleFitter::Fit(const Cycle& cycle) {
   fit.force_offset = FittedValueOf(*result, "force_offset", nullptr, fit);
   fit.rms = result->rms;
   const bool is_known = result->Find("slip_force")->is_known();
-  if (is_known && fit.normal_load && *fit.normal_load > 0) {
+  if (is_known && fit.slip_force.value && fit.normal_load && *fit.normal_load > 0) {
     fit.friction_coefficient = *fit.slip_force.value / *fit.normal_load;
   }
   if (result->converged) {

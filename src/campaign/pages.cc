@@ -42,13 +42,14 @@ std::string Header(const std::string& title) {
 Cell ParameterCell(const std::vector<ParameterEstimate>& parameters, std::string_view name) {
   const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
   if (found == parameters.end()) return Number(kNone);
-  switch (report::WhatIsShown(*found)) {
+  const ParameterEstimate& estimate = *found;
+  switch (report::WhatIsShown(estimate)) {
     case Shown::kValue:
-      return Number(QuantityWithError(found->value, found->standard_error, found->unit));
+      return Number(QuantityWithError(estimate.value, estimate.standard_error, estimate.unit));
     case Shown::kHeld:
-      return Number(Quantity(found->value, found->unit) + ", held");
+      return Number(Quantity(estimate.value, estimate.unit) + ", held");
     case Shown::kLowerLimit:
-      if (found->lower95) return Number("> " + Quantity(*found->lower95, found->unit));
+      if (estimate.lower95) return Number("> " + Quantity(*estimate.lower95, estimate.unit));
       break;
     case Shown::kNothing:
       break;
@@ -66,14 +67,16 @@ std::optional<io::PlotPanel> QuantityPanel(std::span<const FileResult> files,
   for (std::size_t k = 0; k < files.size(); ++k) {
     const auto& parameters = files[k].parameters;
     const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
-    if (found == parameters.end() || report::WhatIsShown(*found) != Shown::kValue) continue;
-    if (!found->lower95 || !found->upper95) continue;
+    if (found == parameters.end()) continue;
+    const ParameterEstimate& estimate = *found;
+    if (report::WhatIsShown(estimate) != Shown::kValue) continue;
+    if (!estimate.lower95 || !estimate.upper95) continue;
     series.x.push_back(static_cast<double>(k + 1));
-    series.y.push_back(found->value);
-    series.lower.push_back(*found->lower95);
-    series.upper.push_back(*found->upper95);
-    unit = found->unit;
-    largest = std::max(largest, std::abs(found->value));
+    series.y.push_back(estimate.value);
+    series.lower.push_back(*estimate.lower95);
+    series.upper.push_back(*estimate.upper95);
+    unit = estimate.unit;
+    largest = std::max(largest, std::abs(estimate.value));
   }
   if (series.x.size() < 2) return std::nullopt;
   const report::ScaledUnit prefixed = report::UnitFor(unit, largest);

@@ -73,6 +73,7 @@ void TrackedCourses::Add(const CycleFit& fit) {
 
 std::vector<CourseDescription> TrackedCourses::Describe() const {
   std::vector<CourseDescription> descriptions;
+  descriptions.reserve(courses_.size());
   for (const Course& course : courses_) descriptions.push_back(FindChanges(course));
   return descriptions;
 }

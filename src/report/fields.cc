@@ -1,5 +1,7 @@
 #include "report/fields.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <utility>
@@ -213,7 +215,8 @@ void Describe(const Report& report, const Value& value, const std::string& path,
               std::vector<DescribedValue>& described) {
   if (const auto* object = std::get_if<Value::Object>(&value.content)) {
     for (const auto& [key, member] : *object) {
-      Describe(report, member, path.empty() ? key : path + "." + key, descriptions, described);
+      Describe(report, member, path.empty() ? key : fmt::format("{}.{}", path, key), descriptions,
+               described);
     }
     return;
   }

@@ -59,11 +59,9 @@ const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
         {"contact_radius", "m", "a = σG*/8; absent unless G* is known", [](const Item& item) {
            return item.contact_radius ? Number(item.contact_radius->value) : Value{};
          }});
-    rows.push_back({"hertz_contact_radius", "m",
-                    "a of Hertz; absent unless materials and radii are known",
-                    [](const Item& item) {
-                      return item.hertz_radius ? Number(*item.hertz_radius) : Value{};
-                    }});
+    rows.push_back(
+        {"hertz_contact_radius", "m", "a of Hertz; absent unless materials and radii are known",
+         [](const Item& item) { return item.hertz_radius ? Number(item.hertz_radius) : Value{}; }});
     return rows;
   }();
   return fields;
@@ -112,7 +110,7 @@ const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
        },
        WhyNoInterval},
       {"predicted", "of the quantity", "what the bodies say; absent where they are not known",
-       [](const Item& item) { return item.predicted ? Number(*item.predicted) : Value{}; }},
+       [](const Item& item) { return item.predicted ? Number(item.predicted) : Value{}; }},
   };
   return fields;
 }

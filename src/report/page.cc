@@ -389,9 +389,9 @@ std::string SelectionSection(const Report& report) {
         std::ranges::find(selection.indistinguishable, i) != selection.indistinguishable.end();
     std::string remark = score.remark;
     if (i == selection.chosen) {
-      remark = remark.empty() ? "reported" : "reported; " + remark;
+      remark = remark.empty() ? "reported" : fmt::format("reported; {}", remark);
     } else if (is_listed) {
-      remark = remark.empty() ? "not told from it" : "not told from it; " + remark;
+      remark = remark.empty() ? "not told from it" : fmt::format("not told from it; {}", remark);
     }
     table.Row(fmt::format("{}{}", score.model->name, score.rig ? " + rig" : ""),
               {Number(std::to_string(score.free_parameters)),

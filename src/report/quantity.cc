@@ -127,7 +127,7 @@ std::string RoundedTo(double error, double value) {
 
 std::string NumberWithError(double value, std::optional<double> error, double factor) {
   const double scaled_error = error.value_or(0.0) / factor;
-  const std::string number = RoundedTo(scaled_error, value / factor);
+  std::string number = RoundedTo(scaled_error, value / factor);
   if (!std::isfinite(scaled_error)) return number + " ± open";
   if (scaled_error == 0) return number;
   return fmt::format("{} ± {}", number, RoundedTo(scaled_error, scaled_error));

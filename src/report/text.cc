@@ -123,7 +123,7 @@ std::string MeasuredText(const Report& report) {
   if (facts.half_gap && facts.half_gap_standard_deviation) {
     parts.push_back(fmt::format(
         "half gap {} between cycles",
-        QuantityWithError(*facts.half_gap, *facts.half_gap_standard_deviation, units.force)));
+        QuantityWithError(*facts.half_gap, facts.half_gap_standard_deviation, units.force)));
   } else {
     add("half gap", facts.half_gap, units.force);
   }

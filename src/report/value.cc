@@ -23,7 +23,8 @@ void Collect(const Value& value, const std::string& path, std::vector<NullPlace>
       Collect((*array)[i], fmt::format("{}[{}]", path, i), nulls);
     }
   } else if (const auto* object = std::get_if<Value::Object>(&value.content)) {
-    for (const auto& [key, member] : *object) Collect(member, path + "." + key, nulls);
+    for (const auto& [key, member] : *object)
+      Collect(member, fmt::format("{}.{}", path, key), nulls);
   }
 }
 

@@ -46,7 +46,7 @@ ContactParameters ResolveContact(const ContactOptions& options) {
   } else {
     missing.insert(missing.end(), missing_bodies.begin(), missing_bodies.end());
   }
-  if (!missing.empty()) ThrowMissing(missing);
+  if (!options.friction_coefficient || !missing.empty()) ThrowMissing(missing);
 
   const contact::PredictedContact predicted =
       contact::PredictContact(known, *options.friction_coefficient);

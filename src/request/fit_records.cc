@@ -290,6 +290,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::vector<std::string> names;
   inputs = SplitLoads(request, std::move(inputs), names);
   std::vector<Record> records;
+  records.reserve(inputs.size());
   for (const RecordFile& input : inputs) records.push_back(input.record);
 
   std::vector<loop::Trim> trims = FindTrims(request, options, records);

@@ -345,6 +345,7 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
 
 std::vector<std::string> CovariateColumns(const FitRequest& request) {
   std::vector<std::string> columns;
+  columns.reserve(request.covariates.size());
   for (const std::string& text : request.covariates) {
     columns.push_back(ParseCovariate(text).column);
   }
