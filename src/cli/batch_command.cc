@@ -332,8 +332,9 @@ void RequireReportDirectory(const std::string& directory) {
   }
 }
 
-std::string IndexOf(const std::vector<FileFit>& fits, report::Provenance provenance) {
+std::string IndexOf(const std::vector<FileFit>& fits, const report::Provenance& provenance) {
   std::vector<campaign::FileResult> results;
+  results.reserve(fits.size());
   for (const FileFit& fit : fits) results.push_back(fit.result);
   std::vector<campaign::RepeatedQuantity> repeated;
   for (const Repeated& quantity : kRepeated) {

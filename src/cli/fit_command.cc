@@ -49,6 +49,7 @@ identification::BackboneEstimate BackboneOf(const FitRequest& request,
         "loads apart");
   }
   std::vector<loop::RecordView> records;
+  records.reserve(report.records.size());
   for (const io::RecordFile& input : report.records) records.emplace_back(input.record);
   identification::FitOptions options = MakeFitOptions(request);
   request::LeaveOutTrimmed(report.trims, options);

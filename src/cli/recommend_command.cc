@@ -48,9 +48,9 @@ struct RecommendCommandOptions {
 };
 
 const std::map<std::string, Criterion>& Criteria() {
-  static const std::map<std::string, Criterion> kCriteria = {
+  static const std::map<std::string, Criterion> criteria = {
       {"max", Criterion::kMaxForce}, {"rms", Criterion::kRmsForce}, {"energy", Criterion::kEnergy}};
-  return kCriteria;
+  return criteria;
 }
 
 std::string_view CriterionInWords(Criterion criterion) {

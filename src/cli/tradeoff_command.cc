@@ -82,6 +82,7 @@ struct MeasuredScene {
 
 std::vector<std::string> SceneNames() {
   std::vector<std::string> names;
+  names.reserve(kScenes.size());
   for (const Scene& scene : kScenes) names.emplace_back(scene.name);
   return names;
 }
