@@ -31,8 +31,8 @@ namespace {
 using namespace mindahl;
 
 using identification::Depth;
-using identification::Fitter;
 using identification::FitOptions;
+using identification::Fitter;
 
 constexpr std::size_t kCycles = 64;
 constexpr std::size_t kSamplesPerCycle = 200;
@@ -42,10 +42,10 @@ constexpr models::BranchLaw kLaw{
 /// A noisy Mindlin contact at 1.2 times the gross-slip displacement, with time.
 const loop::Record& Campaign() {
   static const loop::Record record = [] {
-    const models::Excitation motion = models::MakeExcitation(
-        {.amplitude = 1.2 * models::GrossSlipDisplacement(kLaw),
-         .cycles = static_cast<double>(kCycles) + 1.5,
-         .samples_per_cycle = kSamplesPerCycle});
+    const models::Excitation motion =
+        models::MakeExcitation({.amplitude = 1.2 * models::GrossSlipDisplacement(kLaw),
+                                .cycles = static_cast<double>(kCycles) + 1.5,
+                                .samples_per_cycle = kSamplesPerCycle});
     loop::Record made;
     made.displacement = motion.displacement;
     models::ContactState contact(*models::FindFrictionModel("mindlin-dahl"), kLaw);
@@ -221,6 +221,9 @@ BENCHMARK(Continue)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK(ReadDigits)->Name("floor/digits")->Unit(benchmark::kMicrosecond);
 BENCHMARK(Read)->Name("read/text")->Unit(benchmark::kMicrosecond);
-BENCHMARK(Track)->Name("track/text_to_rows")->Unit(benchmark::kMicrosecond)->MeasureProcessCPUTime();
+BENCHMARK(Track)
+    ->Name("track/text_to_rows")
+    ->Unit(benchmark::kMicrosecond)
+    ->MeasureProcessCPUTime();
 
 }  // namespace

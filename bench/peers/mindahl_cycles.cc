@@ -1,5 +1,5 @@
-// Times the fits of a record's cycles, each from where the last one ended, for comparison with other
-// programs: bench/peers/campaign.py runs it.
+// Times the fits of a record's cycles, each from where the last one ended, for comparison with
+// other programs: bench/peers/campaign.py runs it.
 //   mindahl_cycles RECORD.csv REPEATS
 #include <algorithm>
 #include <cstdlib>

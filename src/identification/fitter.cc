@@ -241,9 +241,19 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   return is_virgin ? std::move(virgin) : std::move(steady);
 }
 
-/// The fitted response and residuals as the files have them, of every sample, and their rms.
+/// Model − measured of every sample, without weights [units of the data].
 /// @param predicted  of the model, of every sample
-void FillFitted(const Attempt& attempt, const Problem& problem, std::span<const double> predicted,
+void TakeOffReadings(const ScaledRecords& data, std::span<double> predicted) {
+  std::size_t k = 0;
+  for (const ScaledRecord& record : data.records) {
+    const std::span<const double> readings = record.response();
+    for (std::size_t i = 0; i < readings.size(); ++i, ++k) predicted[k] -= readings[i];
+  }
+}
+
+/// The fitted response and residuals as the files have them, of every sample, and their rms.
+/// @param residuals  model − measured of every sample, without weights [units of the data]
+void FillFitted(const Attempt& attempt, const Problem& problem, std::span<const double> residuals,
                 FitResult& result) {
   const ScaledRecords& data = *problem.data;
   double squares = 0.0;
@@ -255,7 +265,6 @@ void FillFitted(const Attempt& attempt, const Problem& problem, std::span<const 
     const bool is_forced = data.is_forced();
     const std::span<const double> measured = is_forced ? view.displacement : view.force;
     const double unit = is_forced ? data.length : data.sense * data.force;
-    const std::span<const double> response = record.response();
     std::vector<double>& fitted = is_forced ? fit.fitted_displacement : fit.fitted_force;
     if (is_forced) fit.fitted_force.assign(view.force.begin(), view.force.end());
     fit.residual.resize(measured.size());
@@ -264,7 +273,7 @@ void FillFitted(const Attempt& attempt, const Problem& problem, std::span<const 
     for (std::size_t i = 0; i < record.size(); ++i, ++k) {
       if (!record.inserted.empty() && record.inserted[i] != 0) continue;
       // The difference in units of the data: offsets of the file would cost its digits.
-      const double residual = unit * (predicted[k] - response[i]);
+      const double residual = unit * residuals[k];
       fit.residual[sample] = residual;
       fitted[sample] = measured[sample] + residual;
       if (record.counts[i] != 0) squares += residual * residual;
@@ -826,12 +835,16 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   if (depth >= Depth::kErrors) {
     at = LinearizeAt(best->problem, solution.theta, buffers.response,
                      best->problem.parameters.free());
-    FillFitted(attempt, best->problem, {at.response.data(), best->problem.size()}, result);
+  }
+  // Of samples that all count the same the solution has them.
+  if (!is_weighted && !turned && data.counted == data.samples() && !solution.residual.empty()) {
+    FillFitted(attempt, best->problem, solution.residual, result);
   } else {
-    std::pmr::vector<double> predicted(best->problem.size(), &arena);
+    std::pmr::vector<double> residuals(best->problem.size(), &arena);
     buffers.response.Bind(best->problem);
-    Predict(best->problem, solution.theta, buffers.response, predicted);
-    FillFitted(attempt, best->problem, predicted, result);
+    Predict(best->problem, solution.theta, buffers.response, residuals);
+    TakeOffReadings(*best->problem.data, residuals);
+    FillFitted(attempt, best->problem, residuals, result);
   }
   const bool fits_turns = best->problem.data->turns_are_fitted;
   if (fits_turns) {

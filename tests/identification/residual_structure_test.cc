@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "identification/diagnosis/main_strokes.h"
 #include "mindahl/core/error.h"
 #include "recovery/recovered.h"
 
@@ -179,6 +180,18 @@ TEST(ResidualStructure, SingleStrokeOrNoneTellsNothing) {
   EXPECT_EQ(StructureOf(cycle, residual(cycle)).repeatable_share, 0.0);
   EXPECT_EQ(StructureOf({}, {}).strokes, 0U);
   EXPECT_THROW(StructureOf(cycle, {1.0}), InvalidArgument);
+}
+
+TEST(ResidualStructure, ComesBackWhereAMainStrokeHasASecondInItsDirection) {
+  const auto comes_back = [](double cycles) {
+    const History displacement = Cycling(Wave::kSine, 1.0, cycles, 200);
+    return AnyComesBack(MainStrokes(displacement, FindReversals(displacement, 0.0),
+                                    ResidualStructureOptions{}.main_stroke));
+  };
+  // A quarter up, then half a cycle a stroke: the second one down ends at 1¾ cycles.
+  EXPECT_FALSE(comes_back(1.0));
+  EXPECT_FALSE(comes_back(1.25));
+  EXPECT_TRUE(comes_back(1.75));
 }
 
 TEST(ResidualStructure, StrokesOfUnequalLengthCountWhenTheyAreNearlyAsLongAsTheLongest) {

@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kStrokeBins = 20;
 
 /// Means of one stroke's residuals over its parts; NaN where a part has none.
-std::array<double, kStrokeBins> BinMeans(const MainStroke& stroke, std::span<const double> displacement,
+std::array<double, kStrokeBins> BinMeans(const MainStroke& stroke,
+                                         std::span<const double> displacement,
                                          std::span<const double> residual,
                                          std::span<const unsigned char> counts) {
   std::array<double, kStrokeBins> sum{};

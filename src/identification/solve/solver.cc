@@ -543,6 +543,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
   solution.converged = false;
   solution.iterations = 0;
   solution.termination = "The solver made its maximum number of iterations.";
+  bool is_looked_at = true;
   if (!std::isfinite(cost)) {
     solution.termination = "The residuals at the start are not finite.";
     solution.sum_of_squares = cost;
@@ -597,6 +598,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
     if (last && options.predicts_last) {
       std::ranges::copy(trial_, u.begin());
       cost = std::max(cost - predicted, 0.0);
+      is_looked_at = false;
       solution.converged = true;
       solution.termination = "No step can lower the cost by more than the function tolerance.";
       break;
@@ -645,6 +647,7 @@ void Solver::Search(std::span<double> u, const SolverOptions& options, Solution&
     }
   }
   solution.sum_of_squares = at_u ? cost : Evaluate(u, /*with_gradient=*/false);
+  if (is_looked_at) solution.residual.assign(residual_.begin(), residual_.end());
 }
 
 void Solver::MarkSides(std::span<const double> u, Solution& solution) const {
@@ -693,6 +696,7 @@ double Solver::CostAt(const LawPoint& at, std::span<double> theta) {
 void Solver::Solve(std::span<const double> start, const SolverOptions& options,
                    Solution& solution) {
   solution.theta.assign(held_theta_.begin(), held_theta_.end());
+  solution.residual.clear();
   const auto released = static_cast<bool>(std::ranges::count(held_, 1));
   if (released) {
     std::ranges::fill(held_, 0);
@@ -703,6 +707,7 @@ void Solver::Solve(std::span<const double> start, const SolverOptions& options,
   for (std::size_t pass = 0; pass <= problem_->parameters.size(); ++pass) {
     if (searched_.empty()) {
       solution.sum_of_squares = Evaluate(u_, /*with_gradient=*/false);
+      solution.residual.assign(residual_.begin(), residual_.end());
       solution.converged = std::isfinite(solution.sum_of_squares);
       solution.termination = "Every parameter that is not linear is fixed.";
     } else {

@@ -24,6 +24,7 @@ struct Solution {
   std::vector<double> theta;    // of all parameters
   std::vector<BoundSide> side;  // of all parameters
   double sum_of_squares = 0.0;  // weighted
+  std::vector<double> residual;  // weighted, model − measured; none where the end was not looked at
   bool converged = false;
   int iterations = 0;
   std::string_view termination = "not run";

@@ -139,7 +139,9 @@ double SmoothOvershoot(std::span<const double> x, std::span<const double> t, std
   double at = t[i];
   for (int k = 0; k < kSteps; ++k) {
     const auto p = evaluate(at);
-    at = std::clamp(at - p[1] / (2 * p[2]), t[i - 1], t[i + 1]);
+    const double next = std::clamp(at - p[1] / (2 * p[2]), t[i - 1], t[i + 1]);
+    if (next == at) break;
+    at = next;
   }
   return std::abs(evaluate(at)[0] - x[i]);
 }
