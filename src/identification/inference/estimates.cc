@@ -7,7 +7,6 @@
 
 #include "core/normal_quantile.h"
 #include "identification/inference/evidence.h"
-#include "identification/solve/sums.h"
 
 namespace mindahl::identification {
 
@@ -82,22 +81,6 @@ std::vector<double> Estimates::Beside(std::size_t parameter, double step) const 
     theta[local.columns[j]] += step * local.white_factor(static_cast<Eigen::Index>(j), place) / own;
   }
   return theta;
-}
-
-double Estimates::GainBeside(std::size_t parameter, std::span<const double> residual) const {
-  const LocalUncertainty& local = LocalOf(parameter);
-  const auto own = static_cast<Eigen::Index>(local.PlaceOf(parameter));
-  const Eigen::MatrixXd& covariance = local.white_factor;
-  const auto size = covariance.rows();
-  Eigen::VectorXd slope(size);
-  for (Eigen::Index j = 0; j < size; ++j) {
-    const std::size_t column = full_.PlaceOf(local.columns[static_cast<std::size_t>(j)]);
-    const double* values = at_.jacobian.col(static_cast<Eigen::Index>(column)).data();
-    slope[j] = j == own ? 0.0 : Dot({values, residual.size()}, residual);
-  }
-  // (JᵀJ)⁻¹ of the others is their covariance with this one held.
-  const double shared = covariance.col(own).dot(slope);
-  return slope.dot(covariance * slope) - shared * shared / covariance(own, own);
 }
 
 void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {

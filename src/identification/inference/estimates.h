@@ -43,9 +43,6 @@ class Estimates {
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
-  /// By how much all but one parameter, which is free, lower the cost of weighted residuals near
-  /// the solution, to first order: |P r|², P onto the columns of the Jacobian but that one's.
-  [[nodiscard]] double GainBeside(std::size_t parameter, std::span<const double> residual) const;
   /// Half width of a 95 % interval in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
   /// The Jacobian by all free parameters at the solution, and the weighted residuals.

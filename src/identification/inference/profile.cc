@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
-
-#include "identification/solve/sums.h"
 
 namespace mindahl::identification {
 namespace {
@@ -18,50 +15,6 @@ constexpr double kHopeless = 100.0;
 constexpr int kProfileBisections = 6;
 constexpr double kRigid = 1e3;
 
-/// As a likelihood ratio of one parameter counts.
-Evidence EvidenceOf(std::size_t parameter, const Noise& noise, const Estimates& estimates) {
-  const auto samples = static_cast<double>(noise.samples);
-  return {noise.samples, samples * estimates.WhiteShare(parameter)};
-}
-
-/// The cost beside the best fit, and by how much the others would lower it with Tc held there, as
-/// their derivatives at the best fit tell: what these miss is small beside a gain that is small.
-class LookBeside {
- public:
-  struct Place {
-    double cost = 0.0;
-    double gain = std::numeric_limits<double>::infinity();  // which tells nothing
-  };
-
-  /// @param response  bound to the problem here
-  LookBeside(const Problem& problem, const Estimates& estimates, Response& response)
-      : problem_(problem), estimates_(estimates), response_(response), residual_(problem.size()) {
-    response_.Bind(problem);
-  }
-
-  Place At(const std::vector<double>& theta) {
-    // Turning points that were fitted would follow, and a parameter stops at its bound.
-    if (problem_.data->turns_are_fitted || !IsWithinBounds(theta)) return {};
-    Predict(problem_, theta, response_, residual_);
-    TakeOffMeasured(problem_, residual_);
-    return {.cost = Dot(residual_, residual_),
-            .gain = estimates_.GainBeside(kSlipForce, residual_)};
-  }
-
- private:
-  [[nodiscard]] bool IsWithinBounds(const std::vector<double>& theta) const {
-    return std::ranges::all_of(problem_.parameters.free(), [&](std::size_t p) {
-      const Parameter& parameter = problem_.parameters[p];
-      return theta[p] >= parameter.lower && theta[p] <= parameter.upper;
-    });
-  }
-
-  const Problem& problem_;
-  const Estimates& estimates_;
-  Response& response_;
-  std::vector<double> residual_;
-};
-
 /// The likelihood with one parameter held, the others fitted again. The solver is its own.
 class HeldParameter {
  public:
@@ -72,7 +25,8 @@ class HeldParameter {
         parameter_(parameter),
         best_(best),
         variance_(noise.variance),
-        evidence_(EvidenceOf(parameter, noise, estimates)),
+        evidence_(noise.samples,
+                  static_cast<double>(noise.samples) * estimates.WhiteShare(parameter)),
         options_(options),
         solver_(buffers.solver) {
     solver_.Bind(problem_, buffers.response);
@@ -148,29 +102,18 @@ std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best,
                                    const Estimates& estimates, const FitOptions& options,
                                    double last_gain, SearchBuffers& buffers) {
   const double critical = estimates.quantile() * estimates.quantile();
-  const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
-  const auto start_at = [&](double step) { return estimates.Beside(kSlipForce, step); };
-  const std::array steps = {-half, half};
-  std::array<double, 2> ratios{};
-  const Evidence evidence = EvidenceOf(kSlipForce, noise, estimates);
-  LookBeside look(problem, estimates, buffers.response);
-  std::size_t seen = 0;
-  for (; seen < steps.size(); ++seen) {
-    const auto [cost, gain] = look.At(start_at(steps[seen]));
-    if (!(gain <= last_gain * noise.variance)) break;
-    ratios[seen] = evidence.FStatistic(cost - gain, best.sum_of_squares, noise.variance) / critical;
-  }
-  if (seen == steps.size()) return ratios;
   SolverOptions search = SolverOptionsOf(options);
   // Of the cost at the ends, by the parabola.
   search.predicts_last = true;
   search.last_step = last_gain * noise.variance / (best.sum_of_squares + critical * noise.variance);
   HeldParameter held(problem, kSlipForce, best, noise, estimates, search, buffers);
-  for (; seen < steps.size(); ++seen) {
-    const std::vector<double> start = start_at(steps[seen]);
-    ratios[seen] = held.At(start[kSlipForce], start) / critical;
-  }
-  return ratios;
+  const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
+  const auto ratio_at = [&](double step) {
+    const std::vector<double> start = estimates.Beside(kSlipForce, step);
+    return held.At(start[kSlipForce], start) / critical;
+  };
+  const double below = ratio_at(-half);
+  return {below, ratio_at(half)};
 }
 
 bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,

@@ -39,9 +39,9 @@ struct SlipForceProfile {
 
 /// F of the best fit against those with Tc at the lower and the upper end of the parabola's 95 %
 /// interval, over the critical one: 1 where the parabola is right. Tc is determined.
-/// @param last_gain  of F: where the others would gain less from the parabola's own minimum there,
-///   by their derivatives at the best fit, that is taken as predicted; else they are searched, and
-///   a step that gains less is the last, its gain as predicted. Off by less than a fifth of it
+/// @param last_gain  of F: a step that gains less is the last of a search, and its gain is taken as
+///   predicted. The searches start from the parabola's own minima, and are off by less than a fifth
+///   of it
 std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best, const Noise& noise,
                                    const Estimates& estimates, const FitOptions& options,
                                    double last_gain, SearchBuffers& buffers);
