@@ -346,8 +346,7 @@ void TrackRun::Go() {
     if (!tracker_ || kept_) throw;
     try {
       tracker_->Finish();
-    } catch (const InputError&) {
-      // The disk: the first message says so.
+    } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
     }
     throw InputError(fmt::format("{}; {} rows are kept in {}: mend the fault and add --resume",
                                  error.what(), totals_.fits, options_.output));

@@ -216,6 +216,7 @@ Autocorrelation BackboneAutocorrelation(const BackboneSeries& series,
                                         std::span<const Followed> records,
                                         const Eigen::VectorXd& w) {
   std::vector<Eigen::VectorXd> residuals;
+  residuals.reserve(records.size());
   std::vector<std::span<const double>> spans;
   std::vector<std::span<const unsigned char>> counts;
   for (std::size_t r = 0; r < records.size(); ++r) {

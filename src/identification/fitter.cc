@@ -237,8 +237,10 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
                virgin.solution->converged && steady.solution->converged;
   }
   if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;
-  if (is_close) rival.emplace(is_virgin ? std::move(steady) : std::move(virgin));
-  return is_virgin ? std::move(virgin) : std::move(steady);
+  Candidate& chosen = is_virgin ? virgin : steady;
+  Candidate& other = is_virgin ? steady : virgin;
+  if (is_close) rival.emplace(std::move(other));
+  return std::move(chosen);
 }
 
 /// Model − measured of every sample, without weights [units of the data].
@@ -671,7 +673,7 @@ void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& opti
       if (!fit.converged) continue;
       series.records[r].alone = {*fit.Find("sigma"), *fit.Find("slip_force")};
     } catch (const InvalidArgument&) {
-      // Few samples, a loop stiffer than the rig: the record by itself is no fit, as documented.
+      continue;  // few samples, a loop stiffer than the rig: by itself no fit, as documented
     }
   }
 }

@@ -276,6 +276,7 @@ bool PredictsWorse(std::span<const double> other, std::span<const double> best,
                    std::span<const Cycle> cycles, std::size_t folds, double rounding) {
   if (other.empty() || best.empty()) return false;
   std::vector<double> difference;
+  difference.reserve(cycles.size());
   for (std::size_t c = 0; c < cycles.size(); ++c) difference.push_back(other[c] - best[c]);
   const MeanOverCycles mean = Mean(difference, cycles, folds);
   return mean.mean > mean.standard_error + rounding * rounding;
@@ -360,6 +361,7 @@ std::string VerdictOn(const ModelSelection& selection, const Thresholds& thresho
   std::string verdict;
   if (selection.indistinguishable.size() > 1) {
     std::vector<std::string> names;
+    names.reserve(selection.indistinguishable.size());
     for (const std::size_t i : selection.indistinguishable) names.push_back(Label(scores[i]));
     verdict = fmt::format(
         "The records do not tell apart {}: ΔAICc below {:g}{}. The simplest, {}, is reported.",

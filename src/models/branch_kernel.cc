@@ -235,7 +235,8 @@ struct BranchKernel {
 
 namespace {
 
-// The blocks for one instruction set each.
+// The blocks for one instruction set each. Attributes are no expressions.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 
 #define MINDAHL_BLOCKS(name, attributes)                                                         \
   attributes void Evaluate##name(const ScaledBranch<double>& branch, double shape_exponent,      \
@@ -256,6 +257,7 @@ MINDAHL_BLOCKS(Avx2, MINDAHL_TARGET_AVX2)
 MINDAHL_BLOCKS(Avx512, MINDAHL_TARGET_AVX512)
 #endif
 #undef MINDAHL_BLOCKS
+// NOLINTEND(bugprone-macro-parentheses)
 
 /// The samples from `begin` on; the last is repeated where whole vectors ask for more.
 std::size_t Fill(std::span<const double> displacement, std::size_t begin, Block& block) {

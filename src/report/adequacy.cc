@@ -162,6 +162,7 @@ std::string Sentence(const Cause& cause, loop::Channel response) {
 
 std::vector<std::string_view> CauseCodes() {
   std::vector<std::string_view> codes;
+  codes.reserve(kCauses.size());
   for (const CauseRow& row : kCauses) codes.push_back(row.code);
   return codes;
 }

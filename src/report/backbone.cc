@@ -52,6 +52,7 @@ bool IsDenied(const identification::FitResult& fit) {
 std::string BackboneCsv(const BackboneEstimate& backbone, const Units& units) {
   const auto column = [&](auto get) {
     std::vector<double> values;
+    values.reserve(backbone.points.size());
     for (const BackbonePoint& point : backbone.points) values.push_back(get(point));
     return values;
   };

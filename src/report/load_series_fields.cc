@@ -120,7 +120,7 @@ Value QuantityValues(const LoadLaw& law) {
   for (const QuantityUnderLaw& quantity : law.quantities) {
     Value::Object members = PropagatedMembers(quantity.value, quantity.unit);
     for (auto& member : Render(QuantityFields(), quantity)) members.push_back(std::move(member));
-    quantities.emplace_back(std::string(quantity.key), Value{std::move(members)});
+    quantities.push_back({std::string(quantity.key), {std::move(members)}});
   }
   return {std::move(quantities)};
 }

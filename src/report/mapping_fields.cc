@@ -61,7 +61,7 @@ Value StiffnessTests(const Report& report) {
   Value::Array array;
   for (const StiffnessTest& test : report.stiffness) {
     Value::Object object;
-    object.emplace_back("radius", Text(test.radius));
+    object.push_back({"radius", Text(test.radius)});
     AppendMembers(object, PropagatedMembers(test.ratio, "-"));
     AppendMembers(object, Render(StiffnessFields(), test));
     array.push_back({std::move(object)});

@@ -55,6 +55,7 @@ std::vector<std::string> ParameterVerdicts(const FitResult& fit) {
     group->second.push_back(estimate.name);
   }
   std::vector<std::string> sentences;
+  sentences.reserve(groups.size());
   for (const auto& [verdict, names] : groups) {
     sentences.push_back(fmt::format("{}: {}", verdict, fmt::join(names, ", ")));
   }
@@ -166,6 +167,7 @@ std::string NextSection(const Report& report, const Provenance& provenance) {
 
 std::vector<std::string> MessagesOf(const std::vector<Warning>& warnings) {
   std::vector<std::string> messages;
+  messages.reserve(warnings.size());
   for (const Warning& warning : warnings) {
     messages.push_back(fmt::format("{} [{}]", warning.message, warning.code));
   }
@@ -350,6 +352,7 @@ std::string ContactSection(const Report& report) {
   if (contact.hertz && knows_stiffness) html += HertzTable(*contact.hertz);
   html += SentenceList(contact.redundant);
   std::vector<std::string> missing;
+  missing.reserve(contact.unidentified.size());
   for (const std::string& sentence : contact.unidentified) {
     missing.push_back("not identified: " + sentence);
   }

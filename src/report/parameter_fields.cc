@@ -73,7 +73,7 @@ Value Parameters(const Report& report) {
       NotEstimated("sigma", "N/m"), NotEstimated("alpha", "-"), NotEstimated("slip_force", "N")};
   Value::Object object;
   for (const ParameterEstimate& estimate : report.failed() ? missing : report.fit.parameters) {
-    object.emplace_back(estimate.name, Value{Render(ParameterFields(), {report, estimate})});
+    object.push_back({estimate.name, {Render(ParameterFields(), {report, estimate})}});
   }
   return {std::move(object)};
 }
@@ -95,9 +95,9 @@ Value Correlations(const Report& report) {
         value = Missing(fmt::format("{} is at a bound or undetermined",
                                     fit.parameters[undefined(i) ? i : j].name));
       }
-      row.emplace_back(fit.parameters[j].name, std::move(value));
+      row.push_back({fit.parameters[j].name, std::move(value)});
     }
-    object.emplace_back(fit.parameters[i].name, Value{std::move(row)});
+    object.push_back({fit.parameters[i].name, {std::move(row)}});
   }
   return {std::move(object)};
 }

@@ -466,6 +466,7 @@ std::string Sentence(const Finding& finding, const FitResult& fit, const Units& 
 
 std::vector<std::string_view> FindingCodes() {
   std::vector<std::string_view> codes;
+  codes.reserve(std::size(kSentences));
   for (const SentenceRow& row : kSentences) codes.push_back(row.code);
   return codes;
 }

@@ -88,6 +88,7 @@ Warning NoteOf(const Report& report, std::size_t r) {
 
 std::vector<Warning> TrimNotes(const Report& report) {
   std::vector<Warning> notes;
+  notes.reserve(report.trims.size());
   for (std::size_t r = 0; r < report.trims.size(); ++r) notes.push_back(NoteOf(report, r));
   return notes;
 }

@@ -9,10 +9,10 @@
 namespace mindahl::report {
 namespace {
 
-Value& Member(Value::Object& object, std::string_view key) {
-  const auto found = std::ranges::find(object, key, &std::pair<std::string, Value>::first);
-  if (found != object.end()) return found->second;
-  return object.emplace_back(key, Value{}).second;
+Value& MemberOf(Value::Object& object, std::string_view key) {
+  const auto found = std::ranges::find(object, key, &Value::Member::key);
+  if (found != object.end()) return found->value;
+  return object.emplace_back(Value::Member{std::string(key), {}}).value;
 }
 
 void Collect(const Value& value, const std::string& path, std::vector<NullPlace>& nulls) {
@@ -47,7 +47,7 @@ Value Missing(std::string why) { return {Value::Null{std::move(why)}}; }
 
 void Place(Value::Object& object, std::string_view path, Value value) {
   const std::size_t end = path.find_first_of(".[");
-  Value& member = Member(object, path.substr(0, end));
+  Value& member = MemberOf(object, path.substr(0, end));
   if (end == std::string_view::npos) {
     member = std::move(value);
   } else if (path[end] == '.') {

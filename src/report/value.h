@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -19,11 +18,17 @@ struct Value {
   struct Null {
     std::string why;
   };
+  struct Member;
   using Array = std::vector<Value>;
-  using Object = std::vector<std::pair<std::string, Value>>;
+  using Object = std::vector<Member>;
 
   std::variant<Absent, Null, bool, std::int64_t, std::uint64_t, double, std::string, Array, Object>
       content;
+};
+
+struct Value::Member {
+  std::string key;
+  Value value;
 };
 
 // A number that is missing or not finite is a null, for which the row of the table has the reason.

@@ -103,12 +103,12 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart) {
 }
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kNames = {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCodes = {
       {{"sigma", "sigma_not_identifiable"},
        {"alpha", "alpha_not_identifiable"},
        {"slip_force", "slip_force_not_identifiable"}}};
   std::vector<Finding> findings;
-  for (const auto& [name, code] : kNames) {
+  for (const auto& [name, code] : kCodes) {
     const ParameterEstimate& estimate = *result.Find(name);
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
       continue;

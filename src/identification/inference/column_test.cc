@@ -196,8 +196,8 @@ double ColumnTest::misfit_over_noise() const {
 }
 
 LinearStep ColumnTest::Step(std::span<const Eigen::Index> places) const {
-  std::vector<Eigen::Index> both;
-  for (Eigen::Index j = 0; j < law_; ++j) both.push_back(j);
+  std::vector<Eigen::Index> both(static_cast<std::size_t>(law_));
+  std::iota(both.begin(), both.end(), Eigen::Index{0});
   for (const Eigen::Index place : places) both.push_back(law_ + place);
   const Eigen::MatrixXd products = plain_(both, both);
   const Eigen::MatrixXd factor = Inverse(products);

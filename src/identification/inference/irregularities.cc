@@ -74,7 +74,7 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
   const auto add = [&](std::size_t row, std::optional<IrregularityFit> fit) {
     if (!fit) return;
     fit->irregularity = row;
-    found.push_back(std::move(*fit));
+    found.push_back(*fit);
   };
   if (!robust) add(kHeavyTails, FindHeavyTails(samples, evidence));
   // A force that is imposed drops by itself.

@@ -81,6 +81,7 @@ OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult&
   buffers.solver.Bind(other.problem, buffers.response);
   for (const models::BranchLaw& law : {equivalent, result.law}) {
     std::vector<double> theta;
+    theta.reserve(parameters.size());
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       // The same terms, but for the origins of a virgin contact.
       theta.push_back(state == problem.state ? best.theta[p] : parameters[p].theta);

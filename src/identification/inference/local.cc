@@ -175,7 +175,8 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   if (count == 0) return result;
 
   const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
-  Eigen::MatrixXd triangle = TriangleOf(is_white ? std::move(jacobian) : jacobian);
+  const Eigen::MatrixXd correlated_columns = is_white ? Eigen::MatrixXd() : jacobian;
+  Eigen::MatrixXd triangle = TriangleOf(std::move(jacobian));
   Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
   // As of unit columns, whatever their units.
@@ -186,13 +187,13 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
       inverse ? *inverse * inverse->transpose() : PseudoInverse(triangle, norms, result);
   const Eigen::MatrixXd correlated =
       is_white ? Eigen::MatrixXd(triangle.transpose() * triangle)
-               : Eigen::MatrixXd(
-                     inverse_norms.asDiagonal() *
-                     (displacement.residuals.size() > 0
-                          ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise,
-                                              displacement, jacobian)
-                          : CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian)) *
-                     inverse_norms.asDiagonal());
+               : Eigen::MatrixXd(inverse_norms.asDiagonal() *
+                                 (displacement.residuals.size() > 0
+                                      ? CorrelatedProduct(*problem.data, noise.autocorrelation,
+                                                          noise, displacement, correlated_columns)
+                                      : CorrelatedProduct(*problem.data, noise.autocorrelation,
+                                                          correlated_columns)) *
+                                 inverse_norms.asDiagonal());
   result.absorbed = (factor * correlated).trace();
   const Eigen::MatrixXd product = factor * correlated * factor;
   const Eigen::MatrixXd sandwich = (product + product.transpose()) / 2;  // to the last bit

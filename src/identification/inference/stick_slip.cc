@@ -89,6 +89,7 @@ std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> sampl
   const std::vector<Step> steps = StepsOfSliding(samples);
   if (steps.size() < kFewestSteps) return std::nullopt;
   std::vector<double> growths;
+  growths.reserve(steps.size());
   for (const Step& step : steps) growths.push_back(step.growth);
   std::vector<double> work = growths;
   const double middle = boost::math::statistics::median(work.begin(), work.end());

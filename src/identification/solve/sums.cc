@@ -102,6 +102,8 @@ struct Sums {
   void (*subtract)(double, const double*, const double*, double*, std::size_t);
 };
 
+// Attributes are no expressions.
+// NOLINTBEGIN(bugprone-macro-parentheses)
 #define MINDAHL_SUMS(name, lanes, target)                                                          \
   target double Dot##name(const double* a, const double* b, std::size_t size) {                    \
     return DotOf<lanes>(a, b, size);                                                               \
@@ -124,6 +126,7 @@ MINDAHL_SUMS(Avx2, 4, MINDAHL_TARGET_AVX2)
 MINDAHL_SUMS(Avx512, 8, MINDAHL_TARGET_AVX512)
 #endif
 #undef MINDAHL_SUMS
+// NOLINTEND(bugprone-macro-parentheses)
 
 const Sums& Widest() {
   static const Sums& widest = []() -> const Sums& {
