@@ -19,6 +19,7 @@
 #include "identification/solve/search.h"
 #include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/reading.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_stream.h"
@@ -71,9 +72,14 @@ const std::vector<campaign::Cycle>& Cycles() {
   return cycles;
 }
 
-FitOptions OfSteadyCycles() {
-  FitOptions options;
-  options.initial_state = models::InitialState::kSteady;
+/// With the gate and the sense that are found once, as `mindahl track` does.
+const FitOptions& OfSteadyCycles() {
+  static const FitOptions options = [] {
+    FitOptions made;
+    made.initial_state = models::InitialState::kSteady;
+    campaign::ChooseReading(Campaign(), made);
+    return made;
+  }();
   return options;
 }
 
@@ -97,7 +103,7 @@ void Continue(benchmark::State& state) {
 /// The search alone: what is measured and its Jacobian, freed of what is linear, as often as the
 /// minimum takes, of one cycle from the minima of the others.
 void Search(benchmark::State& state) {
-  const FitOptions options = OfSteadyCycles();
+  const FitOptions& options = OfSteadyCycles();
   Fitter fitter(options);
   std::pmr::memory_resource* const memory = std::pmr::get_default_resource();
   const loop::RecordView view(Cycles().front().record);

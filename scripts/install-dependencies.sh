@@ -23,7 +23,7 @@ for group in "$@"; do
       ;;
     --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
-    --peers) packages+=(libbenchmark-dev python3-lmfit python3-pandas lammps) ;;
+    --peers) packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps) ;;
     --workflow) packages+=(snakemake) ;;
     *)
       echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers or" \

@@ -5,7 +5,9 @@
 
 Everything runs in turn on one core; the table has the ratio of the least times of all rounds, which
 others on the machine disturb least, and the median and the range of the ratios of each round. Then
-time against threads. docs/performance.md has the tables; scaling.py goes on to long records. Needs pandas and lmfit: scripts/install-dependencies.sh --peers
+time against threads. Fails where the peers do not find the same parameters. docs/performance.md has
+the tables; scaling.py goes on to long records.
+Needs pandas, lmfit and SciPy: scripts/install-dependencies.sh --peers
 """
 
 import argparse
@@ -25,6 +27,9 @@ PYTHON = "/usr/bin/python3"  # Debian's, which has Debian's pandas and lmfit
 CONTACT = ("simulate --model mindlin --sigma 5e7 --slip-force 20 --lambda 1.2 "
            "--samples-per-cycle 200 --noise-force 0.2 --seed 1").split()
 
+# All minimise the same sum of squares, one of them of a force that is integrated.
+LARGEST_DIFFERENCE_IN_STANDARD_ERRORS = 0.05
+
 READ = """
 import sys, time, pandas
 start = time.process_time()
@@ -42,6 +47,19 @@ def cost_of(command):
     if status != 0:
         sys.exit(f"failed: {' '.join(map(str, command))}")
     return usage.ru_utime + usage.ru_stime, elapsed
+
+
+def run_json(*command):
+    return json.loads(subprocess.run(command, check=True, text=True, capture_output=True).stdout)
+
+
+def disagreements(name, fit, reference):
+    if not fit["converged"]:
+        yield f"{name} has not converged"
+    for parameter, expected in reference["parameters"].items():
+        difference = abs(fit["parameters"][parameter]["value"] - expected["value"])
+        if not difference <= LARGEST_DIFFERENCE_IN_STANDARD_ERRORS * expected["standard_error"]:
+            yield f"{name}: {parameter} differs by {difference:.2g}"
 
 
 def main():
@@ -73,13 +91,12 @@ def main():
         for _ in range(arguments.rounds):
             seconds, rows = subprocess.run([PYTHON, "-c", READ, record], check=True, text=True,
                                            capture_output=True).stdout.split()
-            lmfit = json.loads(subprocess.run(
-                [PYTHON, HERE / "lmfit_fit.py", one_cycle, "--repeats", "20",
-                 "--initial-state", "steady"], check=True,
-                text=True, capture_output=True).stdout)
-            fits = json.loads(subprocess.run(
-                [arguments.build / "bench/peers/mindahl_cycles", simulated(400), "5"], check=True,
-                text=True, capture_output=True).stdout)
+            lmfit = run_json(PYTHON, HERE / "lmfit_fit.py", one_cycle, "--repeats", "20",
+                             "--initial-state", "steady")
+            scipy = {route: run_json(PYTHON, HERE / "scipy_fit.py", one_cycle, "--route", route,
+                                     "--repeats", repeats)
+                     for route, repeats in (("closed", "20"), ("ode", "1"))}
+            fits = run_json(arguments.build / "bench/peers/mindahl_cycles", simulated(400), "5")
             cycles = int(rows) // 200
             for name, microseconds in {
                     "pandas, reading": 1e6 * float(seconds) / cycles,
@@ -89,17 +106,24 @@ def main():
                         track(record, "--threads", "1", "--every", "1000000000"))[0] / cycles,
                     "mindahl, a cycle's values": fits["estimate_us"],
                     "mindahl, values and errors": fits["errors_us"],
-                    "lmfit, bare fit": 1e3 * lmfit["median_ms"]}.items():
+                    "lmfit, bare fit": 1e3 * lmfit["median_ms"],
+                    "SciPy, closed form": 1e3 * scipy["closed"]["median_ms"],
+                    "SciPy, integrated": 1e3 * scipy["ode"]["median_ms"]}.items():
                 times.setdefault(name, []).append(microseconds)
+        wrong = [line for route, fit in scipy.items()
+                 for line in disagreements(f"SciPy, {route}", fit, lmfit)]
         print(f"{cycles} cycles of 200 samples, {os.path.getsize(record) / cycles / 1e3:.1f} kB "
               f"each, {arguments.rounds} rounds on one core\n")
-        print("| what | least time a cycle over pandas' | median of rounds | range | least [µs] |")
-        print("|---|---|---|---|---|")
+        print("| what | least time a cycle over pandas' | median of rounds | range | least [µs] | "
+              "over a cycle's values |")
+        print("|---|---|---|---|---|---|")
         peers = times["pandas, reading"]
+        least_fit = min(times["mindahl, a cycle's values"])
         for name, values in times.items():
             ratios = [own / peer for own, peer in zip(values, peers)]
             print(f"| {name} | {min(values) / min(peers):.3g} | {statistics.median(ratios):.3g} | "
-                  f"{min(ratios):.3g} … {max(ratios):.3g} | {min(values):.3g} |")
+                  f"{min(ratios):.3g} … {max(ratios):.3g} | {min(values):.3g} | "
+                  f"{min(values) / least_fit:.3g} |")
 
         os.sched_setaffinity(0, cores)
         print("\n| threads | time over one thread's |")
@@ -109,7 +133,9 @@ def main():
             elapsed = min(cost_of(track(record, "--threads", str(threads)))[1] for _ in range(3))
             alone = alone or elapsed
             print(f"| {threads} | {elapsed / alone:.3g} |")
-    return 0
+    print("\n" + ("\n".join(wrong) or "the peers found the same parameters within "
+                  f"{LARGEST_DIFFERENCE_IN_STANDARD_ERRORS} standard errors"))
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

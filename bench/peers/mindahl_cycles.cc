@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mindahl/campaign/cycle_splitter.h"
+#include "mindahl/campaign/reading.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_reader.h"
 #include "processor_time.h"
@@ -21,17 +22,16 @@ using namespace mindahl;
 using campaign::Cycle;
 using identification::Depth;
 
-std::vector<Cycle> CyclesOf(const loop::Record& record) {
+std::vector<Cycle> CyclesOf(const loop::Record& record, double gate) {
   std::vector<Cycle> cycles;
   const std::vector<std::size_t> lines(record.size(), 1);
-  campaign::CycleSplitter(0.0).Add(record, lines, cycles);
+  campaign::CycleSplitter(gate).Add(record, lines, cycles);
   return cycles;
 }
 
 /// Least mean time of a cycle [µs] of so many runs over all.
-double LeastMicroseconds(const std::vector<Cycle>& cycles, Depth depth, int repeats) {
-  identification::FitOptions options;
-  options.initial_state = models::InitialState::kSteady;
+double LeastMicroseconds(const std::vector<Cycle>& cycles,
+                         const identification::FitOptions& options, Depth depth, int repeats) {
   identification::Fitter fitter(options);
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < repeats; ++i) {
@@ -50,7 +50,12 @@ int main(int argc, char** argv) {
     std::cerr << "usage: mindahl_cycles RECORD.csv REPEATS\n";
     return 2;
   }
-  const std::vector<Cycle> cycles = CyclesOf(io::ReadRecord(argv[1]).record);
+  const loop::Record record = io::ReadRecord(argv[1]).record;
+  // Gate and sense are found once, as `mindahl track` does.
+  identification::FitOptions options;
+  options.initial_state = models::InitialState::kSteady;
+  campaign::ChooseReading(record, options);
+  const std::vector<Cycle> cycles = CyclesOf(record, *options.preparation.reversal_gate);
   if (cycles.empty()) {
     std::cerr << argv[1] << ": no cycle from one turning point to the next but one\n";
     return 2;
@@ -58,7 +63,7 @@ int main(int argc, char** argv) {
   nlohmann::json times = {{"cycles", cycles.size()}};
   for (const auto& [name, depth] :
        {std::pair("estimate_us", Depth::kEstimate), std::pair("errors_us", Depth::kErrors)}) {
-    times[name] = LeastMicroseconds(cycles, depth, repeats);
+    times[name] = LeastMicroseconds(cycles, options, depth, repeats);
   }
   std::cout << times << '\n';
 }
