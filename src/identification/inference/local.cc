@@ -94,13 +94,10 @@ Linearization LinearizeAt(const Problem& problem, std::span<const double> theta,
   const std::size_t samples = problem.size();
   const auto rows = static_cast<Eigen::Index>(samples);
   Linearization at{.jacobian = Eigen::MatrixXd(rows, static_cast<Eigen::Index>(columns.size())),
-                   .residual = {},
-                   .response = Eigen::VectorXd(rows)};
+                   .residual = Eigen::VectorXd(rows)};
   response.Bind(problem);
-  PredictAndDifferentiate(problem, theta, response, columns, {at.response.data(), samples},
-                          {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
-  at.residual = at.response;
-  TakeOffMeasured(problem, {at.residual.data(), samples});
+  Differentiate(problem, theta, response, columns, {at.residual.data(), samples},
+                {at.jacobian.data(), static_cast<std::size_t>(at.jacobian.size())});
   if (problem.data->turns_are_fitted) {
     const TurningPointColumns turning(problem, theta, response);
     for (Eigen::Index c = 0; c < at.jacobian.cols(); ++c) turning.ProjectOut(at.jacobian.col(c));

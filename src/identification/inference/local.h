@@ -35,7 +35,6 @@ struct Linearization {
   Eigen::MatrixXd jacobian;  // weighted, of a record whose turning points were fitted too, freed of
                              // what these explain
   Eigen::VectorXd residual;  // weighted, model − measured
-  Eigen::VectorXd response;  // of the model, without weights
 };
 
 /// @param columns  positions in θ to differentiate by

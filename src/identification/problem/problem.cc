@@ -274,8 +274,7 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
   }
 }
 
-}  // namespace
-
+/// Puts weighted residuals, model − measured, in the place of the model's response.
 void TakeOffMeasured(const Problem& problem, std::span<double> predicted) {
   std::size_t k = 0;
   for (const ScaledRecord& record : problem.data->records) {
@@ -285,6 +284,8 @@ void TakeOffMeasured(const Problem& problem, std::span<double> predicted) {
     }
   }
 }
+
+}  // namespace
 
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> predicted) {
@@ -299,9 +300,9 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
   TakeOffMeasured(problem, residual);
 }
 
-void PredictAndDifferentiate(const Problem& problem, std::span<const double> theta,
-                             Response& response, std::span<const std::size_t> columns,
-                             std::span<double> predicted, std::span<double> jacobian) {
+void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
+                   std::span<const std::size_t> columns, std::span<double> residual,
+                   std::span<double> jacobian) {
   const std::size_t samples = problem.size();
   const Parameters& parameters = problem.parameters;
   const auto asks = [&](std::size_t p) { return std::ranges::find(columns, p) != columns.end(); };
@@ -325,7 +326,8 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
                                  .log_spring_travel = part_if(by_travel),
                                  .lag = part_if(parameters.has_lag() && asks_term("lag")),
                                  .asymmetry = part_if(asks_term("asymmetry") && !is_forced)};
-  response.Differentiate(PointAt(problem, theta), predicted, gradient);
+  const std::span<double> t = residual;  // until the rest is added, and what is measured taken off
+  response.Differentiate(PointAt(problem, theta), t, gradient);
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::size_t p = columns[c];
@@ -357,12 +359,11 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
       };
       if (p == kStiffness) {
         // Of a displacement it is the factor's alone.
-        add(is_forced ? std::span<const double>(predicted) : gradient.log_rate,
-            is_forced ? -scale : scale);
+        add(is_forced ? std::span<const double>(t) : gradient.log_rate, is_forced ? -scale : scale);
       } else if (p == kShape) {
         add(gradient.shape_exponent, scale);
       } else if (p == kSlipForce) {
-        add(predicted, scale);
+        add(t, scale);
         add(gradient.log_rate, -scale);
         add(gradient.log_spring_travel, scale);
       } else if (p == kRig) {
@@ -380,13 +381,7 @@ void PredictAndDifferentiate(const Problem& problem, std::span<const double> the
       for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }
   }
-  Complete(problem, theta, predicted);
-}
-
-void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
-                   std::span<const std::size_t> columns, std::span<double> residual,
-                   std::span<double> jacobian) {
-  PredictAndDifferentiate(problem, theta, response, columns, residual, jacobian);
+  Complete(problem, theta, residual);
   TakeOffMeasured(problem, residual);
 }
 

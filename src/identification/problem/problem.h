@@ -134,18 +134,10 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
 void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record, double factor,
                std::span<double> to);
 
-/// Puts weighted residuals, model − measured, in the place of the model's response.
-void TakeOffMeasured(const Problem& problem, std::span<double> predicted);
-
-/// The response of the whole model, without weights, and the derivatives of the weighted residuals
-/// by the parameters at `columns`. The response is bound to the problem.
-/// @param predicted  size() values
-/// @param jacobian   column-major, size() × columns.size()
-void PredictAndDifferentiate(const Problem& problem, std::span<const double> theta,
-                             Response& response, std::span<const std::size_t> columns,
-                             std::span<double> predicted, std::span<double> jacobian);
-
-/// The same with the weighted residuals in the place of the response.
+/// The weighted residuals, model − measured, and their derivatives by the parameters at `columns`.
+/// The response is bound to the problem.
+/// @param residual  size() values
+/// @param jacobian  column-major, size() × columns.size()
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
                    std::span<const std::size_t> columns, std::span<double> residual,
                    std::span<double> jacobian);
