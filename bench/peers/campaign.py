@@ -20,15 +20,13 @@ import sys
 import tempfile
 import time
 
+from peers import LARGEST_DIFFERENCE_IN_STANDARD_ERRORS, PYTHON, disagreements, run_json
+
 HERE = pathlib.Path(__file__).resolve().parent
-PYTHON = "/usr/bin/python3"  # Debian's, which has Debian's pandas and lmfit
 
 # sigma = 5e7 N/m, Tc = 20 N, alpha = 1/3, lambda = 1.2; noise 1 % of Tc; 200 samples a cycle.
 CONTACT = ("simulate --model mindlin --sigma 5e7 --slip-force 20 --lambda 1.2 "
            "--samples-per-cycle 200 --noise-force 0.2 --seed 1").split()
-
-# All minimise the same sum of squares, one of them of a force that is integrated.
-LARGEST_DIFFERENCE_IN_STANDARD_ERRORS = 0.05
 
 READ = """
 import sys, time, pandas
@@ -47,19 +45,6 @@ def cost_of(command):
     if status != 0:
         sys.exit(f"failed: {' '.join(map(str, command))}")
     return usage.ru_utime + usage.ru_stime, elapsed
-
-
-def run_json(*command):
-    return json.loads(subprocess.run(command, check=True, text=True, capture_output=True).stdout)
-
-
-def disagreements(name, fit, reference):
-    if not fit["converged"]:
-        yield f"{name} has not converged"
-    for parameter, expected in reference["parameters"].items():
-        difference = abs(fit["parameters"][parameter]["value"] - expected["value"])
-        if not difference <= LARGEST_DIFFERENCE_IN_STANDARD_ERRORS * expected["standard_error"]:
-            yield f"{name}: {parameter} differs by {difference:.2g}"
 
 
 def main():

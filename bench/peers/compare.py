@@ -9,7 +9,6 @@ same parameters. docs/performance.md has the table. Needs lmfit: scripts/install
 """
 
 import argparse
-import json
 import os
 import pathlib
 import statistics
@@ -17,30 +16,13 @@ import subprocess
 import sys
 import tempfile
 
+from peers import LARGEST_DIFFERENCE_IN_STANDARD_ERRORS, PYTHON, disagreements, run_json
+
 HERE = pathlib.Path(__file__).resolve().parent
-PYTHON = "/usr/bin/python3"  # Debian's, which has Debian's lmfit
 
 # sigma = 5e7 N/m, Tc = 20 N, alpha = 1/3, lambda = 1.2; noise 1 % of Tc.
 RECORD = ("simulate --model mindlin --sigma 5e7 --slip-force 20 --lambda 1.2 --cycles 2 "
           "--samples-per-cycle 200 --noise-force 0.2 --seed 1").split()
-
-# Both minimise the same sum of squares, so they may differ by their stopping rules only.
-LARGEST_DIFFERENCE_IN_STANDARD_ERRORS = 0.05
-
-
-def run_json(command):
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    return json.loads(done.stdout)
-
-
-def disagreements(name, fit, reference):
-    if not fit["converged"]:
-        yield f"{name} has not converged"
-    for parameter, expected in reference["parameters"].items():
-        found = fit["parameters"][parameter]["value"]
-        difference = abs(found - expected["value"]) / expected["standard_error"]
-        if not difference <= LARGEST_DIFFERENCE_IN_STANDARD_ERRORS:
-            yield f"{name}: {parameter} = {found:.8g} differs by {difference:.2g} standard errors"
 
 
 def main():
@@ -58,7 +40,7 @@ def main():
         subprocess.run([arguments.build / "src/mindahl", *RECORD, "-o", record], check=True)
         peer = [PYTHON, HERE / "lmfit_fit.py", record, "--repeats", repeats]
         own = [arguments.build / "bench/peers/mindahl_fit", record, repeats]
-        rounds = [(run_json(peer), run_json(own)) for _ in range(arguments.rounds)]
+        rounds = [(run_json(*peer), run_json(*own)) for _ in range(arguments.rounds)]
 
     times = {}  # of each row, one a round, [ms]
     for lmfit, mindahl in rounds:

@@ -62,9 +62,9 @@ nlohmann::ordered_json LoopErrorJson(const LoopError& error) {
   return {{"force", NumberOrNull(error.force)}, {"energy", NumberOrNull(error.energy)}};
 }
 
-nlohmann::ordered_json LoopErrorJson(const ConvertCommandOptions& options, const TargetRow& target,
-                                     const Conversion& conversion,
-                                     const std::vector<Parameter>& parameters) {
+nlohmann::ordered_json ConversionJson(const ConvertCommandOptions& options, const TargetRow& target,
+                                      const Conversion& conversion,
+                                      const std::vector<Parameter>& parameters) {
   nlohmann::ordered_json json = {{"schema", "mindahl.convert/1"},
                                  {"version", Version()},
                                  {"from",
@@ -167,7 +167,7 @@ void RunConvert(ConvertCommandOptions options, Console& console) {
     WriteText(lines, options.input_lines_path, console);
   }
   if (!options.json_path.empty()) {
-    WriteJson(LoopErrorJson(options, target, conversion, parameters), options.json_path, console);
+    WriteJson(ConversionJson(options, target, conversion, parameters), options.json_path, console);
   }
   if (options.json_path != "-" && options.input_lines_path != "-") {
     console.out << ToText(options, target, conversion, parameters);

@@ -243,16 +243,6 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   return std::move(chosen);
 }
 
-/// Model − measured of every sample, without weights [units of the data].
-/// @param predicted  of the model, of every sample
-void TakeOffReadings(const ScaledRecords& data, std::span<double> predicted) {
-  std::size_t k = 0;
-  for (const ScaledRecord& record : data.records) {
-    const std::span<const double> readings = record.response();
-    for (std::size_t i = 0; i < readings.size(); ++i, ++k) predicted[k] -= readings[i];
-  }
-}
-
 /// The fitted response and residuals as the files have them, of every sample, and their rms.
 /// @param residuals  model − measured of every sample, without weights [units of the data]
 void FillFitted(const Attempt& attempt, const Problem& problem, std::span<const double> residuals,
@@ -845,7 +835,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     std::pmr::vector<double> residuals(best->problem.size(), &arena);
     buffers.response.Bind(best->problem);
     Predict(best->problem, solution.theta, buffers.response, residuals);
-    TakeOffReadings(*best->problem.data, residuals);
+    TakeOffMeasured(*best->problem.data, residuals);
     FillFitted(attempt, best->problem, residuals, result);
   }
   const bool fits_turns = best->problem.data->turns_are_fitted;

@@ -145,7 +145,8 @@ std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resour
   const std::size_t size = record.size();
   bool any = false;
   for (std::size_t i = 0; i < size; ++i) any |= is_zero(i);
-  for (std::size_t begin = 0; any && begin < size; ++begin) {
+  if (!any) return runs;  // as nearly always
+  for (std::size_t begin = 0; begin < size; ++begin) {
     if (!is_zero(begin)) continue;
     std::size_t end = begin + 1;
     while (end < size && is_zero(end)) ++end;

@@ -130,12 +130,17 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
   return EstimateAutocorrelation(series, counts);
 }
 
+double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
+                        std::pmr::memory_resource* memory) {
+  return static_cast<double>(data.counted) /
+         AutocorrelationOf(data, residual, {}, memory).SquaredCorrelations();
+}
+
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
                         std::pmr::memory_resource* memory) {
   std::pmr::vector<double> residual(problem.size(), memory);
   EvaluateResidual(problem, theta, response, residual);
-  return static_cast<double>(problem.data->counted) /
-         AutocorrelationOf(*problem.data, residual, {}, memory).SquaredCorrelations();
+  return EffectiveSamples(*problem.data, residual, memory);
 }
 
 Eigen::MatrixXd CorrelatedProduct(const ScaledRecords& data, const Autocorrelation& autocorrelation,
@@ -171,8 +176,13 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   result.determined.assign(count, true);
   if (count == 0) return result;
 
-  const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
-  const Eigen::MatrixXd correlated_columns = is_white ? Eigen::MatrixXd() : jacobian;
+  Eigen::MatrixXd correlated;  // JᵀRJ; of white residuals by the triangle
+  if (displacement.residuals.size() > 0) {
+    correlated =
+        CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, jacobian);
+  } else if (noise.autocorrelation.order > 0) {
+    correlated = CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian);
+  }
   Eigen::MatrixXd triangle = TriangleOf(std::move(jacobian));
   Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
@@ -182,15 +192,11 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   const std::optional<Eigen::MatrixXd> inverse = InverseIfRegular(triangle);
   const Eigen::MatrixXd factor =
       inverse ? *inverse * inverse->transpose() : PseudoInverse(triangle, norms, result);
-  const Eigen::MatrixXd correlated =
-      is_white ? Eigen::MatrixXd(triangle.transpose() * triangle)
-               : Eigen::MatrixXd(inverse_norms.asDiagonal() *
-                                 (displacement.residuals.size() > 0
-                                      ? CorrelatedProduct(*problem.data, noise.autocorrelation,
-                                                          noise, displacement, correlated_columns)
-                                      : CorrelatedProduct(*problem.data, noise.autocorrelation,
-                                                          correlated_columns)) *
-                                 inverse_norms.asDiagonal());
+  if (correlated.size() > 0) {
+    correlated = (inverse_norms.asDiagonal() * correlated * inverse_norms.asDiagonal()).eval();
+  } else {
+    correlated = triangle.transpose() * triangle;
+  }
   result.absorbed = (factor * correlated).trace();
   const Eigen::MatrixXd product = factor * correlated * factor;
   const Eigen::MatrixXd sandwich = (product + product.transpose()) / 2;  // to the last bit

@@ -61,8 +61,12 @@ Autocorrelation AutocorrelationOf(
     std::span<const unsigned char> tells = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-/// As many independent samples as tell the variance of a solution's residuals: those that count
-/// over what their autocorrelation costs. Binds the response to the problem.
+/// As many independent samples as tell the variance of residuals, one record after the other,
+/// weighted or not: those that count over what their autocorrelation costs.
+double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
+                        std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+
+/// The same of a solution's residuals. Binds the response to the problem.
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 

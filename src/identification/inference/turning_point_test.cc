@@ -13,12 +13,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// Effective samples of residuals, weighted or not, one record after the other.
-double EffectiveSamplesOf(const ScaledRecords& data, std::span<const double> residual) {
-  return static_cast<double>(data.counted) /
-         AutocorrelationOf(data, residual).SquaredCorrelations();
-}
-
 /// The largest of all records' reversals.
 double LargestOf(double (*overshoot)(const ScaledRecord&, std::size_t), const ScaledRecords& data) {
   double largest = 0.0;
@@ -60,7 +54,7 @@ std::optional<TurningPointFit> FitTurnedAsTheMotion(const Problem& problem, cons
   // Of two that the record does not tell apart, the one that does not take a sample for a turn.
   std::vector<double> residual(problem.size());
   EvaluateResidual(problem, best.theta, buffers.response, residual);
-  const Evidence evidence(problem.data->counted, EffectiveSamplesOf(*problem.data, residual));
+  const Evidence evidence(problem.data->counted, EffectiveSamples(*problem.data, residual));
   const double loss = evidence.LikelihoodRatio(fit.solution.sum_of_squares, best.sum_of_squares);
   if (loss > options.thresholds.indistinguishable) return {};
   return fit;
@@ -99,7 +93,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
       of_motion ? of_motion->records->overshoot : std::vector<double>(reversals, 0.0);
   TurningPointStep step = StepTurningPoints(problem, start, overshoot, buffers.response);
   const std::unique_ptr<TurnedRecords> turned = PutInTurningPoints(data, step.overshoot);
-  const double left = EffectiveSamplesOf(turned->data, {step.left.data(), turned->data.samples()});
+  const double left = EffectiveSamples(turned->data, {step.left.data(), turned->data.samples()});
   if (!(Evidence(data.counted, left).LikelihoodRatio(least, step.left.squaredNorm()) > needed)) {
     return of_motion;
   }
@@ -109,7 +103,7 @@ std::optional<TurningPointFit> FitTurningPointsIfNeeded(const Problem& problem,
   refitted.data = &fit.records->data;
   std::vector<double> residual(refitted.size());
   EvaluateResidual(refitted, fit.solution.theta, buffers.response, residual);
-  const Evidence evidence(data.counted, EffectiveSamplesOf(*refitted.data, residual));
+  const Evidence evidence(data.counted, EffectiveSamples(*refitted.data, residual));
   const double price = 2 * static_cast<double>(reversals);
   const double gain = evidence.LikelihoodRatio(least, fit.solution.sum_of_squares);
   if (!fit.solution.converged || !(gain > std::max(price, needed))) return of_motion;

@@ -275,17 +275,23 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
 }
 
 /// Puts weighted residuals, model − measured, in the place of the model's response.
-void TakeOffMeasured(const Problem& problem, std::span<double> predicted) {
+void TakeOffWeighted(const ScaledRecords& data, std::span<double> predicted) {
+  TakeOffMeasured(data, predicted);
   std::size_t k = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    const std::span<const double> measured = record.response();
-    for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-      predicted[k] = record.root_weight[i] * (predicted[k] - measured[i]);
-    }
+  for (const ScaledRecord& record : data.records) {
+    for (std::size_t i = 0; i < record.size(); ++i, ++k) predicted[k] *= record.root_weight[i];
   }
 }
 
 }  // namespace
+
+void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted) {
+  std::size_t k = 0;
+  for (const ScaledRecord& record : data.records) {
+    const std::span<const double> measured = record.response();
+    for (std::size_t i = 0; i < measured.size(); ++i, ++k) predicted[k] -= measured[i];
+  }
+}
 
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> predicted) {
@@ -297,7 +303,7 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
                       std::span<double> residual) {
   response.Bind(problem);
   Predict(problem, theta, response, residual);
-  TakeOffMeasured(problem, residual);
+  TakeOffWeighted(*problem.data, residual);
 }
 
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,
@@ -382,7 +388,7 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
     }
   }
   Complete(problem, theta, residual);
-  TakeOffMeasured(problem, residual);
+  TakeOffWeighted(*problem.data, residual);
 }
 
 }  // namespace mindahl::identification

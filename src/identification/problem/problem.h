@@ -124,6 +124,9 @@ class Response {
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> predicted);
 
+/// Takes what is measured off what the model predicts, of every sample; no weight.
+void TakeOffMeasured(const ScaledRecords& data, std::span<double> predicted);
+
 /// Weighted residuals, model − measured, of every sample; binds the response to the problem.
 void EvaluateResidual(const Problem& problem, std::span<const double> theta, Response& response,
                       std::span<double> residual);
