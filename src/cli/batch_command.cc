@@ -170,7 +170,7 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict,
     if (!result.done) {
       result.fault = report.fit.converged ? "not established: a free parameter is not identifiable "
                                             "or the model inadequate"
-                                          : report.fit.termination;
+                                          : report.fit.solver.message;
     }
   } catch (const InputError& error) {
     result.fault = error.what();

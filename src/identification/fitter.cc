@@ -704,8 +704,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   arena.Reset();
   result.depth = depth;
   result.converged = false;
-  result.termination.assign("not run");
-  result.iterations = 0;
+  result.solver = {};
   result.model = given.model;
   result.response = given.response();
   result.law = {};
@@ -801,8 +800,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   const Solution& solution = *best->solution;
   result.initial_state = best->problem.state;
-  result.termination.assign(solution.termination);
-  result.iterations = solution.iterations;
+  result.solver = solution.report;
+  const double unit_squared = data.response_unit() * data.response_unit();
+  result.solver.initial_cost *= unit_squared;
+  result.solver.final_cost *= unit_squared;
   result.converged = solution.converged;
   if (is_judged) ReportStarts(best->problem, descents, result);
   if (!std::isfinite(solution.sum_of_squares)) {
@@ -813,7 +814,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   if (!settled) {
     result.converged = false;
-    result.termination.assign("The weights of the samples did not settle.");
+    result.solver.termination = "NO_CONVERGENCE";
+    result.solver.message = "The weights of the samples did not settle.";
     result.findings.push_back({.code = "weights_not_settled"});
   }
   if (data.is_forced()) {
