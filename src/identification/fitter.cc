@@ -808,7 +808,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   if (!std::isfinite(solution.sum_of_squares)) {
     result.converged = false;
     result.parameters.clear();  // otherwise their names' memory is used again
-    result.findings.push_back({.code = "fit_failed", .severity = Severity::kFailure});
+    result.findings.push_back({.code = "fit_failed"});
     return;
   }
   if (!settled) {
@@ -917,7 +917,7 @@ const ParameterEstimate* FitResult::Find(std::string_view name) const {
   return found == parameters.end() ? nullptr : &*found;
 }
 
-const Finding* FitResult::FindFinding(std::string_view code) const {
+const Finding* FitResult::FindFinding(FindingCode code) const {
   const auto found = std::ranges::find(findings, code, &Finding::code);
   return found == findings.end() ? nullptr : &*found;
 }

@@ -18,18 +18,20 @@
 namespace mindahl::report {
 
 using identification::Finding;
+using identification::FindingCode;
 using identification::FitResult;
 
 namespace {
 
 double Needed(const Finding& finding, std::string_view name) {
   if (const std::optional<double> number = finding.Number(name)) return *number;
-  throw std::logic_error(fmt::format("the finding '{}' has no number '{}'", finding.code, name));
+  throw std::logic_error(
+      fmt::format("the finding '{}' has no number '{}'", std::string_view(finding.code), name));
 }
 
 [[noreturn]] void ThrowKind(const Finding& finding) {
-  throw std::logic_error(
-      fmt::format("the finding '{}' has no kind '{}'", finding.code, finding.kind));
+  throw std::logic_error(fmt::format("the finding '{}' has no kind '{}'",
+                                     std::string_view(finding.code), finding.kind));
 }
 
 // --- what is wrong with the record
@@ -414,61 +416,58 @@ std::string FitFailed(const Finding&, const FitResult& fit, const Units&) {
 }
 
 struct SentenceRow {
-  std::string_view code;
+  FindingCode code;
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<SentenceRow, 34> kSentences = {{
+constexpr auto kSentences = std::to_array<SentenceRow>({
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
     {"no_closed_cycle", NoClosedCycle},
-    {"energy_contradiction", EnergyContradiction},
+    {"load_followed", LoadFollowed},
+    {"load_not_followed", LoadNotFollowed},
+    {"noise_in_displacement", NoiseInDisplacement},
     {"turning_points_between_samples", TurningPoints},
-    {"shape_or_rig", ShapeOrRig},
-    {"slip_force_bounded_below", SlipForceBoundedBelow},
-    {"alpha_not_identifiable", AlphaNotIdentifiable},
-    {"sigma_not_identifiable", SigmaNotIdentifiable},
-    {"slip_force_not_identifiable", SlipForceNotIdentifiable},
-    {"sigma_bounded_below", SigmaBoundedBelow},
     {"undetermined_parameter", UndeterminedParameter},
     {"undetermined_combination", UndeterminedCombination},
-    {"model_inadequate", ModelInadequate},
-    {"slip_force_extrapolated", SlipForceExtrapolated},
-    {"few_places", FewPlaces},
+    {"sigma_not_identifiable", SigmaNotIdentifiable},
+    {"alpha_not_identifiable", AlphaNotIdentifiable},
+    {"slip_force_not_identifiable", SlipForceNotIdentifiable},
     {"asymmetry_not_identifiable", AsymmetryNotIdentifiable},
-    {"loop_not_seen", LoopNotSeen},
+    {"sigma_bounded_below", SigmaBoundedBelow},
+    {"slip_force_bounded_below", SlipForceBoundedBelow},
+    {"slip_force_extrapolated", SlipForceExtrapolated},
+    {"alpha_limited_by_load", AlphaLimitedByLoad},
+    {"few_places", FewPlaces},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},
+    {"shape_or_rig", ShapeOrRig},
+    {"rig_not_tried", RigNotTried},
     {"law_undecided", LawUndecided},
     {"other_law_fits_better", OtherLawFitsBetter},
     {"memory_contradicts_law", MemoryContradictsLaw},
-    {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
     {"slow_residuals", SlowResiduals},
-    {"noise_in_displacement", NoiseInDisplacement},
-    {"rig_not_tried", RigNotTried},
-    {"load_followed", LoadFollowed},
-    {"load_not_followed", LoadNotFollowed},
-    {"alpha_limited_by_load", AlphaLimitedByLoad},
+    {"energy_contradiction", EnergyContradiction},
+    {"loop_not_seen", LoopNotSeen},
+    {"no_model_fits", NoModelFits},
+    {"model_inadequate", ModelInadequate},
     {"weights_not_settled", WeightsNotSettled},
     {"fit_failed", FitFailed},
-}};
+});
+
+constexpr bool EveryFindingHasASentence() {
+  return std::ranges::equal(kSentences, identification::kFindings, {}, &SentenceRow::code,
+                            &identification::FindingRow::code);
+}
+static_assert(EveryFindingHasASentence(), "one row a finding, in the order of kFindings");
 
 }  // namespace
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
-  for (const SentenceRow& row : kSentences) {
-    if (row.code == finding.code) return row.sentence(finding, fit, units);
-  }
-  throw std::logic_error(fmt::format("the finding '{}' has no sentence", finding.code));
-}
-
-std::vector<std::string_view> FindingCodes() {
-  std::vector<std::string_view> codes;
-  codes.reserve(std::size(kSentences));
-  for (const SentenceRow& row : kSentences) codes.push_back(row.code);
-  return codes;
+  const auto place = &finding.code.row() - identification::kFindings.data();
+  return kSentences[static_cast<std::size_t>(place)].sentence(finding, fit, units);
 }
 
 }  // namespace mindahl::report

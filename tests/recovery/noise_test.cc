@@ -43,9 +43,7 @@ bool Holds(const ParameterEstimate& estimate, double truth) {
          (!estimate.upper95 || truth <= *estimate.upper95);
 }
 
-bool IsWarnedOf(const FitResult& fit, const std::string& code) {
-  return fit.FindFinding(code) != nullptr;
-}
+bool IsWarnedOf(const FitResult& fit, FindingCode code) { return fit.FindFinding(code) != nullptr; }
 
 /// Nothing of a result may be NaN or infinite where it is stated.
 void ExpectFinite(const FitResult& fit) {

@@ -40,14 +40,6 @@ enum class Depth {
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 
-/// In the order of precedence: of several the last holds.
-enum class Identifiability {
-  kIdentifiable,
-  kExtrapolated,     ///< the law's asymptote, which the record stays away from
-  kBoundedBelow,     ///< the data give only a lower limit
-  kNotIdentifiable,  ///< none, or only in combination with others
-};
-
 struct ParameterEstimate {
   std::string name;
   std::string unit;
@@ -174,7 +166,7 @@ struct FitResult {
   [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
 
   /// nullptr when nothing of the kind was found.
-  [[nodiscard]] const Finding* FindFinding(std::string_view code) const;
+  [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
 
   /// The record with the largest amplitude, in a load series over N^{1−p}, to which the gross-slip
   /// displacement is in proportion: the one that comes nearest to gross slip.

@@ -65,16 +65,15 @@ std::string_view KindOf(const ResidualStructure& structure, const Peak& peak,
 
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local) {
   if (local.null.empty()) return std::nullopt;
-  Finding finding;
+  std::vector<std::string> names;
   for (std::size_t k = 0; k < local.columns.size(); ++k) {
-    if (!local.determined[k]) {
-      finding.parameters.push_back(problem.parameters.NameOf(local.columns[k]));
-    }
+    if (!local.determined[k]) names.push_back(problem.parameters.NameOf(local.columns[k]));
   }
   // As many directions as names: each of them is one of its own.
-  finding.code = local.null.size() >= finding.parameters.size() ? "undetermined_parameter"
-                                                                : "undetermined_combination";
-  return finding;
+  const bool are_alone = local.null.size() >= names.size();
+  return Finding{.code = are_alone ? FindingCode("undetermined_parameter")
+                                   : FindingCode("undetermined_combination"),
+                 .parameters = std::move(names)};
 }
 
 std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile) {
@@ -103,10 +102,13 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart) {
 }
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCodes = {
-      {{"sigma", "sigma_not_identifiable"},
-       {"alpha", "alpha_not_identifiable"},
-       {"slip_force", "slip_force_not_identifiable"}}};
+  struct Row {
+    std::string_view name;
+    FindingCode code;
+  };
+  constexpr std::array kCodes = {Row{"sigma", "sigma_not_identifiable"},
+                                 Row{"alpha", "alpha_not_identifiable"},
+                                 Row{"slip_force", "slip_force_not_identifiable"}};
   std::vector<Finding> findings;
   for (const auto& [name, code] : kCodes) {
     const ParameterEstimate& estimate = *result.Find(name);
@@ -158,15 +160,16 @@ std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thr
       continue;
     }
     const Peak peak = LargestBin(structure);
-    return Finding{.code = fails ? "no_model_fits" : "systematic_residual",
-                   .parameters = fails ? std::vector<std::string>{"sigma", "alpha"}
-                                       : std::vector<std::string>{},
-                   .numbers = {{"misfit", misfit},
-                               {"repeatable_share", structure.repeatable_share},
-                               {"largest", std::abs(peak.bin.mean)},
-                               {"position", peak.bin.position},
-                               {"direction", peak.direction}},
-                   .kind = KindOf(structure, peak, thresholds)};
+    return Finding{
+        .code = fails ? FindingCode("no_model_fits") : FindingCode("systematic_residual"),
+        .parameters =
+            fails ? std::vector<std::string>{"sigma", "alpha"} : std::vector<std::string>{},
+        .numbers = {{"misfit", misfit},
+                    {"repeatable_share", structure.repeatable_share},
+                    {"largest", std::abs(peak.bin.mean)},
+                    {"position", peak.bin.position},
+                    {"direction", peak.direction}},
+        .kind = KindOf(structure, peak, thresholds)};
   }
   return std::nullopt;
 }
@@ -316,9 +319,7 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
 }
 
 Finding FoundTurningPoints(double longest_overshoot) {
-  return {.code = "turning_points_between_samples",
-          .severity = Severity::kNote,
-          .numbers = {{"overshoot", longest_overshoot}}};
+  return {.code = "turning_points_between_samples", .numbers = {{"overshoot", longest_overshoot}}};
 }
 
 }  // namespace mindahl::identification

@@ -29,7 +29,6 @@ Finding UncertainReversals(const RecordFit& record) {
 
 Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
   Finding finding{.code = "glitches_left_out",
-                  .severity = Severity::kNote,
                   .numbers = {{"spikes", static_cast<double>(glitches.spikes)},
                               {"dropouts", static_cast<double>(glitches.dropouts)},
                               {"held", static_cast<double>(glitches.held)}}};
@@ -97,7 +96,7 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thr
       append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
     }
     if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
-    if (!record.facts.closed) append({.code = "no_closed_cycle", .severity = Severity::kNote});
+    if (!record.facts.closed) append({.code = "no_closed_cycle"});
   }
   return findings;
 }
@@ -116,10 +115,9 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
       squares += change * change;
       ++count;
     }
-    Finding& finding = findings.emplace_back(
-        Finding{.code = is_followed ? "load_followed" : "load_not_followed",
-                .severity = is_followed ? Severity::kNote : Severity::kWarning,
-                .numbers = {{"variation", std::sqrt(2 * squares / std::max(count, 1.0))}}});
+    Finding& finding = findings.emplace_back(Finding{
+        .code = is_followed ? FindingCode("load_followed") : FindingCode("load_not_followed"),
+        .numbers = {{"variation", std::sqrt(2 * squares / std::max(count, 1.0))}}});
     if (data.records.size() > 1) {
       finding.numbers.emplace_back("record", static_cast<double>(r + 1));
     }
@@ -192,7 +190,6 @@ std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& reco
   }
   if (!NoiseIsInDisplacement(of_displacement, of_force, thresholds)) return std::nullopt;
   return Finding{.code = "noise_in_displacement",
-                 .severity = Severity::kNote,
                  .numbers = {{"of_displacement", of_displacement}, {"of_force", of_force}}};
 }
 
