@@ -21,6 +21,7 @@
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/intervals.h"
 #include "identification/inference/irregularities.h"
 #include "identification/inference/lag_trial.h"
 #include "identification/inference/law_choice.h"
@@ -314,9 +315,7 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
     estimate.unit.assign(parameters.UnitOf(p, timed));
     estimate.value = parameters[p].ToValue(solution.theta[p]);
     estimate.status = StatusOf(parameters[p], solution.side[p]);
-    estimate.standard_error.reset();
-    estimate.lower95.reset();
-    estimate.upper95.reset();
+    WithdrawInterval(estimate);
     estimate.identifiability = Identifiability::kNotIdentifiable;
   }
   result.law = parameters.LawAt(solution.theta);
@@ -355,8 +354,9 @@ void DescribeFit(const Attempt& attempt, const Problem& problem, const Noise& no
   result.residuals.effective_samples = noise.effective_samples();
   Noise of_residuals = noise;
   of_residuals.is_known = false;
-  result.residuals.degrees_of_freedom =
-      of_residuals.degrees_of_freedom(problem.parameters.free().size());
+  const std::size_t free = problem.parameters.free().size();
+  result.residuals.degrees_of_freedom = of_residuals.degrees_of_freedom(free);
+  result.error_degrees_of_freedom = noise.degrees_of_freedom(free);
 }
 
 /// What comes back in every stroke, and by how much it widens a variance.
@@ -497,9 +497,7 @@ void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solut
     result.slip_force_profile = std::move(profile.likelihood);
   }
   if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
-    ParameterEstimate& sigma = result.parameters[kStiffness];
-    sigma.upper95.reset();
-    sigma.standard_error.reset();
+    OpenAbove(result.parameters[kStiffness], IntervalSource::kProfile);
     result.findings.push_back(FoundOpenStiffness());
   }
 }
@@ -545,6 +543,9 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
       if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
         WidenByRanges(problem, ProfileShape(problem, solution, noise, estimates, options, buffers),
                       estimates.quantile(), result);
+        Include(result.parameters[kShape], {.source = IntervalSource::kProfile,
+                                            .lower = kMindlinExponent,
+                                            .upper = kMindlinExponent});
       }
       const std::optional<RigAlternative> rig =
           TryRig(problem, attempt.thin, solution, *result.mindlin_test, noise, estimates, options,
@@ -910,36 +911,6 @@ FitResult Fit(std::span<const loop::Record> records, const FitOptions& options, 
   std::vector<RecordView> views(records.begin(), records.end());
   Fitter fitter(options);
   return fitter.Fit(views, depth);
-}
-
-const ParameterEstimate* FitResult::Find(std::string_view name) const {
-  const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
-  return found == parameters.end() ? nullptr : &*found;
-}
-
-const Finding* FitResult::FindFinding(FindingCode code) const {
-  const auto found = std::ranges::find(findings, code, &Finding::code);
-  return found == findings.end() ? nullptr : &*found;
-}
-
-const RecordFit& FitResult::WidestRecord() const {
-  return *std::ranges::max_element(records, {}, [this](const RecordFit& fit) {
-    return fit.measures.amplitude * std::pow(fit.load_ratio, load_exponent - 1);
-  });
-}
-
-models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
-  return models::AtLoad(law, record.load_ratio, load_exponent);
-}
-
-double FitResult::ResponseNoise() const {
-  if (response == loop::Channel::kForce) return force_noise;
-  return records.empty() ? 0.0 : records.front().displacement_noise;
-}
-
-double FitResult::PeakForce() const {
-  const RecordFit& widest = WidestRecord();
-  return widest.measures.peak_force / widest.load_ratio;
 }
 
 }  // namespace mindahl::identification

@@ -40,6 +40,22 @@ enum class Depth {
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 
+/// Why an interval reaches as far as it does.
+enum class IntervalSource {
+  kParabola,      ///< curvature of the likelihood at its maximum
+  kProfile,       ///< the likelihood itself, where the parabola is not good enough
+  kInitialState,  ///< the other initial state, which the record does not exclude
+  kOmittedTerms,  ///< terms that the model lacks and the residuals look like
+  kPlateau,       ///< half gap of the loop, measured without a model
+};
+
+/// A contribution to an interval; ends are empty where it is open.
+struct IntervalPart {
+  IntervalSource source = IntervalSource::kParabola;
+  std::optional<double> lower = {};
+  std::optional<double> upper = {};
+};
+
 struct ParameterEstimate {
   std::string name;
   std::string unit;
@@ -49,6 +65,11 @@ struct ParameterEstimate {
   std::optional<double> upper95;
   ParameterStatus status = ParameterStatus::kFixed;
   Identifiability identifiability = Identifiability::kNotIdentifiable;
+  /// What the interval is the union of; empty where there is none.
+  std::vector<IntervalPart> interval = {};
+
+  /// True if a contribution of this kind sets an end of the interval.
+  [[nodiscard]] bool IsSetBy(IntervalSource source) const;
 
   /// Given, or identifiable.
   [[nodiscard]] bool is_known() const {
@@ -157,6 +178,9 @@ struct FitResult {
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;
   ResidualStatistics residuals;
+  /// Of Student's law of the errors: practically infinite where the noise is known, else that of
+  /// the residuals, which empty stands for.
+  std::optional<double> error_degrees_of_freedom;
   Adequacy adequacy;  ///< from depth kIntervals on
   std::vector<StartReport> starts;
   std::vector<RecordFit> records;
@@ -180,6 +204,21 @@ struct FitResult {
 
   /// The largest force [N] of the widest record, as it would be at the mean load of all.
   [[nodiscard]] double PeakForce() const;
+
+  /// Degrees of freedom of Student's law of the errors.
+  [[nodiscard]] double ErrorDegreesOfFreedom() const {
+    return error_degrees_of_freedom.value_or(residuals.degrees_of_freedom);
+  }
+
+  /// Error of a parameter [its unit] in whatever follows from it: the way to the farther end of its
+  /// interval, along the logarithm of a positive parameter, in units of the half width of Student's
+  /// 95 % interval; the standard error where that is larger. 0 of a parameter that is held,
+  /// infinite of one whose interval is open or that has no error.
+  [[nodiscard]] double ErrorOf(const ParameterEstimate& estimate) const;
+
+  /// The same towards a value that the parameter is tested against: the value is beyond the 95 %
+  /// interval if and only if it lies farther away than Student's quantile of this error.
+  [[nodiscard]] double ErrorTowards(const ParameterEstimate& estimate, double value) const;
 
   [[nodiscard]] bool is_load_series() const { return Find("load_exponent") != nullptr; }
 };

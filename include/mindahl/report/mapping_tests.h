@@ -9,11 +9,16 @@
 
 namespace mindahl::report {
 
-/// Is the fitted exponent Mindlin's 1/3?
+/// Is the fitted exponent Mindlin's 1/3? What the interval of α says: 1/3 is rejected if and only
+/// if it lies outside. Not asked where α was held or is not identifiable.
 struct AlphaTest {
   std::optional<double> minus_third;  ///< α − 1/3; empty where α was held
-  std::optional<double> z;            ///< (α − 1/3)/SE; empty where α has no standard error
-  std::optional<double> p_value;      ///< two-sided, of Student's t
+  std::optional<bool> is_rejected;
+  std::optional<double> z;  ///< over FitResult::ErrorTowards(1/3); empty where α is at a bound
+  std::optional<double> p_value;  ///< two-sided, of Student's t
+  /// Likelihood ratio of the model with α = 1/3; empty where α's interval includes more than this
+  /// model and says otherwise.
+  std::optional<identification::MindlinTest> likelihood;
 };
 
 /// Is the fitted stiffness 8a/G*?
@@ -39,7 +44,8 @@ AlphaTest TestAlpha(const identification::FitResult& fit);
 StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
                             double degrees_of_freedom);
 
-/// One for each radius that is known besides the fit, where G* is known too.
+/// One for each radius that is known besides the fit, where G* is known too; with the ratio alone
+/// where σ is not identifiable.
 std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
                                          const contact::IdentifiedContact& contact);
 

@@ -7,6 +7,7 @@
 
 #include "identification/inference/column_test.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/intervals.h"
 
 namespace mindahl::identification {
 namespace {
@@ -129,9 +130,10 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
                           (is_of_force ? std::min(apart, kFarthest) : 0.0);
       const double one = parameter.ToValue(solution.theta[p] + step - half);
       const double other = parameter.ToValue(solution.theta[p] + step + half);
-      if (estimate.lower95) estimate.lower95 = std::min({*estimate.lower95, one, other});
-      if (estimate.upper95) estimate.upper95 = std::max({*estimate.upper95, one, other});
-      if (p == kShape && estimate.lower95) estimate.lower95 = std::max(*estimate.lower95, 0.0);
+      const auto [lower, upper] = std::minmax(one, other);
+      Include(estimate, {.source = IntervalSource::kOmittedTerms,
+                         .lower = p == kShape ? std::max(lower, 0.0) : lower,
+                         .upper = upper});
     }
   }
 }

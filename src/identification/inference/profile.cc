@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "identification/inference/intervals.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -88,8 +90,9 @@ ProfiledRanges RangesAt(const Solution& best) {
 void Widen(ParameterEstimate& estimate, const Parameter& parameter, const Range& range,
            double quantile) {
   if (!estimate.lower95 || !estimate.upper95) return;
-  estimate.lower95 = std::min(*estimate.lower95, parameter.ToValue(range.lower));
-  estimate.upper95 = std::max(*estimate.upper95, parameter.ToValue(range.upper));
+  Include(estimate, {.source = IntervalSource::kProfile,
+                     .lower = parameter.ToValue(range.lower),
+                     .upper = parameter.ToValue(range.upper)});
   if (estimate.standard_error) {
     const double half_width = (*estimate.upper95 - *estimate.lower95) / 2;
     estimate.standard_error = std::max(*estimate.standard_error, half_width / quantile);
@@ -268,16 +271,16 @@ void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, dou
   ParameterEstimate& slip_force = FindIn(result, "slip_force");
   WidenByRanges(problem, profile.ranges, quantile, result);
   if (!profile.open_above) return;
-  slip_force.upper95.reset();
-  slip_force.standard_error.reset();
+  OpenAbove(slip_force, IntervalSource::kProfile);
   // A contact that carried T* has at least that slip force, unless the fit is too poor to say; and
   // no more where it is the bound of α that ends the valley.
   const bool by_bound = alpha.status == ParameterStatus::kAtUpperBound;
   const double profiled = by_bound ? 0.0 : slip_force.lower95.value_or(0.0);
-  if (peak_force < slip_force.value) slip_force.lower95 = std::max(profiled, peak_force);
-  if (alpha.status == ParameterStatus::kFixed) return;
-  alpha.upper95.reset();
-  alpha.standard_error.reset();
+  if (peak_force < slip_force.value) {
+    SetInterval(slip_force,
+                {.source = IntervalSource::kProfile, .lower = std::max(profiled, peak_force)});
+  }
+  if (alpha.status != ParameterStatus::kFixed) OpenAbove(alpha, IntervalSource::kProfile);
 }
 
 }  // namespace mindahl::identification

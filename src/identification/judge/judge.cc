@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "identification/inference/intervals.h"
+
 namespace mindahl::identification {
 void WithdrawInadequate(FitResult& result) {
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
@@ -19,9 +21,7 @@ void WithdrawInadequate(FitResult& result) {
   Finding finding{.code = "model_inadequate"};
   for (ParameterEstimate& estimate : result.parameters) {
     if (estimate.status == ParameterStatus::kFixed) continue;
-    estimate.standard_error.reset();
-    estimate.lower95.reset();
-    estimate.upper95.reset();
+    WithdrawInterval(estimate);
     finding.parameters.push_back(estimate.name);
   }
   result.findings.insert(result.findings.begin(), std::move(finding));
