@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/cycle_energy.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/law_findings.h"
@@ -323,6 +324,25 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
   result.load_exponent = parameters.LoadExponentAt(solution.theta);
 }
 
+/// Fills what the law loses in each cycle where that changes from cycle to cycle.
+void FillLawEnergy(const Attempt& attempt, FitResult& result) {
+  const ParameterEstimate* asymmetry = result.Find("asymmetry");
+  const bool changes = asymmetry != nullptr && asymmetry->value != 0 &&
+                       result.initial_state == InitialState::kVirgin;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    RecordFit& fit = result.records[r];
+    fit.law_energy.clear();
+    if (!changes || !fit.facts.closed) continue;
+    const std::span<const double> displacement = attempt.prepared.records[r].displacement();
+    const double first = displacement[fit.facts.cycles.front().start] - displacement.front();
+    fit.law_energy = EnergyOfCycles(*result.model, result.LawOf(fit), result.rig,
+                                    {.asymmetry = asymmetry->value,
+                                     .amplitude = fit.facts.amplitude,
+                                     .first_direction = first < 0 ? -1 : 1,
+                                     .cycles = fit.facts.cycles.size()});
+  }
+}
+
 /// Those that count: the values themselves where all do, else a copy of some, which is kept.
 std::span<const double> Counting(std::span<const double> values, const RecordFit& fit,
                                  std::deque<std::vector<double>>& kept) {
@@ -496,6 +516,10 @@ void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solut
     }
     result.slip_force_profile = std::move(profile.likelihood);
   }
+  if (const auto ranges =
+          ProfileSmallShape(problem, solution, noise, estimates, options, buffers)) {
+    IncludeSmallShape(problem, *ranges, result);
+  }
   if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
     OpenAbove(result.parameters[kStiffness], IntervalSource::kProfile);
     result.findings.push_back(FoundOpenStiffness());
@@ -513,12 +537,15 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
                             std::move(at));
   FillErrors(problem, estimates, result);
   WidenByProfiles(attempt, problem, solution, noise, estimates, result);
+  KeepAboveCarriedForce(result);
+  Append(result.findings, FindSearchLimit(problem, solution));
   Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
   Append(result.findings, FindUntoldAsymmetry(result, attempt.options.thresholds));
   for (Finding& finding : FindWideIntervals(result, attempt.options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }
   Append(result.findings, FindExtrapolated(result, attempt.options.thresholds));
+  DropNeedless(result.parameters, result.findings);
   Judge(result.parameters, result.findings);
 }
 
@@ -535,9 +562,9 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
                             std::move(at));
   FillErrors(problem, estimates, result);
+  WidenByProfiles(attempt, problem, solution, noise, estimates, result);
   if (result.depth >= Depth::kFull) {
     result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
-    WidenByProfiles(attempt, problem, solution, noise, estimates, result);
     result.mindlin_test = TestMindlin(problem, solution, noise, estimates, options, buffers);
     if (result.mindlin_test) {
       if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
@@ -571,6 +598,11 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
                                              buffers.response, result.parameters)));
   }
   ConsiderDepartures(problem, solution, noise, displacement, estimates, options, buffers, result);
+  KeepAboveCarriedForce(result);
+  if (auto limit = FindSearchLimit(problem, solution)) {
+    result.findings.push_back(std::move(*limit));
+    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
   Append(result.findings, FindUnseenLoop(result, options.thresholds));
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
@@ -589,7 +621,8 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     result.adequacy.verdict = AdequacyVerdict::kDoubtful;
   }
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
-  if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result);
+  DropNeedless(result.parameters, result.findings);
+  if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result, options.thresholds);
   if (result.depth >= Depth::kFull) {
     const LawComparison laws = CompareLaws(problem, solution, result, options, buffers);
     const bool is_asked = result.depth >= Depth::kThorough;
@@ -703,29 +736,18 @@ struct Fitter::State {
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
   arena.Reset();
-  result.depth = depth;
-  result.converged = false;
-  result.termination.assign("not run");
-  result.iterations = 0;
-  result.model = given.model;
-  result.response = given.response();
-  result.law = {};
-  result.rig = {};
-  result.normal_load.reset();
-  result.load_exponent = 1.0;
-  result.force_noise = 0.0;
-  result.outliers = 0;
-  result.rms = 0.0;
-  result.mindlin_test.reset();
-  result.branch_shapes.clear();
-  result.law_choice.reset();
-  result.memory.reset();
-  result.slip_force_profile.reset();
-  result.correlation.clear();
-  result.residuals = {};
-  result.starts.clear();
-  result.findings.clear();
-  result.adequacy = {};
+  // A new result, in the memory of the last.
+  FitResult fresh;
+  fresh.depth = depth;
+  fresh.model = given.model;
+  fresh.response = given.response();
+  fresh.parameters.swap(result.parameters);
+  fresh.correlation.swap(result.correlation);
+  fresh.records.swap(result.records);
+  fresh.termination.swap(result.termination);
+  fresh.termination.assign("not run");
+  fresh.correlation.clear();
+  result = std::move(fresh);
   descents.clear();
 
   loop::PreparedRecords prepared = loop::Prepare(records, given.preparation, &arena);
@@ -824,6 +846,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   result.outliers = noise.outliers;
   FillParameters(best->problem, solution, result);
+  FillLawEnergy(attempt, result);
   Linearization at;
   if (depth >= Depth::kErrors) {
     at = LinearizeAt(best->problem, solution.theta, buffers.response,

@@ -41,6 +41,27 @@ std::string Words(Identifiability identifiability) {
   return words;
 }
 
+std::string_view Name(identification::IntervalSource source) {
+  using enum identification::IntervalSource;
+  switch (source) {
+    case kParabola:
+      return "parabola";
+    case kProfile:
+      return "profile";
+    case kInitialState:
+      return "initial_state";
+    case kOmittedTerms:
+      return "omitted_terms";
+    case kPlateau:
+      return "plateau";
+    case kSmallShape:
+      return "small_alpha";
+    case kCarriedForce:
+      return "carried_force";
+  }
+  return "";
+}
+
 std::string_view Name(models::InitialState state) {
   return state == models::InitialState::kVirgin ? "virgin" : "steady";
 }

@@ -13,6 +13,7 @@ std::string_view Name(identification::ParameterStatus status);
 std::string_view Name(identification::Identifiability identifiability);
 /// The name with blanks, for people.
 std::string Words(identification::Identifiability identifiability);
+std::string_view Name(identification::IntervalSource source);
 std::string_view Name(models::InitialState state);
 std::string_view Name(loop::Channel channel);
 std::string_view Name(SlipRegime regime);

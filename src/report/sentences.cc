@@ -177,6 +177,17 @@ std::string AsymmetryNotIdentifiable(const Finding& finding, const FitResult&, c
       fmt::join(finding.parameters, ", "), 100 * Needed(finding, "never_slips"));
 }
 
+std::string SearchLimit(const Finding& finding, const FitResult& fit, const Units&) {
+  const std::string& name = finding.parameters.front();
+  const identification::ParameterEstimate* estimate = fit.Find(name);
+  return fmt::format(
+      "{}: the search stopped at {}, the end of what is searched, so that the best value lies "
+      "beyond it and no parameter of this fit is that of the contact; give --bound {}=LO:HI, or "
+      "take it off the record",
+      fmt::join(finding.parameters, ", "),
+      Quantity(Needed(finding, "bound"), estimate == nullptr ? "-" : estimate->unit, 4), name);
+}
+
 std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "sigma, alpha: all {:.0f} samples lie in {:.0f} places of the loop, the same in every cycle; "
@@ -439,6 +450,7 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"slip_force_bounded_below", SlipForceBoundedBelow},
     {"slip_force_extrapolated", SlipForceExtrapolated},
     {"alpha_limited_by_load", AlphaLimitedByLoad},
+    {"search_limit", SearchLimit},
     {"few_places", FewPlaces},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},

@@ -1,14 +1,20 @@
 #include "identification/judge/judge.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <span>
+#include <string>
 #include <vector>
 
 // Verdicts from estimates and findings alone, by precedence.
 namespace mindahl::identification::judge_test {
 namespace {
+
+using ::testing::ElementsAre;
 
 ParameterEstimate Known(const char* name) {
   return {.name = name,
@@ -111,6 +117,56 @@ TEST(Judge, EarlierVerdictIsForgotten) {
   ParameterEstimate estimate = Known("alpha");
   estimate.identifiability = Identifiability::kNotIdentifiable;
   EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kIdentifiable);
+}
+
+std::vector<std::string> KeptOf(std::span<const ParameterEstimate> estimates,
+                                std::vector<Finding> findings) {
+  DropNeedless(estimates, findings);
+  std::vector<std::string> kept;
+  for (const Finding& finding : findings) kept.emplace_back(finding.code);
+  return kept;
+}
+
+TEST(DropNeedless, KeepsAWideIntervalUnlessAnotherFindingSaysAsMuchOfIt) {
+  const std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
+  const Finding wide{.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "wide"};
+  const Finding rig{.code = "shape_or_rig", .parameters = {"sigma", "alpha"}};
+  const Finding state{.code = "initial_state_undecided", .parameters = {"alpha"}};
+  const Finding of_other{.code = "few_places", .parameters = {"sigma"}};
+  EXPECT_THAT(KeptOf(estimates, {wide}), ElementsAre("alpha_not_identifiable"));
+  EXPECT_THAT(KeptOf(estimates, {wide, rig}), ElementsAre("shape_or_rig"));
+  EXPECT_THAT(KeptOf(estimates, {rig, wide}), ElementsAre("shape_or_rig")) << "in either order";
+  EXPECT_THAT(KeptOf(estimates, {wide, of_other}),
+              ElementsAre("alpha_not_identifiable", "few_places"));
+  EXPECT_THAT(KeptOf(estimates, {state, wide}),
+              ElementsAre("initial_state_undecided", "alpha_not_identifiable"))
+      << "which calls α identifiable";
+}
+
+TEST(DropNeedless, KeepsAnEnergyThatContradictsAnAnswer) {
+  std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
+  const Finding energy{.code = "energy_contradiction",
+                       .parameters = {"sigma", "alpha", "slip_force"}};
+  const Finding shape{.code = "no_model_fits", .parameters = {"sigma", "alpha"}};
+  EXPECT_THAT(KeptOf(estimates, {shape, energy}),
+              ElementsAre("no_model_fits", "energy_contradiction"))
+      << "the slip force is still claimed";
+  estimates[2].upper95.reset();
+  EXPECT_THAT(KeptOf(estimates, {shape, energy}), ElementsAre("no_model_fits"));
+}
+
+TEST(WithdrawInadequate, NeverStandsBesideAMisfitOfNothing) {
+  // No omitted term explains it, and what comes back in every stroke is 0.8 of the variance.
+  FitResult result;
+  result.rms = 3.0;
+  result.records.resize(1);
+  result.records[0].structure.repeatable_share = 0.8;
+  result.findings = {{.code = "no_model_fits", .parameters = {"sigma", "alpha"}}};
+  WithdrawInadequate(result, {});
+  EXPECT_EQ(result.adequacy.verdict, AdequacyVerdict::kInadequate);
+  EXPECT_NEAR(result.adequacy.misfit, 3.0 * std::sqrt(0.8), 1e-12);
+  EXPECT_NEAR(result.adequacy.misfit_over_noise, std::sqrt(0.8 / 0.2), 1e-12);
+  EXPECT_LE(result.adequacy.p_value, Thresholds().repeat_chance);
 }
 
 }  // namespace

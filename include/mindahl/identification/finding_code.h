@@ -55,6 +55,7 @@ inline constexpr auto kFindings = [] {
       {"slip_force_bounded_below", kBoundedBelow},
       {"slip_force_extrapolated", kExtrapolated},
       {"alpha_limited_by_load", kBoundedBelow},
+      {"search_limit", kNotIdentifiable},
       {"few_places", kNotIdentifiable},
       {"unknown_past", kNotIdentifiable},
       {"initial_state_undecided", kIdentifiable, kWarning, true},

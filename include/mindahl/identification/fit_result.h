@@ -33,8 +33,7 @@ enum class Depth {
                ///< and from its profile where that is wrong about Tc
   kIntervals,  ///< and what repeats in the residuals, adequacy, its causes, and verdicts; intervals
                ///< cover what these would change
-  kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α and
-               ///< of the law
+  kFull,       ///< and tests of α and of the law
   kThorough,   ///< and whether branches are copies of each other, of whatever shape
 };
 
@@ -47,6 +46,8 @@ enum class IntervalSource {
   kInitialState,  ///< the other initial state, which the record does not exclude
   kOmittedTerms,  ///< terms that the model lacks and the residuals look like
   kPlateau,       ///< half gap of the loop, measured without a model
+  kSmallShape,    ///< an α above the bound 0, where the search stopped
+  kCarriedForce,  ///< not below the force that was measured to be carried
 };
 
 /// A contribution to an interval; ends are empty where it is open.
@@ -134,6 +135,10 @@ struct RecordFit {
   bool load_varies = false;           ///< within the record, as the law was told
   /// Of a load series, from Depth::kFull on; empty where the record by itself is no fit.
   std::optional<RecordAlone> alone;
+  /// Energy [J] that the fitted law loses in each cycle of `facts`, between ± their amplitude;
+  /// empty where every cycle loses what the steady loop does. Of a virgin contact whose slip forces
+  /// differ.
+  std::vector<double> law_energy;
   /// Of the residuals, in the displacement's sense; from depth kIntervals on.
   ResidualStructure structure;
   /// [N], in the file's sense, offsets included; in a fit of the displacement as measured.
@@ -172,7 +177,7 @@ struct FitResult {
   /// bounded, under loads that differ or vary or a lag, where branches are no copies of each
   /// other, and in a fit of the displacement.
   std::optional<MemoryTest> memory;
-  /// From Depth::kFull on, and at kErrors; empty where the parabola was good enough.
+  /// From Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined

@@ -25,10 +25,10 @@ struct AlphaTest {
 struct StiffnessTest {
   std::string_view radius;         ///< whence a: "hertz", or "given"
   contact::PropagatedValue ratio;  ///< σ/(8a/G*): 1 where Hertz and Mindlin hold
-  std::optional<identification::Interval>
-      interval95;                 ///< empty, as the rest, where the ratio's error is 0 or open
-  std::optional<double> z;        ///< (ratio − 1)/SE
-  std::optional<double> p_value;  ///< two-sided
+  std::optional<identification::Interval> interval95 =
+      {};                              ///< empty, as the rest, where the ratio's error is 0 or open
+  std::optional<double> z = {};        ///< (ratio − 1)/SE
+  std::optional<double> p_value = {};  ///< two-sided
 };
 
 /// Significance of the tests as they are put into words: the usual convention.

@@ -115,10 +115,6 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
       continue;
     }
-    const bool is_named = std::ranges::any_of(result.findings, [&](const Finding& finding) {
-      return std::ranges::find(finding.parameters, name) != finding.parameters.end();
-    });
-    if (is_named) continue;
     const double lower = *estimate.lower95;
     const double upper = *estimate.upper95;
     const bool wide = name == "alpha"
@@ -210,6 +206,23 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
                    .kind = "one_stroke"};
   }
   return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
+}
+
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
+  for (const std::size_t p : problem.parameters.free()) {
+    const Parameter& parameter = problem.parameters[p];
+    const bool is_limit_of_law = parameter.term->positive || p == kShape;
+    if (is_limit_of_law || !IsSearchLimit(parameter, solution.side[p])) continue;
+    Finding finding{.code = "search_limit",
+                    .parameters = {problem.parameters.NameOf(p)},
+                    .numbers = {{"bound", parameter.ToValue(solution.theta[p])}}};
+    for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
+      if (problem.parameters[law].fixed) continue;
+      finding.parameters.push_back(problem.parameters.NameOf(law));
+    }
+    return finding;
+  }
+  return std::nullopt;
 }
 
 std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution) {

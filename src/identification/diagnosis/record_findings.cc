@@ -15,8 +15,6 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLawParameters = {"sigma", "alpha", "slip_force"};
-
 /// Counted as the report does, after smoothing.
 Finding UncertainReversals(const RecordFit& record) {
   const loop::ReversalGate& gate = record.gate;
@@ -47,33 +45,29 @@ bool RunsOn(const loop::CycleFacts& cycle, double widest) {
   return !cycle.returns && cycle.amplitude > kTwoStrokes * widest;
 }
 
-/// Mean energy [J] of the widest steady cycles, of those most of whose samples count.
-std::optional<double> EnergyThatCounts(const RecordFit& record) {
+struct CycleEnergies {
+  double measured = 0.0;  // [J]
+  double of_law = 0.0;
+};
+
+/// Mean energies of the widest steady cycles, of those most of whose samples count.
+/// @param of_steady_loop  what the law loses in a cycle where that is the same in all
+std::optional<CycleEnergies> EnergiesThatCount(const RecordFit& record, double of_steady_loop) {
   const std::vector<loop::CycleFacts>& cycles = record.facts.cycles;
-  double sum = 0.0;
+  CycleEnergies sum;
   double count = 0.0;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
     if (!cycles[k].steady || RunsOn(cycles[k], record.measures.amplitude)) continue;
     const std::size_t end = k + 1 < cycles.size() ? cycles[k + 1].start : record.counts.size();
     const auto samples = std::span(record.counts).subspan(cycles[k].start, end - cycles[k].start);
     if (2 * static_cast<std::size_t>(std::ranges::count(samples, 0)) > samples.size()) continue;
-    sum += cycles[k].energy;
+    sum.measured += cycles[k].energy;
+    if (!record.law_energy.empty()) sum.of_law += record.law_energy[k];
     ++count;
   }
   if (count == 0) return std::nullopt;
-  return sum / count;
-}
-
-/// Whether the fit sets both limits to a parameter of the law that nothing found so far is about.
-bool ClaimsAnAnswer(const FitResult& result) {
-  return std::ranges::any_of(kLawParameters, [&](std::string_view name) {
-    const ParameterEstimate* estimate = result.Find(name);
-    if (estimate == nullptr || estimate->status == ParameterStatus::kFixed) return false;
-    if (!estimate->lower95 || !estimate->upper95) return false;
-    return std::ranges::none_of(result.findings, [&](const Finding& finding) {
-      return std::ranges::find(finding.parameters, name) != finding.parameters.end();
-    });
-  });
+  return CycleEnergies{.measured = sum.measured / count,
+                       .of_law = record.law_energy.empty() ? of_steady_loop : sum.of_law / count};
 }
 
 }  // namespace
@@ -128,9 +122,8 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
 std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                                                const Thresholds& thresholds) {
   const RecordFit& record = result.WidestRecord();
-  const std::optional<double> measured = EnergyThatCounts(record);
   // What a robust loss weighs down is in the measured energy all the same.
-  if (!measured || !ClaimsAnAnswer(result) || result.outliers > 0) return std::nullopt;
+  if (result.outliers > 0) return std::nullopt;
   // Whose energy is that of the load's course too.
   if (record.load_varies) return std::nullopt;
   // These lose, or shift, energy that is not the contact's.
@@ -142,10 +135,14 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   if (has_other) return std::nullopt;
   const double amplitude = record.facts.amplitude;
   const models::BranchLaw law = result.LawOf(record);
-  const double model = models::SteadyLoopEnergy(
-      *result.model, law, models::ContactAmplitude(*result.model, law, result.rig, amplitude));
-  const double difference = std::abs(*measured - model);
-  if (!(difference > thresholds.energy_difference * std::max(std::abs(*measured), model))) {
+  const std::optional<CycleEnergies> energies = EnergiesThatCount(
+      record,
+      models::SteadyLoopEnergy(
+          *result.model, law, models::ContactAmplitude(*result.model, law, result.rig, amplitude)));
+  if (!energies) return std::nullopt;
+  const auto [measured, model] = *energies;
+  const double difference = std::abs(measured - model);
+  if (!(difference > thresholds.energy_difference * std::max(std::abs(measured), model))) {
     return std::nullopt;
   }
   // ∮ T dδ sums forces over a way of 4X, or displacements over one of 4T*.
@@ -155,7 +152,7 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   if (!(difference > thresholds.energy_errors * error)) return std::nullopt;
   return Finding{.code = "energy_contradiction",
                  .parameters = {"sigma", "alpha", "slip_force"},
-                 .numbers = {{"measured", *measured}, {"model", model}, {"amplitude", amplitude}}};
+                 .numbers = {{"measured", measured}, {"model", model}, {"amplitude", amplitude}}};
 }
 
 bool NoiseIsInDisplacement(double share_of_displacement, double share_of_force,

@@ -12,14 +12,13 @@
 namespace mindahl::identification {
 namespace {
 
-/// The Jacobian without the columns of parameters at a bound: what these would still explain, they
-/// may not.
+/// Returns the Jacobian without the columns of parameters at a bound, the user's or the program's:
+/// what these would still explain, they may not.
 Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
                               Eigen::MatrixXd jacobian) {
   const auto& free = problem.parameters.free();
   for (std::size_t j = 0; j < free.size(); ++j) {
-    const Parameter& parameter = problem.parameters[free[j]];
-    if (parameter.bounded_by_user && solution.side[free[j]] != BoundSide::kInside) {
+    if (solution.side[free[j]] != BoundSide::kInside) {
       jacobian.col(static_cast<Eigen::Index>(j)).setZero();
     }
   }

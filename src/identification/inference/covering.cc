@@ -1,9 +1,12 @@
 #include "identification/inference/covering.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "identification/inference/estimates.h"
 #include "identification/inference/intervals.h"
+#include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
 std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& rival,
@@ -40,6 +43,33 @@ void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
   if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
   const double half_gap = *widest.facts.half_gap / widest.load_ratio;
   Include(slip_force, {.source = IntervalSource::kPlateau, .lower = half_gap, .upper = half_gap});
+}
+
+void KeepAboveCarriedForce(FitResult& result) {
+  const RecordFit& widest = result.WidestRecord();
+  if (result.response == loop::Channel::kDisplacement || !widest.facts.half_gap) return;
+  const bool has_other =
+      std::ranges::any_of(result.parameters, [](const ParameterEstimate& estimate) {
+        return estimate.name == "viscous" || estimate.name == "lag" ||
+               estimate.name.starts_with(NameOfCovariate(""));
+      });
+  constexpr std::array<std::string_view, 5> kTurnWithMotion = {
+      "viscous_force", "covariate", "guide_friction", "channel_lag", "normal_load"};
+  const bool may_have_other = std::ranges::any_of(result.adequacy.causes, [&](const Cause& cause) {
+    return std::ranges::find(kTurnWithMotion, cause.code) != kTurnWithMotion.end();
+  });
+  if (has_other || may_have_other) return;
+  const double carried = *widest.facts.half_gap -
+                         2 * widest.facts.half_gap_standard_deviation.value_or(0.0) -
+                         result.ResponseNoise();
+  if (!(carried > 0)) return;
+  ParameterEstimate& slip_force = result.parameters[kSlipForce];
+  const double least = carried / widest.load_ratio;
+  if (slip_force.value < least && !(slip_force.upper95 > least)) {
+    WithdrawInterval(slip_force);
+  } else {
+    RaiseLowerEnd(slip_force, IntervalSource::kCarriedForce, std::min(least, slip_force.value));
+  }
 }
 
 }  // namespace mindahl::identification

@@ -92,21 +92,26 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   if (parameter.fixed) return;
   const double error = ErrorOfTheta(p);
   if (!std::isfinite(error)) return;
-  double lower = 0.0;
-  double upper = 0.0;
+  std::optional<double> lower;
+  std::optional<double> upper;
   if (side != BoundSide::kInside) {
-    // Half the normal law lies beyond the bound: the interval is one-sided, from the bound.
-    const double reach = (side == BoundSide::kLower ? 1 : -1) * kNormalQuantile95 * error;
-    lower = estimate.value;
-    upper = parameter.ToValue(theta + reach);
+    // Half the normal law lies beyond the bound: the interval is one-sided, from the bound. Where
+    // that is the program's own, nothing is known of what lies beyond it.
+    const double inwards = side == BoundSide::kLower ? 1 : -1;
+    const double end = parameter.ToValue(theta + inwards * kNormalQuantile95 * error);
+    const std::optional<double> bound =
+        IsSearchLimit(parameter, side) ? std::nullopt : std::optional(estimate.value);
+    const bool is_upwards = end > estimate.value;
+    lower = is_upwards ? bound : end;
+    upper = is_upwards ? end : bound;
   } else {
     estimate.standard_error =
         parameter.term->positive ? estimate.value * error : std::abs(parameter.scale) * error;
     lower = parameter.ToValue(theta - quantile_ * error);
     upper = parameter.ToValue(theta + quantile_ * error);
+    if (*upper < *lower) std::swap(lower, upper);
   }
-  if (upper < lower) std::swap(lower, upper);
-  if (p == kShape) lower = std::max(lower, 0.0);
+  if (p == kShape && lower) lower = std::max(*lower, 0.0);
   SetInterval(estimate, {.source = IntervalSource::kParabola, .lower = lower, .upper = upper});
 }
 

@@ -34,6 +34,12 @@ void Include(ParameterEstimate& estimate, IntervalPart part) {
       is_closed_above ? std::optional(std::max(*estimate.upper95, *part.upper)) : std::nullopt;
 }
 
+void RaiseLowerEnd(ParameterEstimate& estimate, IntervalSource source, double least) {
+  if (!estimate.lower95 || *estimate.lower95 >= least) return;
+  estimate.lower95 = least;
+  estimate.interval.push_back({.source = source, .lower = least, .upper = estimate.upper95});
+}
+
 void OpenAbove(ParameterEstimate& estimate, IntervalSource source) {
   Include(estimate, {.source = source, .lower = estimate.lower95});
   estimate.standard_error.reset();

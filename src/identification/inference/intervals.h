@@ -12,6 +12,10 @@ void SetInterval(ParameterEstimate& estimate, IntervalPart part);
 /// estimate without an interval, held or undetermined, as it is.
 void Include(ParameterEstimate& estimate, IntervalPart part);
 
+/// Raises the lower end to a value that the parameter cannot lie below, which is no more than its
+/// estimate. Leaves an end that is open, and an estimate without an interval, as it is.
+void RaiseLowerEnd(ParameterEstimate& estimate, IntervalSource source, double least);
+
 /// Opens the interval above: there is no standard error then.
 void OpenAbove(ParameterEstimate& estimate, IntervalSource source);
 

@@ -258,6 +258,57 @@ ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const 
   return ranges;
 }
 
+std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const Solution& best,
+                                                const Noise& noise, const Estimates& estimates,
+                                                const FitOptions& options, SearchBuffers& buffers) {
+  const Parameter& shape = problem.parameters[kShape];
+  const bool is_at_zero = !shape.fixed && best.side[kShape] == BoundSide::kLower &&
+                          shape.ToValue(best.theta[kShape]) == 0;
+  if (!is_at_zero) return std::nullopt;
+  constexpr double kFirst = 1.0 / 256;
+  constexpr int kBetween = 3;  // bisections between the last that is allowed and the next
+  const double critical = estimates.quantile() * estimates.quantile();
+  HeldParameter held(problem, kShape, best, noise, estimates, SolverOptionsOf(options), buffers);
+  ProfiledRanges ranges = RangesAt(best);
+  std::vector<double> from = best.theta;
+  const auto is_allowed = [&](double alpha) {
+    if (!(held.At(alpha, from) < critical) || !held.solution().converged) return false;
+    Include(ranges, held.solution().theta);
+    from = held.solution().theta;
+    return true;
+  };
+  double allowed = 0.0;
+  double next = kFirst;
+  while (next < shape.upper && is_allowed(next)) {
+    allowed = next;
+    next *= 2;
+  }
+  for (int i = 0; i < kBetween; ++i) {
+    const double middle = allowed + (std::min(next, shape.upper) - allowed) / 2;
+    (is_allowed(middle) ? allowed : next) = middle;
+  }
+  const auto widen = [&](Range& range, std::size_t parameter) {
+    const double error = estimates.ErrorOfTheta(parameter);
+    const double half = std::isfinite(error) ? estimates.quantile() * error : 0.0;
+    range.lower -= half;
+    range.upper += half;
+  };
+  widen(ranges.stiffness, kStiffness);
+  widen(ranges.slip_force, kSlipForce);
+  return ranges;
+}
+
+void IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges, FitResult& result) {
+  const auto include = [&](const char* name, std::size_t p, const Range& range) {
+    Include(FindIn(result, name), {.source = IntervalSource::kSmallShape,
+                                   .lower = problem.parameters[p].ToValue(range.lower),
+                                   .upper = problem.parameters[p].ToValue(range.upper)});
+  };
+  include("sigma", kStiffness, ranges.stiffness);
+  include("alpha", kShape, ranges.shape_exponent);
+  include("slip_force", kSlipForce, ranges.slip_force);
+}
+
 void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double quantile,
                    FitResult& result) {
   Widen(FindIn(result, "sigma"), problem.parameters[kStiffness], ranges.stiffness, quantile);

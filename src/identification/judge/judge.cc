@@ -1,12 +1,71 @@
 #include "identification/judge/judge.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include "identification/inference/intervals.h"
 
 namespace mindahl::identification {
-void WithdrawInadequate(FitResult& result) {
+namespace {
+
+/// Returns the worst verdict on a parameter of the findings that name it, but for one of them.
+Identifiability VerdictOn(std::string_view parameter, std::span<const Finding> findings,
+                          const Finding* but = nullptr) {
+  Identifiability worst = Identifiability::kIdentifiable;
+  for (const Finding& finding : findings) {
+    const bool is_named =
+        std::ranges::find(finding.parameters, parameter) != finding.parameters.end();
+    if (&finding != but && is_named) worst = std::max(worst, finding.code.row().verdict);
+  }
+  return worst;
+}
+
+bool IsOfLaw(const ParameterEstimate& estimate) {
+  return estimate.name == "sigma" || estimate.name == "alpha" || estimate.name == "slip_force";
+}
+
+/// Where no omitted term explains the misfit, and what comes back in every stroke makes the model
+/// inadequate, that is what the model misses.
+void CountWhatRepeats(FitResult& result, const Thresholds& thresholds) {
+  Adequacy& adequacy = result.adequacy;
+  if (adequacy.p_value < thresholds.doubt) return;
+  for (const RecordFit& record : result.records) {
+    const double fraction = record.structure.repeatable_share;
+    if (!(fraction > 0 && fraction < 1)) continue;
+    adequacy.p_value = std::min(adequacy.p_value, thresholds.repeat_chance);
+    adequacy.misfit = std::max(adequacy.misfit, result.rms * std::sqrt(fraction));
+    adequacy.misfit_over_noise =
+        std::max(adequacy.misfit_over_noise, std::sqrt(fraction / (1 - fraction)));
+  }
+}
+
+}  // namespace
+
+void DropNeedless(std::span<const ParameterEstimate> estimates, std::vector<Finding>& findings) {
+  const auto is_needless = [&](const Finding& finding) {
+    if (finding.kind == "wide") {
+      return VerdictOn(finding.parameters.front(), findings, &finding) ==
+             Identifiability::kNotIdentifiable;
+    }
+    if (finding.code != "energy_contradiction") return false;
+    return std::ranges::none_of(estimates, [&](const ParameterEstimate& estimate) {
+      return IsOfLaw(estimate) && estimate.status != ParameterStatus::kFixed && estimate.lower95 &&
+             estimate.upper95 &&
+             VerdictOn(estimate.name, findings, &finding) == Identifiability::kIdentifiable;
+    });
+  };
+  // All are asked before any goes: what is needless does not depend on their order.
+  std::vector<bool> needless;
+  for (const Finding& finding : findings) needless.push_back(is_needless(finding));
+  std::size_t k = 0;
+  std::erase_if(findings, [&](const Finding&) { return needless[k++]; });
+}
+
+void WithdrawInadequate(FitResult& result, const Thresholds& thresholds) {
+  CountWhatRepeats(result, thresholds);
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   result.mindlin_test.reset();
   result.branch_shapes.clear();
@@ -39,11 +98,7 @@ void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> find
     } else if (!estimate.upper95) {
       worsen(Identifiability::kBoundedBelow);
     }
-    for (const Finding& finding : findings) {
-      if (std::ranges::find(finding.parameters, estimate.name) != finding.parameters.end()) {
-        worsen(finding.code.row().verdict);
-      }
-    }
+    worsen(VerdictOn(estimate.name, findings));
   }
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
 
@@ -14,9 +16,16 @@ namespace mindahl::identification {
 /// user holds is identifiable. A finding that names no parameter changes none.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
 
+/// Takes out the findings that others make needless, so that none of them has to know of another:
+///  - a wide interval of a parameter that another finding calls not identifiable;
+///  - an energy that contradicts the law where no free parameter of the law has a closed interval
+///    and is identifiable by the other findings: there is no answer to contradict.
+/// Before WithdrawInadequate().
+void DropNeedless(std::span<const ParameterEstimate> estimates, std::vector<Finding>& findings);
+
 /// Under a model that does not describe the record nothing of it is to be believed: takes back
 /// errors, limits, tests, and what the findings would have one do to know its parameters better;
 /// adds the finding model_inadequate. Before Judge().
-void WithdrawInadequate(FitResult& result);
+void WithdrawInadequate(FitResult& result, const Thresholds& thresholds);
 
 }  // namespace mindahl::identification
