@@ -29,7 +29,7 @@ LoadHypothesis Test(std::string_view name, double exponent, const FitResult& fit
   const ParameterEstimate& fitted = *fit.Find("load_exponent");
   if (fitted.status == ParameterStatus::kFixed) return test;
   test.difference = fitted.value - exponent;
-  const bool is_known = fitted.identifiability == identification::Identifiability::kIdentifiable;
+  const bool is_known = fitted.is_known();
   if (!is_known || !(exponent_error > 0) || std::isinf(exponent_error)) return test;
   test.z = *test.difference / exponent_error;
   const boost::math::students_t distribution(fit.residuals.degrees_of_freedom);

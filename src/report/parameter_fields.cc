@@ -53,7 +53,8 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return Number(item.estimate.upper95); }, WhyIntervalOpen},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
        [](const Item& item) { return Text(Name(item.estimate.status)); }},
-      {"identifiability", "", "identifiable, bounded_below or not_identifiable",
+      {"identifiability", "",
+       "identifiable, effective, extrapolated, bounded_below or not_identifiable",
        [](const Item& item) { return Text(Name(item.estimate.identifiability)); }},
   };
   return fields;

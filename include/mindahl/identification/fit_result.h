@@ -43,6 +43,8 @@ enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 /// In the order of precedence: of several the last holds.
 enum class Identifiability {
   kIdentifiable,
+  kEffective,        ///< the interval is closed and includes what the model, which is not adequate,
+                     ///< misses
   kExtrapolated,     ///< the law's asymptote, which the record stays away from
   kBoundedBelow,     ///< the data give only a lower limit
   kNotIdentifiable,  ///< none, or only in combination with others
@@ -56,11 +58,12 @@ struct ParameterEstimate {
   std::optional<double> lower95;         ///< ends of the 95 % interval; empty where it is open
   std::optional<double> upper95;
   ParameterStatus status = ParameterStatus::kFixed;
+  bool includes_discrepancy = false;  ///< does the interval include what the model misses?
   Identifiability identifiability = Identifiability::kNotIdentifiable;
 
-  /// Given, or identifiable.
+  /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {
-    return status == ParameterStatus::kFixed || identifiability == Identifiability::kIdentifiable;
+    return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;
   }
 };
 

@@ -69,7 +69,7 @@ void WithdrawInadequate(FitResult& result) {
   });
   Finding finding{.code = "model_inadequate"};
   for (ParameterEstimate& estimate : result.parameters) {
-    if (estimate.status == ParameterStatus::kFixed) continue;
+    if (estimate.status == ParameterStatus::kFixed || estimate.includes_discrepancy) continue;
     estimate.standard_error.reset();
     estimate.lower95.reset();
     estimate.upper95.reset();
@@ -80,7 +80,8 @@ void WithdrawInadequate(FitResult& result) {
 
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings) {
   for (ParameterEstimate& estimate : estimates) {
-    estimate.identifiability = Identifiability::kIdentifiable;
+    estimate.identifiability = estimate.includes_discrepancy ? Identifiability::kEffective
+                                                             : Identifiability::kIdentifiable;
     if (estimate.status == ParameterStatus::kFixed) continue;
     const auto worsen = [&](Identifiability verdict) {
       estimate.identifiability = std::max(estimate.identifiability, verdict);
