@@ -25,10 +25,12 @@ double WayTo(const ParameterEstimate& estimate, const std::optional<double>& end
 /// interval is that of the parabola, but for rounding.
 double ErrorOfWay(const ParameterEstimate& estimate, double way, double degrees_of_freedom) {
   if (estimate.status == ParameterStatus::kFixed) return 0.0;
-  if (!estimate.standard_error || !std::isfinite(way)) return kOpen;
+  const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
+  if (!has_error || !std::isfinite(way)) return kOpen;
   constexpr double kRounding = 1e-9;
   const double error = way / StudentQuantile95(degrees_of_freedom);
-  return error > *estimate.standard_error * (1 + kRounding) ? error : *estimate.standard_error;
+  const double standard = estimate.standard_error.value_or(0.0);
+  return error > standard * (1 + kRounding) ? error : standard;
 }
 
 }  // namespace

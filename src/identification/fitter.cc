@@ -14,6 +14,8 @@
 #include "identification/cycle_energy.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/discrepancy.h"
+#include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/law_findings.h"
 #include "identification/diagnosis/main_strokes.h"
 #include "identification/diagnosis/record_findings.h"
@@ -317,6 +319,7 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
     estimate.value = parameters[p].ToValue(solution.theta[p]);
     estimate.status = StatusOf(parameters[p], solution.side[p]);
     WithdrawInterval(estimate);
+    estimate.includes_discrepancy = false;
     estimate.identifiability = Identifiability::kNotIdentifiable;
   }
   result.law = parameters.LawAt(solution.theta);
@@ -429,10 +432,21 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
                     FindIrregularities(problem, solution.theta, {residual.data(), problem.size()},
                                        noise, options.loss != Loss::kNone, buffers.response),
                     thresholds, result.adequacy);
+  if (const auto limit = FindSearchLimit(problem, solution)) {
+    Append(result.findings, limit);
+    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
+  if (const auto slow = FindSlowResiduals(result, thresholds)) {
+    Append(result.findings, slow);
+    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
+  GradeUse(thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
+  const std::vector<ParameterEstimate> plain = result.parameters;
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);
   CoverPlateau(result, thresholds);
+  CoverDiscrepancy(problem, solution, estimates, plain, thresholds, result);
 }
 
 /// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
@@ -599,10 +613,6 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   }
   ConsiderDepartures(problem, solution, noise, displacement, estimates, options, buffers, result);
   KeepAboveCarriedForce(result);
-  if (auto limit = FindSearchLimit(problem, solution)) {
-    result.findings.push_back(std::move(*limit));
-    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
-  }
   Append(result.findings, FindUnseenLoop(result, options.thresholds));
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
@@ -616,10 +626,6 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindShapeLimitedByLoad(problem, solution));
   Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
-  if (const auto slow = FindSlowResiduals(result, options.thresholds)) {
-    Append(result.findings, slow);
-    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
-  }
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
   DropNeedless(result.parameters, result.findings);
   if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result, options.thresholds);
@@ -702,6 +708,28 @@ void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& opti
   }
 }
 
+/// The options with a slip force no larger than the largest force of the record, where the loop
+/// slides over most of its stroke and the fitted law, which is not adequate, carries its slip force
+/// nowhere: the loop has carried it. Nothing where that is not so or the user limits Tc.
+std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& given) {
+  constexpr const char* kName = "slip_force";
+  if (result.adequacy.verdict == AdequacyVerdict::kAdequate || result.parameters.empty() ||
+      result.response == loop::Channel::kDisplacement || given.bounds.contains(kName) ||
+      given.fixed.contains(kName)) {
+    return std::nullopt;
+  }
+  const RecordFit& widest = result.WidestRecord();
+  if (!SlidesOverMostOfStroke(widest.facts, given.thresholds)) return std::nullopt;
+  const double peak_force = widest.facts.peak_force / widest.load_ratio;
+  if (peak_force >= given.thresholds.mobilised_by_asymptote * result.law.slip_force) {
+    return std::nullopt;
+  }
+  FitOptions within = given;
+  within.start.clear();
+  within.bounds[kName] = {0.0, peak_force};
+  return within;
+}
+
 /// Does a record tell the law, as far as the depth says? Where it does not, the likelihood is a
 /// valley with more minima than one.
 bool TellsTheLaw(const FitResult& result) {
@@ -721,6 +749,11 @@ struct Fitter::State {
   }
 
   void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
+  /// Fits, and once more where the slip force runs away from what was measured.
+  void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
+    Fit(records, depth, given);
+    if (const auto within = WithinMeasuredForce(result, given)) Fit(records, depth, *within);
+  }
   void Continue(const RecordView& record, Depth depth);
   [[nodiscard]] bool MayContinue() const;
 
@@ -906,11 +939,11 @@ void Fitter::State::Continue(const RecordView& record, Depth depth) {
       }
     }
     const double last_rms = result.rms;
-    Fit({&record, 1}, depth, continued);
+    FitWithin({&record, 1}, depth, continued);
     constexpr double kAsGood = 1.5;  // times the last rms
     if (result.converged && result.rms <= kAsGood * last_rms && TellsTheLaw(result)) return;
   }
-  Fit({&record, 1}, depth, options);
+  FitWithin({&record, 1}, depth, options);
 }
 
 Fitter::Fitter(FitOptions options) : state_(std::make_unique<State>(std::move(options))) {}
@@ -921,7 +954,7 @@ Fitter::~Fitter() = default;
 const FitOptions& Fitter::options() const { return state_->options; }
 
 const FitResult& Fitter::Fit(std::span<const RecordView> records, Depth depth) {
-  state_->Fit(records, depth, state_->options);
+  state_->FitWithin(records, depth, state_->options);
   return state_->result;
 }
 

@@ -41,8 +41,7 @@ double Correlation(const FitResult& fit, std::string_view first, std::string_vie
 std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit,
                                                  const contact::KnownContact& known) {
   const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  if (!known.normal_load || slip_force == nullptr ||
-      slip_force->identifiability == identification::Identifiability::kIdentifiable) {
+  if (!known.normal_load || slip_force == nullptr || slip_force->is_known()) {
     return std::nullopt;
   }
   return fmt::format("needs an identifiable slip force; from this loop it is at least {:.3g}",

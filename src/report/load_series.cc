@@ -30,7 +30,7 @@ LoadHypothesis Test(std::string_view name, double exponent, const FitResult& fit
   const ParameterEstimate& fitted = *fit.Find("load_exponent");
   if (fitted.status == ParameterStatus::kFixed) return test;
   test.difference = fitted.value - exponent;
-  const bool is_known = fitted.identifiability == identification::Identifiability::kIdentifiable;
+  const bool is_known = fitted.is_known();
   const double error =
       ErrorOfSum(fit.ErrorTowards(fitted, exponent), -1.0, error_of_other,
                  error_of_other > 0 ? Correlation(fit, "load_exponent", "alpha") : 0.0);

@@ -25,6 +25,8 @@ std::string_view Name(Identifiability identifiability) {
   switch (identifiability) {
     case Identifiability::kIdentifiable:
       return "identifiable";
+    case Identifiability::kEffective:
+      return "effective";
     case Identifiability::kExtrapolated:
       return "extrapolated";
     case Identifiability::kBoundedBelow:
@@ -56,6 +58,8 @@ std::string_view Name(identification::IntervalSource source) {
       return "plateau";
     case kSmallShape:
       return "small_alpha";
+    case kDiscrepancy:
+      return "discrepancy";
     case kCarriedForce:
       return "carried_force";
   }
@@ -82,6 +86,18 @@ std::string_view Name(identification::AdequacyVerdict verdict) {
       return "doubtful";
     case identification::AdequacyVerdict::kInadequate:
       return "inadequate";
+  }
+  return "";
+}
+
+std::string_view Name(identification::Use use) {
+  switch (use) {
+    case identification::Use::kQuantitative:
+      return "quantitative";
+    case identification::Use::kIndicative:
+      return "indicative";
+    case identification::Use::kNone:
+      return "none";
   }
   return "";
 }

@@ -18,6 +18,7 @@ std::string_view Name(models::InitialState state);
 std::string_view Name(loop::Channel channel);
 std::string_view Name(SlipRegime regime);
 std::string_view Name(identification::AdequacyVerdict verdict);
+std::string_view Name(identification::Use use);
 std::string_view Name(identification::MemoryVerdict verdict);
 
 }  // namespace mindahl::report

@@ -43,7 +43,7 @@ const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
   static const std::vector<Field<Item>> fields = {
       {"source", "",
        "why ci95 reaches as far: parabola, profile, initial_state, omitted_terms, plateau, "
-       "small_alpha or carried_force",
+       "small_alpha, discrepancy or carried_force",
        [](const Item& item) { return Text(Name(item.source)); }},
       {"ci95[0]", "of the parameter", "lower end of the contribution",
        [](const Item& item) { return Number(item.lower); }, why},
@@ -71,7 +71,8 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return List(IntervalFields(), item.estimate.interval); }},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
        [](const Item& item) { return Text(Name(item.estimate.status)); }},
-      {"identifiability", "", "identifiable, bounded_below or not_identifiable",
+      {"identifiability", "",
+       "identifiable, effective, extrapolated, bounded_below or not_identifiable",
        [](const Item& item) { return Text(Name(item.estimate.identifiability)); }},
   };
   return fields;

@@ -114,8 +114,7 @@ std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, cons
 /// Then a larger amplitude shows less of the branches still.
 bool SeesSlip(const FitResult& fit) {
   const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  return slip_force != nullptr &&
-         slip_force->identifiability == identification::Identifiability::kIdentifiable;
+  return slip_force != nullptr && slip_force->is_known();
 }
 
 std::string TooWide(const char* parameter, const Finding& finding, const FitResult& fit,
@@ -209,11 +208,16 @@ std::string LoopNotSeen(const Finding& finding, const FitResult&, const Units&) 
       share);
 }
 
-std::string ModelInadequate(const Finding&, const FitResult& fit, const Units&) {
+std::string ModelInadequate(const Finding& finding, const FitResult& fit, const Units&) {
+  const bool is_all = std::ranges::none_of(
+      fit.parameters, &identification::ParameterEstimate::includes_discrepancy);
   return fmt::format(
-      "{} does not describe this record: its parameters are not to be used; what was measured "
-      "without a model stands",
-      fit.model->name);
+      "{} does not describe this record: {} not to be used; what was measured without a model "
+      "stands",
+      fit.model->name,
+      is_all ? std::string("its parameters are")
+             : fmt::format("{} {}", fmt::join(finding.parameters, ", "),
+                           finding.parameters.size() > 1 ? "are" : "is"));
 }
 
 std::string SlipForceExtrapolated(const Finding& finding, const FitResult&, const Units&) {

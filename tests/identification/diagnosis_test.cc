@@ -17,17 +17,25 @@ using ::testing::ElementsAre;
 /// Far below slip.
 FitResult Made() { return testing::MadeFit(/*peak_force=*/2.0); }
 
-TEST(FindMisfit, IsOfTheForceThatWasReachedOrOfSlip) {
+TEST(FindMisfit, IsOfTheForceThatWasMeasuredAndNotOfTheLaws) {
   FitResult result = Made();
   result.residuals.rms = 0.06;
   result.records[0].structure.repeatable_share = 0.8;
-  const auto far_from_slip = FindMisfit(result, {});
-  ASSERT_TRUE(far_from_slip);
-  EXPECT_DOUBLE_EQ(*far_from_slip->Number("misfit"), 0.06 / 2.0);
-  EXPECT_DOUBLE_EQ(*far_from_slip->Number("repeatable_share"), 0.8);
-  result.law.slip_force = 1.5;
-  EXPECT_DOUBLE_EQ(*FindMisfit(result, {})->Number("misfit"), 0.06 / 1.5);
-  result.law.slip_force = 0.0;
+  for (const double slip_force : {10.0, 0.1}) {
+    result.law.slip_force = slip_force;
+    const auto far_from_slip = FindMisfit(result, {});
+    ASSERT_TRUE(far_from_slip);
+    EXPECT_DOUBLE_EQ(*far_from_slip->Number("misfit"), 0.06 / 2.0);
+    EXPECT_DOUBLE_EQ(*far_from_slip->Number("repeatable_share"), 0.8);
+  }
+  loop::LoopFacts& facts = result.records[0].facts;
+  facts.closed = true;
+  facts.peak_force = 2.0;
+  facts.energy_ratio = 0.8;
+  facts.half_gap = 1.5;
+  EXPECT_DOUBLE_EQ(*FindMisfit(result, {})->Number("misfit"), 0.06 / 1.5)
+      << "of a loop that slides";
+  result.records[0] = {};
   EXPECT_FALSE(FindMisfit(result, {}));
 }
 

@@ -113,6 +113,18 @@ TEST(Judge, OpenIntervalIsALimitAndNoIntervalIsNothing) {
   EXPECT_EQ(JudgedWith(at_bound, {}), Identifiability::kIdentifiable);
 }
 
+TEST(Judge, IntervalThatIncludesTheDiscrepancyIsEffective) {
+  ParameterEstimate estimate = Known("slip_force");
+  estimate.includes_discrepancy = true;
+  EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kEffective);
+  EXPECT_EQ(
+      JudgedWith(estimate, {{.code = "slip_force_not_identifiable", .parameters = {"slip_force"}}}),
+      Identifiability::kNotIdentifiable)
+      << "a wide one is no answer";
+  estimate.upper95.reset();
+  EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kBoundedBelow);
+}
+
 TEST(Judge, EarlierVerdictIsForgotten) {
   ParameterEstimate estimate = Known("alpha");
   estimate.identifiability = Identifiability::kNotIdentifiable;

@@ -15,6 +15,8 @@ enum class Severity {
 /// In the order of precedence: of several the last holds.
 enum class Identifiability {
   kIdentifiable,
+  kEffective,        ///< the interval is closed and includes what the model, which is not adequate,
+                     ///< misses
   kExtrapolated,     ///< the law's asymptote, which the record stays away from
   kBoundedBelow,     ///< the data give only a lower limit
   kNotIdentifiable,  ///< none, or only in combination with others

@@ -47,6 +47,7 @@ enum class IntervalSource {
   kOmittedTerms,  ///< terms that the model lacks and the residuals look like
   kPlateau,       ///< half gap of the loop, measured without a model
   kSmallShape,    ///< an α above the bound 0, where the search stopped
+  kDiscrepancy,   ///< what the model misses, of the size that the record has it
   kCarriedForce,  ///< not below the force that was measured to be carried
 };
 
@@ -65,6 +66,7 @@ struct ParameterEstimate {
   std::optional<double> lower95;         ///< ends of the 95 % interval; empty where it is open
   std::optional<double> upper95;
   ParameterStatus status = ParameterStatus::kFixed;
+  bool includes_discrepancy = false;  ///< does the interval include what the model misses?
   Identifiability identifiability = Identifiability::kNotIdentifiable;
   /// What the interval is the union of; empty where there is none.
   std::vector<IntervalPart> interval = {};
@@ -72,9 +74,9 @@ struct ParameterEstimate {
   /// True if a contribution of this kind sets an end of the interval.
   [[nodiscard]] bool IsSetBy(IntervalSource source) const;
 
-  /// Given, or identifiable.
+  /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {
-    return status == ParameterStatus::kFixed || identifiability == Identifiability::kIdentifiable;
+    return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;
   }
 };
 

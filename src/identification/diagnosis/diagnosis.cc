@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "identification/diagnosis/grade.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -129,15 +130,8 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   return findings;
 }
 
-double SizeOfResponse(const FitResult& result) {
-  if (result.response == loop::Channel::kForce) {
-    return std::min(result.law.slip_force, result.PeakForce());
-  }
-  return result.WidestRecord().measures.amplitude;
-}
-
-double MisfitOf(const FitResult& result) {
-  const double size = SizeOfResponse(result);
+double MisfitOf(const FitResult& result, const Thresholds& thresholds) {
+  const double size = ScaleOfMisfit(result, thresholds);
   if (!(size > 0)) return 0.0;
   const double rms = result.outliers > 0
                          ? std::hypot(result.adequacy.misfit, result.ResponseNoise())
@@ -146,7 +140,7 @@ double MisfitOf(const FitResult& result) {
 }
 
 std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
-  const double misfit = MisfitOf(result);
+  const double misfit = MisfitOf(result, thresholds);
   if (!(misfit > thresholds.poor_misfit)) return std::nullopt;
   const bool fails = misfit > thresholds.failing_misfit;
   for (const RecordFit& record : result.records) {
@@ -159,7 +153,7 @@ std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thr
     return Finding{
         .code = fails ? FindingCode("no_model_fits") : FindingCode("systematic_residual"),
         .parameters =
-            fails ? std::vector<std::string>{"sigma", "alpha"} : std::vector<std::string>{},
+            fails ? WithoutEffective(result, {"sigma", "alpha"}) : std::vector<std::string>{},
         .numbers = {{"misfit", misfit},
                     {"repeatable_share", structure.repeatable_share},
                     {"largest", std::abs(peak.bin.mean)},

@@ -29,13 +29,9 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
 /// Closed intervals too wide to call a parameter known.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 
-/// What a misfit is held against [N or m]: min(Tc, T*), or the amplitude of a displacement.
-double SizeOfResponse(const FitResult& result);
-
-/// rms of the residuals over that [-], without what a robust loss has weighed down; 0 where
-/// there is none. Where the slip force is open it says nothing of how well the loop is
-/// followed.
-double MisfitOf(const FitResult& result);
+/// Returns the rms of the residuals over ScaleOfMisfit() [-], without what a robust loss has
+/// weighed down; 0 where there is none.
+double MisfitOf(const FitResult& result, const Thresholds& thresholds);
 
 /// Residuals that come back at the same place of every stroke, and are more than noise could
 /// explain: where they are, and what kind of friction or rig leaves such a trace.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "identification/diagnosis/grade.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/trend.h"
 #include "mindahl/loop/displacement_noise.h"
@@ -151,7 +152,7 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                        std::sqrt(std::max(1.0, result.residuals.effective_samples));
   if (!(difference > thresholds.energy_errors * error)) return std::nullopt;
   return Finding{.code = "energy_contradiction",
-                 .parameters = {"sigma", "alpha", "slip_force"},
+                 .parameters = WithoutEffective(result, {"sigma", "alpha", "slip_force"}),
                  .numbers = {{"measured", measured}, {"model", model}, {"amplitude", amplitude}}};
 }
 

@@ -58,12 +58,12 @@ void KeepAboveCarriedForce(FitResult& result) {
   const bool may_have_other = std::ranges::any_of(result.adequacy.causes, [&](const Cause& cause) {
     return std::ranges::find(kTurnWithMotion, cause.code) != kTurnWithMotion.end();
   });
-  if (has_other || may_have_other) return;
+  ParameterEstimate& slip_force = result.parameters[kSlipForce];
+  if (has_other || may_have_other || slip_force.includes_discrepancy) return;
   const double carried = *widest.facts.half_gap -
                          2 * widest.facts.half_gap_standard_deviation.value_or(0.0) -
                          result.ResponseNoise();
   if (!(carried > 0)) return;
-  ParameterEstimate& slip_force = result.parameters[kSlipForce];
   const double least = carried / widest.load_ratio;
   if (slip_force.value < least && !(slip_force.upper95 > least)) {
     WithdrawInterval(slip_force);

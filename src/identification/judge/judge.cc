@@ -79,7 +79,7 @@ void WithdrawInadequate(FitResult& result, const Thresholds& thresholds) {
   });
   Finding finding{.code = "model_inadequate"};
   for (ParameterEstimate& estimate : result.parameters) {
-    if (estimate.status == ParameterStatus::kFixed) continue;
+    if (estimate.status == ParameterStatus::kFixed || estimate.includes_discrepancy) continue;
     WithdrawInterval(estimate);
     finding.parameters.push_back(estimate.name);
   }
@@ -88,7 +88,8 @@ void WithdrawInadequate(FitResult& result, const Thresholds& thresholds) {
 
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings) {
   for (ParameterEstimate& estimate : estimates) {
-    estimate.identifiability = Identifiability::kIdentifiable;
+    estimate.identifiability = estimate.includes_discrepancy ? Identifiability::kEffective
+                                                             : Identifiability::kIdentifiable;
     if (estimate.status == ParameterStatus::kFixed) continue;
     const auto worsen = [&](Identifiability verdict) {
       estimate.identifiability = std::max(estimate.identifiability, verdict);
