@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -67,7 +68,9 @@ FittedValue FittedValueOf(const FitResult& result, std::string_view name, const 
   const ParameterEstimate* estimate = result.Find(name);
   if (estimate == nullptr) return {};
   if (open_flag != nullptr && !estimate->is_known()) fit.flags.emplace_back(open_flag);
-  return {estimate->value, estimate->standard_error};
+  if (!estimate->standard_error) return {estimate->value, {}};
+  const double error = result.ErrorOf(*estimate);
+  return {estimate->value, std::isfinite(error) ? std::optional(error) : std::nullopt};
 }
 
 }  // namespace

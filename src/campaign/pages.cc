@@ -192,7 +192,7 @@ std::string BatchIndexPage(std::span<const FileResult> files,
   }
   body += "</tbody></table></div>\n";
 
-  Table scatter("of files that are done, adequate or doubtful",
+  Table scatter("of files that are done, where the quantity is known",
                 {"quantity", "files", "mean", "scatter between files", "stated error", ""});
   for (const RepeatedQuantity& quantity : repeated) {
     const Repeats& repeats = quantity.repeats;
@@ -201,11 +201,11 @@ std::string BatchIndexPage(std::span<const FileResult> files,
       return Number(
           fmt::format("{:.3g}{}{}", value / unit.factor, unit.name.empty() ? "" : " ", unit.name));
     };
-    scatter.Row(
-        quantity.name,
-        {Number(std::to_string(repeats.count)), Number(Quantity(repeats.mean, quantity.unit)),
-         cell(repeats.standard_deviation), cell(repeats.stated_error),
-         Words(repeats.InWords(), repeats.exceed_errors() ? "poor" : "good")});
+    scatter.Row(quantity.name,
+                {Number(std::to_string(repeats.count)),
+                 Number(Quantity(repeats.mean, quantity.unit)), cell(repeats.standard_deviation),
+                 repeats.stated_error ? cell(*repeats.stated_error) : Number(kNone),
+                 Words(repeats.InWords(), repeats.exceed_errors() ? "poor" : "good")});
   }
   if (!scatter.empty()) body += Heading("If these are repeats") + scatter.Html();
   std::string figures;

@@ -49,7 +49,7 @@ using Json = nlohmann::ordered_json;
 
 struct BatchCommandOptions {
   FitRequest request;
-  bool strict = false;
+  Strictness strict = Strictness::kNone;
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string output;
   std::string json_path;
@@ -114,9 +114,12 @@ struct Repeated {
   std::string_view verdict;
   std::string_view unit;
 };
-constexpr std::array kRepeated = {
-    Repeated{"sigma", "sigma_verdict", "N/m"}, Repeated{"alpha", "alpha_verdict", "-"},
-    Repeated{"slip_force", "slip_force_verdict", "N"}, Repeated{"friction_coefficient", "", "-"}};
+constexpr std::array kRepeated = {Repeated{"sigma", "sigma_verdict", "N/m"},
+                                  Repeated{"alpha", "alpha_verdict", "-"},
+                                  Repeated{"slip_force", "slip_force_verdict", "N"},
+                                  Repeated{"friction_coefficient", "", "-"},
+                                  Repeated{"half_gap", "", "N"},
+                                  Repeated{"energy_per_cycle", "", "J"}};
 
 Json ValueAt(const Json& fit, std::string_view pointer) {
   const Json::json_pointer at{std::string(pointer)};
@@ -153,7 +156,7 @@ class PageNames {
 };
 
 /// @param write_page  is given the report, and gives the name of its page
-FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict,
+FileFit FitFile(const FitRequest& batch, const std::string& file, Strictness strict,
                 const std::function<std::string(const report::Report&)>& write_page) {
   FileFit result;
   result.result.file = file;
@@ -168,8 +171,8 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, bool strict,
     result.result.parameters = report.fit.parameters;
     if (write_page) result.result.page = write_page(report);
     if (!result.done) {
-      result.fault = report.fit.converged ? "not established: a free parameter is not identifiable "
-                                            "or the model inadequate"
+      result.fault = report.fit.converged ? "not established: the model is not adequate or a free "
+                                            "parameter not identifiable"
                                           : report.fit.solver.message;
     }
   } catch (const InputError& error) {
@@ -241,8 +244,15 @@ std::string TableOf(const std::vector<std::string>& files, const std::vector<Fil
   return table;
 }
 
+/// True of what is measured without a model, which states no error.
+bool IsMeasured(const Repeated& quantity) {
+  return quantity.name == "half_gap" || quantity.name == "energy_per_cycle";
+}
+
 /// One standard error: of an interval that covers more than the noise, a share of that.
-std::optional<double> StatedError(const Json& fit, std::string_view name) {
+std::optional<double> StatedError(const Json& fit, const Repeated& quantity) {
+  if (IsMeasured(quantity)) return std::nullopt;
+  const std::string_view name = quantity.name;
   const Json error = ValueOf(fit, std::string(name) + "_error");
   if (!error.is_number() || !(error.get<double>() > 0)) return std::nullopt;
   const Json lower = ValueOf(fit, std::string(name) + "_lower95");
@@ -258,14 +268,13 @@ std::optional<campaign::Repeats> RepeatsOf(const std::vector<FileFit>& fits,
   std::vector<double> errors;
   for (const FileFit& fit : fits) {
     const Json value = ValueOf(fit.fit, quantity.name);
-    const std::optional<double> error = StatedError(fit.fit, quantity.name);
+    const std::optional<double> error = StatedError(fit.fit, quantity);
     const Json verdict = ValueOf(fit.fit, quantity.verdict);
-    const Json adequacy = ValueOf(fit.fit, "adequacy");
-    const bool is_judged = adequacy == "adequate" || adequacy == "doubtful";
-    const bool is_known = verdict.is_null() || verdict == "identifiable";
-    if (!fit.done || !is_judged || !value.is_number() || !error || !is_known) continue;
+    const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
+    if (!fit.done || !value.is_number() || !is_known) continue;
+    if (!IsMeasured(quantity) && !error) continue;
     values.push_back(value);
-    errors.push_back(*error);
+    if (error) errors.push_back(*error);
   }
   return campaign::DescribeRepeats(values, errors);
 }
@@ -278,9 +287,10 @@ std::string TextOf(const std::vector<FileFit>& fits, const BatchCommandOptions& 
   for (const Repeated& quantity : kRepeated) {
     const std::optional<campaign::Repeats> found = RepeatsOf(fits, quantity);
     if (!found) continue;
-    scatter +=
-        fmt::format("  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14.2g}   {}\n", quantity.name, found->count,
-                    found->mean, found->standard_deviation, found->stated_error, found->InWords());
+    scatter += fmt::format("  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14}   {}\n", quantity.name,
+                           found->count, found->mean, found->standard_deviation,
+                           found->stated_error ? fmt::format("{:.2g}", *found->stated_error) : "-",
+                           found->InWords());
   }
   if (!scatter.empty()) {
     text += fmt::format("\nif these are repeats:\n  {:<22}{:>6}{:>14}{:>14}{:>14}\n", "", "files",
@@ -289,6 +299,8 @@ std::string TextOf(const std::vector<FileFit>& fits, const BatchCommandOptions& 
   }
   return text;
 }
+
+Json OrNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 Json JsonOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options) {
   Json json;
@@ -310,8 +322,8 @@ Json JsonOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options
     repeats[std::string(quantity.name)] = {{"files", found->count},
                                            {"mean", found->mean},
                                            {"standard_deviation", found->standard_deviation},
-                                           {"stated_error", found->stated_error},
-                                           {"p_value", found->p_value}};
+                                           {"stated_error", OrNull(found->stated_error)},
+                                           {"p_value", OrNull(found->p_value)}};
   }
   json["repeats"] = repeats;
   return json;
@@ -419,11 +431,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       ->group(group);
   command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
       ->group(group);
-  command
-      ->add_flag("--strict", options->strict,
-                 "a file fails too where a free parameter is not identifiable\n"
-                 "or the model inadequate")
-      ->group(group);
+  AddStrict(*command, options->strict, "a file fails too", group);
   command->callback([options, command, &console] { RunBatch(*options, *command, console); });
 }
 

@@ -1,18 +1,25 @@
 #pragma once
 
-#include <algorithm>
+#include <CLI/App.hpp>
+#include <string>
 
 #include "mindahl/identification/fit_result.h"
 
 namespace mindahl::cli {
 
-/// Whether a fit is done, for the exit status: it converged and, where it is strict, every free
-/// parameter is identifiable and the model is not inadequate.
-inline bool Established(const identification::FitResult& fit, bool strict) {
-  if (!fit.converged) return false;
-  if (!strict) return true;
-  if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) return false;
-  return std::ranges::all_of(fit.parameters, &identification::ParameterEstimate::is_known);
-}
+/// What `--strict` asks of a fit.
+enum class Strictness {
+  kNone,      ///< that it converged
+  kDoubtful,  ///< also that the model is not inadequate and every free parameter known
+  kAdequate,  ///< also that the model is adequate and every free parameter identifiable
+};
+
+/// Returns true if a fit is done, for the exit status.
+bool Established(const identification::FitResult& fit, Strictness strictness);
+
+/// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
+/// @param otherwise  what happens to a fit that is not: "exit status 3"
+void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
+               const std::string& group);
 
 }  // namespace mindahl::cli

@@ -31,7 +31,7 @@ namespace {
 
 struct FitCommandOptions {
   FitRequest request;
-  bool strict = false;
+  Strictness strict = Strictness::kNone;
   std::string json_path;
   std::string residuals_path;
   std::string backbone_path;
@@ -128,8 +128,8 @@ void AddFitCommand(CLI::App& app, Console& console) {
                                          "contact (several files: one joint fit)\n"
                                          "and translates them into the contact. Exit status 3 when "
                                          "the fit does not converge or, with\n"
-                                         "--strict, a parameter is not identifiable or the model "
-                                         "inadequate.");
+                                         "--strict, the model is not adequate or a parameter not "
+                                         "identifiable.");
   AddExamples(*command, app,
               {"mindahl fit loop.csv --normal-load 50",
                "mindahl fit loop.csv --displacement 2 --force 3 --json fit.json --plot fit.svg",
@@ -162,11 +162,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
                    "send and print; it loads nothing")
       ->type_name("PATH")
       ->group(group);
-  command
-      ->add_flag("--strict", options->strict,
-                 "exit status 3 unless every free parameter is identifiable\n"
-                 "and the model not inadequate")
-      ->group(group);
+  AddStrict(*command, options->strict, "exit status 3", group);
   command->callback([options, command, &console] { RunFit(*options, *command, console); });
 }
 

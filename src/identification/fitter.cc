@@ -11,8 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "identification/cycle_energy.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/discrepancy.h"
+#include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/law_findings.h"
 #include "identification/diagnosis/main_strokes.h"
 #include "identification/diagnosis/record_findings.h"
@@ -21,6 +24,7 @@
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/intervals.h"
 #include "identification/inference/irregularities.h"
 #include "identification/inference/lag_trial.h"
 #include "identification/inference/law_choice.h"
@@ -314,14 +318,32 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
     estimate.unit.assign(parameters.UnitOf(p, timed));
     estimate.value = parameters[p].ToValue(solution.theta[p]);
     estimate.status = StatusOf(parameters[p], solution.side[p]);
-    estimate.standard_error.reset();
-    estimate.lower95.reset();
-    estimate.upper95.reset();
+    WithdrawInterval(estimate);
+    estimate.includes_discrepancy = false;
     estimate.identifiability = Identifiability::kNotIdentifiable;
   }
   result.law = parameters.LawAt(solution.theta);
   result.rig = parameters.RigAt(solution.theta);
   result.load_exponent = parameters.LoadExponentAt(solution.theta);
+}
+
+/// Fills what the law loses in each cycle where that changes from cycle to cycle.
+void FillLawEnergy(const Attempt& attempt, FitResult& result) {
+  const ParameterEstimate* asymmetry = result.Find("asymmetry");
+  const bool changes = asymmetry != nullptr && asymmetry->value != 0 &&
+                       result.initial_state == InitialState::kVirgin;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    RecordFit& fit = result.records[r];
+    fit.law_energy.clear();
+    if (!changes || !fit.facts.closed) continue;
+    const std::span<const double> displacement = attempt.prepared.records[r].displacement();
+    const double first = displacement[fit.facts.cycles.front().start] - displacement.front();
+    fit.law_energy = EnergyOfCycles(*result.model, result.LawOf(fit), result.rig,
+                                    {.asymmetry = asymmetry->value,
+                                     .amplitude = fit.facts.amplitude,
+                                     .first_direction = first < 0 ? -1 : 1,
+                                     .cycles = fit.facts.cycles.size()});
+  }
 }
 
 /// Those that count: the values themselves where all do, else a copy of some, which is kept.
@@ -355,8 +377,9 @@ void DescribeFit(const Attempt& attempt, const Problem& problem, const Noise& no
   result.residuals.effective_samples = noise.effective_samples();
   Noise of_residuals = noise;
   of_residuals.is_known = false;
-  result.residuals.degrees_of_freedom =
-      of_residuals.degrees_of_freedom(problem.parameters.free().size());
+  const std::size_t free = problem.parameters.free().size();
+  result.residuals.degrees_of_freedom = of_residuals.degrees_of_freedom(free);
+  result.error_degrees_of_freedom = noise.degrees_of_freedom(free);
 }
 
 /// What comes back in every stroke, and by how much it widens a variance.
@@ -409,10 +432,21 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
                     FindIrregularities(problem, solution.theta, {residual.data(), problem.size()},
                                        noise, options.loss != Loss::kNone, buffers.response),
                     thresholds, result.adequacy);
+  if (const auto limit = FindSearchLimit(problem, solution)) {
+    Append(result.findings, limit);
+    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
+  if (const auto slow = FindSlowResiduals(result, thresholds)) {
+    Append(result.findings, slow);
+    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
+  GradeUse(thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
+  const std::vector<ParameterEstimate> plain = result.parameters;
   WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
                     result.parameters);
   CoverPlateau(result, thresholds);
+  CoverDiscrepancy(problem, solution, estimates, plain, thresholds, result);
 }
 
 /// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
@@ -496,10 +530,12 @@ void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solut
     }
     result.slip_force_profile = std::move(profile.likelihood);
   }
+  if (const auto ranges =
+          ProfileSmallShape(problem, solution, noise, estimates, options, buffers)) {
+    IncludeSmallShape(problem, *ranges, result);
+  }
   if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
-    ParameterEstimate& sigma = result.parameters[kStiffness];
-    sigma.upper95.reset();
-    sigma.standard_error.reset();
+    OpenAbove(result.parameters[kStiffness], IntervalSource::kProfile);
     result.findings.push_back(FoundOpenStiffness());
   }
 }
@@ -515,12 +551,15 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
                             std::move(at));
   FillErrors(problem, estimates, result);
   WidenByProfiles(attempt, problem, solution, noise, estimates, result);
+  KeepAboveCarriedForce(result);
+  Append(result.findings, FindSearchLimit(problem, solution));
   Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
   Append(result.findings, FindUntoldAsymmetry(result, attempt.options.thresholds));
   for (Finding& finding : FindWideIntervals(result, attempt.options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }
   Append(result.findings, FindExtrapolated(result, attempt.options.thresholds));
+  DropNeedless(result.parameters, result.findings);
   Judge(result.parameters, result.findings);
 }
 
@@ -537,14 +576,17 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
                             std::move(at));
   FillErrors(problem, estimates, result);
+  WidenByProfiles(attempt, problem, solution, noise, estimates, result);
   if (result.depth >= Depth::kFull) {
     result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
-    WidenByProfiles(attempt, problem, solution, noise, estimates, result);
     result.mindlin_test = TestMindlin(problem, solution, noise, estimates, options, buffers);
     if (result.mindlin_test) {
       if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
         WidenByRanges(problem, ProfileShape(problem, solution, noise, estimates, options, buffers),
                       estimates.quantile(), result);
+        Include(result.parameters[kShape], {.source = IntervalSource::kProfile,
+                                            .lower = kMindlinExponent,
+                                            .upper = kMindlinExponent});
       }
       const std::optional<RigAlternative> rig =
           TryRig(problem, attempt.thin, solution, *result.mindlin_test, noise, estimates, options,
@@ -570,6 +612,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
                                              buffers.response, result.parameters)));
   }
   ConsiderDepartures(problem, solution, noise, displacement, estimates, options, buffers, result);
+  KeepAboveCarriedForce(result);
   Append(result.findings, FindUnseenLoop(result, options.thresholds));
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
@@ -583,12 +626,9 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   Append(result.findings, FindShapeLimitedByLoad(problem, solution));
   Append(result.findings, FindExtrapolated(result, options.thresholds));
   Append(result.findings, FindMisfit(result, options.thresholds));
-  if (const auto slow = FindSlowResiduals(result, options.thresholds)) {
-    Append(result.findings, slow);
-    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
-  }
   Append(result.findings, FindEnergyContradiction(result, options.thresholds));
-  if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result);
+  DropNeedless(result.parameters, result.findings);
+  if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result, options.thresholds);
   if (result.depth >= Depth::kFull) {
     const LawComparison laws = CompareLaws(problem, solution, result, options, buffers);
     const bool is_asked = result.depth >= Depth::kThorough;
@@ -668,6 +708,28 @@ void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& opti
   }
 }
 
+/// The options with a slip force no larger than the largest force of the record, where the loop
+/// slides over most of its stroke and the fitted law, which is not adequate, carries its slip force
+/// nowhere: the loop has carried it. Nothing where that is not so or the user limits Tc.
+std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& given) {
+  constexpr const char* kName = "slip_force";
+  if (result.adequacy.verdict == AdequacyVerdict::kAdequate || result.parameters.empty() ||
+      result.response == loop::Channel::kDisplacement || given.bounds.contains(kName) ||
+      given.fixed.contains(kName)) {
+    return std::nullopt;
+  }
+  const RecordFit& widest = result.WidestRecord();
+  if (!SlidesOverMostOfStroke(widest.facts, given.thresholds)) return std::nullopt;
+  const double peak_force = widest.facts.peak_force / widest.load_ratio;
+  if (peak_force >= given.thresholds.mobilised_by_asymptote * result.law.slip_force) {
+    return std::nullopt;
+  }
+  FitOptions within = given;
+  within.start.clear();
+  within.bounds[kName] = {0.0, peak_force};
+  return within;
+}
+
 /// Does a record tell the law, as far as the depth says? Where it does not, the likelihood is a
 /// valley with more minima than one.
 bool TellsTheLaw(const FitResult& result) {
@@ -687,6 +749,11 @@ struct Fitter::State {
   }
 
   void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
+  /// Fits, and once more where the slip force runs away from what was measured.
+  void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
+    Fit(records, depth, given);
+    if (const auto within = WithinMeasuredForce(result, given)) Fit(records, depth, *within);
+  }
   void Continue(const RecordView& record, Depth depth);
   [[nodiscard]] bool MayContinue() const;
 
@@ -702,28 +769,18 @@ struct Fitter::State {
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
   arena.Reset();
-  result.depth = depth;
-  result.converged = false;
-  result.solver = {};
-  result.model = given.model;
-  result.response = given.response();
-  result.law = {};
-  result.rig = {};
-  result.normal_load.reset();
-  result.load_exponent = 1.0;
-  result.force_noise = 0.0;
-  result.outliers = 0;
-  result.rms = 0.0;
-  result.mindlin_test.reset();
-  result.branch_shapes.clear();
-  result.law_choice.reset();
-  result.memory.reset();
-  result.slip_force_profile.reset();
-  result.correlation.clear();
-  result.residuals = {};
-  result.starts.clear();
-  result.findings.clear();
-  result.adequacy = {};
+  // A new result, in the memory of the last.
+  FitResult fresh;
+  fresh.depth = depth;
+  fresh.model = given.model;
+  fresh.response = given.response();
+  fresh.parameters.swap(result.parameters);
+  fresh.correlation.swap(result.correlation);
+  fresh.records.swap(result.records);
+  fresh.solver.message.swap(result.solver.message);
+  fresh.solver.message.assign("not run");
+  fresh.correlation.clear();
+  result = std::move(fresh);
   descents.clear();
 
   loop::PreparedRecords prepared = loop::Prepare(records, given.preparation, &arena);
@@ -809,7 +866,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   if (!std::isfinite(solution.sum_of_squares)) {
     result.converged = false;
     result.parameters.clear();  // otherwise their names' memory is used again
-    result.findings.push_back({.code = "fit_failed", .severity = Severity::kFailure});
+    result.findings.push_back({.code = "fit_failed"});
     return;
   }
   if (!settled) {
@@ -825,6 +882,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   result.outliers = noise.outliers;
   FillParameters(best->problem, solution, result);
+  FillLawEnergy(attempt, result);
   Linearization at;
   if (depth >= Depth::kErrors) {
     at = LinearizeAt(best->problem, solution.theta, buffers.response,
@@ -884,11 +942,11 @@ void Fitter::State::Continue(const RecordView& record, Depth depth) {
       }
     }
     const double last_rms = result.rms;
-    Fit({&record, 1}, depth, continued);
+    FitWithin({&record, 1}, depth, continued);
     constexpr double kAsGood = 1.5;  // times the last rms
     if (result.converged && result.rms <= kAsGood * last_rms && TellsTheLaw(result)) return;
   }
-  Fit({&record, 1}, depth, options);
+  FitWithin({&record, 1}, depth, options);
 }
 
 Fitter::Fitter(FitOptions options) : state_(std::make_unique<State>(std::move(options))) {}
@@ -899,7 +957,7 @@ Fitter::~Fitter() = default;
 const FitOptions& Fitter::options() const { return state_->options; }
 
 const FitResult& Fitter::Fit(std::span<const RecordView> records, Depth depth) {
-  state_->Fit(records, depth, state_->options);
+  state_->FitWithin(records, depth, state_->options);
   return state_->result;
 }
 
@@ -912,36 +970,6 @@ FitResult Fit(std::span<const loop::Record> records, const FitOptions& options, 
   std::vector<RecordView> views(records.begin(), records.end());
   Fitter fitter(options);
   return fitter.Fit(views, depth);
-}
-
-const ParameterEstimate* FitResult::Find(std::string_view name) const {
-  const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
-  return found == parameters.end() ? nullptr : &*found;
-}
-
-const Finding* FitResult::FindFinding(std::string_view code) const {
-  const auto found = std::ranges::find(findings, code, &Finding::code);
-  return found == findings.end() ? nullptr : &*found;
-}
-
-const RecordFit& FitResult::WidestRecord() const {
-  return *std::ranges::max_element(records, {}, [this](const RecordFit& fit) {
-    return fit.measures.amplitude * std::pow(fit.load_ratio, load_exponent - 1);
-  });
-}
-
-models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
-  return models::AtLoad(law, record.load_ratio, load_exponent);
-}
-
-double FitResult::ResponseNoise() const {
-  if (response == loop::Channel::kForce) return force_noise;
-  return records.empty() ? 0.0 : records.front().displacement_noise;
-}
-
-double FitResult::PeakForce() const {
-  const RecordFit& widest = WidestRecord();
-  return widest.measures.peak_force / widest.load_ratio;
 }
 
 }  // namespace mindahl::identification

@@ -1,6 +1,7 @@
 #include "report/adequacy.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "mindahl/report/quantity.h"
+#include "report/names.h"
 #include "report/statements.h"
 
 namespace mindahl::report {
@@ -129,6 +131,18 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOthersOf
     {"m/sample", "rad/sample"},
 }};
 
+/// Names the parameters whose intervals include what the model misses.
+std::string WhatIncludesIt(const identification::FitResult& fit) {
+  std::vector<std::string> names;
+  for (const identification::ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.identifiability != identification::Identifiability::kEffective) continue;
+    names.push_back(estimate.name);
+  }
+  if (names.empty()) return "no parameter is to be used";
+  return fmt::format("the interval{} of {} include{} it", names.size() > 1 ? "s" : "",
+                     fmt::join(names, ", "), names.size() > 1 ? "" : "s");
+}
+
 }  // namespace
 
 bool IsJudged(const Report& report) { return !report.failed() && report.fit.adequacy.tried > 0; }
@@ -176,23 +190,23 @@ std::string VerdictSentence(const Report& report) {
         "its parameters mean nothing for this record",
         std::max(0.0, 100 * unseen->Number("r_squared").value_or(0.0)));
   }
-  const std::string misfit = fmt::format("{:.2g} times the noise ({})", adequacy.misfit_over_noise,
-                                         ChanceText(adequacy.p_value, 2));
-  std::string found;
-  switch (adequacy.verdict) {
-    case AdequacyVerdict::kAdequate:
-      return fmt::format("adequate: what the model misses is {}, and looks like noise", misfit);
-    case AdequacyVerdict::kDoubtful:
-      found = fmt::format("doubtful: what the model misses is {}, and does not look like noise",
-                          misfit);
-      break;
-    case AdequacyVerdict::kInadequate:
-      found = fmt::format(
-          "inadequate: what the model misses is {}; its parameters mean nothing for this record",
-          misfit);
-      break;
+  const std::string noise = fmt::format("{:.2g} times the noise ({})", adequacy.misfit_over_noise,
+                                        ChanceText(adequacy.p_value, 2));
+  if (adequacy.verdict == AdequacyVerdict::kAdequate) {
+    return fmt::format("adequate: what the model misses is {}, and looks like noise", noise);
   }
-  if (adequacy.causes.empty()) return found + ", nor like anything else that was tried";
+  const bool is_of_force = report.fit.response == loop::Channel::kForce;
+  const std::string gap =
+      adequacy.misfit_over_half_gap
+          ? fmt::format("{:.2g} % of the half gap, ", 100 * *adequacy.misfit_over_half_gap)
+          : "";
+  std::string found = fmt::format(
+      "{}, {}: the model misses the {} by {} rms, {}{}; {}", Name(adequacy.verdict),
+      adequacy.use == identification::Use::kNone ? "of no use for the law's shape"
+                                                 : Name(adequacy.use),
+      is_of_force ? "force" : "displacement", Quantity(adequacy.misfit, report.units.response, 3),
+      gap, noise, WhatIncludesIt(report.fit));
+  if (adequacy.causes.empty()) return found + ". It looks like nothing that was tried";
   return found + ". It looks like " + Sentence(adequacy.causes.front(), report.fit.response);
 }
 

@@ -53,6 +53,17 @@ void AddAdequacyFields(FieldTable& table) {
       AdequacyRow("adequacy.misfit_over_noise", "-",
                   "rms of what the model misses over that of the noise",
                   [](const Adequacy& adequacy) { return Number(adequacy.misfit_over_noise); }),
+      {"adequacy.misfit_over_half_gap", "-",
+       "rms of what the model misses over the half gap measured without a model",
+       [](const Report& report) {
+         return IsJudged(report) ? Number(report.fit.adequacy.misfit_over_half_gap) : Missing();
+       },
+       [](const Report& report) {
+         return IsJudged(report) ? std::string("no half gap was measured")
+                                 : std::string(kWhyNotJudged);
+       }},
+      AdequacyRow("adequacy.use", "", "quantitative, indicative or none: what the fit is good for",
+                  [](const Adequacy& adequacy) { return Text(Name(adequacy.use)); }),
       AdequacyRow("adequacy.p_value", "-", "that noise alone looks like that",
                   [](const Adequacy& adequacy) { return Number(adequacy.p_value); }),
       AdequacyRow("adequacy.causes", "",

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string_view>
 
 #include "mindahl/report/load_series.h"
@@ -16,8 +15,9 @@ using identification::FitResult;
 namespace {
 
 /// As the contact module takes it: infinite where the fit leaves a parameter open.
-contact::UncertainValue Uncertain(const identification::ParameterEstimate& estimate) {
-  return {estimate.value, StandardErrorOf(estimate)};
+contact::UncertainValue Uncertain(const FitResult& fit, std::string_view name) {
+  const identification::ParameterEstimate& estimate = *fit.Find(name);
+  return {estimate.value, fit.ErrorOf(estimate)};
 }
 
 /// What rests on Hertz's law, of a series that denies it.
@@ -28,11 +28,6 @@ void WithholdSphere(const FitResult& fit, contact::IdentifiedContact& contact) {
 }
 
 }  // namespace
-
-double StandardErrorOf(const identification::ParameterEstimate& estimate) {
-  const bool is_held = estimate.status == identification::ParameterStatus::kFixed;
-  return estimate.standard_error.value_or(is_held ? 0.0 : std::numeric_limits<double>::infinity());
-}
 
 double Correlation(const FitResult& fit, std::string_view first, std::string_view second) {
   const std::size_t count = fit.parameters.size();
@@ -46,8 +41,7 @@ double Correlation(const FitResult& fit, std::string_view first, std::string_vie
 std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit,
                                                  const contact::KnownContact& known) {
   const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  if (!known.normal_load || slip_force == nullptr ||
-      slip_force->identifiability == identification::Identifiability::kIdentifiable) {
+  if (!known.normal_load || slip_force == nullptr || slip_force->is_known()) {
     return std::nullopt;
   }
   return fmt::format("needs an identifiable slip force; from this loop it is at least {:.3g}",
@@ -57,8 +51,8 @@ std::optional<std::string> WhyFrictionIsWithheld(const FitResult& fit,
 contact::IdentifiedContact IdentifyFittedContact(const FitResult& fit,
                                                  const contact::KnownContact& known) {
   contact::IdentifiedContact contact =
-      contact::IdentifyContact(Uncertain(*fit.Find("sigma")), Uncertain(*fit.Find("slip_force")),
-                               known, Correlation(fit, "sigma", "slip_force"));
+      contact::IdentifyContact(Uncertain(fit, "sigma"), Uncertain(fit, "slip_force"), known,
+                               Correlation(fit, "sigma", "slip_force"));
   if (const std::optional<std::string> why = WhyFrictionIsWithheld(fit, known)) {
     contact.friction_coefficient.reset();
     contact.unidentified.push_back("friction coefficient " + *why);
@@ -70,7 +64,7 @@ contact::IdentifiedContact IdentifyFittedContact(const FitResult& fit,
 contact::IdentifiedContact IdentifyContactOf(const FitResult& fit, const models::BranchLaw& law,
                                              const contact::KnownContact& known) {
   const auto moved = [&](std::string_view name, double value) {
-    const contact::UncertainValue fitted = Uncertain(*fit.Find(name));
+    const contact::UncertainValue fitted = Uncertain(fit, name);
     return contact::UncertainValue{value, fitted.standard_error * (value / fitted.value)};
   };
   contact::IdentifiedContact contact = contact::IdentifyContact(

@@ -56,11 +56,17 @@ double Widened(double value, double error, double quantile, std::optional<double
   return widened;
 }
 
+/// Of the parabola: 0 of a parameter that was held, infinite of one without an error.
+double StandardErrorOf(const ParameterEstimate& estimate) {
+  const bool is_held = estimate.status == ParameterStatus::kFixed;
+  return estimate.standard_error.value_or(is_held ? 0.0 : std::numeric_limits<double>::infinity());
+}
+
 Estimate EstimateOf(const FitResult& fit) {
   Estimate estimate;
   constexpr double kUpperEnd = 0.975;
   estimate.quantile =
-      boost::math::quantile(boost::math::students_t(fit.residuals.degrees_of_freedom), kUpperEnd);
+      boost::math::quantile(boost::math::students_t(fit.ErrorDegreesOfFreedom()), kUpperEnd);
   constexpr std::array<std::string_view, Estimate::kCount> kNames = {"sigma", "load_exponent",
                                                                      "alpha"};
   for (std::size_t i = 0; i < Estimate::kCount; ++i) {
@@ -94,7 +100,7 @@ struct Constraint {
   double value = 0.0;
 };
 
-/// A component with a theory held, and half its 95 % interval.
+/// A component with a theory held, half its 95 % interval, and the error that this stands for.
 struct Held {
   double value = 0.0;
   double error = 0.0;
@@ -116,11 +122,13 @@ Held Hold(const Estimate& estimate, const Constraint& constraint, std::size_t wh
   const double gain = variance > 0 ? covariance / variance : 0.0;
   Held held;
   held.value = component.value - gain * departure;
-  held.error = std::sqrt(std::max(component.error * component.error - gain * covariance, 0.0));
-  held.half_width = estimate.quantile * held.error + component.widened;
+  const double of_parabola =
+      std::sqrt(std::max(component.error * component.error - gain * covariance, 0.0));
+  held.half_width = estimate.quantile * of_parabola + component.widened;
   for (std::size_t i = 0; i < Estimate::kCount; ++i) {
     held.half_width += std::abs(gain * constraint.factor[i]) * estimate.components[i].widened;
   }
+  held.error = held.half_width / estimate.quantile;
   return held;
 }
 

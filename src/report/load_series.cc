@@ -23,16 +23,20 @@ double ErrorOfSum(double a, double factor, double b, double correlation) {
   return std::sqrt(std::max(a * a + scaled * scaled + 2 * correlation * a * scaled, 0.0));
 }
 
+/// @param error_of_other  of the hypothesis' exponent, where it is fitted too
 LoadHypothesis Test(std::string_view name, double exponent, const FitResult& fit,
-                    double exponent_error) {
+                    double error_of_other = 0.0) {
   LoadHypothesis test{.name = name, .exponent = exponent};
   const ParameterEstimate& fitted = *fit.Find("load_exponent");
   if (fitted.status == ParameterStatus::kFixed) return test;
   test.difference = fitted.value - exponent;
-  const bool is_known = fitted.identifiability == identification::Identifiability::kIdentifiable;
-  if (!is_known || !(exponent_error > 0) || std::isinf(exponent_error)) return test;
-  test.z = *test.difference / exponent_error;
-  const boost::math::students_t distribution(fit.residuals.degrees_of_freedom);
+  const bool is_known = fitted.is_known();
+  const double error =
+      ErrorOfSum(fit.ErrorTowards(fitted, exponent), -1.0, error_of_other,
+                 error_of_other > 0 ? Correlation(fit, "load_exponent", "alpha") : 0.0);
+  if (!is_known || !(error > 0) || !std::isfinite(error)) return test;
+  test.z = *test.difference / error;
+  const boost::math::students_t distribution(fit.ErrorDegreesOfFreedom());
   test.p_value = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(*test.z)));
   return test;
 }
@@ -42,13 +46,13 @@ ContactUnderLoad ContactUnder(const FitResult& fit, const identification::Record
   const ParameterEstimate& sigma = *fit.Find("sigma");
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   const models::BranchLaw law = fit.LawOf(record);
-  const double relative = ErrorOfSum(
-      StandardErrorOf(sigma) / sigma.value, std::log(record.load_ratio),
-      StandardErrorOf(*fit.Find("load_exponent")), Correlation(fit, "sigma", "load_exponent"));
+  const double relative = ErrorOfSum(fit.ErrorOf(sigma) / sigma.value, std::log(record.load_ratio),
+                                     fit.ErrorOf(*fit.Find("load_exponent")),
+                                     Correlation(fit, "sigma", "load_exponent"));
   ContactUnderLoad contact{
       .normal_load = *record.normal_load,
       .stiffness = {law.tangential_stiffness, law.tangential_stiffness * relative},
-      .slip_force = {law.slip_force, record.load_ratio * StandardErrorOf(slip_force)},
+      .slip_force = {law.slip_force, record.load_ratio * fit.ErrorOf(slip_force)},
       .alone = record.alone};
   contact::KnownContact under_load = known;
   under_load.normal_load = UncertainValue{contact.normal_load};
@@ -67,8 +71,7 @@ bool DeniesHertz(const FitResult& fit) {
   if (exponent.status == ParameterStatus::kFixed) {
     return !IsHeldAt(exponent.value, contact::kMindlinShapeExponent);
   }
-  const LoadHypothesis sphere =
-      Test("sphere", contact::kMindlinShapeExponent, fit, StandardErrorOf(exponent));
+  const LoadHypothesis sphere = Test("sphere", contact::kMindlinShapeExponent, fit);
   return sphere.p_value && *sphere.p_value < kSignificance;
 }
 
@@ -79,15 +82,11 @@ std::optional<LoadSeries> DescribeLoadSeries(const FitResult& fit,
   for (const identification::RecordFit& record : fit.records) {
     series.contacts.push_back(ContactUnder(fit, record, known));
   }
-  const double error = StandardErrorOf(*fit.Find("load_exponent"));
   const ParameterEstimate& alpha = *fit.Find("alpha");
-  // p − α, of which both are fitted.
-  const double error_from_alpha =
-      ErrorOfSum(error, -1.0, StandardErrorOf(alpha), Correlation(fit, "load_exponent", "alpha"));
-  series.hypotheses = {Test("sphere", contact::kMindlinShapeExponent, fit, error),
-                       Test("elements", alpha.value, fit, error_from_alpha),
-                       Test("cone", 0.5, fit, error), Test("flat_punch", 0.0, fit, error),
-                       Test("rough", 1.0, fit, error)};
+  series.hypotheses = {
+      Test("sphere", contact::kMindlinShapeExponent, fit),
+      Test("elements", alpha.value, fit, fit.ErrorTowards(alpha, fit.load_exponent)),
+      Test("cone", 0.5, fit), Test("flat_punch", 0.0, fit), Test("rough", 1.0, fit)};
   series.laws = TenableLaws(fit, series.hypotheses, known);
   return series;
 }

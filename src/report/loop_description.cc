@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/models/branch_law.h"
@@ -20,6 +22,19 @@ namespace {
 
 using identification::Identifiability;
 using identification::ParameterEstimate;
+
+/// Mean over the cycles that the facts' energy is of; empty without numbers of cycles.
+std::optional<double> MeanOfSteadyCycles(const loop::LoopFacts& facts,
+                                         std::span<const double> of_cycles) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t k = 0; k < of_cycles.size(); ++k) {
+    if (!facts.cycles[k].steady) continue;
+    sum += of_cycles[k];
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
 
 bool HasValue(const ParameterEstimate& estimate) {
   return estimate.is_known() || estimate.identifiability == Identifiability::kExtrapolated;
@@ -41,7 +56,9 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
   loop.measured = MeasuredLoopOf(widest);
   const MeasuredLoop& measured = loop.measured;
   loop.contact_amplitude = models::ContactAmplitude(*fit.model, law, fit.rig, measured.amplitude);
-  loop.model_energy = models::SteadyLoopEnergy(*fit.model, law, loop.contact_amplitude);
+  loop.model_energy =
+      MeanOfSteadyCycles(widest.facts, widest.law_energy)
+          .value_or(models::SteadyLoopEnergy(*fit.model, law, loop.contact_amplitude));
   const double energy = measured.energy.value_or(loop.model_energy);
   if (measured.amplitude > 0 && measured.peak_force > 0) {
     loop.energy_ratio = energy / (4 * measured.amplitude * measured.peak_force);

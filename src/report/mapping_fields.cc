@@ -1,4 +1,3 @@
-#include <functional>
 #include <utility>
 
 #include "report/field_table.h"
@@ -29,7 +28,7 @@ const std::vector<Field<identification::BranchShape>>& BranchFields() {
 }
 
 std::string WhyStiffnessNotTested(const StiffnessTest& test) {
-  return test.ratio.standard_error > 0 ? "the record leaves sigma open"
+  return test.ratio.standard_error > 0 ? "sigma is not identifiable"
                                        : "neither sigma nor an input is uncertain";
 }
 
@@ -70,12 +69,19 @@ Value StiffnessTests(const Report& report) {
 }
 
 std::string WhyAlphaNotTested(const Report& report) {
-  return report.fit.Find("alpha")->status == identification::ParameterStatus::kFixed
-             ? "alpha was held, so alpha = 1/3 is not tested"
-             : "alpha has no standard error: it is at a bound or undetermined";
+  const identification::ParameterEstimate& alpha = *report.fit.Find("alpha");
+  if (alpha.status == identification::ParameterStatus::kFixed) {
+    return "alpha was held, so alpha = 1/3 is not tested";
+  }
+  return alpha.is_known() ? "alpha has no standard error: it is at a bound"
+                          : "alpha is not identifiable, so alpha = 1/3 is not tested";
 }
 
-std::string WhyNoLikelihoodRatio(const Report&) { return "alpha is held or not determined"; }
+std::string WhyNoLikelihoodRatio(const Report& report) {
+  if (!report.fit.mindlin_test) return "alpha is held or not determined";
+  if (!report.alpha.is_rejected) return WhyAlphaNotTested(report);
+  return "the interval of alpha includes more than this model, and says otherwise";
+}
 
 std::string WhyNoRig(const Report& report) {
   return report.fit.mindlin_test ? "alpha = 1/3 is not rejected, alpha is the larger one, a rig is "
@@ -84,13 +90,12 @@ std::string WhyNoRig(const Report& report) {
 }
 
 Field<Report> Likelihood(const char* path, const char* unit, const char* label,
-                         std::function<std::optional<double>(const MindlinTest&)> get,
-                         std::string (*why)(const Report&)) {
+                         double MindlinTest::*member) {
   return {path, unit, label,
-          [get = std::move(get)](const Report& report) {
-            return report.fit.mindlin_test ? Number(get(*report.fit.mindlin_test)) : Missing();
+          [member](const Report& report) {
+            return report.alpha.likelihood ? Number((*report.alpha.likelihood).*member) : Missing();
           },
-          why};
+          WhyNoLikelihoodRatio};
 }
 
 std::string WhyNoRatio(const Report& report) {
@@ -116,15 +121,17 @@ void AddMappingFields(FieldTable& table) {
        [](const Report& report) { return Number(report.alpha.z); }, WhyAlphaNotTested},
       {"mapping.p_value", "-", "two-sided, of z",
        [](const Report& report) { return Number(report.alpha.p_value); }, WhyAlphaNotTested},
-      Likelihood(
-          "mapping.likelihood_ratio", "-", "α = 1/3 against the fitted α, twice its logarithm",
-          [](const MindlinTest& test) { return test.likelihood_ratio; }, WhyNoLikelihoodRatio),
-      Likelihood(
-          "mapping.likelihood_ratio_p_value", "-", "of the likelihood ratio",
-          [](const MindlinTest& test) { return test.p_value; }, WhyNoLikelihoodRatio),
-      Likelihood(
-          "mapping.tenable_with_rig_stiffness", "N/m", "rig with which α = 1/3 fits as well",
-          [](const MindlinTest& test) { return test.rig_stiffness; }, WhyNoRig),
+      Likelihood("mapping.likelihood_ratio", "-",
+                 "α = 1/3 against the fitted α, twice its logarithm",
+                 &MindlinTest::likelihood_ratio),
+      Likelihood("mapping.likelihood_ratio_p_value", "-", "of the likelihood ratio",
+                 &MindlinTest::p_value),
+      {"mapping.tenable_with_rig_stiffness", "N/m", "rig with which α = 1/3 fits as well",
+       [](const Report& report) {
+         return report.fit.mindlin_test ? Number(report.fit.mindlin_test->rig_stiffness)
+                                        : Missing();
+       },
+       WhyNoRig},
       {"mapping.alpha_by_branch", "", "α of each kind of branch alone",
        [](const Report& report) { return List(BranchFields(), report.fit.branch_shapes); }},
       {"mapping.sigma_over_hertz_mindlin", "-", "σ/(8a/G*)", ratio(&UncertainValue::value),

@@ -17,10 +17,19 @@ AlphaTest TestAlpha(const identification::FitResult& fit) {
   AlphaTest test;
   const identification::ParameterEstimate& alpha = *fit.Find("alpha");
   if (alpha.status == identification::ParameterStatus::kFixed) return test;
-  test.minus_third = alpha.value - contact::kMindlinShapeExponent;
-  if (!alpha.standard_error || !(*alpha.standard_error > 0)) return test;
-  test.z = *test.minus_third / *alpha.standard_error;
-  test.p_value = TwoSided(boost::math::students_t(fit.residuals.degrees_of_freedom), *test.z);
+  constexpr double kThird = contact::kMindlinShapeExponent;
+  test.minus_third = alpha.value - kThird;
+  if (!alpha.is_known()) return test;
+  const double error = fit.ErrorTowards(alpha, kThird);
+  if (error > 0 && std::isfinite(error)) {
+    test.z = *test.minus_third / error;
+    test.p_value = TwoSided(boost::math::students_t(fit.ErrorDegreesOfFreedom()), *test.z);
+  }
+  test.is_rejected = alpha.lower95 > kThird || alpha.upper95 < kThird;
+  const auto& likelihood = fit.mindlin_test;
+  if (likelihood && (likelihood->p_value < kSignificance) == *test.is_rejected) {
+    test.likelihood = likelihood;
+  }
   return test;
 }
 
@@ -44,14 +53,13 @@ StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedVa
 std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
                                          const contact::IdentifiedContact& contact) {
   std::vector<StiffnessTest> tests;
-  const double degrees_of_freedom = fit.residuals.degrees_of_freedom;
-  if (contact.hertz) {
-    tests.push_back(
-        TestStiffness("hertz", contact.hertz->sigma_over_hertz_mindlin, degrees_of_freedom));
-  }
-  if (contact.sigma_over_mindlin) {
-    tests.push_back(TestStiffness("given", *contact.sigma_over_mindlin, degrees_of_freedom));
-  }
+  const bool is_known = fit.Find("sigma")->is_known();
+  const auto add = [&](std::string_view radius, const contact::PropagatedValue& ratio) {
+    tests.push_back(is_known ? TestStiffness(radius, ratio, fit.ErrorDegreesOfFreedom())
+                             : StiffnessTest{.radius = radius, .ratio = ratio});
+  };
+  if (contact.hertz) add("hertz", contact.hertz->sigma_over_hertz_mindlin);
+  if (contact.sigma_over_mindlin) add("given", *contact.sigma_over_mindlin);
   return tests;
 }
 

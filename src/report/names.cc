@@ -25,6 +25,8 @@ std::string_view Name(Identifiability identifiability) {
   switch (identifiability) {
     case Identifiability::kIdentifiable:
       return "identifiable";
+    case Identifiability::kEffective:
+      return "effective";
     case Identifiability::kExtrapolated:
       return "extrapolated";
     case Identifiability::kBoundedBelow:
@@ -39,6 +41,29 @@ std::string Words(Identifiability identifiability) {
   std::string words(Name(identifiability));
   std::ranges::replace(words, '_', ' ');
   return words;
+}
+
+std::string_view Name(identification::IntervalSource source) {
+  using enum identification::IntervalSource;
+  switch (source) {
+    case kParabola:
+      return "parabola";
+    case kProfile:
+      return "profile";
+    case kInitialState:
+      return "initial_state";
+    case kOmittedTerms:
+      return "omitted_terms";
+    case kPlateau:
+      return "plateau";
+    case kSmallShape:
+      return "small_alpha";
+    case kDiscrepancy:
+      return "discrepancy";
+    case kCarriedForce:
+      return "carried_force";
+  }
+  return "";
 }
 
 std::string_view Name(models::InitialState state) {
@@ -61,6 +86,18 @@ std::string_view Name(identification::AdequacyVerdict verdict) {
       return "doubtful";
     case identification::AdequacyVerdict::kInadequate:
       return "inadequate";
+  }
+  return "";
+}
+
+std::string_view Name(identification::Use use) {
+  switch (use) {
+    case identification::Use::kQuantitative:
+      return "quantitative";
+    case identification::Use::kIndicative:
+      return "indicative";
+    case identification::Use::kNone:
+      return "none";
   }
   return "";
 }

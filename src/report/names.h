@@ -13,10 +13,12 @@ std::string_view Name(identification::ParameterStatus status);
 std::string_view Name(identification::Identifiability identifiability);
 /// The name with blanks, for people.
 std::string Words(identification::Identifiability identifiability);
+std::string_view Name(identification::IntervalSource source);
 std::string_view Name(models::InitialState state);
 std::string_view Name(loop::Channel channel);
 std::string_view Name(SlipRegime regime);
 std::string_view Name(identification::AdequacyVerdict verdict);
+std::string_view Name(identification::Use use);
 std::string_view Name(identification::MemoryVerdict verdict);
 
 }  // namespace mindahl::report

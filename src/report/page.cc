@@ -123,7 +123,7 @@ std::string ParameterSection(const Report& report) {
 
 /// What a finding asks to be run, beside what was run.
 struct NextCommand {
-  std::string_view finding;
+  identification::FindingCode finding;
   std::string_view option;
   std::string_view why;
 };

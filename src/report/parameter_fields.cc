@@ -37,6 +37,22 @@ std::string WhyIntervalOpen(const ReportedParameter& item) {
                                                          : "the record sets no limit there";
 }
 
+const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
+  using Item = identification::IntervalPart;
+  const auto why = [](const Item&) { return std::string("open there"); };
+  static const std::vector<Field<Item>> fields = {
+      {"source", "",
+       "why ci95 reaches as far: parabola, profile, initial_state, omitted_terms, plateau, "
+       "small_alpha, discrepancy or carried_force",
+       [](const Item& item) { return Text(Name(item.source)); }},
+      {"ci95[0]", "of the parameter", "lower end of the contribution",
+       [](const Item& item) { return Number(item.lower); }, why},
+      {"ci95[1]", "of the parameter", "upper end of the contribution",
+       [](const Item& item) { return Number(item.upper); }, why},
+  };
+  return fields;
+}
+
 const std::vector<Field<ReportedParameter>>& ParameterFields() {
   using Item = ReportedParameter;
   static const std::vector<Field<Item>> fields = {
@@ -51,9 +67,12 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return Number(item.estimate.lower95); }, WhyIntervalOpen},
       {"ci95[1]", "of the parameter", "upper end of the 95 % interval",
        [](const Item& item) { return Number(item.estimate.upper95); }, WhyIntervalOpen},
+      {"ci95_parts", "", "contributions to ci95, their union",
+       [](const Item& item) { return List(IntervalFields(), item.estimate.interval); }},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
        [](const Item& item) { return Text(Name(item.estimate.status)); }},
-      {"identifiability", "", "identifiable, bounded_below or not_identifiable",
+      {"identifiability", "",
+       "identifiable, effective, extrapolated, bounded_below or not_identifiable",
        [](const Item& item) { return Text(Name(item.estimate.identifiability)); }},
   };
   return fields;
@@ -115,6 +134,7 @@ void AddParameterFields(FieldTable& table) {
        Correlations},
   });
   table.Describe("parameters.NAME.", ParameterFields());
+  table.Describe("parameters.NAME.ci95_parts[].", IntervalFields());
   table.items.push_back({"correlation.NAME.NAME", "-", "of the errors of two free parameters"});
 }
 

@@ -18,18 +18,20 @@
 namespace mindahl::report {
 
 using identification::Finding;
+using identification::FindingCode;
 using identification::FitResult;
 
 namespace {
 
 double Needed(const Finding& finding, std::string_view name) {
   if (const std::optional<double> number = finding.Number(name)) return *number;
-  throw std::logic_error(fmt::format("the finding '{}' has no number '{}'", finding.code, name));
+  throw std::logic_error(
+      fmt::format("the finding '{}' has no number '{}'", std::string_view(finding.code), name));
 }
 
 [[noreturn]] void ThrowKind(const Finding& finding) {
-  throw std::logic_error(
-      fmt::format("the finding '{}' has no kind '{}'", finding.code, finding.kind));
+  throw std::logic_error(fmt::format("the finding '{}' has no kind '{}'",
+                                     std::string_view(finding.code), finding.kind));
 }
 
 // --- what is wrong with the record
@@ -112,8 +114,7 @@ std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, cons
 /// Then a larger amplitude shows less of the branches still.
 bool SeesSlip(const FitResult& fit) {
   const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  return slip_force != nullptr &&
-         slip_force->identifiability == identification::Identifiability::kIdentifiable;
+  return slip_force != nullptr && slip_force->is_known();
 }
 
 std::string TooWide(const char* parameter, const Finding& finding, const FitResult& fit,
@@ -175,6 +176,17 @@ std::string AsymmetryNotIdentifiable(const Finding& finding, const FitResult&, c
       fmt::join(finding.parameters, ", "), 100 * Needed(finding, "never_slips"));
 }
 
+std::string SearchLimit(const Finding& finding, const FitResult& fit, const Units&) {
+  const std::string& name = finding.parameters.front();
+  const identification::ParameterEstimate* estimate = fit.Find(name);
+  return fmt::format(
+      "{}: the search stopped at {}, the end of what is searched, so that the best value lies "
+      "beyond it and no parameter of this fit is that of the contact; give --bound {}=LO:HI, or "
+      "take it off the record",
+      fmt::join(finding.parameters, ", "),
+      Quantity(Needed(finding, "bound"), estimate == nullptr ? "-" : estimate->unit, 4), name);
+}
+
 std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "sigma, alpha: all {:.0f} samples lie in {:.0f} places of the loop, the same in every cycle; "
@@ -196,11 +208,16 @@ std::string LoopNotSeen(const Finding& finding, const FitResult&, const Units&) 
       share);
 }
 
-std::string ModelInadequate(const Finding&, const FitResult& fit, const Units&) {
+std::string ModelInadequate(const Finding& finding, const FitResult& fit, const Units&) {
+  const bool is_all = std::ranges::none_of(
+      fit.parameters, &identification::ParameterEstimate::includes_discrepancy);
   return fmt::format(
-      "{} does not describe this record: its parameters are not to be used; what was measured "
-      "without a model stands",
-      fit.model->name);
+      "{} does not describe this record: {} not to be used; what was measured without a model "
+      "stands",
+      fit.model->name,
+      is_all ? std::string("its parameters are")
+             : fmt::format("{} {}", fmt::join(finding.parameters, ", "),
+                           finding.parameters.size() > 1 ? "are" : "is"));
 }
 
 std::string SlipForceExtrapolated(const Finding& finding, const FitResult&, const Units&) {
@@ -414,61 +431,59 @@ std::string FitFailed(const Finding&, const FitResult& fit, const Units&) {
 }
 
 struct SentenceRow {
-  std::string_view code;
+  FindingCode code;
   std::string (*sentence)(const Finding&, const FitResult&, const Units&);
 };
 
-constexpr std::array<SentenceRow, 34> kSentences = {{
+constexpr auto kSentences = std::to_array<SentenceRow>({
     {"reversals_uncertain", ReversalsUncertain},
     {"glitches_left_out", GlitchesLeftOut},
     {"path_too_long", PathTooLong},
     {"no_closed_cycle", NoClosedCycle},
-    {"energy_contradiction", EnergyContradiction},
+    {"load_followed", LoadFollowed},
+    {"load_not_followed", LoadNotFollowed},
+    {"noise_in_displacement", NoiseInDisplacement},
     {"turning_points_between_samples", TurningPoints},
-    {"shape_or_rig", ShapeOrRig},
-    {"slip_force_bounded_below", SlipForceBoundedBelow},
-    {"alpha_not_identifiable", AlphaNotIdentifiable},
-    {"sigma_not_identifiable", SigmaNotIdentifiable},
-    {"slip_force_not_identifiable", SlipForceNotIdentifiable},
-    {"sigma_bounded_below", SigmaBoundedBelow},
     {"undetermined_parameter", UndeterminedParameter},
     {"undetermined_combination", UndeterminedCombination},
-    {"model_inadequate", ModelInadequate},
-    {"slip_force_extrapolated", SlipForceExtrapolated},
-    {"few_places", FewPlaces},
+    {"sigma_not_identifiable", SigmaNotIdentifiable},
+    {"alpha_not_identifiable", AlphaNotIdentifiable},
+    {"slip_force_not_identifiable", SlipForceNotIdentifiable},
     {"asymmetry_not_identifiable", AsymmetryNotIdentifiable},
-    {"loop_not_seen", LoopNotSeen},
+    {"sigma_bounded_below", SigmaBoundedBelow},
+    {"slip_force_bounded_below", SlipForceBoundedBelow},
+    {"slip_force_extrapolated", SlipForceExtrapolated},
+    {"alpha_limited_by_load", AlphaLimitedByLoad},
+    {"search_limit", SearchLimit},
+    {"few_places", FewPlaces},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},
+    {"shape_or_rig", ShapeOrRig},
+    {"rig_not_tried", RigNotTried},
     {"law_undecided", LawUndecided},
     {"other_law_fits_better", OtherLawFitsBetter},
     {"memory_contradicts_law", MemoryContradictsLaw},
-    {"no_model_fits", NoModelFits},
     {"systematic_residual", SystematicResidual},
     {"slow_residuals", SlowResiduals},
-    {"noise_in_displacement", NoiseInDisplacement},
-    {"rig_not_tried", RigNotTried},
-    {"load_followed", LoadFollowed},
-    {"load_not_followed", LoadNotFollowed},
-    {"alpha_limited_by_load", AlphaLimitedByLoad},
+    {"energy_contradiction", EnergyContradiction},
+    {"loop_not_seen", LoopNotSeen},
+    {"no_model_fits", NoModelFits},
+    {"model_inadequate", ModelInadequate},
     {"weights_not_settled", WeightsNotSettled},
     {"fit_failed", FitFailed},
-}};
+});
+
+constexpr bool EveryFindingHasASentence() {
+  return std::ranges::equal(kSentences, identification::kFindings, {}, &SentenceRow::code,
+                            &identification::FindingRow::code);
+}
+static_assert(EveryFindingHasASentence(), "one row a finding, in the order of kFindings");
 
 }  // namespace
 
 std::string Sentence(const Finding& finding, const FitResult& fit, const Units& units) {
-  for (const SentenceRow& row : kSentences) {
-    if (row.code == finding.code) return row.sentence(finding, fit, units);
-  }
-  throw std::logic_error(fmt::format("the finding '{}' has no sentence", finding.code));
-}
-
-std::vector<std::string_view> FindingCodes() {
-  std::vector<std::string_view> codes;
-  codes.reserve(std::size(kSentences));
-  for (const SentenceRow& row : kSentences) codes.push_back(row.code);
-  return codes;
+  const auto place = &finding.code.row() - identification::kFindings.data();
+  return kSentences[static_cast<std::size_t>(place)].sentence(finding, fit, units);
 }
 
 }  // namespace mindahl::report

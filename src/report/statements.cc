@@ -20,6 +20,7 @@ namespace mindahl::report {
 using contact::PropagatedValue;
 using identification::FitResult;
 using identification::Identifiability;
+using identification::IntervalSource;
 using identification::ParameterEstimate;
 using identification::ParameterStatus;
 
@@ -142,7 +143,7 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   if (fit.adequacy.verdict != identification::AdequacyVerdict::kDoubtful) return "";
   constexpr double kNormalQuantile = 1.96;
   constexpr double kFar = 3.0;  // as wide as of an error that is taken three times too small
-  std::vector<std::string> names;
+  std::vector<const ParameterEstimate*> wide;
   double widest = 0.0;
   for (const ParameterEstimate& estimate : fit.parameters) {
     const double error = estimate.standard_error.value_or(0.0);
@@ -150,27 +151,29 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
     if (WhatIsShown(estimate) != Shown::kValue || !has_both || !(error > 0)) continue;
     const double ratio = (*estimate.upper95 - *estimate.lower95) / (2 * kNormalQuantile * error);
     if (!(ratio > kFar)) continue;
-    names.push_back(estimate.name);
+    wide.push_back(&estimate);
     widest = std::max(widest, ratio);
   }
-  if (names.empty()) return "";
-  std::string covered;
-  if (!fit.adequacy.causes.empty()) covered = " what the causes above would change";
-  const ParameterEstimate* slip_force = fit.Find("slip_force");
-  const identification::RecordFit& record = fit.WidestRecord();
-  const bool has_gap = record.facts.half_gap && slip_force->lower95 && slip_force->upper95;
-  if (has_gap && std::ranges::find(names, "slip_force") != names.end()) {
-    const double gap = *record.facts.half_gap / record.load_ratio;
-    if (gap == *slip_force->lower95 || gap == *slip_force->upper95) {
-      covered += fmt::format("{} the measured half gap, {}", covered.empty() ? "" : ", and",
-                             Quantity(gap, units.force, 4));
-    }
+  const auto any_set_by = [&](IntervalSource source) {
+    return std::ranges::any_of(
+        wide, [&](const ParameterEstimate* estimate) { return estimate->IsSetBy(source); });
+  };
+  std::vector<std::string> covered;
+  if (any_set_by(IntervalSource::kOmittedTerms)) {
+    covered.emplace_back("what the causes above would change");
+  }
+  if (any_set_by(IntervalSource::kPlateau)) {
+    const identification::RecordFit& record = fit.WidestRecord();
+    covered.push_back(fmt::format(
+        "the measured half gap, {}",
+        Quantity(record.facts.half_gap.value_or(0.0) / record.load_ratio, units.force, 4)));
   }
   if (covered.empty()) return "";
+  std::vector<std::string> names;
+  for (const ParameterEstimate* estimate : wide) names.push_back(estimate->name);
   return fmt::format(
-      "intervals of {}: up to {:.0f} times as wide as standard errors make them, to "
-      "cover{}",
-      fmt::join(names, ", "), widest, covered);
+      "intervals of {}: up to {:.0f} times as wide as standard errors make them, to cover {}",
+      fmt::join(names, ", "), widest, fmt::join(covered, ", and "));
 }
 
 std::string SlipForcesStatement(const Report& report) {
@@ -292,26 +295,28 @@ std::string MemoryStatement(const Report& report) {
 
 std::vector<std::string> ExponentStatements(const Report& report) {
   std::vector<std::string> statements;
-  const auto& mindlin = report.fit.mindlin_test;
-  // Of the two tests the likelihood ratio has the say: it needs no parabola.
-  if (report.alpha.z) {
-    statements.push_back(fmt::format(
-        "α − 1/3 = {:.3g}, {:.2f} standard errors, {}{}", *report.alpha.minus_third,
-        *report.alpha.z, ChanceText(*report.alpha.p_value),
-        mindlin ? ""
-                : fmt::format(": Mindlin's exponent is {}", TestVerdict(*report.alpha.p_value))));
-  }
-  if (mindlin) {
-    const std::string rig = mindlin->rig_stiffness
-                                ? fmt::format(
-                                      " for a rigid rig, but tenable with a rig of {} in "
-                                      "series: the record does not tell which",
-                                      Quantity(*mindlin->rig_stiffness, "N/m", 4))
-                                : "";
+  const AlphaTest& test = report.alpha;
+  const char* const verdict = test.is_rejected.value_or(false) ? "rejected" : "tenable";
+  if (test.z) {
     statements.push_back(
-        fmt::format("likelihood ratio of α = 1/3: {:.3g}, {}: Mindlin's exponent is {}{}",
-                    mindlin->likelihood_ratio, ChanceText(mindlin->p_value),
-                    TestVerdict(mindlin->p_value), rig));
+        fmt::format("α − 1/3 = {:.3g}, {:.2f} standard errors, {}{}", *test.minus_third, *test.z,
+                    ChanceText(*test.p_value),
+                    test.likelihood ? "" : fmt::format(": Mindlin's exponent is {}", verdict)));
+  }
+  const auto& mindlin = report.fit.mindlin_test;
+  const std::string rig =
+      mindlin && mindlin->rig_stiffness ? Quantity(*mindlin->rig_stiffness, "N/m", 4) : "";
+  if (test.likelihood) {
+    statements.push_back(fmt::format(
+        "likelihood ratio of α = 1/3: {:.3g}, {}: Mindlin's exponent is {}{}",
+        test.likelihood->likelihood_ratio, ChanceText(test.likelihood->p_value), verdict,
+        rig.empty() ? ""
+                    : fmt::format(" for a rigid rig, but tenable with a rig of {} "
+                                  "in series: the record does not tell which",
+                                  rig)));
+  } else if (!rig.empty()) {
+    statements.push_back(fmt::format(
+        "α = 1/3 with a rig of {} in series fits as well: the record does not tell which", rig));
   }
   const std::string shapes = BranchShapesStatement(report.fit);
   if (!shapes.empty()) statements.push_back(shapes);

@@ -21,12 +21,22 @@ TEST(Repeats, OfTwoAreDescribedByHand) {
   EXPECT_EQ(repeats->count, 2U);
   EXPECT_NEAR(repeats->mean, 11, kRounding);
   EXPECT_NEAR(repeats->standard_deviation, std::sqrt(2.0), kRounding);
-  EXPECT_NEAR(repeats->stated_error, std::sqrt(2.5), kRounding);
-  EXPECT_NEAR(repeats->p_value, std::erfc(std::sqrt(0.8 / 2)), kRounding);
+  EXPECT_NEAR(*repeats->stated_error, std::sqrt(2.5), kRounding);
+  EXPECT_NEAR(*repeats->p_value, std::erfc(std::sqrt(0.8 / 2)), kRounding);
 }
 
 TEST(Repeats, ThatAgreeAreWhatTheirErrorsSay) {
   EXPECT_EQ(DescribeRepeats(Numbers{3, 3, 3}, Numbers{1, 2, 3})->p_value, 1.0);
+}
+
+TEST(Repeats, WithoutStatedErrorsHaveTheirScatterOnly) {
+  const auto repeats = DescribeRepeats(Numbers{10, 12}, {});
+  ASSERT_TRUE(repeats);
+  EXPECT_NEAR(repeats->standard_deviation, std::sqrt(2.0), kRounding);
+  EXPECT_FALSE(repeats->stated_error);
+  EXPECT_FALSE(repeats->p_value);
+  EXPECT_FALSE(repeats->exceed_errors());
+  EXPECT_EQ(repeats->InWords(), "no error is stated");
 }
 
 TEST(Repeats, AreTwoAtLeast) {

@@ -18,28 +18,39 @@ FitResult KnownFit() {
 
 TEST(Established, IsAFitThatConverged) {
   FitResult fit = KnownFit();
-  EXPECT_TRUE(Established(fit, /*strict=*/false));
+  EXPECT_TRUE(Established(fit, Strictness::kNone));
   fit.converged = false;
-  EXPECT_FALSE(Established(fit, /*strict=*/false));
+  EXPECT_FALSE(Established(fit, Strictness::kNone));
 }
 
 TEST(Established, StrictlyEveryFreeParameterIsIdentifiable) {
   FitResult fit = KnownFit();
-  EXPECT_TRUE(Established(fit, /*strict=*/true));
+  EXPECT_TRUE(Established(fit, Strictness::kAdequate));
   fit.parameters[0].identifiability = Identifiability::kBoundedBelow;
-  EXPECT_FALSE(Established(fit, /*strict=*/true));
-  EXPECT_TRUE(Established(fit, /*strict=*/false));
+  EXPECT_FALSE(Established(fit, Strictness::kAdequate));
+  EXPECT_TRUE(Established(fit, Strictness::kNone));
   fit.parameters[0].status = ParameterStatus::kFixed;
-  EXPECT_TRUE(Established(fit, /*strict=*/true));
+  EXPECT_TRUE(Established(fit, Strictness::kAdequate));
 }
 
-TEST(Established, StrictlyTheModelIsNotInadequate) {
+TEST(Established, StrictlyTheModelIsAdequate) {
   FitResult fit = KnownFit();
   fit.adequacy.verdict = AdequacyVerdict::kDoubtful;
-  EXPECT_TRUE(Established(fit, /*strict=*/true));
+  EXPECT_FALSE(Established(fit, Strictness::kAdequate));
+  EXPECT_TRUE(Established(fit, Strictness::kDoubtful));
   fit.adequacy.verdict = AdequacyVerdict::kInadequate;
-  EXPECT_FALSE(Established(fit, /*strict=*/true));
-  EXPECT_TRUE(Established(fit, /*strict=*/false));
+  EXPECT_FALSE(Established(fit, Strictness::kAdequate));
+  EXPECT_FALSE(Established(fit, Strictness::kDoubtful));
+  EXPECT_TRUE(Established(fit, Strictness::kNone));
+}
+
+TEST(Established, DoubtfulTakesEffectiveParametersAndNoOpenOnes) {
+  FitResult fit = KnownFit();
+  fit.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  fit.parameters[0].identifiability = Identifiability::kEffective;
+  EXPECT_TRUE(Established(fit, Strictness::kDoubtful));
+  fit.parameters[0].identifiability = Identifiability::kBoundedBelow;
+  EXPECT_FALSE(Established(fit, Strictness::kDoubtful));
 }
 
 }  // namespace

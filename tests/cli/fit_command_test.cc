@@ -43,7 +43,8 @@ void ExpectParameter(const json& parameter, const std::string& unit) {
   for (const json& end : parameter.at("ci95")) EXPECT_TRUE(IsNumberOrNull(end));
   const Words statuses = {"free", "fixed", "at_lower_bound", "at_upper_bound"};
   EXPECT_THAT(statuses, ::testing::Contains(parameter.at("status").get<std::string>()));
-  const Words verdicts = {"identifiable", "extrapolated", "bounded_below", "not_identifiable"};
+  const Words verdicts = {"identifiable", "effective", "extrapolated", "bounded_below",
+                          "not_identifiable"};
   EXPECT_THAT(verdicts, ::testing::Contains(parameter.at("identifiability").get<std::string>()));
 }
 

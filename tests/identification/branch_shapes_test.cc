@@ -56,9 +56,7 @@ const BranchShape* Find(const FitResult& fit, const std::string& branch) {
   return found == fit.branch_shapes.end() ? nullptr : &*found;
 }
 
-bool IsWarnedOf(const FitResult& fit, const std::string& code) {
-  return fit.FindFinding(code) != nullptr;
-}
+bool IsWarnedOf(const FitResult& fit, FindingCode code) { return fit.FindFinding(code) != nullptr; }
 
 /// 27 normal estimates, one law: 4 standard errors are exceeded once in 600 such tests.
 constexpr double kSurely = 4.0;

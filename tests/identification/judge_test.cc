@@ -1,18 +1,20 @@
 #include "identification/judge/judge.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <stdexcept>
+#include <cmath>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 // Verdicts from estimates and findings alone, by precedence.
 namespace mindahl::identification::judge_test {
 namespace {
+
+using ::testing::ElementsAre;
 
 ParameterEstimate Known(const char* name) {
   return {.name = name,
@@ -24,24 +26,26 @@ ParameterEstimate Known(const char* name) {
           .status = ParameterStatus::kFree};
 }
 
+struct Verdict {
+  FindingCode code;
+  Identifiability verdict;
+};
+
 /// What each finding says of the parameters that it names, as docs/contract.md has it.
-const std::map<std::string_view, Identifiability>& Verdicts() {
-  static const std::map<std::string_view, Identifiability> verdicts = {
-      {"no_model_fits", Identifiability::kNotIdentifiable},
-      {"energy_contradiction", Identifiability::kNotIdentifiable},
-      {"undetermined_parameter", Identifiability::kNotIdentifiable},
-      {"undetermined_combination", Identifiability::kNotIdentifiable},
-      {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
-      {"alpha_not_identifiable", Identifiability::kNotIdentifiable},
-      {"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
-      {"shape_or_rig", Identifiability::kNotIdentifiable},
-      {"slip_force_bounded_below", Identifiability::kBoundedBelow},
-      {"sigma_bounded_below", Identifiability::kBoundedBelow},
-      {"systematic_residual", Identifiability::kIdentifiable},
-      {"turning_points_between_samples", Identifiability::kIdentifiable},
-  };
-  return verdicts;
-}
+constexpr auto kVerdicts = std::to_array<Verdict>({
+    {"no_model_fits", Identifiability::kNotIdentifiable},
+    {"energy_contradiction", Identifiability::kNotIdentifiable},
+    {"undetermined_parameter", Identifiability::kNotIdentifiable},
+    {"undetermined_combination", Identifiability::kNotIdentifiable},
+    {"sigma_not_identifiable", Identifiability::kNotIdentifiable},
+    {"alpha_not_identifiable", Identifiability::kNotIdentifiable},
+    {"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
+    {"shape_or_rig", Identifiability::kNotIdentifiable},
+    {"slip_force_bounded_below", Identifiability::kBoundedBelow},
+    {"sigma_bounded_below", Identifiability::kBoundedBelow},
+    {"systematic_residual", Identifiability::kIdentifiable},
+    {"turning_points_between_samples", Identifiability::kIdentifiable},
+});
 
 Identifiability JudgedWith(ParameterEstimate estimate, std::vector<Finding> findings) {
   Judge({&estimate, 1}, findings);
@@ -49,33 +53,35 @@ Identifiability JudgedWith(ParameterEstimate estimate, std::vector<Finding> find
 }
 
 TEST(Judge, FindingSetsTheVerdictOnWhatItNamesOnly) {
-  for (const auto& [code, verdict] : Verdicts()) {
+  for (const auto& [code, verdict] : kVerdicts) {
     std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
     const Finding finding{.code = code, .parameters = {"alpha"}};
     Judge(estimates, {&finding, 1});
-    EXPECT_EQ(VerdictOf(finding), verdict) << code;
-    EXPECT_EQ(estimates[1].identifiability, verdict) << code;
-    EXPECT_EQ(estimates[0].identifiability, Identifiability::kIdentifiable) << code;
-    EXPECT_EQ(estimates[2].identifiability, Identifiability::kIdentifiable) << code;
+    EXPECT_EQ(estimates[1].identifiability, verdict) << code.row().code;
+    EXPECT_EQ(estimates[0].identifiability, Identifiability::kIdentifiable) << code.row().code;
+    EXPECT_EQ(estimates[2].identifiability, Identifiability::kIdentifiable) << code.row().code;
   }
 }
 
 TEST(Judge, OfTwoFindingsTheWorseHoldsInEitherOrder) {
-  for (const auto& [one, verdict_of_one] : Verdicts()) {
-    for (const auto& [other, verdict_of_other] : Verdicts()) {
+  for (const auto& [one, verdict_of_one] : kVerdicts) {
+    for (const auto& [other, verdict_of_other] : kVerdicts) {
       const Finding first{.code = one, .parameters = {"sigma", "alpha"}};
       const Finding second{.code = other, .parameters = {"alpha"}};
       const Identifiability worse = std::max(verdict_of_one, verdict_of_other);
-      EXPECT_EQ(JudgedWith(Known("alpha"), {first, second}), worse) << one << ", " << other;
-      EXPECT_EQ(JudgedWith(Known("alpha"), {second, first}), worse) << one << ", " << other;
-      EXPECT_EQ(JudgedWith(Known("sigma"), {second, first}), verdict_of_one) << one;
+      EXPECT_EQ(JudgedWith(Known("alpha"), {first, second}), worse)
+          << one.row().code << ", " << other.row().code;
+      EXPECT_EQ(JudgedWith(Known("alpha"), {second, first}), worse)
+          << one.row().code << ", " << other.row().code;
+      EXPECT_EQ(JudgedWith(Known("sigma"), {second, first}), verdict_of_one) << one.row().code;
     }
   }
 }
 
 TEST(Judge, FindingWithoutParametersChangesNone) {
-  for (const auto& [code, verdict] : Verdicts()) {
-    EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = code}}), Identifiability::kIdentifiable) << code;
+  for (const auto& [code, verdict] : kVerdicts) {
+    EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = code}}), Identifiability::kIdentifiable)
+        << code.row().code;
   }
   EXPECT_EQ(JudgedWith(Known("alpha"), {{.code = "weights_not_settled"}}),
             Identifiability::kIdentifiable);
@@ -107,16 +113,72 @@ TEST(Judge, OpenIntervalIsALimitAndNoIntervalIsNothing) {
   EXPECT_EQ(JudgedWith(at_bound, {}), Identifiability::kIdentifiable);
 }
 
+TEST(Judge, IntervalThatIncludesTheDiscrepancyIsEffective) {
+  ParameterEstimate estimate = Known("slip_force");
+  estimate.includes_discrepancy = true;
+  EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kEffective);
+  EXPECT_EQ(
+      JudgedWith(estimate, {{.code = "slip_force_not_identifiable", .parameters = {"slip_force"}}}),
+      Identifiability::kNotIdentifiable)
+      << "a wide one is no answer";
+  estimate.upper95.reset();
+  EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kBoundedBelow);
+}
+
 TEST(Judge, EarlierVerdictIsForgotten) {
   ParameterEstimate estimate = Known("alpha");
   estimate.identifiability = Identifiability::kNotIdentifiable;
   EXPECT_EQ(JudgedWith(estimate, {}), Identifiability::kIdentifiable);
 }
 
-TEST(Judge, CodeWithoutAVerdictIsAMistakeOfTheProgram) {
-  const Finding finding{.code = "bad_weather", .parameters = {"alpha"}};
-  EXPECT_THROW(VerdictOf(finding), std::logic_error);
-  EXPECT_THROW(JudgedWith(Known("alpha"), {finding}), std::logic_error);
+std::vector<std::string> KeptOf(std::span<const ParameterEstimate> estimates,
+                                std::vector<Finding> findings) {
+  DropNeedless(estimates, findings);
+  std::vector<std::string> kept;
+  for (const Finding& finding : findings) kept.emplace_back(finding.code);
+  return kept;
+}
+
+TEST(DropNeedless, KeepsAWideIntervalUnlessAnotherFindingSaysAsMuchOfIt) {
+  const std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
+  const Finding wide{.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "wide"};
+  const Finding rig{.code = "shape_or_rig", .parameters = {"sigma", "alpha"}};
+  const Finding state{.code = "initial_state_undecided", .parameters = {"alpha"}};
+  const Finding of_other{.code = "few_places", .parameters = {"sigma"}};
+  EXPECT_THAT(KeptOf(estimates, {wide}), ElementsAre("alpha_not_identifiable"));
+  EXPECT_THAT(KeptOf(estimates, {wide, rig}), ElementsAre("shape_or_rig"));
+  EXPECT_THAT(KeptOf(estimates, {rig, wide}), ElementsAre("shape_or_rig")) << "in either order";
+  EXPECT_THAT(KeptOf(estimates, {wide, of_other}),
+              ElementsAre("alpha_not_identifiable", "few_places"));
+  EXPECT_THAT(KeptOf(estimates, {state, wide}),
+              ElementsAre("initial_state_undecided", "alpha_not_identifiable"))
+      << "which calls α identifiable";
+}
+
+TEST(DropNeedless, KeepsAnEnergyThatContradictsAnAnswer) {
+  std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
+  const Finding energy{.code = "energy_contradiction",
+                       .parameters = {"sigma", "alpha", "slip_force"}};
+  const Finding shape{.code = "no_model_fits", .parameters = {"sigma", "alpha"}};
+  EXPECT_THAT(KeptOf(estimates, {shape, energy}),
+              ElementsAre("no_model_fits", "energy_contradiction"))
+      << "the slip force is still claimed";
+  estimates[2].upper95.reset();
+  EXPECT_THAT(KeptOf(estimates, {shape, energy}), ElementsAre("no_model_fits"));
+}
+
+TEST(WithdrawInadequate, NeverStandsBesideAMisfitOfNothing) {
+  // No omitted term explains it, and what comes back in every stroke is 0.8 of the variance.
+  FitResult result;
+  result.rms = 3.0;
+  result.records.resize(1);
+  result.records[0].structure.repeatable_share = 0.8;
+  result.findings = {{.code = "no_model_fits", .parameters = {"sigma", "alpha"}}};
+  WithdrawInadequate(result, {});
+  EXPECT_EQ(result.adequacy.verdict, AdequacyVerdict::kInadequate);
+  EXPECT_NEAR(result.adequacy.misfit, 3.0 * std::sqrt(0.8), 1e-12);
+  EXPECT_NEAR(result.adequacy.misfit_over_noise, std::sqrt(0.8 / 0.2), 1e-12);
+  EXPECT_LE(result.adequacy.p_value, Thresholds().repeat_chance);
 }
 
 }  // namespace

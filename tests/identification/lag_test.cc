@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/problem/lagged_motion.h"
 #include "identification/stages.h"
 #include "mindahl/core/error.h"
 
@@ -207,11 +208,18 @@ TEST(Lag, OfNoneIsAFitWithoutOne) {
   EXPECT_EQ(with.records[0].left_out, 0U);
 }
 
+TEST(Lag, IsLookedForUpToTenSamplesOfAFewAndATwentiethOfManyACycle) {
+  EXPECT_EQ(LongestLag(30), 0.2) << "no longer than a fifth of a cycle";
+  EXPECT_EQ(LongestLag(80), 10.0 / 80);
+  EXPECT_EQ(LongestLag(1000), 0.05);
+}
+
 TEST(Lag, LeavesOutWhatItsLongestMayCarryBeyondTheEnds) {
   const BranchLaw law = LawOf(1.0 / 3);
+  // 6 reversals, 7 strokes of 1200 samples: a mean cycle of 342.9, of which a twentieth is 17.1.
+  EXPECT_EQ(FitOne(LateRecord(law, TimesOf(3.0, kStep / 2), kStep), WithLag()).records[0].left_out,
+            2 * 18U);
   const Record record = LateRecord(law, TimesOf(3.0), kStep);
-  // 6 reversals, 7 strokes of 600 samples: a mean cycle of 171.4, of which a twentieth is 8.6.
-  EXPECT_EQ(FitOne(record, WithLag()).records[0].left_out, 2 * 9U);
   FitOptions bounded = WithLag();
   bounded.bounds["lag"] = {0.0, 4.5 * kStep};
   const FitResult fit = FitOne(record, bounded);

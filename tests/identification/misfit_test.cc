@@ -64,7 +64,7 @@ TEST(Misfit, BacklashIsNamed) {
     const char* code;
   };
   // The gap leaves some half of Tc over its share of the stroke: from a gap of a fifth of the
-  // amplitude to either side on the rms passes 10 % of Tc.
+  // amplitude to either side on the rms passes 15 % of the half gap.
   for (const auto& [half_gap, code] : {Case{0.03, "systematic_residual"},
                                        {0.06, "systematic_residual"},
                                        {0.2, "no_model_fits"},
@@ -85,12 +85,12 @@ TEST(Misfit, ForceOfPositionIsNamed) {
     double waves;  // over the half stroke
     const char* code;
   };
-  // A sine of c·Tc has an rms of 0.7c.
+  // A sine of c·Tc has an rms of 0.7c, and adds up to c to T*.
   for (const auto& [size, waves, code] : {Case{0.05, 1.5, "systematic_residual"},
                                           {0.05, 3.0, "systematic_residual"},
                                           {0.1, 1.5, "systematic_residual"},
-                                          {0.3, 1.5, "no_model_fits"},
-                                          {0.3, 3.0, "no_model_fits"}}) {
+                                          {0.5, 1.5, "no_model_fits"},
+                                          {0.5, 3.0, "no_model_fits"}}) {
     Record record = CleanLoop();
     for (std::size_t i = 0; i < record.size(); ++i) {
       const double phase = 2 * std::acos(-1.0) * waves * record.displacement[i] / kReach;

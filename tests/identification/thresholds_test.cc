@@ -15,6 +15,7 @@
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/law_choice.h"
@@ -78,9 +79,16 @@ FitOptions With(const Thresholds& thresholds) {
 /// At gross slip.
 FitResult Made() { return testing::MadeFit(/*peak_force=*/20.0); }
 
+Use UseAt(const Thresholds& thresholds, double misfit) {
+  FitResult result = Made();
+  result.adequacy.misfit = misfit * result.PeakForce();
+  GradeUse(thresholds, result);
+  return result.adequacy.use;
+}
+
 std::string MisfitOf(const Thresholds& thresholds, double misfit, double share) {
   FitResult result = Made();
-  result.residuals.rms = misfit * 10.0;
+  result.residuals.rms = misfit * result.PeakForce();
   result.records[0].structure.repeatable_share = share;
   const auto finding = FindMisfit(result, thresholds);
   return finding ? std::string(finding->code) : "none";
@@ -660,10 +668,15 @@ const std::map<std::string_view, Case>& Cases() {
          return MisfitOf(t, kBelow * 0.02, 0.9) == "none" &&
                 MisfitOf(t, kAbove * 0.02, 0.9) == "systematic_residual";
        }},
+      {"quantitative_misfit",
+       [](const Thresholds& t) {
+         return UseAt(t, kBelow * 0.05) == Use::kQuantitative &&
+                UseAt(t, kAbove * 0.05) == Use::kIndicative;
+       }},
       {"failing_misfit",
        [](const Thresholds& t) {
-         return MisfitOf(t, kBelow * 0.1, 0.9) == "systematic_residual" &&
-                MisfitOf(t, kAbove * 0.1, 0.9) == "no_model_fits";
+         return MisfitOf(t, kBelow * 0.15, 0.9) == "systematic_residual" &&
+                MisfitOf(t, kAbove * 0.15, 0.9) == "no_model_fits";
        }},
       {"repeats_when_poor",
        [](const Thresholds& t) {
@@ -709,6 +722,18 @@ const std::map<std::string_view, Case>& Cases() {
       {"path_excess",
        [](const Thresholds& t) {
          return !WayIsTooLong(t, kBelow * 0.25) && WayIsTooLong(t, kAbove * 0.25);
+       }},
+      {"sliding_energy_ratio",
+       [](const Thresholds& t) {
+         const auto slides = [&](double energy_ratio) {
+           loop::LoopFacts facts;
+           facts.closed = true;
+           facts.peak_force = 1.0;
+           facts.energy_ratio = energy_ratio;
+           facts.half_gap = 0.9;
+           return SlidesOverMostOfStroke(facts, t);
+         };
+         return !slides(kBelow * 0.6) && slides(kAbove * 0.6);
        }},
       {"energy_difference",
        [](const Thresholds& t) {

@@ -43,9 +43,7 @@ bool Holds(const ParameterEstimate& estimate, double truth) {
          (!estimate.upper95 || truth <= *estimate.upper95);
 }
 
-bool IsWarnedOf(const FitResult& fit, const std::string& code) {
-  return fit.FindFinding(code) != nullptr;
-}
+bool IsWarnedOf(const FitResult& fit, FindingCode code) { return fit.FindFinding(code) != nullptr; }
 
 /// Nothing of a result may be NaN or infinite where it is stated.
 void ExpectFinite(const FitResult& fit) {
@@ -168,13 +166,12 @@ TEST(Noise, LoopFarFromSlipNeverHasAnIdentifiableSlipForce) {
     Generator generator(static_cast<std::uint64_t>(seed));
     const FitResult fit = FitOne(WithForceNoise(clean, 0.01 * peak, generator));
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
-    if (slip_force.identifiability == Identifiability::kIdentifiable) {
+    if (slip_force.is_known()) {
       ++confident;
       ADD_FAILURE() << "seed " << seed << ": " << slip_force.value;
     }
     // What it does show is the stiffness: of contact and rig, where it cannot tell these.
-    stiff += fit.Find("sigma")->identifiability == Identifiability::kIdentifiable ||
-             fit.FindFinding("shape_or_rig") != nullptr;
+    stiff += fit.Find("sigma")->is_known() || fit.FindFinding("shape_or_rig") != nullptr;
   }
   EXPECT_EQ(stiff, kSeeds);
   EXPECT_EQ(confident, 0);

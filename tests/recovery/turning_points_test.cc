@@ -39,9 +39,7 @@ Record LoopWithMissedExtremes(double lambda, int samples_per_cycle, double direc
   return record;
 }
 
-bool Warns(const FitResult& fit, const std::string& code) {
-  return fit.FindFinding(code) != nullptr;
-}
+bool Warns(const FitResult& fit, FindingCode code) { return fit.FindFinding(code) != nullptr; }
 
 TEST(TurningPoints, MissedBetweenSamplesAreFoundAndTheContactIsRecovered) {
   const BranchLaw truth = MapMindlinToDahl(kContact);

@@ -49,9 +49,13 @@ ReportInput InputWith(AdequacyVerdict verdict, std::vector<Cause> causes) {
   ReportInput input = MadeInput();
   input.fit.adequacy = {.verdict = verdict,
                         .misfit_over_noise = 1.75,
-                        .misfit = 0.0,
+                        .misfit = 1.6,
                         .p_value = 1e-9,
                         .causes = std::move(causes),
+                        .misfit_over_half_gap = 0.08,
+                        .use = verdict == AdequacyVerdict::kInadequate
+                                   ? identification::Use::kNone
+                                   : identification::Use::kIndicative,
                         .tried = 15};
   return input;
 }
@@ -155,15 +159,16 @@ TEST(AdequacyText, IsTheFirstLineOfTheReport) {
               StartsWith("adequate: what the model misses is 1.8 times the noise (p = 1e-09)"));
   const std::string doubtful =
       VerdictSentence(ReportWith(AdequacyVerdict::kDoubtful, {Lag(), Viscous()}));
-  EXPECT_THAT(doubtful, StartsWith("doubtful: what the model misses is 1.8 times the noise"));
+  EXPECT_THAT(doubtful, StartsWith("doubtful, indicative: the model misses the force by 1.6 N rms, "
+                                   "8 % of the half gap, 1.8 times the noise (p = 1e-09)"));
   EXPECT_THAT(doubtful, HasSubstr("It looks like a force that is read 2.5 ms after"));
   EXPECT_THAT(doubtful, Not(HasSubstr("viscous")));
   const std::string text = ToText(ReportWith(AdequacyVerdict::kDoubtful, {Lag(), Viscous()}));
   EXPECT_THAT(text, HasSubstr("\n  or a viscous force of -12 N s/m"));
   EXPECT_THAT(ToText(ReportWith(AdequacyVerdict::kInadequate, {})),
-              StartsWith("inadequate: what the model misses is 1.8 times the noise"));
+              StartsWith("inadequate, of no use for the law's shape: the model misses the force"));
   EXPECT_THAT(VerdictSentence(ReportWith(AdequacyVerdict::kInadequate, {})),
-              HasSubstr("nor like anything else that was tried"));
+              HasSubstr("It looks like nothing that was tried"));
 }
 
 TEST(AdequacyText, OfARecordTooShortToTryAnythingSaysSo) {
@@ -177,6 +182,8 @@ TEST(AdequacyJson, HasVerdictMisfitAndCauses) {
       json::parse(ToJson(ReportWith(AdequacyVerdict::kDoubtful, {Lag(), Viscous()})))["adequacy"];
   EXPECT_EQ(adequacy["verdict"], "doubtful");
   EXPECT_EQ(adequacy["misfit_over_noise"], 1.75);
+  EXPECT_EQ(adequacy["misfit_over_half_gap"], 0.08);
+  EXPECT_EQ(adequacy["use"], "indicative");
   EXPECT_EQ(adequacy["p_value"], 1e-9);
   ASSERT_EQ(adequacy["causes"].size(), 2u);
   EXPECT_EQ(adequacy["causes"][0], json({{"code", "channel_lag"},

@@ -76,10 +76,16 @@ TEST(Text, SaysWhyAnIntervalIsFarWiderThanItsErrorMakesIt) {
     input.fit.adequacy.tried = 1;
     input.fit.adequacy.causes.push_back(
         {.code = "channel_lag", .unit = "s", .option = "--lag fit"});
-    input.fit.records[0].facts.half_gap = half_gap < 0 ? *slip_force.lower95 : half_gap;
+    slip_force.interval = {{.source = identification::IntervalSource::kOmittedTerms,
+                            .lower = slip_force.lower95,
+                            .upper = slip_force.upper95}};
+    if (half_gap == *slip_force.lower95) {
+      slip_force.interval.push_back({identification::IntervalSource::kPlateau, half_gap, half_gap});
+    }
+    input.fit.records[0].facts.half_gap = half_gap;
     return ToText(MakeReport(std::move(input)));
   };
-  constexpr double kItsLowerEnd = -1;
+  constexpr double kItsLowerEnd = 40.0 - 50 * 1.96 * 0.4;
   EXPECT_THAT(text_of(50, 20.0), HasSubstr("intervals of slip_force: up to 50 times as wide as "
                                            "standard errors make them, to cover what the\n"
                                            "  causes above would change\n"));

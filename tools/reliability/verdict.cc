@@ -168,10 +168,11 @@ Judgement Judge(const FitResult& fit, const Expected& expected) {
     const ParameterEstimate* estimate = fit.Find(name);
     if (estimate == nullptr) return;
     bool is_wrong = false;
-    if (truth && estimate->identifiability != Identifiability::kIdentifiable) {
+    const bool is_effective = estimate->identifiability == Identifiability::kEffective;
+    if (truth && !estimate->is_known()) {
       judgement.outcome = std::max(judgement.outcome, Outcome::kUndecided);
       if (IsFalseLimit(*estimate, *truth)) judgement.false_limit = true;
-    } else if (truth && !caution.no_answer) {
+    } else if (truth && (is_effective || !caution.no_answer)) {
       const Comparison comparison(*estimate, *truth);
       is_wrong = comparison.is_far_off;
       ++judgement.intervals;

@@ -12,18 +12,19 @@ struct Repeats {
   std::size_t count = 0;
   double mean = 0.0;
   double standard_deviation = 0.0;  ///< between them
-  double stated_error = 0.0;        ///< root of the mean square of their standard errors
+  /// Root of the mean square of their standard errors; empty where they state none.
+  std::optional<double> stated_error = {};
   /// Of Σ((x − x̄)/e)² by χ², x̄ weighted: that the stated errors make such a scatter.
-  double p_value = 1.0;
+  std::optional<double> p_value = {};
 
   /// Is the scatter more than the stated errors make, at a chance of one in a hundred?
-  [[nodiscard]] bool exceed_errors() const { return p_value < 0.01; }
-  /// "as the errors say, p 0.43".
+  [[nodiscard]] bool exceed_errors() const { return p_value && *p_value < 0.01; }
+  /// Returns "as the errors say, p 0.43", or "no error is stated".
   [[nodiscard]] std::string InWords() const;
 };
 
 /// @param values  of one quantity, one a test
-/// @param errors  their standard errors, > 0
+/// @param errors  their standard errors, > 0; none where they state none
 /// @returns nothing for fewer than two
 /// @throws InvalidArgument where sizes differ
 std::optional<Repeats> DescribeRepeats(std::span<const double> values,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,14 @@ enum class AdequacyVerdict {
   kAdequate,    ///< residuals look like noise, as far as this record tells
   kDoubtful,    ///< they do not; intervals cover what the causes that explain it would change
   kInadequate,  ///< parameters of this model mean nothing for this record
+};
+
+/// What the fitted parameters are good for, by the force that the model misses over the half gap
+/// measured without a model.
+enum class Use {
+  kQuantitative,  ///< no more than 5 % of it
+  kIndicative,    ///< no more than 15 % of it
+  kNone,
 };
 
 /// Something beside the model that the residuals look like.
@@ -35,7 +44,10 @@ struct Adequacy {
   double misfit = 0.0;        ///< that rms [N]
   double p_value = 1.0;       ///< that noise alone looks like that
   std::vector<Cause> causes;  ///< those that help, the best first
-  std::size_t tried = 0;      ///< causes that the record could tell; 0: there is no verdict
+  /// rms of what the model misses over the measured half gap; empty where no gap was measured.
+  std::optional<double> misfit_over_half_gap;
+  Use use = Use::kNone;
+  std::size_t tried = 0;  ///< causes that the record could tell; 0: there is no verdict
 };
 
 }  // namespace mindahl::identification

@@ -6,20 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "mindahl/identification/finding_code.h"
+
 namespace mindahl::identification {
 
-/// How much a finding matters to whoever uses the numbers.
-enum class Severity {
-  kNote,     ///< worth knowing: the answer stands
-  kWarning,  ///< something should be done, or part of the answer not be believed
-  kFailure,  ///< the answer is not one
-};
-
 /// Something that a fit found out about a record, a model or a parameter, as data: `report` has the
-/// sentence for it. Codes are stable, for scripts; docs/contract.md lists them.
+/// sentence for it.
 struct Finding {
-  std::string_view code;
-  Severity severity = Severity::kWarning;
+  FindingCode code;
+  Severity severity = code.row().severity;
   std::vector<std::string> parameters = {};  ///< those that it is about; may be empty
   /// What was found, by name, in SI.
   std::vector<std::pair<std::string_view, double>> numbers = {};

@@ -34,19 +34,29 @@ enum class Depth {
                ///< and from its profile where that is wrong about Tc
   kIntervals,  ///< and what repeats in the residuals, adequacy, its causes, and verdicts; intervals
                ///< cover what these would change
-  kFull,       ///< and likelihood profiles where the parabola may be wrong, and tests of α and
-               ///< of the law
+  kFull,       ///< and tests of α and of the law
   kThorough,   ///< and whether branches are copies of each other, of whatever shape
 };
 
 enum class ParameterStatus { kFree, kFixed, kAtLowerBound, kAtUpperBound };
 
-/// In the order of precedence: of several the last holds.
-enum class Identifiability {
-  kIdentifiable,
-  kExtrapolated,     ///< the law's asymptote, which the record stays away from
-  kBoundedBelow,     ///< the data give only a lower limit
-  kNotIdentifiable,  ///< none, or only in combination with others
+/// Why an interval reaches as far as it does.
+enum class IntervalSource {
+  kParabola,      ///< curvature of the likelihood at its maximum
+  kProfile,       ///< the likelihood itself, where the parabola is not good enough
+  kInitialState,  ///< the other initial state, which the record does not exclude
+  kOmittedTerms,  ///< terms that the model lacks and the residuals look like
+  kPlateau,       ///< half gap of the loop, measured without a model
+  kSmallShape,    ///< an α above the bound 0, where the search stopped
+  kDiscrepancy,   ///< what the model misses, of the size that the record has it
+  kCarriedForce,  ///< not below the force that was measured to be carried
+};
+
+/// A contribution to an interval; ends are empty where it is open.
+struct IntervalPart {
+  IntervalSource source = IntervalSource::kParabola;
+  std::optional<double> lower = {};
+  std::optional<double> upper = {};
 };
 
 struct ParameterEstimate {
@@ -57,11 +67,17 @@ struct ParameterEstimate {
   std::optional<double> lower95;         ///< ends of the 95 % interval; empty where it is open
   std::optional<double> upper95;
   ParameterStatus status = ParameterStatus::kFixed;
+  bool includes_discrepancy = false;  ///< does the interval include what the model misses?
   Identifiability identifiability = Identifiability::kNotIdentifiable;
+  /// What the interval is the union of; empty where there is none.
+  std::vector<IntervalPart> interval = {};
 
-  /// Given, or identifiable.
+  /// True if a contribution of this kind sets an end of the interval.
+  [[nodiscard]] bool IsSetBy(IntervalSource source) const;
+
+  /// True if given, identifiable or effective.
   [[nodiscard]] bool is_known() const {
-    return status == ParameterStatus::kFixed || identifiability == Identifiability::kIdentifiable;
+    return status == ParameterStatus::kFixed || identifiability <= Identifiability::kEffective;
   }
 };
 
@@ -122,6 +138,10 @@ struct RecordFit {
   bool load_varies = false;           ///< within the record, as the law was told
   /// Of a load series, from Depth::kFull on; empty where the record by itself is no fit.
   std::optional<RecordAlone> alone;
+  /// Energy [J] that the fitted law loses in each cycle of `facts`, between ± their amplitude;
+  /// empty where every cycle loses what the steady loop does. Of a virgin contact whose slip forces
+  /// differ.
+  std::vector<double> law_energy;
   /// Of the residuals, in the displacement's sense; from depth kIntervals on.
   ResidualStructure structure;
   /// [N], in the file's sense, offsets included; in a fit of the displacement as measured.
@@ -159,12 +179,15 @@ struct FitResult {
   /// bounded, under loads that differ or vary or a lag, where branches are no copies of each
   /// other, and in a fit of the displacement.
   std::optional<MemoryTest> memory;
-  /// From Depth::kFull on, and at kErrors; empty where the parabola was good enough.
+  /// From Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;
   ResidualStatistics residuals;
+  /// Of Student's law of the errors: practically infinite where the noise is known, else that of
+  /// the residuals, which empty stands for.
+  std::optional<double> error_degrees_of_freedom;
   Adequacy adequacy;  ///< from depth kIntervals on
   std::vector<StartReport> starts;
   std::vector<RecordFit> records;
@@ -174,7 +197,7 @@ struct FitResult {
   [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
 
   /// nullptr when nothing of the kind was found.
-  [[nodiscard]] const Finding* FindFinding(std::string_view code) const;
+  [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
 
   /// The record with the largest amplitude, in a load series over N^{1−p}, to which the gross-slip
   /// displacement is in proportion: the one that comes nearest to gross slip.
@@ -188,6 +211,21 @@ struct FitResult {
 
   /// The largest force [N] of the widest record, as it would be at the mean load of all.
   [[nodiscard]] double PeakForce() const;
+
+  /// Degrees of freedom of Student's law of the errors.
+  [[nodiscard]] double ErrorDegreesOfFreedom() const {
+    return error_degrees_of_freedom.value_or(residuals.degrees_of_freedom);
+  }
+
+  /// Error of a parameter [its unit] in whatever follows from it: the way to the farther end of its
+  /// interval, along the logarithm of a positive parameter, in units of the half width of Student's
+  /// 95 % interval; the standard error where that is larger. 0 of a parameter that is held,
+  /// infinite of one whose interval is open or that has no error.
+  [[nodiscard]] double ErrorOf(const ParameterEstimate& estimate) const;
+
+  /// The same towards a value that the parameter is tested against: the value is beyond the 95 %
+  /// interval if and only if it lies farther away than Student's quantile of this error.
+  [[nodiscard]] double ErrorTowards(const ParameterEstimate& estimate, double value) const;
 
   [[nodiscard]] bool is_load_series() const { return Find("load_exponent") != nullptr; }
 };

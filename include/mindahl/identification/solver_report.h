@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace mindahl::identification {
 
@@ -8,9 +9,9 @@ namespace mindahl::identification {
 struct SolverReport {
   /// "tiny_solver" (ceres::TinySolver), "solve" (ceres::Solve), or "none" where every parameter
   /// that is not linear is fixed.
-  std::string solver = "none";
+  std::string_view solver = "none";
   /// Ceres' termination type: CONVERGENCE, NO_CONVERGENCE, FAILURE; "not run".
-  std::string termination = "not run";
+  std::string_view termination = "not run";
   std::string message = "not run";  ///< Ceres' reason
   int iterations = 0;               ///< of all searches from this start
   double initial_cost = 0.0;        ///< ½ Σ of the squared weighted residuals [N² or m²]

@@ -14,7 +14,8 @@ struct Thresholds {
   double indistinguishable = 4.0;
   double rigid_beside_rig = 30.0;
   double poor_misfit = 0.02;
-  double failing_misfit = 0.1;
+  double quantitative_misfit = 0.05;
+  double failing_misfit = 0.15;
   double repeats_when_poor = 0.3;
   double repeats_when_failing = 0.1;
   double repeat_chance = 1e-3;
@@ -22,6 +23,7 @@ struct Thresholds {
   double same_directions = 0.6;
   double early_in_stroke = 0.25;
   double path_excess = 0.25;
+  double sliding_energy_ratio = 0.6;
   double energy_difference = 0.2;
   double energy_errors = 5.0;
   double trend_size = 0.01;

@@ -16,12 +16,10 @@ namespace mindahl::report {
 double Correlation(const identification::FitResult& fit, std::string_view first,
                    std::string_view second);
 
-/// Standard error of a parameter: 0 of one that was held, infinite of one that the fit leaves open.
-double StandardErrorOf(const identification::ParameterEstimate& estimate);
-
 /// IdentifyContact() of a fit, with its errors and their correlation, and by the rules that
 /// keep it from saying what the record does not tell:
-///  - a parameter that was held is exact, one that the record leaves open has an infinite error;
+///  - errors are those of the parameters' intervals, FitResult::ErrorOf(): a parameter that was
+///    held is exact, one that the record leaves open has an infinite error;
 ///  - no μ from a slip force that is not identifiable: `unidentified` then has the lower limit;
 ///  - no ρ and no p₀ from a load series that denies Hertz's law.
 /// @param fit  one that did not fail

@@ -9,21 +9,26 @@
 
 namespace mindahl::report {
 
-/// Is the fitted exponent Mindlin's 1/3?
+/// Is the fitted exponent Mindlin's 1/3? What the interval of α says: 1/3 is rejected if and only
+/// if it lies outside. Not asked where α was held or is not identifiable.
 struct AlphaTest {
   std::optional<double> minus_third;  ///< α − 1/3; empty where α was held
-  std::optional<double> z;            ///< (α − 1/3)/SE; empty where α has no standard error
-  std::optional<double> p_value;      ///< two-sided, of Student's t
+  std::optional<bool> is_rejected;
+  std::optional<double> z;  ///< over FitResult::ErrorTowards(1/3); empty where α is at a bound
+  std::optional<double> p_value;  ///< two-sided, of Student's t
+  /// Likelihood ratio of the model with α = 1/3; empty where α's interval includes more than this
+  /// model and says otherwise.
+  std::optional<identification::MindlinTest> likelihood;
 };
 
 /// Is the fitted stiffness 8a/G*?
 struct StiffnessTest {
   std::string_view radius;         ///< whence a: "hertz", or "given"
   contact::PropagatedValue ratio;  ///< σ/(8a/G*): 1 where Hertz and Mindlin hold
-  std::optional<identification::Interval>
-      interval95;                 ///< empty, as the rest, where the ratio's error is 0 or open
-  std::optional<double> z;        ///< (ratio − 1)/SE
-  std::optional<double> p_value;  ///< two-sided
+  std::optional<identification::Interval> interval95 =
+      {};                              ///< empty, as the rest, where the ratio's error is 0 or open
+  std::optional<double> z = {};        ///< (ratio − 1)/SE
+  std::optional<double> p_value = {};  ///< two-sided
 };
 
 /// Significance of the tests as they are put into words: the usual convention.
@@ -39,7 +44,8 @@ AlphaTest TestAlpha(const identification::FitResult& fit);
 StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
                             double degrees_of_freedom);
 
-/// One for each radius that is known besides the fit, where G* is known too.
+/// One for each radius that is known besides the fit, where G* is known too; with the ratio alone
+/// where σ is not identifiable.
 std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
                                          const contact::IdentifiedContact& contact);
 

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit.h"
@@ -15,11 +13,8 @@ namespace mindahl::report {
 /// @param finding  with the numbers and parameters that its code has (docs/contract.md)
 /// @param fit      the fit that found it: the model's name and why the solver stopped are its own
 /// @param units    of the record
-/// @throws std::logic_error for a code or kind without a sentence, and for a number that is missing
+/// @throws std::logic_error for a kind without a sentence, and for a number that is missing
 std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit,
                      const Units& units = kUnitsOfForce);
-
-/// Every code that has a sentence.
-std::vector<std::string_view> FindingCodes();
 
 }  // namespace mindahl::report

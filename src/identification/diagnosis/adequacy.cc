@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/grade.h"
 
 namespace mindahl::identification {
 namespace {
@@ -124,7 +125,7 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {
 }
 
 std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds) {
-  if (!(MisfitOf(result) > thresholds.poor_misfit)) return std::nullopt;
+  if (!(MisfitOf(result, thresholds) > thresholds.poor_misfit)) return std::nullopt;
   const double correlation = 1 - result.residuals.durbin_watson / 2;
   if (!(correlation > 0)) return std::nullopt;
   const RecordFit& widest = result.WidestRecord();
@@ -139,7 +140,7 @@ bool IsInadequate(const FitResult& result, const Thresholds& thresholds) {
   if (result.FindFinding("no_model_fits") != nullptr) return true;
   if (result.FindFinding("loop_not_seen") != nullptr) return true;
   return result.adequacy.verdict == AdequacyVerdict::kDoubtful &&
-         result.adequacy.misfit > thresholds.failing_misfit * SizeOfResponse(result);
+         MissedForce(result) > thresholds.failing_misfit * ScaleOfMisfit(result, thresholds);
 }
 
 }  // namespace mindahl::identification

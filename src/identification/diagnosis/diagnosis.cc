@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "identification/diagnosis/grade.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -65,16 +66,15 @@ std::string_view KindOf(const ResidualStructure& structure, const Peak& peak,
 
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local) {
   if (local.null.empty()) return std::nullopt;
-  Finding finding;
+  std::vector<std::string> names;
   for (std::size_t k = 0; k < local.columns.size(); ++k) {
-    if (!local.determined[k]) {
-      finding.parameters.push_back(problem.parameters.NameOf(local.columns[k]));
-    }
+    if (!local.determined[k]) names.push_back(problem.parameters.NameOf(local.columns[k]));
   }
   // As many directions as names: each of them is one of its own.
-  finding.code = local.null.size() >= finding.parameters.size() ? "undetermined_parameter"
-                                                                : "undetermined_combination";
-  return finding;
+  const bool are_alone = local.null.size() >= names.size();
+  return Finding{.code = are_alone ? FindingCode("undetermined_parameter")
+                                   : FindingCode("undetermined_combination"),
+                 .parameters = std::move(names)};
 }
 
 std::vector<Finding> FindOpenSlipForce(const FitResult& result, const SlipForceProfile& profile) {
@@ -103,20 +103,19 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart) {
 }
 
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kCodes = {
-      {{"sigma", "sigma_not_identifiable"},
-       {"alpha", "alpha_not_identifiable"},
-       {"slip_force", "slip_force_not_identifiable"}}};
+  struct Row {
+    std::string_view name;
+    FindingCode code;
+  };
+  constexpr std::array kCodes = {Row{"sigma", "sigma_not_identifiable"},
+                                 Row{"alpha", "alpha_not_identifiable"},
+                                 Row{"slip_force", "slip_force_not_identifiable"}};
   std::vector<Finding> findings;
   for (const auto& [name, code] : kCodes) {
     const ParameterEstimate& estimate = *result.Find(name);
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
       continue;
     }
-    const bool is_named = std::ranges::any_of(result.findings, [&](const Finding& finding) {
-      return std::ranges::find(finding.parameters, name) != finding.parameters.end();
-    });
-    if (is_named) continue;
     const double lower = *estimate.lower95;
     const double upper = *estimate.upper95;
     const bool wide = name == "alpha"
@@ -131,15 +130,8 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
   return findings;
 }
 
-double SizeOfResponse(const FitResult& result) {
-  if (result.response == loop::Channel::kForce) {
-    return std::min(result.law.slip_force, result.PeakForce());
-  }
-  return result.WidestRecord().measures.amplitude;
-}
-
-double MisfitOf(const FitResult& result) {
-  const double size = SizeOfResponse(result);
+double MisfitOf(const FitResult& result, const Thresholds& thresholds) {
+  const double size = ScaleOfMisfit(result, thresholds);
   if (!(size > 0)) return 0.0;
   const double rms = result.outliers > 0
                          ? std::hypot(result.adequacy.misfit, result.ResponseNoise())
@@ -148,7 +140,7 @@ double MisfitOf(const FitResult& result) {
 }
 
 std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thresholds) {
-  const double misfit = MisfitOf(result);
+  const double misfit = MisfitOf(result, thresholds);
   if (!(misfit > thresholds.poor_misfit)) return std::nullopt;
   const bool fails = misfit > thresholds.failing_misfit;
   for (const RecordFit& record : result.records) {
@@ -158,15 +150,16 @@ std::optional<Finding> FindMisfit(const FitResult& result, const Thresholds& thr
       continue;
     }
     const Peak peak = LargestBin(structure);
-    return Finding{.code = fails ? "no_model_fits" : "systematic_residual",
-                   .parameters = fails ? std::vector<std::string>{"sigma", "alpha"}
-                                       : std::vector<std::string>{},
-                   .numbers = {{"misfit", misfit},
-                               {"repeatable_share", structure.repeatable_share},
-                               {"largest", std::abs(peak.bin.mean)},
-                               {"position", peak.bin.position},
-                               {"direction", peak.direction}},
-                   .kind = KindOf(structure, peak, thresholds)};
+    return Finding{
+        .code = fails ? FindingCode("no_model_fits") : FindingCode("systematic_residual"),
+        .parameters =
+            fails ? WithoutEffective(result, {"sigma", "alpha"}) : std::vector<std::string>{},
+        .numbers = {{"misfit", misfit},
+                    {"repeatable_share", structure.repeatable_share},
+                    {"largest", std::abs(peak.bin.mean)},
+                    {"position", peak.bin.position},
+                    {"direction", peak.direction}},
+        .kind = KindOf(structure, peak, thresholds)};
   }
   return std::nullopt;
 }
@@ -207,6 +200,23 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
                    .kind = "one_stroke"};
   }
   return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
+}
+
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
+  for (const std::size_t p : problem.parameters.free()) {
+    const Parameter& parameter = problem.parameters[p];
+    const bool is_limit_of_law = parameter.term->positive || p == kShape;
+    if (is_limit_of_law || !IsSearchLimit(parameter, solution.side[p])) continue;
+    Finding finding{.code = "search_limit",
+                    .parameters = {problem.parameters.NameOf(p)},
+                    .numbers = {{"bound", parameter.ToValue(solution.theta[p])}}};
+    for (const std::size_t law : {kStiffness, kShape, kSlipForce}) {
+      if (problem.parameters[law].fixed) continue;
+      finding.parameters.push_back(problem.parameters.NameOf(law));
+    }
+    return finding;
+  }
+  return std::nullopt;
 }
 
 std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution) {
@@ -316,9 +326,7 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
 }
 
 Finding FoundTurningPoints(double longest_overshoot) {
-  return {.code = "turning_points_between_samples",
-          .severity = Severity::kNote,
-          .numbers = {{"overshoot", longest_overshoot}}};
+  return {.code = "turning_points_between_samples", .numbers = {{"overshoot", longest_overshoot}}};
 }
 
 }  // namespace mindahl::identification

@@ -26,16 +26,12 @@ Finding FoundOpenStiffness();
 /// Parameters that the other past of the contact has elsewhere; nothing without any.
 std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
 
-/// Intervals too wide to call a parameter known, of those that no other finding names.
+/// Closed intervals too wide to call a parameter known.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 
-/// What a misfit is held against [N or m]: min(Tc, T*), or the amplitude of a displacement.
-double SizeOfResponse(const FitResult& result);
-
-/// rms of the residuals over that [-], without what a robust loss has weighed down; 0 where
-/// there is none. Where the slip force is open it says nothing of how well the loop is
-/// followed.
-double MisfitOf(const FitResult& result);
+/// Returns the rms of the residuals over ScaleOfMisfit() [-], without what a robust loss has
+/// weighed down; 0 where there is none.
+double MisfitOf(const FitResult& result, const Thresholds& thresholds);
 
 /// Residuals that come back at the same place of every stroke, and are more than noise could
 /// explain: where they are, and what kind of friction or rig leaves such a trace.
@@ -67,6 +63,11 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
                             const Thresholds& thresholds);
 
 Finding FoundTurningPoints(double longest_overshoot);
+
+/// `search_limit`: a parameter that stopped at a bound of the program's own beyond which the model
+/// would go on to change. With it none of the law's is to be believed. Nothing of σ, α, Tc and a
+/// rig, which are a rigid contact, a straight line, a rigid rig there: their intervals are open.
+std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution);
 
 /// `alpha_limited_by_load`: α at the bound that the law of a varying load sets.
 std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution);

@@ -11,13 +11,13 @@ void SayLaw(const std::optional<LawChoice>& choice, FitResult& result) {
   if (is_inadequate && !other_is_better) return;
   result.law_choice = choice;
   if (choice->decided && !other_is_better) return;
-  Finding finding{.code = other_is_better ? "other_law_fits_better" : "law_undecided",
-                  .severity = other_is_better ? Severity::kWarning : Severity::kNote,
-                  .parameters = {"sigma", "slip_force"},
-                  .numbers = {{"sigma", choice->law.tangential_stiffness},
-                              {"alpha", choice->law.shape_exponent},
-                              {"slip_force", choice->law.slip_force}},
-                  .kind = choice->alternative->name};
+  Finding finding{
+      .code = other_is_better ? FindingCode("other_law_fits_better") : FindingCode("law_undecided"),
+      .parameters = {"sigma", "slip_force"},
+      .numbers = {{"sigma", choice->law.tangential_stiffness},
+                  {"alpha", choice->law.shape_exponent},
+                  {"slip_force", choice->law.slip_force}},
+      .kind = choice->alternative->name};
   if (choice->delta_aicc) finding.numbers.emplace_back("delta_aicc", *choice->delta_aicc);
   result.findings.push_back(std::move(finding));
 }

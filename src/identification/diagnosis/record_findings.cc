@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "identification/diagnosis/grade.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/trend.h"
 #include "mindahl/loop/displacement_noise.h"
@@ -14,8 +15,6 @@
 
 namespace mindahl::identification {
 namespace {
-
-constexpr std::array<std::string_view, 3> kLawParameters = {"sigma", "alpha", "slip_force"};
 
 /// Counted as the report does, after smoothing.
 Finding UncertainReversals(const RecordFit& record) {
@@ -29,7 +28,6 @@ Finding UncertainReversals(const RecordFit& record) {
 
 Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
   Finding finding{.code = "glitches_left_out",
-                  .severity = Severity::kNote,
                   .numbers = {{"spikes", static_cast<double>(glitches.spikes)},
                               {"dropouts", static_cast<double>(glitches.dropouts)},
                               {"held", static_cast<double>(glitches.held)}}};
@@ -48,33 +46,29 @@ bool RunsOn(const loop::CycleFacts& cycle, double widest) {
   return !cycle.returns && cycle.amplitude > kTwoStrokes * widest;
 }
 
-/// Mean energy [J] of the widest steady cycles, of those most of whose samples count.
-std::optional<double> EnergyThatCounts(const RecordFit& record) {
+struct CycleEnergies {
+  double measured = 0.0;  // [J]
+  double of_law = 0.0;
+};
+
+/// Mean energies of the widest steady cycles, of those most of whose samples count.
+/// @param of_steady_loop  what the law loses in a cycle where that is the same in all
+std::optional<CycleEnergies> EnergiesThatCount(const RecordFit& record, double of_steady_loop) {
   const std::vector<loop::CycleFacts>& cycles = record.facts.cycles;
-  double sum = 0.0;
+  CycleEnergies sum;
   double count = 0.0;
   for (std::size_t k = 0; k < cycles.size(); ++k) {
     if (!cycles[k].steady || RunsOn(cycles[k], record.measures.amplitude)) continue;
     const std::size_t end = k + 1 < cycles.size() ? cycles[k + 1].start : record.counts.size();
     const auto samples = std::span(record.counts).subspan(cycles[k].start, end - cycles[k].start);
     if (2 * static_cast<std::size_t>(std::ranges::count(samples, 0)) > samples.size()) continue;
-    sum += cycles[k].energy;
+    sum.measured += cycles[k].energy;
+    if (!record.law_energy.empty()) sum.of_law += record.law_energy[k];
     ++count;
   }
   if (count == 0) return std::nullopt;
-  return sum / count;
-}
-
-/// Whether the fit sets both limits to a parameter of the law that nothing found so far is about.
-bool ClaimsAnAnswer(const FitResult& result) {
-  return std::ranges::any_of(kLawParameters, [&](std::string_view name) {
-    const ParameterEstimate* estimate = result.Find(name);
-    if (estimate == nullptr || estimate->status == ParameterStatus::kFixed) return false;
-    if (!estimate->lower95 || !estimate->upper95) return false;
-    return std::ranges::none_of(result.findings, [&](const Finding& finding) {
-      return std::ranges::find(finding.parameters, name) != finding.parameters.end();
-    });
-  });
+  return CycleEnergies{.measured = sum.measured / count,
+                       .of_law = record.law_energy.empty() ? of_steady_loop : sum.of_law / count};
 }
 
 }  // namespace
@@ -97,7 +91,7 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thr
       append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
     }
     if (record.glitches.total() > 0) append(GlitchesLeftOut(record.glitches));
-    if (!record.facts.closed) append({.code = "no_closed_cycle", .severity = Severity::kNote});
+    if (!record.facts.closed) append({.code = "no_closed_cycle"});
   }
   return findings;
 }
@@ -116,10 +110,9 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
       squares += change * change;
       ++count;
     }
-    Finding& finding = findings.emplace_back(
-        Finding{.code = is_followed ? "load_followed" : "load_not_followed",
-                .severity = is_followed ? Severity::kNote : Severity::kWarning,
-                .numbers = {{"variation", std::sqrt(2 * squares / std::max(count, 1.0))}}});
+    Finding& finding = findings.emplace_back(Finding{
+        .code = is_followed ? FindingCode("load_followed") : FindingCode("load_not_followed"),
+        .numbers = {{"variation", std::sqrt(2 * squares / std::max(count, 1.0))}}});
     if (data.records.size() > 1) {
       finding.numbers.emplace_back("record", static_cast<double>(r + 1));
     }
@@ -130,9 +123,8 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
 std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                                                const Thresholds& thresholds) {
   const RecordFit& record = result.WidestRecord();
-  const std::optional<double> measured = EnergyThatCounts(record);
   // What a robust loss weighs down is in the measured energy all the same.
-  if (!measured || !ClaimsAnAnswer(result) || result.outliers > 0) return std::nullopt;
+  if (result.outliers > 0) return std::nullopt;
   // Whose energy is that of the load's course too.
   if (record.load_varies) return std::nullopt;
   // These lose, or shift, energy that is not the contact's.
@@ -144,10 +136,14 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   if (has_other) return std::nullopt;
   const double amplitude = record.facts.amplitude;
   const models::BranchLaw law = result.LawOf(record);
-  const double model = models::SteadyLoopEnergy(
-      *result.model, law, models::ContactAmplitude(*result.model, law, result.rig, amplitude));
-  const double difference = std::abs(*measured - model);
-  if (!(difference > thresholds.energy_difference * std::max(std::abs(*measured), model))) {
+  const std::optional<CycleEnergies> energies = EnergiesThatCount(
+      record,
+      models::SteadyLoopEnergy(
+          *result.model, law, models::ContactAmplitude(*result.model, law, result.rig, amplitude)));
+  if (!energies) return std::nullopt;
+  const auto [measured, model] = *energies;
+  const double difference = std::abs(measured - model);
+  if (!(difference > thresholds.energy_difference * std::max(std::abs(measured), model))) {
     return std::nullopt;
   }
   // ∮ T dδ sums forces over a way of 4X, or displacements over one of 4T*.
@@ -156,8 +152,8 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                        std::sqrt(std::max(1.0, result.residuals.effective_samples));
   if (!(difference > thresholds.energy_errors * error)) return std::nullopt;
   return Finding{.code = "energy_contradiction",
-                 .parameters = {"sigma", "alpha", "slip_force"},
-                 .numbers = {{"measured", *measured}, {"model", model}, {"amplitude", amplitude}}};
+                 .parameters = WithoutEffective(result, {"sigma", "alpha", "slip_force"}),
+                 .numbers = {{"measured", measured}, {"model", model}, {"amplitude", amplitude}}};
 }
 
 bool NoiseIsInDisplacement(double share_of_displacement, double share_of_force,
@@ -192,7 +188,6 @@ std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& reco
   }
   if (!NoiseIsInDisplacement(of_displacement, of_force, thresholds)) return std::nullopt;
   return Finding{.code = "noise_in_displacement",
-                 .severity = Severity::kNote,
                  .numbers = {{"of_displacement", of_displacement}, {"of_force", of_force}}};
 }
 

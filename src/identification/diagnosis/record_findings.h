@@ -32,7 +32,7 @@ std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& reco
                                                const Thresholds& thresholds);
 
 /// Energy of the widest steady cycles that count against that of the fitted law at their amplitude,
-/// where the fit claims to know a parameter of the law, and no viscous force takes part of it.
+/// where no viscous force takes part of it.
 std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                                                const Thresholds& thresholds);
 

@@ -7,18 +7,18 @@
 
 #include "identification/inference/column_test.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/intervals.h"
 
 namespace mindahl::identification {
 namespace {
 
-/// The Jacobian without the columns of parameters at a bound: what these would still explain, they
-/// may not.
+/// Returns the Jacobian without the columns of parameters at a bound, the user's or the program's:
+/// what these would still explain, they may not.
 Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
                               Eigen::MatrixXd jacobian) {
   const auto& free = problem.parameters.free();
   for (std::size_t j = 0; j < free.size(); ++j) {
-    const Parameter& parameter = problem.parameters[free[j]];
-    if (parameter.bounded_by_user && solution.side[free[j]] != BoundSide::kInside) {
+    if (solution.side[free[j]] != BoundSide::kInside) {
       jacobian.col(static_cast<Eigen::Index>(j)).setZero();
     }
   }
@@ -129,9 +129,10 @@ void WidenByDepartures(const Problem& problem, const Solution& solution,
                           (is_of_force ? std::min(apart, kFarthest) : 0.0);
       const double one = parameter.ToValue(solution.theta[p] + step - half);
       const double other = parameter.ToValue(solution.theta[p] + step + half);
-      if (estimate.lower95) estimate.lower95 = std::min({*estimate.lower95, one, other});
-      if (estimate.upper95) estimate.upper95 = std::max({*estimate.upper95, one, other});
-      if (p == kShape && estimate.lower95) estimate.lower95 = std::max(*estimate.lower95, 0.0);
+      const auto [lower, upper] = std::minmax(one, other);
+      Include(estimate, {.source = IntervalSource::kOmittedTerms,
+                         .lower = p == kShape ? std::max(lower, 0.0) : lower,
+                         .upper = upper});
     }
   }
 }

@@ -1,25 +1,14 @@
 #include "identification/inference/covering.h"
 
 #include <algorithm>
-#include <optional>
+#include <array>
+#include <string_view>
 
 #include "identification/inference/estimates.h"
+#include "identification/inference/intervals.h"
+#include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
-namespace {
-
-/// An end of an interval that another has farther out; open where that is.
-template <typename Farther>
-void Cover(std::optional<double>& end, const std::optional<double>& by, Farther farther) {
-  if (!by) {
-    end.reset();
-  } else if (end) {
-    end = farther(*end, *by);
-  }
-}
-
-}  // namespace
-
 std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& rival,
                                         const Solution& rival_solution, const Noise& noise,
                                         const Thresholds& thresholds, double peak_force,
@@ -38,8 +27,9 @@ std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& r
                           (other.value < *estimate.lower95 || other.value > *estimate.upper95);
     if (is_apart) apart.push_back(estimate.name);
     if (other.lower95 && p == kSlipForce) other.lower95 = std::max(*other.lower95, peak_force);
-    Cover(estimate.lower95, other.lower95, [](double a, double b) { return std::min(a, b); });
-    Cover(estimate.upper95, other.upper95, [](double a, double b) { return std::max(a, b); });
+    Include(
+        estimate,
+        {.source = IntervalSource::kInitialState, .lower = other.lower95, .upper = other.upper95});
   }
   response.Bind(problem);
   return apart;
@@ -52,8 +42,34 @@ void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
   const bool slips = result.PeakForce() >= thresholds.mobilised_by_asymptote * slip_force.value;
   if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
   const double half_gap = *widest.facts.half_gap / widest.load_ratio;
-  slip_force.lower95 = std::min(*slip_force.lower95, half_gap);
-  slip_force.upper95 = std::max(*slip_force.upper95, half_gap);
+  Include(slip_force, {.source = IntervalSource::kPlateau, .lower = half_gap, .upper = half_gap});
+}
+
+void KeepAboveCarriedForce(FitResult& result) {
+  const RecordFit& widest = result.WidestRecord();
+  if (result.response == loop::Channel::kDisplacement || !widest.facts.half_gap) return;
+  const bool has_other =
+      std::ranges::any_of(result.parameters, [](const ParameterEstimate& estimate) {
+        return estimate.name == "viscous" || estimate.name == "lag" ||
+               estimate.name.starts_with(NameOfCovariate(""));
+      });
+  constexpr std::array<std::string_view, 5> kTurnWithMotion = {
+      "viscous_force", "covariate", "guide_friction", "channel_lag", "normal_load"};
+  const bool may_have_other = std::ranges::any_of(result.adequacy.causes, [&](const Cause& cause) {
+    return std::ranges::find(kTurnWithMotion, cause.code) != kTurnWithMotion.end();
+  });
+  ParameterEstimate& slip_force = result.parameters[kSlipForce];
+  if (has_other || may_have_other || slip_force.includes_discrepancy) return;
+  const double carried = *widest.facts.half_gap -
+                         2 * widest.facts.half_gap_standard_deviation.value_or(0.0) -
+                         result.ResponseNoise();
+  if (!(carried > 0)) return;
+  const double least = carried / widest.load_ratio;
+  if (slip_force.value < least && !(slip_force.upper95 > least)) {
+    WithdrawInterval(slip_force);
+  } else {
+    RaiseLowerEnd(slip_force, IntervalSource::kCarriedForce, std::min(least, slip_force.value));
+  }
 }
 
 }  // namespace mindahl::identification

@@ -26,4 +26,10 @@ std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& r
 /// force as the law's: Tc covers half of the gap between the branches, where the record slips.
 void CoverPlateau(FitResult& result, const Thresholds& thresholds);
 
+/// Raises the lower end of Tc to the half gap that was measured between the strokes, less two of
+/// its standard deviations between cycles and one of the noise: the contact carried that force in
+/// either direction, so that it slips at no less. Where the model has no other force that turns
+/// with the motion (a viscous one, a covariate, a lag), and no cause is one.
+void KeepAboveCarriedForce(FitResult& result);
+
 }  // namespace mindahl::identification

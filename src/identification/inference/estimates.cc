@@ -7,6 +7,7 @@
 
 #include "core/normal_quantile.h"
 #include "identification/inference/evidence.h"
+#include "identification/inference/intervals.h"
 
 namespace mindahl::identification {
 
@@ -87,28 +88,31 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
   const Parameter& parameter = problem_.parameters[p];
   const double theta = solution_.theta[p];
   const BoundSide side = solution_.side[p];
-  estimate.standard_error.reset();
-  estimate.lower95.reset();
-  estimate.upper95.reset();
+  WithdrawInterval(estimate);
   if (parameter.fixed) return;
   const double error = ErrorOfTheta(p);
   if (!std::isfinite(error)) return;
-  double lower = 0.0;
-  double upper = 0.0;
+  std::optional<double> lower;
+  std::optional<double> upper;
   if (side != BoundSide::kInside) {
-    // Half the normal law lies beyond the bound: the interval is one-sided, from the bound.
-    const double reach = (side == BoundSide::kLower ? 1 : -1) * kNormalQuantile95 * error;
-    lower = estimate.value;
-    upper = parameter.ToValue(theta + reach);
+    // Half the normal law lies beyond the bound: the interval is one-sided, from the bound. Where
+    // that is the program's own, nothing is known of what lies beyond it.
+    const double inwards = side == BoundSide::kLower ? 1 : -1;
+    const double end = parameter.ToValue(theta + inwards * kNormalQuantile95 * error);
+    const std::optional<double> bound =
+        IsSearchLimit(parameter, side) ? std::nullopt : std::optional(estimate.value);
+    const bool is_upwards = end > estimate.value;
+    lower = is_upwards ? bound : end;
+    upper = is_upwards ? end : bound;
   } else {
     estimate.standard_error =
         parameter.term->positive ? estimate.value * error : std::abs(parameter.scale) * error;
     lower = parameter.ToValue(theta - quantile_ * error);
     upper = parameter.ToValue(theta + quantile_ * error);
+    if (*upper < *lower) std::swap(lower, upper);
   }
-  estimate.lower95 = std::min(lower, upper);
-  estimate.upper95 = std::max(lower, upper);
-  if (p == kShape) estimate.lower95 = std::max(*estimate.lower95, 0.0);
+  if (p == kShape && lower) lower = std::max(*lower, 0.0);
+  SetInterval(estimate, {.source = IntervalSource::kParabola, .lower = lower, .upper = upper});
 }
 
 double Estimates::Correlation(std::size_t row, std::size_t column) const {
@@ -126,7 +130,8 @@ double Estimates::Correlation(std::size_t row, std::size_t column) const {
   const auto& factor = local.factor;
   const auto a = static_cast<Eigen::Index>(i);
   const auto b = static_cast<Eigen::Index>(j);
-  return sign(row) * sign(column) * factor(a, b) / std::sqrt(factor(a, a) * factor(b, b));
+  const double cosine = factor(a, b) / std::sqrt(factor(a, a) * factor(b, b));
+  return sign(row) * sign(column) * std::clamp(cosine, -1.0, 1.0);  // but for rounding
 }
 
 double Estimates::WhiteShare(std::size_t parameter) const {

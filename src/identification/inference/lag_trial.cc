@@ -10,6 +10,7 @@
 
 #include "identification/inference/evidence.h"
 #include "identification/problem/lagged_motion.h"
+#include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
 namespace {
@@ -66,6 +67,9 @@ void TryLag(const Problem& problem, const Solution& solution, const SolverOption
   Problem with = without;
   const std::size_t lag = problem.parameters.PositionOf("lag", 0);
   with.parameters.Release(lag);
+  // Longer ones are looked for where they are asked for: a knee that depends on the speed is like a
+  // lag of a tenth of a cycle too.
+  with.parameters.KeepWithin(lag, FindTerm("lag")->highest);
   const Parameter& parameter = with.parameters[lag];
   LeaveOutEnds(data, parameter.scale * std::max(-parameter.lower, parameter.upper));
   if (data.counted <= 2 * with.parameters.free().size()) return;

@@ -43,17 +43,19 @@ std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle)
   return inverse;
 }
 
-/// (RᵀR)⁻¹ on the directions with an effect; names those without.
-Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& norms,
-                              LocalUncertainty& result) {
+/// Returns H with HHᵀ = (RᵀR)⁻¹ on the directions with an effect, a column each, and names those
+/// without.
+Eigen::MatrixXd HalfOfPseudoInverse(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& norms,
+                                    LocalUncertainty& result) {
   const Eigen::Index size = triangle.cols();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  Eigen::MatrixXd factor = Eigen::MatrixXd::Zero(size, size);
+  Eigen::MatrixXd half(size, size);
+  Eigen::Index rank = 0;
   for (Eigen::Index k = 0; k < size; ++k) {
     const double value = k < svd.singularValues().size() ? svd.singularValues()[k] : 0.0;
     const Eigen::VectorXd direction = svd.matrixV().col(k);
     if (value > kRankTolerance * svd.singularValues()[0]) {
-      factor += direction * direction.transpose() / (value * value);
+      half.col(rank++) = direction / value;
       continue;
     }
     const Eigen::VectorXd in_theta = direction.cwiseQuotient(norms);
@@ -64,7 +66,13 @@ Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& triangle, const Eigen::Vect
       }
     }
   }
-  return factor;
+  return half.leftCols(rank);
+}
+
+/// Returns a root L of a symmetric matrix, LLᵀ = M, without what rounding leaves below zero.
+Eigen::MatrixXd RootOf(const Eigen::MatrixXd& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((matrix + matrix.transpose()) / 2);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace
@@ -155,41 +163,41 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   result.columns = std::move(columns);
   const std::size_t count = result.columns.size();
   const auto size = static_cast<Eigen::Index>(count);
-  result.factor = Eigen::MatrixXd::Zero(size, size);
-  result.white_factor = Eigen::MatrixXd::Zero(size, size);
+  result.factor = result.white_factor = Eigen::MatrixXd::Zero(size, size);
   result.determined.assign(count, true);
   if (count == 0) return result;
 
-  Eigen::MatrixXd correlated;  // JᵀRJ; of white residuals by the triangle
-  if (displacement.residuals.size() > 0) {
-    correlated =
-        CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement, jacobian);
-  } else if (noise.autocorrelation.order > 0) {
-    correlated = CorrelatedProduct(*problem.data, noise.autocorrelation, jacobian);
-  }
+  const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
+  Eigen::MatrixXd columns_of_unit = is_white ? Eigen::MatrixXd() : jacobian;
   Eigen::MatrixXd triangle = TriangleOf(jacobian);
   Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
   // As of unit columns, whatever their units.
   const Eigen::VectorXd inverse_norms = norms.cwiseInverse();
   triangle *= inverse_norms.asDiagonal();
-  const std::optional<Eigen::MatrixXd> inverse = InverseIfRegular(triangle);
-  const Eigen::MatrixXd factor =
-      inverse ? *inverse * inverse->transpose() : PseudoInverse(triangle, norms, result);
-  if (correlated.size() > 0) {
-    correlated = (inverse_norms.asDiagonal() * correlated * inverse_norms.asDiagonal()).eval();
-  } else {
-    correlated = triangle.transpose() * triangle;
+  std::optional<Eigen::MatrixXd> inverse = InverseIfRegular(triangle);
+  const Eigen::MatrixXd half =
+      inverse ? std::move(*inverse) : HalfOfPseudoInverse(triangle, norms, result);
+  // Of columns U = JH, which are orthonormal, the noise makes a product UᵀRU of order one: between
+  // two inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
+  Eigen::MatrixXd root = half;
+  result.absorbed = static_cast<double>(half.cols());
+  if (!is_white) {
+    columns_of_unit *= inverse_norms.asDiagonal();
+    const Eigen::MatrixXd orthonormal = columns_of_unit * half;
+    const Eigen::MatrixXd product =
+        displacement.residuals.size() > 0
+            ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement,
+                                orthonormal)
+            : CorrelatedProduct(*problem.data, noise.autocorrelation, orthonormal);
+    result.absorbed = product.trace();
+    root = half * RootOf(product);
   }
-  result.absorbed = (factor * correlated).trace();
-  const Eigen::MatrixXd product = factor * correlated * factor;
-  const Eigen::MatrixXd sandwich = (product + product.transpose()) / 2;  // to the last bit
-  for (Eigen::Index i = 0; i < size; ++i) {
-    for (Eigen::Index j = 0; j < size; ++j) {
-      result.white_factor(i, j) = factor(i, j) / (norms[i] * norms[j]);
-      result.factor(i, j) = sandwich(i, j) / (norms[i] * norms[j]);
-    }
-  }
+  const Eigen::MatrixXd in_theta = inverse_norms.asDiagonal() * root;
+  const Eigen::MatrixXd white_in_theta = inverse_norms.asDiagonal() * half;
+  // Element by element: symmetric to the last bit.
+  result.factor = in_theta.lazyProduct(in_theta.transpose());
+  result.white_factor = white_in_theta.lazyProduct(white_in_theta.transpose());
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "identification/inference/intervals.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -88,8 +90,9 @@ ProfiledRanges RangesAt(const Solution& best) {
 void Widen(ParameterEstimate& estimate, const Parameter& parameter, const Range& range,
            double quantile) {
   if (!estimate.lower95 || !estimate.upper95) return;
-  estimate.lower95 = std::min(*estimate.lower95, parameter.ToValue(range.lower));
-  estimate.upper95 = std::max(*estimate.upper95, parameter.ToValue(range.upper));
+  Include(estimate, {.source = IntervalSource::kProfile,
+                     .lower = parameter.ToValue(range.lower),
+                     .upper = parameter.ToValue(range.upper)});
   if (estimate.standard_error) {
     const double half_width = (*estimate.upper95 - *estimate.lower95) / 2;
     estimate.standard_error = std::max(*estimate.standard_error, half_width / quantile);
@@ -255,6 +258,57 @@ ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const 
   return ranges;
 }
 
+std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const Solution& best,
+                                                const Noise& noise, const Estimates& estimates,
+                                                const FitOptions& options, SearchBuffers& buffers) {
+  const Parameter& shape = problem.parameters[kShape];
+  const bool is_at_zero = !shape.fixed && best.side[kShape] == BoundSide::kLower &&
+                          shape.ToValue(best.theta[kShape]) == 0;
+  if (!is_at_zero) return std::nullopt;
+  constexpr double kFirst = 1.0 / 256;
+  constexpr int kBetween = 3;  // bisections between the last that is allowed and the next
+  const double critical = estimates.quantile() * estimates.quantile();
+  HeldParameter held(problem, kShape, best, noise, estimates, SolverOptionsOf(options), buffers);
+  ProfiledRanges ranges = RangesAt(best);
+  std::vector<double> from = best.theta;
+  const auto is_allowed = [&](double alpha) {
+    if (!(held.At(alpha, from) < critical) || !held.solution().converged) return false;
+    Include(ranges, held.solution().theta);
+    from = held.solution().theta;
+    return true;
+  };
+  double allowed = 0.0;
+  double next = kFirst;
+  while (next < shape.upper && is_allowed(next)) {
+    allowed = next;
+    next *= 2;
+  }
+  for (int i = 0; i < kBetween; ++i) {
+    const double middle = allowed + (std::min(next, shape.upper) - allowed) / 2;
+    (is_allowed(middle) ? allowed : next) = middle;
+  }
+  const auto widen = [&](Range& range, std::size_t parameter) {
+    const double error = estimates.ErrorOfTheta(parameter);
+    const double half = std::isfinite(error) ? estimates.quantile() * error : 0.0;
+    range.lower -= half;
+    range.upper += half;
+  };
+  widen(ranges.stiffness, kStiffness);
+  widen(ranges.slip_force, kSlipForce);
+  return ranges;
+}
+
+void IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges, FitResult& result) {
+  const auto include = [&](const char* name, std::size_t p, const Range& range) {
+    Include(FindIn(result, name), {.source = IntervalSource::kSmallShape,
+                                   .lower = problem.parameters[p].ToValue(range.lower),
+                                   .upper = problem.parameters[p].ToValue(range.upper)});
+  };
+  include("sigma", kStiffness, ranges.stiffness);
+  include("alpha", kShape, ranges.shape_exponent);
+  include("slip_force", kSlipForce, ranges.slip_force);
+}
+
 void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double quantile,
                    FitResult& result) {
   Widen(FindIn(result, "sigma"), problem.parameters[kStiffness], ranges.stiffness, quantile);
@@ -268,16 +322,16 @@ void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, dou
   ParameterEstimate& slip_force = FindIn(result, "slip_force");
   WidenByRanges(problem, profile.ranges, quantile, result);
   if (!profile.open_above) return;
-  slip_force.upper95.reset();
-  slip_force.standard_error.reset();
+  OpenAbove(slip_force, IntervalSource::kProfile);
   // A contact that carried T* has at least that slip force, unless the fit is too poor to say; and
   // no more where it is the bound of α that ends the valley.
   const bool by_bound = alpha.status == ParameterStatus::kAtUpperBound;
   const double profiled = by_bound ? 0.0 : slip_force.lower95.value_or(0.0);
-  if (peak_force < slip_force.value) slip_force.lower95 = std::max(profiled, peak_force);
-  if (alpha.status == ParameterStatus::kFixed) return;
-  alpha.upper95.reset();
-  alpha.standard_error.reset();
+  if (peak_force < slip_force.value) {
+    SetInterval(slip_force,
+                {.source = IntervalSource::kProfile, .lower = std::max(profiled, peak_force)});
+  }
+  if (alpha.status != ParameterStatus::kFixed) OpenAbove(alpha, IntervalSource::kProfile);
 }
 
 }  // namespace mindahl::identification

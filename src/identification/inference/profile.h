@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
@@ -72,6 +73,17 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
 ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const Noise& noise,
                             const Estimates& estimates, const FitOptions& options,
                             SearchBuffers& buffers);
+
+/// What σ, α and Tc are along the likelihood from the bound α = 0 upwards, each with half the
+/// interval that it has with α held; empty where α does not lie at that bound. There the parabola
+/// holds α, but a small α moves σ: at the same secant of a loop of T* the tangent σ is larger by
+/// (α/2)(T*/Tc), which may be many standard errors.
+std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const Solution& best,
+                                                const Noise& noise, const Estimates& estimates,
+                                                const FitOptions& options, SearchBuffers& buffers);
+
+/// Includes them in the intervals.
+void IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges, FitResult& result);
 
 /// Puts the ranges into the intervals where these are narrower.
 void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double quantile,

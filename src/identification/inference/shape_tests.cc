@@ -11,7 +11,6 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr double kMindlin = 1.0 / 3;
 constexpr std::array kNames = {"virgin", "unloading", "reloading"};
 constexpr std::size_t kFewestOfKind = 10;
 
@@ -51,7 +50,7 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
                                        const Noise& noise, const Estimates& estimates,
                                        const FitOptions& options, SearchBuffers& buffers) {
   if (problem.parameters[kShape].fixed) return std::nullopt;
-  const Problem held = problem.WithFixed(kShape, kMindlin);
+  const Problem held = problem.WithFixed(kShape, kMindlinExponent);
   Solution solution;
   buffers.solver.Bind(held, buffers.response);
   buffers.solver.Solve(best.theta, SolverOptionsOf(options), solution);
@@ -67,14 +66,15 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
 bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha) {
   constexpr double kOutside95 = 0.05;
   if (!alpha.lower95 || !alpha.upper95) return false;
-  const bool is_excluded = kMindlin < *alpha.lower95 || kMindlin > *alpha.upper95;
+  const bool is_excluded = kMindlinExponent < *alpha.lower95 || kMindlinExponent > *alpha.upper95;
   return is_excluded && test.p_value > kOutside95;
 }
 
 bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
               const Thresholds& thresholds) {
   return test.p_value < thresholds.significance &&
-         kMindlin - best.theta[kShape] > thresholds.shape_effect && !problem.parameters.has_rig();
+         kMindlinExponent - best.theta[kShape] > thresholds.shape_effect &&
+         !problem.parameters.has_rig();
 }
 
 std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thin,
@@ -86,7 +86,7 @@ std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thi
   if (!is_wanted || problem.data->load_varies || problem.data->is_forced()) return std::nullopt;
   FitOptions with_rig = options;
   with_rig.terms.emplace_back("rig_stiffness");
-  with_rig.fixed["alpha"] = kMindlin;
+  with_rig.fixed["alpha"] = kMindlinExponent;
   with_rig.start.clear();
   Candidate sprung(*problem.data, with_rig, problem.state, std::pmr::get_default_resource());
   Solution solution;

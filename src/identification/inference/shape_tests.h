@@ -9,6 +9,8 @@
 
 namespace mindahl::identification {
 
+inline constexpr double kMindlinExponent = 1.0 / 3;
+
 /// α = 1/3 against the fitted α by the likelihood, which keeps to the valley along which α and Tc
 /// run away together, where a standard error of α means little. Empty where α is held.
 std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& best,

@@ -1,62 +1,71 @@
 #include "identification/judge/judge.h"
 
 #include <algorithm>
-#include <array>
-#include <stdexcept>
-#include <string>
+#include <cmath>
+#include <cstddef>
 #include <string_view>
 #include <utility>
+
+#include "identification/inference/intervals.h"
 
 namespace mindahl::identification {
 namespace {
 
-/// What a finding means for the parameters that it names.
-struct VerdictRow {
-  std::string_view code;
-  Identifiability verdict;
-  bool holds_without_model = false;  // also where the model is inadequate
-};
-
-constexpr std::array kVerdicts = {
-    VerdictRow{"no_model_fits", Identifiability::kNotIdentifiable, true},
-    VerdictRow{"energy_contradiction", Identifiability::kNotIdentifiable, true},
-    VerdictRow{"model_inadequate", Identifiability::kNotIdentifiable, true},
-    VerdictRow{"undetermined_parameter", Identifiability::kNotIdentifiable},
-    VerdictRow{"undetermined_combination", Identifiability::kNotIdentifiable},
-    VerdictRow{"sigma_not_identifiable", Identifiability::kNotIdentifiable},
-    VerdictRow{"alpha_not_identifiable", Identifiability::kNotIdentifiable},
-    VerdictRow{"slip_force_not_identifiable", Identifiability::kNotIdentifiable},
-    VerdictRow{"shape_or_rig", Identifiability::kNotIdentifiable},
-    VerdictRow{"unknown_past", Identifiability::kNotIdentifiable},
-    VerdictRow{"few_places", Identifiability::kNotIdentifiable},
-    VerdictRow{"loop_not_seen", Identifiability::kNotIdentifiable, true},
-    VerdictRow{"rig_not_tried", Identifiability::kNotIdentifiable},
-    VerdictRow{"asymmetry_not_identifiable", Identifiability::kNotIdentifiable},
-    VerdictRow{"slip_force_bounded_below", Identifiability::kBoundedBelow},
-    VerdictRow{"sigma_bounded_below", Identifiability::kBoundedBelow},
-    VerdictRow{"alpha_limited_by_load", Identifiability::kBoundedBelow},
-    VerdictRow{"slip_force_extrapolated", Identifiability::kExtrapolated},
-    VerdictRow{"initial_state_undecided", Identifiability::kIdentifiable, true},
-    VerdictRow{"systematic_residual", Identifiability::kIdentifiable, true},
-    VerdictRow{"turning_points_between_samples", Identifiability::kIdentifiable, true},
-    // Of its own law a parameter is as well known as before.
-    VerdictRow{"law_undecided", Identifiability::kIdentifiable},
-    VerdictRow{"other_law_fits_better", Identifiability::kIdentifiable, true},
-};
-
-const VerdictRow& RowOf(const Finding& finding) {
-  const auto row = std::ranges::find(kVerdicts, finding.code, &VerdictRow::code);
-  if (row == kVerdicts.end()) {
-    throw std::logic_error("the finding has no verdict: " + std::string(finding.code));
+/// Returns the worst verdict on a parameter of the findings that name it, but for one of them.
+Identifiability VerdictOn(std::string_view parameter, std::span<const Finding> findings,
+                          const Finding* but = nullptr) {
+  Identifiability worst = Identifiability::kIdentifiable;
+  for (const Finding& finding : findings) {
+    const bool is_named =
+        std::ranges::find(finding.parameters, parameter) != finding.parameters.end();
+    if (&finding != but && is_named) worst = std::max(worst, finding.code.row().verdict);
   }
-  return *row;
+  return worst;
+}
+
+bool IsOfLaw(const ParameterEstimate& estimate) {
+  return estimate.name == "sigma" || estimate.name == "alpha" || estimate.name == "slip_force";
+}
+
+/// Where no omitted term explains the misfit, and what comes back in every stroke makes the model
+/// inadequate, that is what the model misses.
+void CountWhatRepeats(FitResult& result, const Thresholds& thresholds) {
+  Adequacy& adequacy = result.adequacy;
+  if (adequacy.p_value < thresholds.doubt) return;
+  for (const RecordFit& record : result.records) {
+    const double fraction = record.structure.repeatable_share;
+    if (!(fraction > 0 && fraction < 1)) continue;
+    adequacy.p_value = std::min(adequacy.p_value, thresholds.repeat_chance);
+    adequacy.misfit = std::max(adequacy.misfit, result.rms * std::sqrt(fraction));
+    adequacy.misfit_over_noise =
+        std::max(adequacy.misfit_over_noise, std::sqrt(fraction / (1 - fraction)));
+  }
 }
 
 }  // namespace
 
-Identifiability VerdictOf(const Finding& finding) { return RowOf(finding).verdict; }
+void DropNeedless(std::span<const ParameterEstimate> estimates, std::vector<Finding>& findings) {
+  const auto is_needless = [&](const Finding& finding) {
+    if (finding.kind == "wide") {
+      return VerdictOn(finding.parameters.front(), findings, &finding) ==
+             Identifiability::kNotIdentifiable;
+    }
+    if (finding.code != "energy_contradiction") return false;
+    return std::ranges::none_of(estimates, [&](const ParameterEstimate& estimate) {
+      return IsOfLaw(estimate) && estimate.status != ParameterStatus::kFixed && estimate.lower95 &&
+             estimate.upper95 &&
+             VerdictOn(estimate.name, findings, &finding) == Identifiability::kIdentifiable;
+    });
+  };
+  // All are asked before any goes: what is needless does not depend on their order.
+  std::vector<bool> needless;
+  for (const Finding& finding : findings) needless.push_back(is_needless(finding));
+  std::size_t k = 0;
+  std::erase_if(findings, [&](const Finding&) { return needless[k++]; });
+}
 
-void WithdrawInadequate(FitResult& result) {
+void WithdrawInadequate(FitResult& result, const Thresholds& thresholds) {
+  CountWhatRepeats(result, thresholds);
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   result.mindlin_test.reset();
   result.branch_shapes.clear();
@@ -65,14 +74,13 @@ void WithdrawInadequate(FitResult& result) {
   std::erase_if(result.findings, [](const Finding& finding) {
     // Another account of a curve that is not there: also where it is but a note.
     const bool is_of_the_curve = finding.code == "shape_or_rig";
-    return is_of_the_curve || (!finding.parameters.empty() && !RowOf(finding).holds_without_model);
+    return is_of_the_curve ||
+           (!finding.parameters.empty() && !finding.code.row().holds_without_model);
   });
   Finding finding{.code = "model_inadequate"};
   for (ParameterEstimate& estimate : result.parameters) {
-    if (estimate.status == ParameterStatus::kFixed) continue;
-    estimate.standard_error.reset();
-    estimate.lower95.reset();
-    estimate.upper95.reset();
+    if (estimate.status == ParameterStatus::kFixed || estimate.includes_discrepancy) continue;
+    WithdrawInterval(estimate);
     finding.parameters.push_back(estimate.name);
   }
   result.findings.insert(result.findings.begin(), std::move(finding));
@@ -80,7 +88,8 @@ void WithdrawInadequate(FitResult& result) {
 
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings) {
   for (ParameterEstimate& estimate : estimates) {
-    estimate.identifiability = Identifiability::kIdentifiable;
+    estimate.identifiability = estimate.includes_discrepancy ? Identifiability::kEffective
+                                                             : Identifiability::kIdentifiable;
     if (estimate.status == ParameterStatus::kFixed) continue;
     const auto worsen = [&](Identifiability verdict) {
       estimate.identifiability = std::max(estimate.identifiability, verdict);
@@ -90,11 +99,7 @@ void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> find
     } else if (!estimate.upper95) {
       worsen(Identifiability::kBoundedBelow);
     }
-    for (const Finding& finding : findings) {
-      if (std::ranges::find(finding.parameters, estimate.name) != finding.parameters.end()) {
-        worsen(VerdictOf(finding));
-      }
-    }
+    worsen(VerdictOn(estimate.name, findings));
   }
 }
 

@@ -1,34 +1,31 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
 
-/// The verdict on each parameter, from estimates and findings alone: the worst that a finding which
-/// names it calls for (Identifiability is in the order of precedence), whatever their order.
-///
-/// | precedence | from | verdict |
-/// |---|---|---|
-/// | 1 | an estimate without error or interval, and the findings model_inadequate, no_model_fits,
-/// |   | energy_contradiction, undetermined_…, …_not_identifiable, shape_or_rig, unknown_past,
-/// |   | few_places, loop_not_seen | not identifiable |
-/// | 2 | slip_force_bounded_below, sigma_bounded_below, an interval open above | bounded below |
-/// | 3 | slip_force_extrapolated | extrapolated |
-/// | 4 | nothing of it | identifiable |
-///
-/// What the user holds fixed is identifiable. A finding that names no parameter changes none.
+/// Sets the verdict on each parameter, from estimates and findings alone: the worst of
+///  - not identifiable without an interval, bounded below where the interval is open above;
+///  - what each finding that names the parameter calls for (kFindings);
+/// whatever the order of the findings (Identifiability is in the order of precedence). What the
+/// user holds is identifiable. A finding that names no parameter changes none.
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings);
+
+/// Takes out the findings that others make needless, so that none of them has to know of another:
+///  - a wide interval of a parameter that another finding calls not identifiable;
+///  - an energy that contradicts the law where no free parameter of the law has a closed interval
+///    and is identifiable by the other findings: there is no answer to contradict.
+/// Before WithdrawInadequate().
+void DropNeedless(std::span<const ParameterEstimate> estimates, std::vector<Finding>& findings);
 
 /// Under a model that does not describe the record nothing of it is to be believed: takes back
 /// errors, limits, tests, and what the findings would have one do to know its parameters better;
 /// adds the finding model_inadequate. Before Judge().
-void WithdrawInadequate(FitResult& result);
-
-/// The verdict that a finding calls for on the parameters that it names.
-/// @throws std::logic_error for a code that has no row
-Identifiability VerdictOf(const Finding& finding);
+void WithdrawInadequate(FitResult& result, const Thresholds& thresholds);
 
 }  // namespace mindahl::identification

@@ -20,12 +20,17 @@ constexpr std::array kTable = {
                  "a contact that much stiffer than the rig is rigid",
                  "3 % of the travel of stick is then the contact's: the loop is that of Jenkins' "
                  "element, whatever α"},
-    ThresholdRow{"poor_misfit", &Thresholds::poor_misfit, "rms over min(Tc, T*)",
+    ThresholdRow{"poor_misfit", &Thresholds::poor_misfit, "rms over half gap or T*",
                  "from here on a repeatable misfit is reported",
                  "two per cent of the force are visible beside the loop's line in a plot"},
-    ThresholdRow{"failing_misfit", &Thresholds::failing_misfit, "rms over min(Tc, T*)",
-                 "from here on no parameters of the shape are believed",
-                 "the stick branch, on which σ and α rest, is itself some ten times as long"},
+    ThresholdRow{"quantitative_misfit", &Thresholds::quantitative_misfit,
+                 "missed over half gap or T*",
+                 "a model that misses more is indicative, not quantitative",
+                 "what repeated tests of one seal differ by, run to run"},
+    ThresholdRow{"failing_misfit", &Thresholds::failing_misfit, "missed over half gap or T*",
+                 "from here on no parameters of the shape are given",
+                 "where the law carries half of Tc, an error of 0.15 is a third of the force: the "
+                 "knee is then somewhere else"},
     ThresholdRow{
         "repeats_when_poor", &Thresholds::repeats_when_poor, "share of variance",
         "of a poor misfit, what repeats from stroke to stroke to be called systematic",
@@ -51,6 +56,10 @@ constexpr std::array kTable = {
         "way between the samples beyond that of the strokes, to be warned of",
         "white noise makes so much where its deviation is 0.8 of a step between samples: one "
         "step in five then goes backward, which the contact takes for a reversal"},
+    ThresholdRow{"sliding_energy_ratio", &Thresholds::sliding_energy_ratio, "W/(4XT*)",
+                 "a measured loop that loses more slides over most of its stroke",
+                 "Mindlin's contact loses as much at twice its gross slip, from where on the gap "
+                 "in the middle of the stroke is that of the slip force"},
     ThresholdRow{"energy_difference", &Thresholds::energy_difference, "of the larger",
                  "between measured energy and the model's, for the two to contradict each other",
                  "a loop of which the model takes a fifth for something else is not the model's: "

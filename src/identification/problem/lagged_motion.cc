@@ -40,17 +40,25 @@ struct Lags {
 };
 
 /// Those that the options allow.
-/// @param cycle  mean duration of a cycle of the first record
-Lags LagsOf(const FitOptions& options, double cycle) {
+/// @param first  the first record, whose cycles the bounds are of
+Lags LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
   const auto fixed = options.fixed.find("lag");
   if (fixed != options.fixed.end()) return {fixed->second, fixed->second};
   const auto bound = options.bounds.find("lag");
   if (bound != options.bounds.end()) return {bound->second.lower, bound->second.upper};
-  const Term& term = *FindTerm("lag");
-  return {term.lowest * cycle, term.highest * cycle};
+  const std::size_t reversals = first.reversals.size();
+  const double longest = LongestLag(MeanCycleDuration({}, first.size(), reversals)) *
+                         MeanCycleDuration(first.record.time, first.size(), reversals);
+  return {-longest, longest};
 }
 
 }  // namespace
+
+double LongestLag(double samples_a_cycle) {
+  constexpr double kSamples = 10.0;
+  constexpr double kLongest = 0.2;
+  return std::clamp(kSamples / samples_a_cycle, FindTerm("lag")->highest, kLongest);
+}
 
 bool MayHaveClocks(const ScaledRecords& data) {
   const bool timed = !data.records.front().velocity.empty();
@@ -86,8 +94,7 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
     if (time.empty() == first.record.time.empty() && (time.empty() || GoesOn(time))) continue;
     throw InvalidArgument("lag needs a time that goes on in every record, or in none a time");
   }
-  const Lags lags =
-      LagsOf(options, MeanCycleDuration(first.record.time, first.size(), first.reversals.size()));
+  const Lags lags = LagsOf(options, first);
   for (std::size_t r = 0; r < records.records.size(); ++r) {
     loop::PreparedRecord& record = records.records[r];
     const auto time = [&](std::size_t i) {

@@ -21,6 +21,10 @@ bool MayHaveClocks(const ScaledRecords& data);
 /// @param data  MayHaveClocks()
 void SetClocks(ScaledRecords& data);
 
+/// Returns the longest lag that is looked for, either way [mean cycles]: 0.05, but ten samples
+/// where cycles have fewer than 200, and never more than 0.2. A delay of filters is one of samples.
+double LongestLag(double samples_a_cycle);
+
 /// Samples whose displacement lies beyond the record's ends under any lag that the options allow do
 /// not count; they still make history.
 /// @throws InvalidArgument where nothing is left of a record, where some records have a time and

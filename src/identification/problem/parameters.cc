@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "core/nearest_name.h"
+#include "identification/problem/lagged_motion.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -66,6 +67,10 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
   if (term.reference != nullptr) parameter.reference = term.reference(data.units);
   parameter.lower = term.positive ? std::log(term.lowest) : term.lowest;
   parameter.upper = term.positive ? std::log(term.highest) : term.highest;
+  if (term.name == "lag") {
+    parameter.upper = LongestLag(MeanCycleDuration({}, data.size(), data.reversals.size()));
+    parameter.lower = -parameter.upper;
+  }
   switch (term.presence) {
     case Presence::kAlways:
       break;
@@ -127,6 +132,11 @@ BoundSide SideOf(double theta, double lower, double upper) {
   if (theta - lower <= tolerance) return BoundSide::kLower;
   if (upper - theta <= tolerance) return BoundSide::kUpper;
   return BoundSide::kInside;
+}
+
+bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
+  if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
+  return parameter.term->name != "alpha" || side == BoundSide::kUpper;
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
@@ -378,6 +388,11 @@ void Parameters::Fix(std::size_t i, double theta) {
   parameters_[i].theta = theta;
   parameters_[i].fixed = true;
   Sort();
+}
+
+void Parameters::KeepWithin(std::size_t i, double most) {
+  parameters_[i].lower = std::max(parameters_[i].lower, -most);
+  parameters_[i].upper = std::min(parameters_[i].upper, most);
 }
 
 void Parameters::Release(std::size_t i) {

@@ -50,6 +50,10 @@ inline BoundSide SideOf(const Parameter& parameter, double theta) {
   return SideOf(theta, parameter.lower, parameter.upper);
 }
 
+/// True if a parameter that lies at this side stopped at a bound of the program's own: neither the
+/// user's, nor α = 0, which the theory has.
+bool IsSearchLimit(const Parameter& parameter, BoundSide side);
+
 /// Positions of the parameters of the law, the same in every fit.
 inline constexpr std::size_t kStiffness = 0;
 inline constexpr std::size_t kShape = 1;
@@ -118,6 +122,9 @@ class Parameters {
 
   /// Lets one more parameter go, though it was not asked for.
   void Release(std::size_t i);
+
+  /// Narrows the bounds of θ to ±`most`.
+  void KeepWithin(std::size_t i, double most);
 
   /// Writes θ where the options have a starting value.
   bool FindStart(const FitOptions& options, std::size_t i, double& theta) const;

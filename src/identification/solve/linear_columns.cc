@@ -27,16 +27,10 @@ void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned c
   blocks_.clear();
   basis_.clear();
   triangle_.resize(0, 0);
-  std::vector<std::size_t> shared;
-  std::vector<std::vector<std::size_t>> own(data.records.size());
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const Parameter& parameter = parameters[p];
-    if (parameter.term->column == Regressor::kNone) continue;
-    if (!parameter.fixed && held[p] == 0) {
-      (parameter.term->scope == Scope::kRecord ? own[parameter.record] : shared).push_back(p);
-      continue;
-    }
-    if (theta[p] == 0) continue;
+    if (parameter.term->column == Regressor::kNone || theta[p] == 0) continue;
+    if (!parameter.fixed && held[p] == 0) continue;
     std::size_t row = 0;
     for (std::size_t r = 0; r < data.records.size(); ++r) {
       const std::size_t size = data.records[r].size();
@@ -45,13 +39,26 @@ void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned c
     }
   }
   Weigh(measured, 1.0, weight);
+  const auto is_free = [&](std::size_t p) {
+    return parameters[p].term->column != Regressor::kNone && !parameters[p].fixed && held[p] == 0;
+  };
   std::size_t row = 0;
   for (std::size_t r = 0; r < data.records.size(); ++r) {
     const std::size_t size = data.records[r].size();
-    AddBlock(problem, own[r], row, size, weight);
+    members_.clear();
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const Parameter& parameter = parameters[p];
+      const bool is_own = parameter.term->scope == Scope::kRecord && parameter.record == r;
+      if (is_own && is_free(p)) members_.push_back(p);
+    }
+    AddBlock(problem, row, size, weight);
     row += size;
   }
-  AddBlock(problem, shared, 0, problem.size(), weight);
+  members_.clear();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    if (parameters[p].term->scope == Scope::kContact && is_free(p)) members_.push_back(p);
+  }
+  AddBlock(problem, 0, problem.size(), weight);
   const auto count = static_cast<Eigen::Index>(independent_.size());
   measured_projections_.resize(count);
   response_projections_.setZero(count);
@@ -64,12 +71,11 @@ void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned c
   }
 }
 
-void LinearColumns::AddBlock(const Problem& problem, std::span<const std::size_t> members,
-                             std::size_t first_row, std::size_t rows,
+void LinearColumns::AddBlock(const Problem& problem, std::size_t first_row, std::size_t rows,
                              std::span<const double> weight) {
-  if (members.empty()) return;
-  parameters_.insert(parameters_.end(), members.begin(), members.end());
-  std::vector<std::size_t> kept(members.begin(), members.end());
+  std::vector<std::size_t>& kept = members_;
+  if (kept.empty()) return;
+  parameters_.insert(parameters_.end(), kept.begin(), kept.end());
   const std::size_t before = independent_.size();
   Eigen::MatrixXd coupling;  // Qᵀ of the blocks before, by this block's columns
   while (!kept.empty()) {

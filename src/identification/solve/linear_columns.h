@@ -47,14 +47,16 @@ class LinearColumns {
     std::size_t offset;  // of its basis in basis_
   };
 
-  void AddBlock(const Problem& problem, std::span<const std::size_t> members, std::size_t first_row,
-                std::size_t rows, std::span<const double> weight);
+  /// Factorises the columns of members_ over some rows, and leaves the independent ones there.
+  void AddBlock(const Problem& problem, std::size_t first_row, std::size_t rows,
+                std::span<const double> weight);
   [[nodiscard]] std::span<const double> Basis(const Block& block, std::size_t k) const {
     return {basis_.data() + block.offset + k * block.rows, block.rows};
   }
 
   std::vector<std::size_t> parameters_;
   std::vector<std::size_t> independent_;  // of these, in the order of the basis
+  std::vector<std::size_t> members_;      // of the block that is being made
   std::vector<Block> blocks_;
   std::vector<double> basis_;
   Eigen::MatrixXd triangle_;  // R of the independent columns

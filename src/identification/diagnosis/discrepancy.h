@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "identification/inference/estimates.h"
+#include "identification/problem/problem.h"
+#include "identification/solve/solver.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
+
+/// Intervals of a fit whose model misses something that comes back in every stroke: such an error
+/// does not average out, however many samples there are, and its size is that of the record.
+namespace mindahl::identification {
+
+/// The steps ln(Tc'/Tc) that parts of the strokes ask for, each by itself, the other parameters
+/// held: thirds of the main strokes, up and down. Parts that hardly depend on Tc are left out.
+/// @returns none where Tc is held, or a displacement is fitted
+std::vector<double> SlipForceOfParts(const Problem& problem, const Solution& solution,
+                                     const Estimates& estimates, const Thresholds& thresholds);
+
+/// Replaces the interval of Tc where the measured loop slides over most of its stroke. It becomes
+/// the union of the fitted value, the measured half gap with its margin, and, as far as they lie
+/// between that half gap and T*, each with the margin,
+///   - the interval so far, of noise and of the causes that explain what the model misses,
+///   - what a further part of the strokes would ask for, by Student's law of SlipForceOfParts().
+/// A loop that slides has carried its slip force: no less than the gap in the middle of the stroke,
+/// no more than its largest force. The margin is the scatter of the cycles' half gaps and the error
+/// of a mean over the parts of the strokes, in each of which the model misses its rms. Other
+/// intervals are left as they are; those of a fit that is of use count as including what the model
+/// misses.
+///
+/// Of a loop that does not slide a lower limit of Tc is no less than the force that it carried.
+/// @param plain  estimates with the intervals that the model itself gives
+void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Estimates& estimates,
+                      std::span<const ParameterEstimate> plain, const Thresholds& thresholds,
+                      FitResult& result);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,79 @@
+#include "identification/diagnosis/grade.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mindahl::identification {
+namespace {
+
+/// Variance [N² or m²] of the white part of the residuals that count.
+double WhiteVariance(const FitResult& result) {
+  constexpr double kOfWhiteNoise = 1.5;  // mean square of (r₋₁ + r₊₁)/2 − r₀ over its variance
+  double squares = 0.0;
+  double count = 0.0;
+  for (const RecordFit& record : result.records) {
+    for (std::size_t i = 1; i + 1 < record.residual.size(); ++i) {
+      if (record.counts[i - 1] == 0 || record.counts[i] == 0 || record.counts[i + 1] == 0) continue;
+      const double off = (record.residual[i - 1] + record.residual[i + 1]) / 2 - record.residual[i];
+      squares += off * off;
+      ++count;
+    }
+  }
+  return count > 0 ? squares / (kOfWhiteNoise * count) : 0.0;
+}
+
+}  // namespace
+
+bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thresholds) {
+  constexpr double kOfPeak = 0.5;  // less is no plateau: the strokes were not told apart
+  return facts.closed && facts.energy_ratio >= thresholds.sliding_energy_ratio && facts.half_gap &&
+         *facts.half_gap > kOfPeak * facts.peak_force;
+}
+
+std::optional<double> MeasuredHalfGap(const FitResult& result) {
+  const RecordFit& widest = result.WidestRecord();
+  const bool is_of_force = result.response == loop::Channel::kForce;
+  if (!is_of_force || !widest.facts.half_gap || !(*widest.facts.half_gap > 0)) return std::nullopt;
+  return *widest.facts.half_gap / widest.load_ratio;
+}
+
+double ScaleOfMisfit(const FitResult& result, const Thresholds& thresholds) {
+  const RecordFit& widest = result.WidestRecord();
+  if (result.response == loop::Channel::kDisplacement) return widest.measures.amplitude;
+  const std::optional<double> half_gap = MeasuredHalfGap(result);
+  if (half_gap && SlidesOverMostOfStroke(widest.facts, thresholds)) return *half_gap;
+  return result.PeakForce();
+}
+
+double MissedForce(const FitResult& result) {
+  const double explained = result.adequacy.misfit;
+  // What a robust loss weighs down is in the rms all the same.
+  const bool is_noise = result.adequacy.verdict == AdequacyVerdict::kAdequate;
+  if (is_noise || result.outliers > 0) return explained;
+  const double not_white = result.rms * result.rms - WhiteVariance(result);
+  return std::max(explained, std::sqrt(std::max(0.0, not_white)));
+}
+
+std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<std::string> names) {
+  std::erase_if(names, [&](const std::string& name) {
+    const ParameterEstimate* estimate = result.Find(name);
+    return estimate != nullptr && estimate->includes_discrepancy;
+  });
+  return names;
+}
+
+void GradeUse(const Thresholds& thresholds, FitResult& result) {
+  Adequacy& adequacy = result.adequacy;
+  const double missed = MissedForce(result);
+  const std::optional<double> half_gap = MeasuredHalfGap(result);
+  adequacy.misfit = missed;
+  adequacy.misfit_over_half_gap.reset();
+  if (half_gap) adequacy.misfit_over_half_gap = missed / *half_gap;
+  const double ratio = half_gap ? missed / *half_gap : missed / ScaleOfMisfit(result, thresholds);
+  const bool is_seen = result.FindFinding("loop_not_seen") == nullptr;
+  adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative
+                 : is_seen && ratio <= thresholds.failing_misfit    ? Use::kIndicative
+                                                                    : Use::kNone;
+}
+
+}  // namespace mindahl::identification

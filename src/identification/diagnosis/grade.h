@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/identification/thresholds.h"
+#include "mindahl/loop/facts.h"
+
+/// How large the force is that a model misses, against what was measured without a model: never
+/// against a fitted slip force, which may be as wrong as the model.
+namespace mindahl::identification {
+
+/// True if a measured loop slides over most of its stroke: it loses at least
+/// `sliding_energy_ratio` of its rectangle, and half the gap in the middle of the stroke is more
+/// than half of T*. That gap is then the slip force's, whatever the law.
+bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thresholds);
+
+/// Returns half the gap between the strokes of the widest record [N], as it would be at the mean
+/// load of all; empty in a fit of the displacement, and where none was measured or it is not > 0.
+std::optional<double> MeasuredHalfGap(const FitResult& result);
+
+/// Returns what a misfit is held against [N or m]: the half gap of a loop that slides, else T*; of
+/// a displacement its amplitude.
+double ScaleOfMisfit(const FitResult& result, const Thresholds& thresholds);
+
+/// Returns the rms of what the model misses [N or m]. Of residuals that look like noise it is the
+/// part that the causes explain or that comes back in every stroke; of others all of them but their
+/// white noise, whose variance is 2/3 of the mean square of a residual's distance from the middle
+/// of its neighbours (Gasser, Sroka & Jennen-Steinmetz 1986).
+double MissedForce(const FitResult& result);
+
+/// Returns those of the named parameters whose interval does not include what the model misses.
+std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<std::string> names);
+
+/// Writes `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use is judged by T*.
+void GradeUse(const Thresholds& thresholds, FitResult& result);
+
+}  // namespace mindahl::identification

@@ -1,0 +1,84 @@
+#include "mindahl/identification/fit_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "identification/inference/evidence.h"
+#include "mindahl/identification/terms.h"
+
+namespace mindahl::identification {
+namespace {
+
+constexpr double kOpen = std::numeric_limits<double>::infinity();
+
+/// Returns the way from the value to an end of its interval [unit of the value], along the
+/// logarithm of a positive parameter: infinite where the end is open.
+double WayTo(const ParameterEstimate& estimate, const std::optional<double>& end) {
+  if (!end) return kOpen;
+  const Term* term = FindTerm(TermNameOf(estimate.name));
+  if (term == nullptr || !term->positive) return std::abs(*end - estimate.value);
+  return *end > 0 ? estimate.value * std::abs(std::log(*end / estimate.value)) : kOpen;
+}
+
+/// Returns the error that an interval's half width stands for; the standard error itself where the
+/// interval is that of the parabola, but for rounding.
+double ErrorOfWay(const ParameterEstimate& estimate, double way, double degrees_of_freedom) {
+  if (estimate.status == ParameterStatus::kFixed) return 0.0;
+  const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
+  if (!has_error || !std::isfinite(way)) return kOpen;
+  constexpr double kRounding = 1e-9;
+  const double error = way / StudentQuantile95(degrees_of_freedom);
+  const double standard = estimate.standard_error.value_or(0.0);
+  return error > standard * (1 + kRounding) ? error : standard;
+}
+
+}  // namespace
+
+bool ParameterEstimate::IsSetBy(IntervalSource source) const {
+  return std::ranges::any_of(interval, [&](const IntervalPart& part) {
+    return part.source == source && (part.lower == lower95 || part.upper == upper95);
+  });
+}
+
+const ParameterEstimate* FitResult::Find(std::string_view name) const {
+  const auto found = std::ranges::find(parameters, name, &ParameterEstimate::name);
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+const Finding* FitResult::FindFinding(FindingCode code) const {
+  const auto found = std::ranges::find(findings, code, &Finding::code);
+  return found == findings.end() ? nullptr : &*found;
+}
+
+const RecordFit& FitResult::WidestRecord() const {
+  return *std::ranges::max_element(records, {}, [this](const RecordFit& fit) {
+    return fit.measures.amplitude * std::pow(fit.load_ratio, load_exponent - 1);
+  });
+}
+
+models::BranchLaw FitResult::LawOf(const RecordFit& record) const {
+  return models::AtLoad(law, record.load_ratio, load_exponent);
+}
+
+double FitResult::ResponseNoise() const {
+  if (response == loop::Channel::kForce) return force_noise;
+  return records.empty() ? 0.0 : records.front().displacement_noise;
+}
+
+double FitResult::PeakForce() const {
+  const RecordFit& widest = WidestRecord();
+  return widest.measures.peak_force / widest.load_ratio;
+}
+
+double FitResult::ErrorOf(const ParameterEstimate& estimate) const {
+  const double way = std::max(WayTo(estimate, estimate.lower95), WayTo(estimate, estimate.upper95));
+  return ErrorOfWay(estimate, way, ErrorDegreesOfFreedom());
+}
+
+double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) const {
+  const std::optional<double>& end = value < estimate.value ? estimate.lower95 : estimate.upper95;
+  return ErrorOfWay(estimate, WayTo(estimate, end), ErrorDegreesOfFreedom());
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "mindahl/identification/fit_result.h"
+
+/// The one place where the interval of an estimate is written, the union of its parts.
+namespace mindahl::identification {
+
+/// Begins the interval anew with one part. An end that is not finite is open.
+void SetInterval(ParameterEstimate& estimate, IntervalPart part);
+
+/// Extends the interval by a part: an end that is open in either is open from then on. Leaves an
+/// estimate without an interval, held or undetermined, as it is.
+void Include(ParameterEstimate& estimate, IntervalPart part);
+
+/// Raises the lower end to a value that the parameter cannot lie below, which is no more than its
+/// estimate. Leaves an end that is open, and an estimate without an interval, as it is.
+void RaiseLowerEnd(ParameterEstimate& estimate, IntervalSource source, double least);
+
+/// Opens the interval above: there is no standard error then.
+void OpenAbove(ParameterEstimate& estimate, IntervalSource source);
+
+/// Takes back the interval and the standard error.
+void WithdrawInterval(ParameterEstimate& estimate);
+
+}  // namespace mindahl::identification
