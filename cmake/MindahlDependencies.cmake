@@ -1,5 +1,6 @@
 # Every package comes from the system; nothing is downloaded. CONTRIBUTING.md says why each is here.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(Ceres 2.1 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(Boost 1.74 REQUIRED)

@@ -25,6 +25,8 @@ install(FILES ${PROJECT_BINARY_DIR}/mindahlConfig.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
 # What the library links of others: how pkg-config finds it, and the Debian package that has it.
+set(Ceres__ceres_pc Libs "-lceres -lglog -lgflags")
+set(Ceres__ceres_package libceres-dev)
 set(fmt__fmt_pc Requires fmt)
 set(fmt__fmt_package libfmt-dev)
 set(libcsv__libcsv_pc Libs -lcsv)

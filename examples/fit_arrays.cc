@@ -47,7 +47,7 @@ int main() {
   identification::Fitter fitter;
   const identification::FitResult& fit = fitter.Fit(loop::RecordView(displacement, force));
   if (!fit.converged) {
-    std::fprintf(stderr, "no fit: %s\n", fit.termination.c_str());
+    std::fprintf(stderr, "no fit: %s\n", fit.solver.message.c_str());
     return 1;
   }
   const bool agrees = Agrees(fit, "sigma", kTruth.tangential_stiffness) &

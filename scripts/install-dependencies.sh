@@ -9,7 +9,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
-  libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev libssl-dev
+  libceres-dev libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev libssl-dev
   gnuplot-nox jq python3
 )
 for group in "$@"; do

@@ -51,7 +51,7 @@ std::shared_ptr<Fitted> Fit(const std::vector<NamedRecord>& records, FitRequest 
 }
 
 std::string TextOf(const Fitted& fitted) {
-  if (fitted.report.failed()) return "the fit failed: " + fitted.report.fit.termination + '\n';
+  if (fitted.report.failed()) return "the fit failed: " + fitted.report.fit.solver.message + '\n';
   return report::ToText(fitted.report);
 }
 

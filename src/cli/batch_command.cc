@@ -173,7 +173,7 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, Strictness str
     if (!result.done) {
       result.fault = report.fit.converged ? "not established: the model is not adequate or a free "
                                             "parameter not identifiable"
-                                          : report.fit.termination;
+                                          : report.fit.solver.message;
     }
   } catch (const InputError& error) {
     result.fault = error.what();

@@ -69,7 +69,7 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
     messages.Warn(warning.message);
   }
   if (report.failed()) {  // no curve to draw, no residual to list
-    console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.termination);
+    console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
     if (!options.report_path.empty()) {
       io::WriteFileAtomically(options.report_path, report::ToPage(report, provenance()));
     }

@@ -777,8 +777,6 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   fresh.parameters.swap(result.parameters);
   fresh.correlation.swap(result.correlation);
   fresh.records.swap(result.records);
-  fresh.termination.swap(result.termination);
-  fresh.termination.assign("not run");
   fresh.correlation.clear();
   result = std::move(fresh);
   descents.clear();
@@ -857,8 +855,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   const Solution& solution = *best->solution;
   result.initial_state = best->problem.state;
-  result.termination.assign(solution.termination);
-  result.iterations = solution.iterations;
+  result.solver = solution.report;
+  const double unit_squared = data.response_unit() * data.response_unit();
+  result.solver.initial_cost *= unit_squared;
+  result.solver.final_cost *= unit_squared;
   result.converged = solution.converged;
   if (is_judged) ReportStarts(best->problem, descents, result);
   if (!std::isfinite(solution.sum_of_squares)) {
@@ -869,7 +869,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   if (!settled) {
     result.converged = false;
-    result.termination.assign("The weights of the samples did not settle.");
+    result.solver.termination = "NO_CONVERGENCE";
+    result.solver.message = "The weights of the samples did not settle.";
     result.findings.push_back({.code = "weights_not_settled"});
   }
   if (data.is_forced()) {

@@ -155,7 +155,7 @@ Errors Compare(const Trial& trial, const FitResult& fit) {
   Errors errors;
   const models::BranchLaw& truth = trial.truth;
   errors.converged = fit.converged;
-  errors.termination = fit.termination;
+  errors.termination = fit.solver.message;
   if (fit.parameters.empty()) return errors;
   CompareContact(trial, fit.law, errors);
   const auto judge = [&](const char* name, double value) {

@@ -298,7 +298,7 @@ double CorrelationOf(const FitResult& fit, std::string_view first, std::string_v
 
 /// What the fit alone has to say.
 void RemarkOnFit(ModelScore& score, const FitResult& fit, const Thresholds& thresholds) {
-  if (!fit.converged) AddRemark(score, "not converged: " + fit.termination);
+  if (!fit.converged) AddRemark(score, "not converged: " + fit.solver.message);
   for (const ParameterEstimate& estimate : fit.parameters) {
     if (estimate.status != ParameterStatus::kAtLowerBound &&
         estimate.status != ParameterStatus::kAtUpperBound) {

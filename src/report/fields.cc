@@ -230,7 +230,9 @@ void Describe(const Report& report, const Value& value, const std::string& path,
 
 }  // namespace
 
-std::string WhyFailed(const Report& report) { return "the fit failed: " + report.fit.termination; }
+std::string WhyFailed(const Report& report) {
+  return "the fit failed: " + report.fit.solver.message;
+}
 
 std::vector<FieldDescription> DescribeFields() {
   std::vector<FieldDescription> descriptions;

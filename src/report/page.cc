@@ -67,7 +67,7 @@ std::string VerdictSection(const Report& report) {
   std::string sentence = VerdictSentence(report);
   const std::string word(VerdictWord(report));
   if (sentence.starts_with(word + ": ")) sentence.erase(0, word.size() + 2);
-  if (!report.fit.converged) sentence = report.fit.termination;
+  if (!report.fit.converged) sentence = report.fit.solver.message;
   std::string html = VerdictBlock(CssClass(JudgementOf(word)), word, sentence);
   html += SentenceList(ParameterVerdicts(report.fit));
   const identification::Adequacy& adequacy = report.fit.adequacy;
@@ -483,7 +483,7 @@ std::string RecordSection(const Report& report) {
 }
 
 std::string FailedBody(const Report& report) {
-  return VerdictBlock("bad", "failed", report.fit.termination) +
+  return VerdictBlock("bad", "failed", report.fit.solver.message) +
          Heading("Warnings and what to do") + SentenceList(MessagesOf(report.fit_warnings));
 }
 

@@ -13,7 +13,7 @@ namespace mindahl::report {
 inline void RequireFitted(const Report& report, std::string_view what) {
   if (!report.failed()) return;
   throw InvalidArgument(fmt::format("there is nothing to make {} of: the fit failed: {}", what,
-                                    report.fit.termination));
+                                    report.fit.solver.message));
 }
 
 }  // namespace mindahl::report

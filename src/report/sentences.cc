@@ -427,7 +427,7 @@ std::string WeightsNotSettled(const Finding&, const FitResult&, const Units&) {
 std::string FitFailed(const Finding&, const FitResult& fit, const Units&) {
   return fmt::format(
       "the fit failed, so no parameter, residual, loop, contact or mapping value was computed: {}",
-      fit.termination);
+      fit.solver.message);
 }
 
 struct SentenceRow {

@@ -202,7 +202,7 @@ std::string FitText(const Report& report) {
           Quantity(fit.WidestRecord().gate.gate, report.units.excitation, 3), cycles,
           fit.force_sense > 0 ? "same sign" : "opposite signs"),
       2);
-  if (!fit.converged) text += Wrapped("not converged: " + fit.termination, 2);
+  if (!fit.converged) text += Wrapped("not converged: " + fit.solver.message, 2);
   return text;
 }
 

@@ -21,7 +21,7 @@ endif()
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix})
 # What only building mindahl needs is asked of no user.
 set(not_needed "")
-foreach(package Eigen3 Boost nlohmann_json CLI11 GTest)
+foreach(package Boost nlohmann_json CLI11 GTest)
   list(APPEND not_needed -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
 endforeach()
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/examples -B ${user} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}

@@ -84,7 +84,7 @@ Honesty Measure(MakeNoisy make_noisy, const FitOptions& options) {
   for (std::size_t i = 0; i < kLoops; ++i) {
     Generator generator(100 + i);
     const FitResult fit = FitOne(make_noisy(clean, generator), options);
-    EXPECT_TRUE(fit.converged) << fit.termination;
+    EXPECT_TRUE(fit.converged) << fit.solver.message;
     EXPECT_EQ(fit.records[0].reversals.size(), kReversals);
     for (std::size_t k = 0; k < names.size(); ++k) {
       const ParameterEstimate& estimate = *fit.Find(names[k]);

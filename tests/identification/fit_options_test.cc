@@ -267,7 +267,7 @@ TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
   options.starts = 1;
   const FitResult fit = FitOne(Loop(), options);
   EXPECT_FALSE(fit.converged);
-  EXPECT_THAT(fit.termination, HasSubstr("iterations"));
+  EXPECT_THAT(fit.solver.message, HasSubstr("iterations"));
   EXPECT_FALSE(fit.parameters.empty());
 }
 
@@ -277,7 +277,7 @@ TEST(FitOptions, WrongForceSenseIsAFailedFitAndNotACrash) {
   const FitResult fit = FitOne(Loop(), options);
   EXPECT_FALSE(fit.converged);
   EXPECT_TRUE(fit.parameters.empty());
-  EXPECT_THAT(fit.termination, HasSubstr("sense"));
+  EXPECT_THAT(fit.solver.message, HasSubstr("sense"));
 }
 
 TEST(FitOptions, DefaultResultHasNotConverged) { EXPECT_FALSE(FitResult{}.converged); }

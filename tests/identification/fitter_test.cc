@@ -38,8 +38,8 @@ void ExpectSame(const std::optional<double>& one, const std::optional<double>& o
 void ExpectSame(const FitResult& one, const FitResult& other) {
   EXPECT_EQ(one.depth, other.depth);
   EXPECT_EQ(one.converged, other.converged);
-  EXPECT_EQ(one.termination, other.termination);
-  EXPECT_EQ(one.iterations, other.iterations);
+  EXPECT_EQ(one.solver.message, other.solver.message);
+  EXPECT_EQ(one.solver.iterations, other.solver.iterations);
   EXPECT_EQ(one.initial_state, other.initial_state);
   EXPECT_EQ(one.force_sense, other.force_sense);
   EXPECT_EQ(one.law.tangential_stiffness, other.law.tangential_stiffness);

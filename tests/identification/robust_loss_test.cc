@@ -98,7 +98,7 @@ TEST(RobustLoss, OutliersToBothSidesMoveNoParameterByTwoStandardErrors) {
       SCOPED_TRACE("loss " + std::to_string(static_cast<int>(loss)) + ", seed " +
                    std::to_string(seed));
       const FitResult fit = FitWith(spoilt.record, loss);
-      EXPECT_TRUE(fit.converged) << fit.termination;
+      EXPECT_TRUE(fit.converged) << fit.solver.message;
       EXPECT_LT(WorstShift(fit, FitWith(clean, loss)), 2.0);
       // One of 27 normal estimates is beyond 3.5 standard errors once in 80 such tests.
       EXPECT_LT(WorstDeviation(fit, fit), 3.5);
@@ -115,7 +115,7 @@ TEST(RobustLoss, OutliersToOneSideMoveOnlyHubersOffset) {
   for (const Loss loss : {Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
     SCOPED_TRACE("loss " + std::to_string(static_cast<int>(loss)));
     const FitResult fit = FitWith(spoilt.record, loss);
-    EXPECT_TRUE(fit.converged) << fit.termination;
+    EXPECT_TRUE(fit.converged) << fit.solver.message;
     EXPECT_LT(WorstShift(fit, FitWith(clean, loss)), 2.0);
     const ParameterEstimate& offset = *fit.Find("force_offset");
     // ψ of Huber's loss stays at 1.345 however far the outlier: ε/(1 − ε)·1.345/P(|z| < 1.345) =
@@ -151,7 +151,7 @@ TEST(RobustLoss, WithoutOutliersLittleIsLost) {
     for (const Loss loss : {Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
       SCOPED_TRACE("loss " + std::to_string(static_cast<int>(loss)));
       const FitResult fit = FitWith(clean, loss);
-      EXPECT_TRUE(fit.converged) << fit.termination;
+      EXPECT_TRUE(fit.converged) << fit.solver.message;
       EXPECT_LT(WorstShift(fit, plain), kFourDeviations);
       for (const char* name : kParameters) {
         EXPECT_NEAR(*fit.Find(name)->standard_error / *plain.Find(name)->standard_error,

@@ -47,7 +47,7 @@ bool IsWarnedOf(const FitResult& fit, FindingCode code) { return fit.FindFinding
 
 /// Nothing of a result may be NaN or infinite where it is stated.
 void ExpectFinite(const FitResult& fit) {
-  ASSERT_THAT(fit.parameters, Not(IsEmpty())) << fit.termination;
+  ASSERT_THAT(fit.parameters, Not(IsEmpty())) << fit.solver.message;
   for (const ParameterEstimate& estimate : fit.parameters) {
     EXPECT_TRUE(std::isfinite(estimate.value)) << estimate.name;
     for (const auto& stated : {estimate.standard_error, estimate.lower95, estimate.upper95}) {

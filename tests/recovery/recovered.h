@@ -114,11 +114,12 @@ inline ::testing::AssertionResult Recovers(const identification::FitResult& fit,
   const double worst = WorstError(fit, truth);
   if (fit.converged && worst <= tolerance) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure()
-         << (fit.converged ? "" : "not converged (" + fit.termination + "), ") << "relative error "
-         << worst << " above " << tolerance << ": sigma " << fit.law.tangential_stiffness << " of "
-         << truth.tangential_stiffness << ", alpha " << fit.law.shape_exponent << " of "
-         << truth.shape_exponent << ", slip force " << fit.law.slip_force << " of "
-         << truth.slip_force << "; rms over Tc " << fit.residuals.normalized_rms << ", "
+         << (fit.converged ? "" : "not converged (" + fit.solver.message + "), ")
+         << "relative error " << worst << " above " << tolerance << ": sigma "
+         << fit.law.tangential_stiffness << " of " << truth.tangential_stiffness << ", alpha "
+         << fit.law.shape_exponent << " of " << truth.shape_exponent << ", slip force "
+         << fit.law.slip_force << " of " << truth.slip_force << "; rms over Tc "
+         << fit.residuals.normalized_rms << ", "
          << (fit.initial_state == models::InitialState::kVirgin ? "virgin" : "steady");
 }
 

@@ -61,7 +61,7 @@ inline identification::FitResult MadeFit(const std::vector<loop::Record>& record
                                                                          kSlipForce}) {
   identification::FitResult fit;
   fit.converged = true;
-  fit.termination = "made by hand";
+  fit.solver.message = "made by hand";
   fit.model = models::FindFrictionModel("mindlin-dahl");
   fit.law = law;
   fit.parameters = {
@@ -100,7 +100,7 @@ inline report::ReportInput MadeInput() {
 inline report::ReportInput FailedInput() {
   report::ReportInput input = MadeInput();
   input.fit.converged = false;
-  input.fit.termination = "no start led anywhere";
+  input.fit.solver.message = "no start led anywhere";
   input.fit.parameters.clear();
   input.fit.correlation.clear();
   input.fit.residuals = {};

@@ -79,7 +79,7 @@ Finding Complete(FindingCode code, std::string_view kind = "") {
 std::string Say(const Finding& finding) {
   FitResult fit;
   fit.model = FindFrictionModel("jenkins");
-  fit.termination = "no start led anywhere";
+  fit.solver.message = "no start led anywhere";
   return Sentence(finding, fit);
 }
 

@@ -13,6 +13,7 @@
 #include "mindahl/identification/memory.h"
 #include "mindahl/identification/residual_statistics.h"
 #include "mindahl/identification/residual_structure.h"
+#include "mindahl/identification/solver_report.h"
 #include "mindahl/loop/channel.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/facts.h"
@@ -153,8 +154,7 @@ struct RecordFit {
 struct FitResult {
   Depth depth = Depth::kFull;
   bool converged = false;
-  std::string termination = "not run";
-  int iterations = 0;
+  SolverReport solver;  ///< how the search ended, and where it began
   const models::FrictionModel* model = nullptr;
   /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
   loop::Channel response = loop::Channel::kForce;

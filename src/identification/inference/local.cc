@@ -19,25 +19,16 @@ constexpr double kRegular = 1e-5;
 /// A parameter with more than this component in a null direction is not determined.
 constexpr double kNullComponent = 1e-3;
 
-std::span<double> ColumnOf(Eigen::MatrixXd& matrix, Eigen::Index j) {
-  return {matrix.col(j).data(), static_cast<std::size_t>(matrix.rows())};
-}
-
-/// R of J = QR has J's singular values and is small, however long the record. By Gram and Schmidt's
-/// modified rule, whose R is as good as Householder's (Björck 1967), though its Q is not.
-Eigen::MatrixXd TriangleOf(Eigen::MatrixXd columns) {
+/// Returns R of J = QR, which has J's singular values and is small, however long the record; its
+/// diagonal is not negative.
+Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& columns) {
   const Eigen::Index count = columns.cols();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
   Eigen::MatrixXd triangle = Eigen::MatrixXd::Zero(count, count);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const std::span<const double> column = ColumnOf(columns, j);
-    const double square = Dot(column, column);
-    if (square < std::numeric_limits<double>::min()) continue;  // its inverse would overflow
-    triangle(j, j) = std::sqrt(square);
-    for (Eigen::Index k = j + 1; k < count; ++k) {
-      const double shared = Dot(column, ColumnOf(columns, k));
-      AddMultiple(ColumnOf(columns, k), -shared / square, column);
-      triangle(j, k) = shared / triangle(j, j);
-    }
+  const Eigen::Index rows = std::min(count, columns.rows());
+  triangle.topRows(rows) = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+  for (Eigen::Index j = 0; j < rows; ++j) {
+    if (triangle(j, j) < 0) triangle.row(j) *= -1;
   }
   return triangle;
 }
@@ -45,15 +36,8 @@ Eigen::MatrixXd TriangleOf(Eigen::MatrixXd columns) {
 /// R⁻¹; nothing where R is so near to singular that directions without effect must be looked for.
 std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle) {
   if (!(triangle.diagonal().minCoeff() > kRegular)) return std::nullopt;  // of unit columns
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(triangle.rows(), triangle.cols());
-  for (Eigen::Index j = 0; j < triangle.cols(); ++j) {
-    inverse(j, j) = 1 / triangle(j, j);
-    for (Eigen::Index i = j; i-- > 0;) {
-      double sum = 0.0;
-      for (Eigen::Index k = i + 1; k <= j; ++k) sum += triangle(i, k) * inverse(k, j);
-      inverse(i, j) = -sum / triangle(i, i);
-    }
-  }
+  const Eigen::MatrixXd inverse = triangle.triangularView<Eigen::Upper>().solve(
+      Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
   // |R|·|R⁻¹| bounds the ratio of the singular values.
   if (!(triangle.norm() * inverse.norm() * kRegular < 1)) return std::nullopt;
   return inverse;
@@ -184,8 +168,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   if (count == 0) return result;
 
   const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
-  Eigen::MatrixXd columns_of_unit = is_white ? Eigen::MatrixXd() : jacobian;
-  Eigen::MatrixXd triangle = TriangleOf(std::move(jacobian));
+  Eigen::MatrixXd triangle = TriangleOf(jacobian);
   Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
   // As of unit columns, whatever their units.
@@ -199,8 +182,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   Eigen::MatrixXd root = half;
   result.absorbed = static_cast<double>(half.cols());
   if (!is_white) {
-    columns_of_unit *= inverse_norms.asDiagonal();
-    const Eigen::MatrixXd orthonormal = columns_of_unit * half;
+    const Eigen::MatrixXd orthonormal = jacobian * (inverse_norms.asDiagonal() * half);
     const Eigen::MatrixXd product =
         displacement.residuals.size() > 0
             ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement,

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "identification/solve/robust_search.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -23,24 +25,21 @@ struct Influence {
 };
 
 Influence InfluenceOf(Loss loss, double z) {
-  constexpr double kHuber = 1.345;
-  constexpr double kCauchy = 2.385;
-  constexpr double kTukey = 4.685;
   const double magnitude = std::abs(z);
   switch (loss) {
     case Loss::kNone:
       break;
     case Loss::kHuber:
-      if (magnitude <= kHuber) break;
-      return {kHuber / magnitude, 0.0};
+      if (magnitude <= kHuberConstant) break;
+      return {kHuberConstant / magnitude, 0.0};
     case Loss::kCauchy: {
-      const double weight = 1 / (1 + (z / kCauchy) * (z / kCauchy));
-      return {weight, weight * weight * (1 - (z / kCauchy) * (z / kCauchy))};
+      const double weight = 1 / (1 + (z / kCauchyConstant) * (z / kCauchyConstant));
+      return {weight, weight * weight * (1 - (z / kCauchyConstant) * (z / kCauchyConstant))};
     }
     case Loss::kTukey: {
-      if (magnitude >= kTukey) return {0.0, 0.0};
-      const double left = 1 - (z / kTukey) * (z / kTukey);
-      return {left * left, left * (1 - 5 * (z / kTukey) * (z / kTukey))};
+      if (magnitude >= kTukeyConstant) return {0.0, 0.0};
+      const double left = 1 - (z / kTukeyConstant) * (z / kTukeyConstant);
+      return {left * left, left * (1 - 5 * (z / kTukeyConstant) * (z / kTukeyConstant))};
     }
   }
   return {1.0, 1.0};
@@ -100,9 +99,24 @@ class Weighting {
                              ? 1.0
                              : std::max(RobustScale(standardised), kRoundingRms / unit);
     SetWeights(residual, from_displacement, scale, loss, unit, noise);
+    scale_ = unit * scale;
+    without_loss_ = from_displacement;
     if (errors_.any()) noise.force_share = from_displacement;
     return noise;
   }
+
+  /// Takes the robust loss out of the weights: what is left are those of the displacement's noise.
+  void UseWeightsWithoutLoss() {
+    std::size_t i = 0;
+    for (ScaledRecord& record : data_.records) {
+      for (double& weight : record.root_weight) {
+        if (counts_[i] != 0) weight = without_loss_[i];
+        ++i;
+      }
+    }
+  }
+  /// Scale of the weighted residuals, for a loss of them over it [units of the data].
+  [[nodiscard]] double scale() const { return scale_; }
 
   /// The weights of all samples' residuals, root and all.
   void Copy(std::vector<double>& weights) const {
@@ -206,9 +220,20 @@ class Weighting {
   const FitOptions& options_;
   const DisplacementErrors& errors_;
   std::vector<unsigned char> counts_;
+  std::vector<double> without_loss_;  // root weights
+  double scale_ = 1.0;
   double degrees_ = 1.0;
   bool is_lost_ = false;
 };
+
+/// Writes the residuals of a solution under the weights that it implies.
+void FillResidual(const Problem& problem, Response& response, Solution& solution) {
+  solution.residual.resize(problem.size());
+  EvaluateResidual(problem, solution.theta, response, solution.residual);
+  solution.sum_of_squares = 0.0;
+  for (const double r : solution.residual) solution.sum_of_squares += r * r;
+  solution.report.final_cost = solution.sum_of_squares / 2;
+}
 
 }  // namespace
 
@@ -248,14 +273,24 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     const bool first_huber = options.loss != Loss::kNone && round < kHuberRounds;
     noise = weighting.Update(first_huber ? Loss::kHuber : options.loss, solution.theta, response);
     if (weighting.is_lost()) return false;
-    // Weights and forces that chase each other meet at the weights' mean.
-    if (round >= kHuberRounds) {
-      weighting.GoOnlyPartOfTheWay(last_weight, 1.0 / (round - kHuberRounds + 2));
+    const Loss loss = first_huber ? Loss::kHuber : options.loss;
+    if (loss != Loss::kNone) {
+      weighting.UseWeightsWithoutLoss();
+      SolveRobustly(problem, loss, weighting.scale(), solver_options, solution);
+      // The weights that the loss implies there, of which the errors are.
+      noise = weighting.Update(loss, solution.theta, response);
+      if (weighting.is_lost()) return false;
+    } else {
+      // Weights and forces that chase each other meet at the weights' mean.
+      if (round >= kHuberRounds) {
+        weighting.GoOnlyPartOfTheWay(last_weight, 1.0 / (round - kHuberRounds + 2));
+      }
+      weighting.Copy(last_weight);
+      const std::vector<double> start = solution.theta;
+      solver.Bind(problem, response);
+      solver.Solve(start, solver_options, solution);
     }
-    weighting.Copy(last_weight);
-    const std::vector<double> start = solution.theta;
-    solver.Bind(problem, response);
-    solver.Solve(start, solver_options, solution);
+    response.Bind(problem);
     Predict(problem, solution.theta, response, force);
     double squares = 0.0;
     for (std::size_t i = 0; i < force.size(); ++i) {
@@ -265,9 +300,13 @@ bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOption
     const double change = std::sqrt(squares / static_cast<double>(force.size()));
     last_change = change;
     const bool settled = change < kSettled * std::max(noise.force, kRoundingRms);
-    if (settled && (!first_huber || options.loss == Loss::kHuber)) return true;
+    if (settled && (!first_huber || options.loss == Loss::kHuber)) {
+      FillResidual(problem, response, solution);
+      return true;
+    }
     if (settled && first_huber) round = kHuberRounds - 1;
   }
+  FillResidual(problem, response, solution);
   return last_change < kHarmless * std::max(noise.force, kRoundingRms);
 }
 

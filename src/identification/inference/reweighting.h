@@ -25,8 +25,9 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 /// - errors of the displacement act as force noise of the variance σ_T² that their draws have at a
 ///   sample (effective variance, Orear 1982): w = σ_F²/(σ_F² + σ_T²), so that steep branches do not
 ///   dominate; σ_F² where it is not known is what the residuals leave for it
-/// - a robust loss: w·ψ(z)/z of the standardised residual z, whose scale is the median absolute
-///   deviation; Huber 1.345, Cauchy 2.385, Tukey 4.685, each 95 % efficient for normal noise
+/// - a robust loss of the standardised residual, whose scale is the median absolute deviation:
+///   ceres::Solve minimises it (solve/robust_search.h), and the weights ψ(z)/z that it implies at
+///   the minimum are those of the errors
 /// @param problem   of `data`
 /// @param data      its weights are written
 /// @param solution  refitted from where it is

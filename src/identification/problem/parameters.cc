@@ -184,6 +184,21 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   Sort();
 }
 
+Parameters::Parameters(const Parameters& all, std::size_t record, std::pmr::memory_resource* memory)
+    : parameters_(memory),
+      free_(memory),
+      reported_(memory),
+      origin_term_(all.origin_term_),
+      state_(all.state_) {
+  for (const Parameter& parameter : all) {
+    const bool is_own = parameter.term->scope == Scope::kRecord;
+    if (is_own && parameter.record != record) continue;
+    parameters_.push_back(parameter);
+    if (is_own) parameters_.back().record = 0;
+  }
+  Sort();
+}
+
 Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memory)
     : parameters_(other.parameters_, memory),
       free_(other.free_, memory),

@@ -77,6 +77,9 @@ class Parameters {
   Parameters(const ScaledRecords& data, const FitOptions& options, models::InitialState state,
              std::pmr::memory_resource* memory);
 
+  /// Those of one record of several, and of the contact, as if it were the only one.
+  Parameters(const Parameters& all, std::size_t record, std::pmr::memory_resource* memory);
+
   /// A copy in another memory.
   Parameters(const Parameters& other, std::pmr::memory_resource* memory);
 

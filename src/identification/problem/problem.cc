@@ -30,6 +30,58 @@ models::NormalizedLaw LawUnder(const Problem& problem, const LawPoint& at,
           .spring_travel = has_rig ? std::exp(at.log_travel + record.log_load) : 0.0};
 }
 
+namespace {
+
+/// Parameters of the law and the path with a derivative of t of their own.
+struct LawRow {
+  std::string_view term;
+  std::span<double> ResponseColumns::*column;
+  double longest_step;
+  bool step_grows_with_theta = false;
+};
+constexpr std::array kLawRows = {
+    LawRow{"alpha", &ResponseColumns::shape_exponent, 1.0, true},
+    LawRow{"lag", &ResponseColumns::lag, 0.02},  // cycles
+    LawRow{"asymmetry", &ResponseColumns::asymmetry, 0.25},
+};
+
+}  // namespace
+
+LawSensitivity SensitivityTo(const Problem& problem, std::size_t parameter) {
+  const Term& term = *problem.parameters[parameter].term;
+  const bool is_forced = problem.data->is_forced();
+  const bool has_rig = problem.parameters.has_rig();
+  LawSensitivity result;
+  const auto add = [&](Sensitivity summand) { result.summands[result.count++] = summand; };
+  // t depends on σ/Tc and Tc/k, or of an imposed force on 1/Tc; the scale is Tc, or Tc/σ.
+  if (parameter == kStiffness) {
+    if (is_forced) {
+      add({.factor = -1.0});
+    } else {
+      add({.column = &ResponseColumns::log_rate});
+    }
+  } else if (parameter == kSlipForce) {
+    add({});
+    add({.column = &ResponseColumns::log_rate, .factor = -1.0});
+    if (has_rig) add({.column = &ResponseColumns::log_spring_travel});
+  } else if (parameter == kRig) {
+    if (has_rig) add({.column = &ResponseColumns::log_spring_travel, .factor = -1.0});
+  } else if (parameter == kLoadExponent) {
+    add({.column = &ResponseColumns::log_rate, .by_log_load = true});
+  } else if (term.name == OriginTerm(problem.data->excitation)) {
+    add({.column = &ResponseColumns::unloaded});
+    result.longest_step = 0.5;
+  } else {
+    const auto row = std::ranges::find(kLawRows, term.name, &LawRow::term);
+    if (row == kLawRows.end()) return result;
+    if (row->column == &ResponseColumns::lag && !problem.parameters.has_lag()) return result;
+    add({.column = row->column});
+    result.longest_step = row->longest_step;
+    result.step_grows_with_theta = row->step_grows_with_theta;
+  }
+  return result;
+}
+
 void Response::Bind(const Problem& problem) {
   problem_ = &problem;
   const std::size_t records = problem.data->records.size();
@@ -310,80 +362,44 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
                    std::span<const std::size_t> columns, std::span<double> residual,
                    std::span<double> jacobian) {
   const std::size_t samples = problem.size();
-  const Parameters& parameters = problem.parameters;
-  const auto asks = [&](std::size_t p) { return std::ranges::find(columns, p) != columns.end(); };
-  const auto asks_term = [&](std::string_view term) {
-    return std::ranges::any_of(columns,
-                               [&](std::size_t p) { return parameters[p].term->name == term; });
-  };
-  const bool is_forced = problem.data->is_forced();
-  const bool by_rate = (asks(kStiffness) && !is_forced) || asks(kSlipForce) || asks(kLoadExponent);
-  const bool by_travel = parameters.has_rig() && (asks(kSlipForce) || asks(kRig));
-  const std::string_view origin = OriginTerm(problem.data->excitation);
-  constexpr std::size_t kMostDerivatives = 6;
-  const std::span<double> scratch = response.Scratch(kMostDerivatives * samples);
-  std::size_t used = 0;
-  const auto part_if = [&](bool wanted) {
-    return wanted ? scratch.subspan(used++ * samples, samples) : std::span<double>();
-  };
-  const ResponseColumns gradient{.log_rate = part_if(by_rate),
-                                 .shape_exponent = part_if(asks(kShape)),
-                                 .unloaded = part_if(asks_term(origin)),
-                                 .log_spring_travel = part_if(by_travel),
-                                 .lag = part_if(parameters.has_lag() && asks_term("lag")),
-                                 .asymmetry = part_if(asks_term("asymmetry") && !is_forced)};
+  // Each derivative of t is computed once, for however many parameters.
+  std::vector<LawSensitivity> sensitivities;
+  std::vector<std::span<double> ResponseColumns::*> wanted;
+  for (const std::size_t p : columns) {
+    sensitivities.push_back(SensitivityTo(problem, p));
+    for (const Sensitivity& summand : sensitivities.back().all()) {
+      if (summand.column != nullptr && std::ranges::find(wanted, summand.column) == wanted.end()) {
+        wanted.push_back(summand.column);
+      }
+    }
+  }
+  const std::span<double> scratch = response.Scratch(wanted.size() * samples);
+  ResponseColumns gradient;
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    gradient.*wanted[k] = scratch.subspan(k * samples, samples);
+  }
   const std::span<double> t = residual;  // until the rest is added, and what is measured taken off
   response.Differentiate(PointAt(problem, theta), t, gradient);
   const double scale = std::exp(LogScaleAt(problem, theta));
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const std::size_t p = columns[c];
-    const Parameter& parameter = parameters[p];
-    const bool is_unloaded = parameter.term->name == origin;
-    const bool is_lag = parameter.term->name == "lag";
+    const Parameter& parameter = problem.parameters[p];
     std::size_t k = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const ScaledRecord& record = problem.data->records[r];
       const std::span<double> column = jacobian.subspan(c * samples + k, record.size());
       const std::size_t begin = k;
       k += record.size();
-      const bool is_others = parameter.term->scope == Scope::kRecord && parameter.record != r;
-      if (is_others || parameter.term->column != Regressor::kNone) {
-        std::ranges::fill(column, 0.0);
-        if (!is_others) AddColumn(problem, p, r, 1.0, column);
+      std::ranges::fill(column, 0.0);
+      if (parameter.term->scope == Scope::kRecord && parameter.record != r) continue;
+      if (parameter.term->column != Regressor::kNone) AddColumn(problem, p, r, 1.0, column);
+      for (const Sensitivity& summand : sensitivities[c].all()) {
+        const std::span<const double> derivative =
+            summand.column == nullptr ? t : gradient.*summand.column;
+        const double factor =
+            scale * summand.factor * (summand.by_log_load ? record.log_load : 1.0);
+        for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * derivative[begin + i];
       }
-      if (is_others) continue;
-      bool is_empty = parameter.term->column == Regressor::kNone;
-      const auto add = [&](std::span<const double> derivative, double factor) {
-        if (derivative.empty()) return;
-        const std::span<const double> of = derivative.subspan(begin, column.size());
-        if (is_empty) {
-          for (std::size_t i = 0; i < column.size(); ++i) column[i] = factor * of[i];
-        } else {
-          for (std::size_t i = 0; i < column.size(); ++i) column[i] += factor * of[i];
-        }
-        is_empty = false;
-      };
-      if (p == kStiffness) {
-        // Of a displacement it is the factor's alone.
-        add(is_forced ? std::span<const double>(t) : gradient.log_rate, is_forced ? -scale : scale);
-      } else if (p == kShape) {
-        add(gradient.shape_exponent, scale);
-      } else if (p == kSlipForce) {
-        add(t, scale);
-        add(gradient.log_rate, -scale);
-        add(gradient.log_spring_travel, scale);
-      } else if (p == kRig) {
-        add(gradient.log_spring_travel, -scale);
-      } else if (p == kLoadExponent) {
-        add(gradient.log_rate, scale * record.log_load);
-      } else if (is_unloaded) {
-        add(gradient.unloaded, scale);
-      } else if (is_lag) {
-        add(gradient.lag, scale);
-      } else if (parameter.term->name == "asymmetry") {
-        add(gradient.asymmetry, scale);
-      }
-      if (is_empty) std::ranges::fill(column, 0.0);
       for (std::size_t i = 0; i < column.size(); ++i) column[i] *= record.root_weight[i];
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -61,6 +62,31 @@ struct ResponseColumns {
   std::span<double> lag;        // by θ of the lag; where the problem has one
   std::span<double> asymmetry;  // likewise
 };
+
+/// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where no column stands for t itself.
+struct Sensitivity {
+  std::span<double> ResponseColumns::*column = nullptr;
+  double factor = 1.0;
+  bool by_log_load = false;  // times ln(N/N₀) of the record
+};
+
+/// How the response depends on a parameter that is not linear: the summands of ∂(scale·t)/∂θ over
+/// the scale, and how far a search may move θ in one step. A parameter of the law or the path is a
+/// row of the table in problem.cc.
+struct LawSensitivity {
+  std::array<Sensitivity, 3> summands;
+  std::size_t count = 0;
+  double longest_step = 1.5;           // of θ
+  bool step_grows_with_theta = false;  // times θ, where that is beyond 1
+
+  [[nodiscard]] std::span<const Sensitivity> all() const {
+    return std::span(summands).first(count);
+  }
+};
+
+/// Returns the sensitivity to a parameter; it is empty for one that is linear, and for one that the
+/// problem does not have.
+LawSensitivity SensitivityTo(const Problem& problem, std::size_t parameter);
 
 /// t = T/Tc of all samples, one record after the other, Tc that of the mean load: by the branch law
 /// where a record is under one load, by the elements' (models/variable_load.h) where it varies. Of

@@ -7,9 +7,12 @@
 namespace mindahl::identification {
 
 SolverOptions SolverOptionsOf(const FitOptions& options) {
+  // A full step from there is the last: it leaves far less than it gains.
+  constexpr double kLastStep = 100.0;  // function tolerances
   return {.function_tolerance = options.function_tolerance,
           .parameter_tolerance = options.parameter_tolerance,
-          .max_iterations = options.max_iterations};
+          .max_iterations = options.max_iterations,
+          .last_step = kLastStep * options.function_tolerance};
 }
 
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
@@ -44,8 +47,8 @@ void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buf
   Solution& best = *candidate.solution;
   best.sum_of_squares = std::numeric_limits<double>::infinity();
   best.converged = false;
-  best.iterations = 0;
-  best.termination = "no starting point has the force's sense";
+  best.report = {};
+  best.report.message = "no starting point has the force's sense";
   if (candidate.starts.empty()) return;
   buffers.solver.Bind(candidate.problem, buffers.response);
   for (const StartingPoint& start : candidate.starts) {

@@ -1,734 +1,472 @@
 #include "identification/solve/solver.h"
 
+#include <ceres/ceres.h>
+#include <ceres/tiny_solver.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "identification/solve/sums.h"
+#include "identification/solve/compressed_residual.h"
 
 namespace mindahl::identification {
 namespace {
 
-// Of σ/Tc and Tc/k in units of the data: a straight line, and a branch that is vertical; a rigid
-// rig, and one in which the contact is rigid.
-const double kLowestLogRate = std::log(1e-4);
-const double kHighestLogRate = std::log(1e9);
-const double kLowestLogTravel = std::log(1e-9);
-const double kHighestLogTravel = std::log(1e3);
+/// ½ of its square is beyond any cost that is finite, and finite itself.
+constexpr double kRefused = 1e150;
 
-/// Room for so many, which is never given back: what is in it is nobody's.
-void GrowTo(std::size_t size, std::vector<double>& buffer) {
-  if (buffer.size() < size) buffer.resize(size);
+/// ceres::Solve sees the same compressed residual, with its Jacobian at every point.
+class CompressedCost final : public ceres::CostFunction {
+ public:
+  CompressedCost(ProjectedResidual& residual, std::size_t count) : residual_(residual) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(count));
+    set_num_residuals(static_cast<int>(count) + 1);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    const auto count = static_cast<std::size_t>(parameter_block_sizes().front());
+    const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+    const std::span<const double> u(parameters[0], count);
+    const double cost = with_jacobian ? residual_.Linearise(u) : residual_.Evaluate(u);
+    Eigen::Map<Eigen::VectorXd> rows(residuals, num_residuals());
+    rows.setZero();
+    rows[0] = std::isfinite(cost) ? std::sqrt(cost) : kRefused;
+    if (!with_jacobian || !std::isfinite(cost)) return std::isfinite(cost) || !with_jacobian;
+    const CompressedResidual compressed(residual_.normal(), residual_.gradient(), cost, {});
+    rows = compressed.residual();
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<RowMajor>(jacobians[0], rows.size(), static_cast<Eigen::Index>(count)) =
+        compressed.jacobian();
+    return true;
+  }
+
+ private:
+  ProjectedResidual& residual_;
+};
+
+}  // namespace
+
+/// The cost functor of ceres::TinySolver, and what the searches of one start share.
+///
+/// TinySolver has neither bounds nor limits of a step, evaluates a trial without its Jacobian, and
+/// stops by the absolute change of the cost. The functor therefore
+/// - evaluates a coordinate beyond its bound at the bound, where its derivative is 0;
+/// - ends the search where a trial moves a coordinate further than one step may, and goes on with
+///   a trust region in which it does not;
+/// - linearises a trial at once, as an accepted one is linearised next;
+/// - reports a zero gradient, which ends the search, where no step can lower the cost by more than
+///   the function tolerance.
+struct Solver::Search {
+  struct Function {
+    using Scalar = double;
+    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
+
+    [[nodiscard]] int NumParameters() const { return static_cast<int>(search->count); }
+    [[nodiscard]] int NumResiduals() const { return static_cast<int>(search->count) + 1; }
+    bool operator()(const double* x, double* residuals, double* jacobian) const {
+      if (jacobian == nullptr) {
+        search->Try(x, residuals);
+      } else {
+        search->Accept(x, residuals, jacobian);
+      }
+      return true;
+    }
+
+    Search* search;
+  };
+  using TinySolver = ceres::TinySolver<Function>;
+
+  void Start(ProjectedResidual& of, const SolverOptions& with, double rounding);
+  void Run(std::span<double> u);
+  [[nodiscard]] const char* Message() const;
+  void Try(const double* x, double* residuals);
+  void Accept(const double* x, double* residuals, double* jacobian);
+
+  /// A residual that refuses a trial by less than the function tolerance, which ends the search.
+  [[nodiscard]] double EndOfSearch() const {
+    return std::sqrt(cost * (1 + options.function_tolerance / 2));
+  }
+  void Clamp(const double* x, std::vector<double>& to) const;
+  [[nodiscard]] bool IsTooLong(std::size_t j, double step) const;
+  [[nodiscard]] double RadiusOfFirstStep() const;
+
+  ProjectedResidual* residual = nullptr;
+  SolverOptions options;
+  std::size_t count = 0;
+  double floor = 0.0;  // of the cost: below it residuals are rounding errors
+  TinySolver tiny;
+  TinySolver::Parameters point;
+  std::vector<double> at;     // accepted coordinates, within their bounds
+  std::vector<double> raw;    // as TinySolver has them
+  std::vector<double> trial;  // the last evaluated ones
+  std::vector<unsigned char> clamped;
+  double cost = 0.0;  // there
+  double trial_cost = 0.0;
+  bool trial_is_linearised = false;
+  bool trial_is_predicted = false;
+  bool is_first = false;  // is the next accepted point that where a search begins?
+  bool is_last = false;   // is the next accepted step the last one?
+  bool goes_on = false;   // with another trust region, from where the search ended
+  bool is_slow = false;
+  int accepted = 0;  // steps
+  int iterations = 0;
+  double initial_cost = 0.0;
+  double cost_before = 0.0;  // kSlowSteps accepted steps ago
+  CompressedResidual compressed;
+};
+
+void Solver::Search::Start(ProjectedResidual& of, const SolverOptions& with, double rounding) {
+  residual = &of;
+  options = with;
+  count = of.searched().size();
+  floor = rounding;
+  trial_is_linearised = trial_is_predicted = false;
+  clamped.assign(count, 0);
+  at.resize(count);
+  raw.resize(count);
+  trial.resize(count);
 }
 
-/// Solves A·x = b in place by Cholesky's rule; false where A is not positive definite.
-bool SolveCholesky(std::span<double> a, std::span<double> x) {
-  const std::size_t n = x.size();
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t k = 0; k < j; ++k) a[j * n + j] -= a[j * n + k] * a[j * n + k];
-    if (!(a[j * n + j] > 0)) return false;
-    a[j * n + j] = std::sqrt(a[j * n + j]);
-    for (std::size_t i = j + 1; i < n; ++i) {
-      for (std::size_t k = 0; k < j; ++k) a[i * n + j] -= a[i * n + k] * a[j * n + k];
-      a[i * n + j] /= a[j * n + j];
+void Solver::Search::Clamp(const double* x, std::vector<double>& to) const {
+  const std::span<const SearchedParameter> searched = residual->searched();
+  for (std::size_t j = 0; j < count; ++j) {
+    to[j] = std::clamp(x[j], searched[j].lower, searched[j].upper);
+  }
+}
+
+bool Solver::Search::IsTooLong(std::size_t j, double step) const {
+  const LawSensitivity& sensitivity = residual->searched()[j].sensitivity;
+  const double limit =
+      sensitivity.longest_step * (sensitivity.step_grows_with_theta ? std::max(1.0, raw[j]) : 1.0);
+  return std::abs(step) > limit;
+}
+
+/// Returns the largest radius, of those tried, with which TinySolver's first step is not too long.
+double Solver::Search::RadiusOfFirstStep() const {
+  constexpr double kLargestRadius = 1e3;
+  constexpr int kTries = 40;
+  // TinySolver scales the columns, and keeps the damping of those without effect from vanishing.
+  constexpr double kLeastDiagonal = 1e-6;
+  const Eigen::VectorXd scaling = 1 / (1 + compressed.jacobian().colwise().norm().array());
+  const Eigen::MatrixXd jacobian = compressed.jacobian() * scaling.asDiagonal();
+  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
+  const Eigen::VectorXd gradient = jacobian.transpose() * compressed.residual();
+  double radius = kLargestRadius;
+  for (int tries = 0; tries < kTries; ++tries, radius /= 4) {
+    Eigen::MatrixXd damped = normal;
+    damped.diagonal() += normal.diagonal().cwiseMax(kLeastDiagonal) / radius;
+    const Eigen::VectorXd step = -scaling.cwiseProduct(damped.ldlt().solve(gradient));
+    bool is_short = true;
+    for (std::size_t j = 0; j < count; ++j) {
+      is_short = is_short && !IsTooLong(j, step[static_cast<Eigen::Index>(j)]);
+    }
+    if (is_short) break;
+  }
+  return radius;
+}
+
+void Solver::Search::Try(const double* x, double* residuals) {
+  Eigen::Map<Eigen::VectorXd> rows(residuals, static_cast<Eigen::Index>(count) + 1);
+  rows.setZero();
+  bool is_number = true;
+  for (std::size_t j = 0; j < count; ++j) {
+    is_number = is_number && std::isfinite(x[j]);
+    goes_on = goes_on || IsTooLong(j, x[j] - raw[j]);
+  }
+  if (!is_number || goes_on) {
+    rows[0] = goes_on ? EndOfSearch() : kRefused;
+    return;
+  }
+  Clamp(x, trial);
+  trial_is_linearised = !is_last;
+  trial_is_predicted = is_last && options.predicts_last;
+  if (trial_is_predicted) {
+    Eigen::VectorXd step(static_cast<Eigen::Index>(count));
+    for (std::size_t j = 0; j < count; ++j) {
+      step[static_cast<Eigen::Index>(j)] = trial[j] - at[j];
+    }
+    trial_cost = (compressed.residual() + compressed.jacobian() * step).squaredNorm();
+  } else {
+    trial_cost = is_last ? residual->Evaluate(trial) : residual->Linearise(trial);
+    // A last step that does not lower the cost could have gained next to nothing.
+    if (is_last && !(trial_cost < cost)) {
+      rows[0] = EndOfSearch();
+      return;
     }
   }
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < i; ++k) x[i] -= a[i * n + k] * x[k];
-    x[i] /= a[i * n + i];
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t k = i + 1; k < n; ++k) x[i] -= a[k * n + i] * x[k];
-    x[i] /= a[i * n + i];
-  }
-  return true;
+  rows[0] = std::isfinite(trial_cost) ? std::sqrt(trial_cost) : kRefused;
 }
 
-/// Below it the forces of a steady loop, whose middle is known, are beyond slip.
-double LeastLogSlipForce(const Problem& problem) {
-  constexpr double kShortOfSlip = 1e-9;
-  if (problem.state != models::InitialState::kSteady)
-    return -std::numeric_limits<double>::infinity();
-  double largest = 0.0;
-  for (const ScaledRecord& record : problem.data->records) {
-    const auto [low, high] = std::ranges::minmax(record.excitation());
-    largest = std::max(largest, (high - low) / 2);
+void Solver::Search::Accept(const double* x, double* residuals, double* jacobian) {
+  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
+  constexpr int kSlowSteps = 20;          // ... in as many steps
+  const auto size = static_cast<Eigen::Index>(count);
+  Eigen::Map<Eigen::VectorXd> rows(residuals, size + 1);
+  Eigen::Map<Eigen::MatrixXd> columns(jacobian, size + 1, size);
+  const std::span<const SearchedParameter> searched = residual->searched();
+  Clamp(x, at);
+  if (is_first && !(trial_is_linearised && trial == at)) {
+    trial = at;
+    trial_cost = residual->Linearise(trial);
+    trial_is_linearised = true;
+    trial_is_predicted = false;
   }
-  return std::log(largest) + kShortOfSlip;
+  raw.assign(x, x + count);
+  cost = trial_cost;
+  rows.setZero();
+  columns.setZero();
+  rows[size] = std::sqrt(cost);
+  tiny.options.function_tolerance = options.function_tolerance * cost;
+  if (!trial_is_linearised) return;  // that was the last step: a zero gradient ends the search
+  if (!is_first) ++accepted;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double slope = residual->gradient()[static_cast<Eigen::Index>(j)];
+    const bool below = x[j] <= searched[j].lower && (x[j] < searched[j].lower || slope > 0);
+    const bool above = x[j] >= searched[j].upper && (x[j] > searched[j].upper || slope < 0);
+    clamped[j] = below || above ? 1 : 0;
+  }
+  compressed = CompressedResidual(residual->normal(), residual->gradient(), cost, clamped);
+  if (accepted == 0) cost_before = cost;
+  if (!is_first && accepted % kSlowSteps == 0) {
+    const auto samples = static_cast<double>(residual->problem().data->counted);
+    is_slow = samples * (cost_before - cost) < kSmallestGain * cost_before;
+    cost_before = cost;
+  }
+  const double left = compressed.Explained();
+  if (is_slow || left <= options.function_tolerance * cost) return;
+  is_last = left <= options.last_step * cost && cost > floor;
+  if (is_first) tiny.options.initial_trust_region_radius = RadiusOfFirstStep();
+  is_first = false;
+  rows = compressed.residual();
+  columns = compressed.jacobian();
+}
+
+void Solver::Search::Run(std::span<double> u) {
+  // TinySolver's gradients are zero or count: cost and gradient have no scale of their own.
+  constexpr double kOnlyZero = std::numeric_limits<double>::min();
+  // A search that ends with more than this fraction of the cost to gain was damped too much.
+  constexpr double kGainWorthGoingOn = 1e-6;
+  tiny.options.gradient_tolerance = kOnlyZero;
+  tiny.options.cost_threshold = 0.0;
+  tiny.options.parameter_tolerance = options.parameter_tolerance;
+  accepted = iterations = 0;
+  is_slow = false;
+  initial_cost = -1.0;
+  point = Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
+  double last_cost = std::numeric_limits<double>::infinity();
+  do {
+    is_first = true;
+    is_last = goes_on = false;
+    tiny.options.max_num_iterations = options.max_iterations - iterations;
+    tiny.Solve(Function{this}, &point);
+    iterations += std::max(tiny.summary.iterations, 1);
+    if (initial_cost < 0) initial_cost = tiny.summary.initial_cost;
+    // A step that ends the search is not accepted by a call.
+    if (!std::equal(raw.begin(), raw.end(), point.data())) {
+      at = trial;
+      cost = trial_cost;
+    }
+    const bool was_damped = tiny.summary.status == TinySolver::COST_CHANGE_TOO_SMALL &&
+                            cost < last_cost && compressed.Explained() > kGainWorthGoingOn * cost;
+    goes_on = goes_on || was_damped;
+    last_cost = cost;
+  } while (goes_on && iterations < options.max_iterations);
+  std::ranges::copy(at, u.begin());
+}
+
+const char* Solver::Search::Message() const {
+  if (!std::isfinite(cost)) return "The residuals at the start are not finite.";
+  if (is_slow) return "Twenty steps together raised twice the log-likelihood by less than 1e-3.";
+  switch (tiny.summary.status) {
+    case TinySolver::GRADIENT_TOO_SMALL:
+      return "No step can lower the cost by more than the function tolerance.";
+    case TinySolver::RELATIVE_STEP_SIZE_TOO_SMALL:
+      return "No parameter moves by more than the parameter tolerance.";
+    case TinySolver::COST_TOO_SMALL:
+      return "The cost is zero.";
+    case TinySolver::COST_CHANGE_TOO_SMALL:
+      return "The last step changed the cost by less than the function tolerance.";
+    case TinySolver::HIT_MAX_ITERATIONS:
+      break;
+  }
+  return "The solver made its maximum number of iterations.";
+}
+
+Solver::Solver() : search_(std::make_unique<Search>()) {}
+Solver::Solver(Solver&&) noexcept = default;
+Solver& Solver::operator=(Solver&&) noexcept = default;
+Solver::~Solver() = default;
+
+namespace {
+
+/// True if a coordinate that lies at one of its bounds would lower the cost on its way back.
+bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, double tolerance) {
+  std::vector<unsigned char> others(u.size(), 1);
+  bool any = false;
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    const SearchedParameter& searched = residual.searched()[j];
+    const double slope = residual.gradient()[static_cast<Eigen::Index>(j)];
+    const bool inward =
+        (u[j] <= searched.lower && slope < 0) || (u[j] >= searched.upper && slope > 0);
+    others[j] = inward ? 0 : 1;
+    any = any || inward;
+  }
+  if (!any) return false;
+  return CompressedResidual(residual.normal(), residual.gradient(), 0.0, others).Explained() >
+         tolerance;
+}
+
+bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    const SearchedParameter& searched = residual.searched()[j];
+    if (SideOf(u[j], searched.lower, searched.upper) != BoundSide::kInside) return true;
+  }
+  return false;
+}
+
+/// Searches by ceres::Solve within the bounds, from u, which it moves.
+ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const SolverOptions& options,
+                                         std::span<double> u) {
+  // Where the gradient is its own rounding error nothing is gained by going on.
+  constexpr double kNoGradient = 1e-300;
+  CompressedCost cost(residual, u.size());
+  ceres::Problem::Options of_problem;
+  of_problem.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(of_problem);
+  problem.AddResidualBlock(&cost, nullptr, u.data());
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    const SearchedParameter& searched = residual.searched()[j];
+    problem.SetParameterLowerBound(u.data(), static_cast<int>(j), searched.lower);
+    problem.SetParameterUpperBound(u.data(), static_cast<int>(j), searched.upper);
+  }
+  ceres::Solver::Options search;
+  search.linear_solver_type = ceres::DENSE_QR;
+  search.max_num_iterations = options.max_iterations;
+  search.function_tolerance = options.function_tolerance;
+  search.parameter_tolerance = options.parameter_tolerance;
+  search.gradient_tolerance = kNoGradient;
+  search.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(search, &problem, &summary);
+  return summary;
 }
 
 }  // namespace
 
-void Solver::Bind(const Problem& problem, Response& response) {
-  problem_ = &problem;
-  response_ = &response;
-  response.Bind(problem);
-  samples_ = problem.size();
-  held_.assign(problem.parameters.size(), 0);
-  held_theta_.resize(problem.parameters.size());
-  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
-    held_theta_[p] = problem.parameters[p].theta;
+void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution) {
+  Search& search = *search_;
+  const double floor =
+      static_cast<double>(residual_.problem().data->counted) * kRoundingRms * kRoundingRms;
+  SolverReport& report = solution.report;
+  report.solver = "tiny_solver";
+  search.Start(residual_, options, floor);
+  double last_cost = std::numeric_limits<double>::infinity();
+  // Each pass lets go what lies at a bound and leads inward.
+  for (std::size_t pass = 0; pass <= u.size(); ++pass) {
+    search.Run(u);
+    report.iterations += search.iterations;
+    if (pass == 0) report.initial_cost = search.initial_cost;
+    const bool is_lower = search.cost < last_cost;
+    last_cost = search.cost;
+    if (!is_lower || !IsAtBound(residual_, u)) break;
+    search.trial.assign(u.begin(), u.end());
+    search.trial_cost = residual_.Linearise(u);
+    search.trial_is_linearised = true;
+    search.trial_is_predicted = false;
+    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost)) break;
   }
-  GrowTo(4 * samples_, of_samples_);
-  std::size_t used = 0;
-  for (std::span<double>* part : {&measured_, &weight_, &response_values_, &residual_}) {
-    *part = std::span(of_samples_).subspan(used++ * samples_, samples_);
-  }
-  ChooseSearched();
-  const std::size_t count = searched_.size();
-  GrowTo(std::max<std::size_t>(count, 1) * samples_, derivatives_);
-  hessian_.resize(count * count);
-  matrix_.resize(count * count);
-  for (std::vector<double>* buffer : {&gradient_, &step_, &trial_, &u_}) buffer->resize(count);
-  frozen_.resize(count);
-  OrthogonaliseColumns();
-}
-
-bool Solver::Searches(Role role) const {
-  return std::ranges::any_of(searched_, [&](const Searched& s) { return s.role == role; });
-}
-
-void Solver::ChooseSearched() {
-  const Parameters& parameters = problem_->parameters;
-  const Parameter& stiffness = parameters[kStiffness];
-  const Parameter& slip_force = parameters[kSlipForce];
-  const Parameter& rig = parameters[kRig];
-  const bool has_rig = parameters.has_rig();
-  const auto is_tied = [](const Parameter& parameter) {
-    return parameter.fixed || parameter.bounded_by_user;
-  };
-  searched_.clear();
-  if (is_forced()) {
-    scale_is_linear_ = !is_tied(stiffness);
-    if (!stiffness.fixed && !scale_is_linear_) {
-      searched_.push_back({Role::kLogStiffness, kStiffness, stiffness.lower, stiffness.upper});
+  double cost = search.cost;
+  const bool hit_maximum = search.tiny.summary.status == Search::TinySolver::HIT_MAX_ITERATIONS;
+  solution.converged = !hit_maximum && std::isfinite(cost);
+  report.termination = solution.converged ? "CONVERGENCE" : "NO_CONVERGENCE";
+  report.message = search.Message();
+  bool is_evaluated = std::equal(u.begin(), u.end(), search.trial.begin());
+  const bool is_predicted = is_evaluated && search.trial_is_predicted;
+  if (!options.is_rough && (!solution.converged || IsAtBound(residual_, u)) &&
+      std::isfinite(cost)) {
+    std::vector<double> within(u.begin(), u.end());
+    const ceres::Solver::Summary summary = SolveWithinBounds(residual_, options, within);
+    report.solver = "solve";
+    report.iterations += static_cast<int>(summary.iterations.size());
+    report.termination = ceres::TerminationTypeToString(summary.termination_type);
+    report.message = summary.message;
+    solution.converged = solution.converged || summary.termination_type == ceres::CONVERGENCE;
+    if (summary.IsSolutionUsable() && 2 * summary.final_cost < cost) {
+      std::ranges::copy(within, u.begin());
+      cost = 2 * summary.final_cost;
     }
-    if (!slip_force.fixed) {
-      searched_.push_back({Role::kLogSlipForce, kSlipForce,
-                           std::max(slip_force.lower, LeastLogSlipForce(*problem_)),
-                           slip_force.upper});
-    }
-    SearchTheOthers();
-    return;
+    is_evaluated = false;
   }
-  scale_is_linear_ = !slip_force.fixed && !is_tied(stiffness) && !(has_rig && is_tied(rig));
-  if (scale_is_linear_) {
-    searched_.push_back({Role::kLogRate, kStiffness, kLowestLogRate, kHighestLogRate});
-    if (has_rig) {
-      searched_.push_back({Role::kLogTravel, kRig, kLowestLogTravel, kHighestLogTravel});
-    }
-  } else {
-    if (!stiffness.fixed) {
-      searched_.push_back({Role::kLogStiffness, kStiffness, stiffness.lower, stiffness.upper});
-    }
-    if (!slip_force.fixed) {
-      searched_.push_back({Role::kLogSlipForce, kSlipForce, slip_force.lower, slip_force.upper});
-    }
-    if (has_rig && !rig.fixed) searched_.push_back({Role::kLogRig, kRig, rig.lower, rig.upper});
+  if (!is_evaluated) cost = residual_.Evaluate(u);
+  solution.sum_of_squares = cost;
+  if (!is_predicted) {
+    solution.residual.assign(residual_.residual().begin(), residual_.residual().end());
   }
-  SearchTheOthers();
-}
-
-/// What is searched in either response: the shape and what is of the path.
-void Solver::SearchTheOthers() {
-  const Parameters& parameters = problem_->parameters;
-  for (const std::size_t p : parameters.free()) {
-    const Parameter& parameter = parameters[p];
-    if (p == kShape) {
-      searched_.push_back({Role::kShapeExponent, p, parameter.lower, parameter.upper});
-    } else if (p == kLoadExponent) {
-      searched_.push_back({Role::kExponentOfLoad, p, parameter.lower, parameter.upper});
-    } else if (parameter.term->entry == Entry::kLaw && p > kLoadExponent) {
-      const Role role = parameter.term->name == "lag"         ? Role::kLag
-                        : parameter.term->name == "asymmetry" ? Role::kAsymmetry
-                                                              : Role::kUnloaded;
-      searched_.push_back({role, p, parameter.lower, parameter.upper});
-    }
-  }
-}
-
-/// The columns of the free linear parameters, weighted, by Gram and Schmidt's rule twice; what is
-/// measured, less what is held, freed of them.
-void Solver::OrthogonaliseColumns() {
-  const ScaledRecords& data = *problem_->data;
-  std::size_t row = 0;
-  for (const ScaledRecord& record : data.records) {
-    const std::span<const double> measured = record.response();
-    for (std::size_t i = 0; i < record.size(); ++i, ++row) {
-      weight_[row] = record.root_weight[i];
-      measured_[row] = measured[i];
-    }
-  }
-  columns_.clear();
-  const Parameters& parameters = problem_->parameters;
-  // A record's own first: they keep to its rows.
-  for (const Scope scope : {Scope::kRecord, Scope::kContact}) {
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      const Parameter& parameter = parameters[p];
-      if (parameter.term->column == Regressor::kNone || parameter.term->scope != scope) continue;
-      const bool is_held = parameter.fixed || held_[p] != 0;
-      if (is_held && held_theta_[p] == 0) continue;
-      const auto [begin, end] =
-          scope == Scope::kRecord ? RowsOf(parameter.record) : std::pair(std::size_t{0}, samples_);
-      if (!is_held) columns_.push_back({p, begin, end, 0.0});
-      const std::size_t place = columns_.size() - 1;
-      if (!is_held) GrowTo(columns_.size() * samples_, basis_);
-      if (!is_held) std::ranges::fill(Basis(place), 0.0);
-      // What is held is taken off what was measured as it is, which is weighted with the rest.
-      const std::span<double> to = is_held ? measured_ : Basis(place);
-      const double factor = is_held ? -held_theta_[p] : 1.0;
-      std::size_t k = 0;
-      for (std::size_t r = 0; r < data.records.size(); ++r) {
-        const std::size_t size = data.records[r].size();
-        AddColumn(*problem_, p, r, factor, to.subspan(k, size));
-        k += size;
-      }
-      if (!is_held) Weigh(to, 1.0, weight_);
-    }
-  }
-  Weigh(measured_, 1.0, weight_);
-  const std::size_t count = columns_.size();
-  triangle_.assign(count * count, 0.0);
-  measured_projections_.resize(count);
-  response_projections_.resize(count);
-  for (std::size_t j = 0; j < count; ++j) {
-    const std::span<double> column = Basis(j);
-    const double norm = std::sqrt(Dot(column, column));
-    for (int round = 0; round < 2; ++round) {
-      for (std::size_t i = 0; i < j; ++i) {
-        triangle_[i * count + j] += TakeOut(column, Basis(i));
-      }
-    }
-    constexpr double kDependent = 1e-12;
-    const double left = std::sqrt(Dot(column, column));
-    columns_[j].diagonal = left > kDependent * norm ? left : 0.0;
-    for (double& value : column) value = columns_[j].diagonal > 0 ? value / left : 0.0;
-    if (j > 0 && columns_[j].begin == 0) columns_[j].end = samples_;
-  }
-  for (std::size_t j = 0; j < count; ++j) {
-    measured_projections_[j] = TakeOut(measured_, Basis(j));
-  }
-}
-
-void Solver::ProjectOut(std::span<double> column) const {
-  for (std::size_t j = 0; j < columns_.size(); ++j) {
-    const std::size_t begin = columns_[j].begin;
-    const std::size_t count = columns_[j].end - begin;
-    TakeOut(column.subspan(begin, count), Basis(j).subspan(begin, count));
-  }
-}
-
-LawPoint Solver::PointOf(std::span<const double> u) const {
-  double log_stiffness = held_theta_[kStiffness];
-  double log_slip_force = held_theta_[kSlipForce];
-  double log_rig = held_theta_[kRig];
-  LawPoint point{.shape = held_theta_[kShape],
-                 .load_exponent = problem_->parameters.LoadExponentAt(held_theta_),
-                 .theta = held_theta_};
-  double log_rate = 0.0;
-  double log_travel = 0.0;
-  for (std::size_t j = 0; j < u.size(); ++j) {
-    switch (searched_[j].role) {
-      case Role::kLogRate:
-        log_rate = u[j];
-        break;
-      case Role::kLogTravel:
-        log_travel = u[j];
-        break;
-      case Role::kShapeExponent:
-        point.shape = u[j];
-        break;
-      case Role::kUnloaded:
-      case Role::kLag:
-      case Role::kAsymmetry:
-        break;  // in held_theta_
-      case Role::kLogStiffness:
-        log_stiffness = u[j];
-        break;
-      case Role::kLogSlipForce:
-        log_slip_force = u[j];
-        break;
-      case Role::kLogRig:
-        log_rig = u[j];
-        break;
-      case Role::kExponentOfLoad:
-        point.load_exponent = u[j];
-        break;
-    }
-  }
-  if (is_forced()) {
-    point.log_rate = -log_slip_force;
-    return point;
-  }
-  point.log_rate = scale_is_linear_ ? log_rate : log_stiffness - log_slip_force;
-  point.log_travel = scale_is_linear_ ? log_travel : log_slip_force - log_rig;
-  return point;
-}
-
-void Solver::Load(std::span<const double> theta, std::span<double> u) {
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    const Searched& s = searched_[j];
-    const double value = s.role == Role::kLogRate     ? theta[kStiffness] - theta[kSlipForce]
-                         : s.role == Role::kLogTravel ? theta[kSlipForce] - theta[kRig]
-                                                      : theta[s.parameter];
-    u[j] = std::clamp(value, s.lower, s.upper);
-  }
-}
-
-void Solver::Store(std::span<const double> u, std::span<double> theta) const {
-  if (is_forced()) {
-    for (const std::size_t p : {kStiffness, kSlipForce}) {
-      if (problem_->parameters[p].fixed) theta[p] = held_theta_[p];
-    }
-    for (std::size_t j = 0; j < searched_.size(); ++j) theta[searched_[j].parameter] = u[j];
-    if (scale_is_linear_) theta[kStiffness] = theta[kSlipForce] - std::log(scale_);
-    StoreLinear(scale_, theta);
-    return;
-  }
-  const double log_slip_force = std::log(scale_);
-  theta[kSlipForce] =
-      problem_->parameters[kSlipForce].fixed ? held_theta_[kSlipForce] : log_slip_force;
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    const Searched& s = searched_[j];
-    theta[s.parameter] = s.role == Role::kLogRate     ? u[j] + log_slip_force
-                         : s.role == Role::kLogTravel ? log_slip_force - u[j]
-                                                      : u[j];
-  }
-  StoreLinear(scale_, theta);
-}
-
-/// R·b = Qᵀ(y − scale·t)
-void Solver::StoreLinear(double scale, std::span<double> theta) const {
-  const std::size_t count = columns_.size();
-  for (std::size_t j = count; j-- > 0;) {
-    double right = measured_projections_[j] - scale * response_projections_[j];
-    for (std::size_t k = j + 1; k < count; ++k) {
-      right -= triangle_[j * count + k] * theta[columns_[k].parameter];
-    }
-    theta[columns_[j].parameter] = columns_[j].diagonal > 0 ? right / columns_[j].diagonal : 0.0;
-  }
-}
-
-/// Of the factor of t, by those of Tc, or of a displacement by those of σ.
-std::pair<double, double> Solver::BoundsOfScale(double log_rate) const {
-  if (is_forced()) {
-    const Parameter& stiffness = problem_->parameters[kStiffness];
-    return {std::exp(-log_rate - stiffness.upper), std::exp(-log_rate - stiffness.lower)};
-  }
-  const Parameter& slip_force = problem_->parameters[kSlipForce];
-  return {std::exp(slip_force.lower), std::exp(slip_force.upper)};
-}
-
-/// From t, which is there without weights: projections, its factor and the residual.
-/// @returns the sum of squares; infinity where t is that of no displacement
-double Solver::Regress(double log_rate, bool is_free, double held_scale) {
-  Weigh(response_values_, 1.0, weight_);
-  for (std::size_t j = 0; j < columns_.size(); ++j) {
-    const std::size_t begin = columns_[j].begin;
-    const std::size_t count = columns_[j].end - begin;
-    response_projections_[j] =
-        TakeOut(response_values_.subspan(begin, count), Basis(j).subspan(begin, count));
-  }
-  scale_ = held_scale;
-  scale_is_free_ = false;
-  if (is_free) {
-    const auto [lower, upper] = BoundsOfScale(log_rate);
-    const double square = Dot(response_values_, response_values_);
-    const double best = square > 0 ? Dot(response_values_, measured_) / square : 0.0;
-    scale_ = std::clamp(best, lower, upper);
-    scale_is_free_ = scale_ == best;
-    if (!(best > 0)) scale_ = lower;
-  }
-  Subtract(scale_, response_values_, measured_, residual_);
-  const double cost = Dot(residual_, residual_);
-  return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
-}
-
-/// A record's origin moves its own samples only.
-/// @param all  ∂t/∂δ₀ of every sample by its own record's, the first of the columns that take it
-void Solver::SplitByRecord(std::span<const double> all) {
-  if (problem_->data->records.size() == 1) return;
-  for (std::size_t j = searched_.size(); j-- > 0;) {
-    if (searched_[j].role != Role::kUnloaded) continue;
-    const auto [begin, end] = RowsOf(problem_->parameters[searched_[j].parameter].record);
-    const std::span<double> column = Derivative(j);
-    for (std::size_t i = 0; i < samples_; ++i) column[i] = i >= begin && i < end ? all[i] : 0.0;
-  }
-}
-
-/// ∂t/∂p = ln(N/N₀)·∂t/∂ln κ, of each record's load.
-void Solver::FillLoadExponent(std::span<const double> by_log_rate) {
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    if (searched_[j].role != Role::kExponentOfLoad) continue;
-    const std::span<double> column = Derivative(j);
-    std::size_t k = 0;
-    for (const ScaledRecord& record : problem_->data->records) {
-      for (std::size_t i = 0; i < record.size(); ++i, ++k) {
-        column[k] = record.log_load * by_log_rate[k];
-      }
-    }
-  }
-}
-
-std::pair<std::size_t, std::size_t> Solver::RowsOf(std::size_t record) const {
-  std::size_t begin = 0;
-  for (std::size_t r = 0; r < record; ++r) begin += problem_->data->records[r].size();
-  return {begin, begin + problem_->data->records[record].size()};
-}
-
-double Solver::Evaluate(std::span<const double> u, bool with_gradient) {
-  for (std::size_t j = 0; j < u.size(); ++j) {
-    if (IsOfThePath(searched_[j].role)) held_theta_[searched_[j].parameter] = u[j];
-  }
-  const LawPoint point = PointOf(u);
-  const bool has_rig = problem_->parameters.has_rig();
-  double log_slip_force = held_theta_[kSlipForce];
-  double log_stiffness = held_theta_[kStiffness];
-  for (std::size_t j = 0; j < u.size(); ++j) {
-    if (searched_[j].role == Role::kLogSlipForce) log_slip_force = u[j];
-    if (searched_[j].role == Role::kLogStiffness) log_stiffness = u[j];
-  }
-  const double held = std::exp(is_forced() ? log_slip_force - log_stiffness : log_slip_force);
-  if (!with_gradient) {
-    response_->Evaluate(point, response_values_);
-    return Regress(point.log_rate, scale_is_linear_, held);
-  }
-  if (is_forced()) {
-    DifferentiateForced(point);
-    return Regress(point.log_rate, scale_is_linear_, held);
-  }
-  // The derivatives of t first, each in the place of one that needs it.
-  ResponseColumns columns;
-  const auto wants = [&](Role role) {
-    for (std::size_t j = 0; j < searched_.size(); ++j) {
-      if (searched_[j].role == role) return Derivative(j);
-    }
-    return std::span<double>();
-  };
-  const bool natural = !scale_is_linear_;
-  columns.log_rate = natural ? wants(Role::kLogStiffness) : wants(Role::kLogRate);
-  columns.shape_exponent = wants(Role::kShapeExponent);
-  columns.log_spring_travel = natural ? wants(Role::kLogRig) : wants(Role::kLogTravel);
-  const bool tied = natural && Searches(Role::kLogSlipForce);
-  const bool lacks_rate = columns.log_rate.empty() && (tied || Searches(Role::kExponentOfLoad));
-  if (lacks_rate || (tied && has_rig && columns.log_spring_travel.empty())) {
-    // ∂T/∂ln Tc needs both, ∂T/∂p the first; what is not searched goes into scratch behind the
-    // rest.
-    GrowTo((searched_.size() + 2) * samples_, derivatives_);
-    columns.shape_exponent = wants(Role::kShapeExponent);  // the buffer has moved
-    columns.log_rate = wants(Role::kLogStiffness);
-    columns.log_spring_travel = wants(Role::kLogRig);
-    if (columns.log_rate.empty()) columns.log_rate = Derivative(searched_.size());
-    if (tied && has_rig && columns.log_spring_travel.empty()) {
-      columns.log_spring_travel = Derivative(searched_.size() + 1);
-    }
-  }
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    if (searched_[j].role == Role::kUnloaded && columns.unloaded.empty()) {
-      columns.unloaded = Derivative(j);
-    }
-  }
-  columns.lag = wants(Role::kLag);
-  columns.asymmetry = wants(Role::kAsymmetry);
-  response_->Differentiate(point, response_values_, columns);
-  if (Searches(Role::kExponentOfLoad)) FillLoadExponent(columns.log_rate);
-  if (tied) {
-    const std::span<double> column = wants(Role::kLogSlipForce);
-    for (std::size_t i = 0; i < samples_; ++i) {
-      column[i] = response_values_[i] - columns.log_rate[i] +
-                  (has_rig ? columns.log_spring_travel[i] : 0.0);
-    }
-  }
-  if (natural && Searches(Role::kLogRig)) {
-    for (double& value : wants(Role::kLogRig)) value = -value;
-  }
-  if (!columns.unloaded.empty()) SplitByRecord(columns.unloaded);
-  return Regress(point.log_rate, scale_is_linear_, held);
-}
-
-/// d and its derivatives by what is searched, over the scale: Tc is in the rate, and beside a σ
-/// that is not eliminated in the scale too.
-void Solver::DifferentiateForced(const LawPoint& point) {
-  ResponseColumns columns;
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    const Role role = searched_[j].role;
-    if (role == Role::kLogSlipForce) columns.log_rate = Derivative(j);
-    if (role == Role::kShapeExponent) columns.shape_exponent = Derivative(j);
-    if (role == Role::kUnloaded && columns.unloaded.empty()) columns.unloaded = Derivative(j);
-  }
-  response_->Differentiate(point, response_values_, columns);
-  for (std::size_t i = 0; i < columns.log_rate.size(); ++i) {
-    columns.log_rate[i] = (scale_is_linear_ ? 0.0 : response_values_[i]) - columns.log_rate[i];
-  }
-  for (std::size_t j = 0; j < searched_.size(); ++j) {
-    if (searched_[j].role != Role::kLogStiffness) continue;
-    const std::span<double> column = Derivative(j);
-    for (std::size_t i = 0; i < samples_; ++i) column[i] = -response_values_[i];
-  }
-  if (!columns.unloaded.empty()) SplitByRecord(columns.unloaded);
-}
-
-/// JᵀJ and Jᵀr of the derivatives of the projected residual.
-void Solver::Linearise(std::span<const double> u) {
-  const std::size_t count = u.size();
-  const double square = scale_is_free_ ? Dot(response_values_, response_values_) : 0.0;
-  for (std::size_t j = 0; j < count; ++j) {
-    const std::span<double> column = Derivative(j);
-    Weigh(column, scale_, weight_);
-    ProjectOut(column);
-    if (square > 0) {
-      AddMultiple(column, -Dot(response_values_, column) / square, response_values_);
-    }
-    gradient_[j] = Dot(column, residual_);
-    for (std::size_t k = 0; k <= j; ++k) {
-      hessian_[j * count + k] = hessian_[k * count + j] = Dot(column, Derivative(k));
-    }
-  }
-}
-
-/// (JᵀJ + μ·diag)·s = −Jᵀr over what is not frozen; false where it has no solution.
-bool Solver::Step(double damping, std::span<const unsigned char> frozen,
-                  std::span<double> step) const {
-  const std::size_t count = step.size();
-  for (std::size_t j = 0; j < count; ++j) {
-    const double own = hessian_[j * count + j];
-    const bool still = frozen[j] != 0 || !(own > 0);
-    step[j] = still ? 0.0 : -gradient_[j] / std::sqrt(own);
-    for (std::size_t k = 0; k < count; ++k) {
-      const double other = hessian_[k * count + k];
-      const bool none = still || frozen[k] != 0 || !(other > 0);
-      matrix_[j * count + k] = j == k ? (still ? 1.0 : 1.0 + damping)
-                               : none ? 0.0
-                                      : hessian_[j * count + k] / std::sqrt(own * other);
-    }
-  }
-  if (!SolveCholesky(matrix_, step)) return false;
-  for (std::size_t j = 0; j < count; ++j) {
-    const double own = hessian_[j * count + j];
-    if (own > 0) step[j] /= std::sqrt(own);
-  }
-  return true;
-}
-
-/// By how much the linearised sum of squares falls.
-double Solver::Predicted(std::span<const double> step) const {
-  const std::size_t count = step.size();
-  double change = 0.0;
-  for (std::size_t j = 0; j < count; ++j) {
-    change += 2 * gradient_[j] * step[j];
-    for (std::size_t k = 0; k < count; ++k) {
-      change += step[j] * hessian_[j * count + k] * step[k];
-    }
-  }
-  return -change;
-}
-
-void Solver::Search(std::span<double> u, const SolverOptions& options, Solution& solution) {
-  constexpr double kFirstDamping = 1e-3;
-  constexpr double kLeastDamping = 1e-12;
-  constexpr double kMostDamping = 1e16;
-  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
-  constexpr int kSlowSteps = 20;          // ... in as many steps
-  const auto longest = [](Role role) {
-    constexpr double kLongestStepOfLag = 0.02;  // cycles
-    constexpr double kLongestStepOfAsymmetry = 0.25;
-    if (role == Role::kLag) return kLongestStepOfLag;
-    if (role == Role::kAsymmetry) return kLongestStepOfAsymmetry;
-    return role == Role::kUnloaded ? 0.5 : role == Role::kShapeExponent ? 1.0 : 1.5;
-  };
-  const double floor = static_cast<double>(problem_->data->counted) * kRoundingRms * kRoundingRms;
-  double cost = Evaluate(u, /*with_gradient=*/true);
-  Linearise(u);
-  solution.converged = false;
-  solution.iterations = 0;
-  solution.termination = "The solver made its maximum number of iterations.";
-  bool is_looked_at = true;
-  if (!std::isfinite(cost)) {
-    solution.termination = "The residuals at the start are not finite.";
-    solution.sum_of_squares = cost;
-    return;
-  }
-  double damping = kFirstDamping;
-  double growth = 2.0;
-  double cost_before = cost;  // kSlowSteps accepted steps ago
-  bool at_u = true;           // is what Evaluate() left that of u?
-  int accepted = 0;
-  while (solution.iterations < options.max_iterations) {
-    ++solution.iterations;
-    for (std::size_t j = 0; j < u.size(); ++j) {
-      const bool outward_below = u[j] <= searched_[j].lower && gradient_[j] > 0;
-      const bool outward_above = u[j] >= searched_[j].upper && gradient_[j] < 0;
-      frozen_[j] = outward_below || outward_above ? 1 : 0;
-    }
-    // What is left to gain, if the parabola is right.
-    const bool newton = Step(kLeastDamping, frozen_, step_);
-    const double left = newton ? Predicted(step_) : std::numeric_limits<double>::infinity();
-    if (newton && left <= options.function_tolerance * cost) {
-      solution.converged = true;
-      solution.termination = "No step can lower the cost by more than the function tolerance.";
-      break;
-    }
-    const bool last = newton && left <= options.last_step * cost && cost > floor;
-    if (!last && !Step(damping, frozen_, step_)) {
-      damping *= growth;
-      growth *= 2;
-      if (damping > kMostDamping) break;
-      continue;
-    }
-    double shortening = 1.0;
-    for (std::size_t j = 0; j < u.size(); ++j) {
-      const double limit = longest(searched_[j].role) *
-                           (searched_[j].role == Role::kShapeExponent ? std::max(1.0, u[j]) : 1.0);
-      if (std::abs(step_[j]) > limit) shortening = std::min(shortening, limit / std::abs(step_[j]));
-    }
-    bool moves = false;
-    for (std::size_t j = 0; j < u.size(); ++j) {
-      trial_[j] = std::clamp(u[j] + shortening * step_[j], searched_[j].lower, searched_[j].upper);
-      step_[j] = trial_[j] - u[j];
-      moves = moves || std::abs(step_[j]) > options.parameter_tolerance *
-                                                (std::abs(u[j]) + options.parameter_tolerance);
-    }
-    const double predicted = Predicted(step_);
-    if (!moves) {
-      solution.converged = true;
-      solution.termination = "No parameter moves by more than the parameter tolerance.";
-      break;
-    }
-    if (last && options.predicts_last) {
-      std::ranges::copy(trial_, u.begin());
-      cost = std::max(cost - predicted, 0.0);
-      is_looked_at = false;
-      solution.converged = true;
-      solution.termination = "No step can lower the cost by more than the function tolerance.";
-      break;
-    }
-    const double trial_cost = Evaluate(trial_, /*with_gradient=*/!last);
-    const bool better = trial_cost < cost;
-    at_u = better;
-    if (last) {
-      // Taken or not, it could gain next to nothing.
-      if (better) {
-        std::ranges::copy(trial_, u.begin());
-        cost = trial_cost;
-      }
-      solution.converged = true;
-      solution.termination = "No step can lower the cost by more than the function tolerance.";
-      break;
-    }
-    const double gain = cost - trial_cost;
-    if (better) {
-      const double ratio = predicted > 0 ? gain / predicted : 0.0;
-      damping =
-          std::max(damping * std::max(1.0 / 3, 1 - std::pow(2 * ratio - 1, 3)), kLeastDamping);
-      growth = 2.0;
-      std::ranges::copy(trial_, u.begin());
-      cost = trial_cost;
-      Linearise(u);
-      if (++accepted % kSlowSteps == 0) {
-        const double rise =
-            static_cast<double>(problem_->data->counted) * (cost_before - cost) / cost_before;
-        if (rise < kSmallestGain) {
-          solution.converged = true;
-          solution.termination =
-              "Twenty steps together raised twice the log-likelihood by less than 1e-3.";
-          break;
-        }
-        cost_before = cost;
-      }
-      continue;
-    }
-    damping = std::max(damping, kFirstDamping * 1e-3) * growth;
-    growth *= 2;
-    if (damping > kMostDamping || !std::isfinite(growth)) {
-      solution.converged = true;
-      solution.termination = "No step lowers the cost.";
-      break;
-    }
-  }
-  solution.sum_of_squares = at_u ? cost : Evaluate(u, /*with_gradient=*/false);
-  if (is_looked_at) solution.residual.assign(residual_.begin(), residual_.end());
 }
 
 void Solver::MarkSides(std::span<const double> u, Solution& solution) const {
-  const Parameters& parameters = problem_->parameters;
+  const Problem& problem = residual_.problem();
+  const Parameters& parameters = problem.parameters;
+  const bool is_forced = problem.data->is_forced();
   solution.side.assign(parameters.size(), BoundSide::kInside);
   for (const std::size_t p : parameters.free()) {
-    const bool by_search = scale_is_linear_ && !is_forced() && (p == kStiffness || p == kRig);
-    if (!by_search) solution.side[p] = SideOf(parameters[p], solution.theta[p]);
+    const bool is_eliminated =
+        residual_.scale_is_linear() && !is_forced && (p == kStiffness || p == kRig);
+    if (!is_eliminated) solution.side[p] = SideOf(parameters[p], solution.theta[p]);
   }
-  if (!scale_is_linear_ && !is_forced()) return;
   for (std::size_t j = 0; j < u.size(); ++j) {
-    const Searched& s = searched_[j];
+    const SearchedParameter& s = residual_.searched()[j];
     const BoundSide side = SideOf(u[j], s.lower, s.upper);
-    if (s.role == Role::kLogSlipForce) solution.side[kSlipForce] = side;
-    if (s.role == Role::kLogRate && side == BoundSide::kUpper) solution.side[kStiffness] = side;
-    if (s.role == Role::kLogRate && side == BoundSide::kLower) {
+    if (is_forced && s.parameter == kSlipForce) solution.side[kSlipForce] = side;
+    if (s.eliminated == &LawPoint::log_rate && side == BoundSide::kUpper) {
+      solution.side[kStiffness] = side;
+    }
+    if (s.eliminated == &LawPoint::log_rate && side == BoundSide::kLower) {
       solution.side[kSlipForce] = BoundSide::kUpper;  // a straight line
     }
-    if (s.role == Role::kLogTravel && side != BoundSide::kInside) {
+    if (s.eliminated == &LawPoint::log_travel && side != BoundSide::kInside) {
       solution.side[kRig] = side == BoundSide::kLower ? BoundSide::kUpper : BoundSide::kLower;
     }
   }
 }
 
 double Solver::CostAt(std::span<double> theta) {
-  Load(theta, u_);
-  const double cost = Evaluate(u_, /*with_gradient=*/false);
-  Store(u_, theta);
-  return cost;
-}
-
-double Solver::CostAt(const LawPoint& at, std::span<double> theta) {
-  response_->Evaluate(at, response_values_);
-  const std::size_t of_scale = is_forced() ? kStiffness : kSlipForce;
-  const bool fixed = problem_->parameters[of_scale].fixed;
-  const double held =
-      is_forced() ? -at.log_rate - held_theta_[kStiffness] : held_theta_[kSlipForce];
-  const double cost = Regress(at.log_rate, !fixed, std::exp(held));
-  if (!fixed && !scale_is_free_) return std::numeric_limits<double>::infinity();
-  if (is_forced()) theta[kSlipForce] = -at.log_rate;
-  theta[of_scale] = is_forced() ? -at.log_rate - std::log(scale_) : std::log(scale_);
-  StoreLinear(scale_, theta);
+  u_.resize(residual_.searched().size());
+  residual_.Load(theta, u_);
+  const double cost = residual_.Evaluate(u_);
+  residual_.Store(u_, theta);
   return cost;
 }
 
 void Solver::Solve(std::span<const double> start, const SolverOptions& options,
                    Solution& solution) {
-  solution.theta.assign(held_theta_.begin(), held_theta_.end());
+  const Parameters& parameters = residual_.problem().parameters;
+  solution.theta.assign(residual_.theta().begin(), residual_.theta().end());
   solution.residual.clear();
-  const auto released = static_cast<bool>(std::ranges::count(held_, 1));
-  if (released) {
-    std::ranges::fill(held_, 0);
-    OrthogonaliseColumns();
-  }
-  Load(start, u_);
+  solution.report.iterations = 0;
+  residual_.ReleaseLinear();
+  u_.resize(residual_.searched().size());
+  residual_.Load(start, u_);
   // Each pass holds one more linear parameter at the bound that it had passed.
-  for (std::size_t pass = 0; pass <= problem_->parameters.size(); ++pass) {
-    if (searched_.empty()) {
-      solution.sum_of_squares = Evaluate(u_, /*with_gradient=*/false);
-      solution.residual.assign(residual_.begin(), residual_.end());
+  for (std::size_t pass = 0; pass <= parameters.size(); ++pass) {
+    if (u_.empty()) {
+      solution.sum_of_squares = residual_.Evaluate(u_);
+      solution.residual.assign(residual_.residual().begin(), residual_.residual().end());
       solution.converged = std::isfinite(solution.sum_of_squares);
-      solution.termination = "Every parameter that is not linear is fixed.";
+      solution.report.solver = "none";
+      solution.report.termination = "CONVERGENCE";
+      solution.report.message = parameters.free().empty()
+                                    ? "every parameter is fixed"
+                                    : "Every parameter that is not linear is fixed.";
+      solution.report.initial_cost = solution.sum_of_squares / 2;
     } else {
-      Search(u_, options, solution);
+      SearchFrom(u_, options, solution);
     }
-    Store(u_, solution.theta);
-    bool any = false;
-    for (const Column& column : columns_) {
-      const Parameter& parameter = problem_->parameters[column.parameter];
-      double& theta = solution.theta[column.parameter];
-      if (theta >= parameter.lower && theta <= parameter.upper) continue;
-      theta = std::clamp(theta, parameter.lower, parameter.upper);
-      held_[column.parameter] = 1;
-      held_theta_[column.parameter] = theta;
-      any = true;
-      break;
-    }
-    if (!any) break;
-    OrthogonaliseColumns();
+    residual_.Store(u_, solution.theta);
+    if (!residual_.HoldPassed(solution.theta)) break;
   }
-  if (problem_->parameters.free().empty()) solution.termination = "every parameter is fixed";
+  solution.report.final_cost = solution.sum_of_squares / 2;
   solution.converged = solution.converged && std::isfinite(solution.sum_of_squares);
   MarkSides(u_, solution);
 }

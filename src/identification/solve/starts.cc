@@ -325,8 +325,10 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
 }
 
 // The thinned record's minimum is a start only: no digits are asked of it.
-constexpr SolverOptions kRough{
-    .function_tolerance = 1e-2, .parameter_tolerance = 1e-6, .max_iterations = 30};
+constexpr SolverOptions kRough{.function_tolerance = 1e-2,
+                               .parameter_tolerance = 1e-6,
+                               .max_iterations = 30,
+                               .is_rough = true};
 
 /// Where α is held the likelihood may have kinks (a Jenkins loop just past slip has a false minimum
 /// where none of its samples slips); with α free it is smooth, and its minimum is a start.

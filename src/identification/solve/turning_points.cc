@@ -1,9 +1,12 @@
 #include "identification/solve/turning_points.h"
 
+#include <ceres/ceres.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -305,56 +308,149 @@ ArrowSystem Linearise(const Problem& problem, std::span<const double> theta, Res
 }
 
 struct ArrowStep {
-  Eigen::VectorXd dense;
-  Eigen::VectorXd sparse;
-  double predicted = 0.0;
+  Eigen::VectorXd left;  // of the residual after the step
+  Eigen::VectorXd overshoot;
   bool found = false;
 };
 
-/// (H + μ·diag H)·s = −g over what is not frozen, overshoots eliminated first.
-ArrowStep SolveArrow(const ArrowSystem& system, double damping,
-                     std::span<const unsigned char> dense_frozen,
-                     std::span<const unsigned char> sparse_frozen) {
-  Eigen::MatrixXd jacobian = system.jacobian;
-  for (Eigen::Index j = 0; j < jacobian.cols(); ++j) {
-    if (dense_frozen[static_cast<std::size_t>(j)] != 0) jacobian.col(j).setZero();
-  }
-  SparseColumns overshoots = system.overshoots;
-  for (Eigen::Index k = 0; k < overshoots.cols(); ++k) {
-    if (sparse_frozen[static_cast<std::size_t>(k)] == 0) continue;
-    for (SparseColumns::InnerIterator entry(overshoots, k); entry; ++entry) entry.valueRef() = 0.0;
-  }
+/// Solves the normal equations, overshoots eliminated first: their matrix is as sparse as the
+/// history is shallow, so that the cost grows with their number, not with its square.
+ArrowStep GaussNewtonStep(const ArrowSystem& system) {
   constexpr double kRidge = 1e-14;  // for directions without effect
-  const auto damp = [&](double own) { return own > 0 ? own * (1 + damping + kRidge) : 1.0; };
-  SparseColumns sparse = overshoots.transpose() * overshoots;
+  const auto damp = [&](double own) { return own > 0 ? own * (1 + kRidge) : 1.0; };
+  SparseColumns sparse = system.overshoots.transpose() * system.overshoots;
   for (Eigen::Index k = 0; k < sparse.cols(); ++k) sparse.coeffRef(k, k) = damp(sparse.coeff(k, k));
   sparse.makeCompressed();
   ArrowStep step;
   const Eigen::SimplicialLDLT<SparseColumns> eliminated(sparse);
   if (eliminated.info() != Eigen::Success) return step;
-  const Eigen::MatrixXd cross = overshoots.transpose() * jacobian;
-  const Eigen::VectorXd sparse_right = -(overshoots.transpose() * system.residual);
-  const Eigen::VectorXd dense_right = -(jacobian.transpose() * system.residual);
-  Eigen::MatrixXd dense = jacobian.transpose() * jacobian;
+  const Eigen::MatrixXd cross = system.overshoots.transpose() * system.jacobian;
+  const Eigen::VectorXd sparse_right = -(system.overshoots.transpose() * system.residual);
+  const Eigen::VectorXd dense_right = -(system.jacobian.transpose() * system.residual);
+  Eigen::MatrixXd dense = system.jacobian.transpose() * system.jacobian;
   for (Eigen::Index j = 0; j < dense.cols(); ++j) dense(j, j) = damp(dense(j, j));
   const Eigen::MatrixXd solved_cross = eliminated.solve(cross);
   const Eigen::VectorXd solved_right = eliminated.solve(sparse_right);
   const Eigen::LDLT<Eigen::MatrixXd> schur(dense - cross.transpose() * solved_cross);
-  step.dense = schur.solve(dense_right - cross.transpose() * solved_right);
-  step.sparse = solved_right - solved_cross * step.dense;
-  const Eigen::VectorXd left = system.residual + jacobian * step.dense + overshoots * step.sparse;
-  step.predicted = system.residual.squaredNorm() - left.squaredNorm();
-  step.found = step.dense.allFinite() && step.sparse.allFinite();
+  const Eigen::VectorXd of_parameters = schur.solve(dense_right - cross.transpose() * solved_right);
+  step.overshoot = solved_right - solved_cross * of_parameters;
+  step.left =
+      system.residual + system.jacobian * of_parameters + system.overshoots * step.overshoot;
+  step.found = step.left.allFinite() && step.overshoot.allFinite();
   return step;
 }
 
-double CostAt(const Problem& problem, std::span<const double> theta, Response& response,
-              std::vector<double>& residual) {
-  residual.resize(problem.size());
-  EvaluateResidual(problem, theta, response, residual);
-  double cost = 0.0;
-  for (const double value : residual) cost += value * value;
-  return cost;
+/// The residuals of all parameters and overshoots, evaluated once for all strokes: Ceres asks each
+/// stroke for its rows afterwards.
+class TurnedResiduals final : public ceres::EvaluationCallback {
+ public:
+  TurnedResiduals(const Problem& problem, const Solution& start, std::vector<double> overshoots,
+                  Response& response)
+      : overshoot(std::move(overshoots)),
+        problem_(problem),
+        given_(*problem.data),
+        theta_(start.theta),
+        response_(response) {
+    for (const std::size_t p : problem.parameters.free()) free.push_back(theta_[p]);
+  }
+
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override {
+    if (new_evaluation_point || !records_) {
+      records_ = PutInTurningPoints(given_, overshoot);
+      problem_.data = &records_->data;
+      has_jacobian_ = false;
+    }
+    const std::vector<double>& theta = Theta();
+    if (evaluate_jacobians && !has_jacobian_) {
+      system_ = Linearise(problem_, theta, response_);
+      has_jacobian_ = true;
+    } else if (new_evaluation_point) {
+      system_.residual.resize(static_cast<Eigen::Index>(problem_.size()));
+      EvaluateResidual(problem_, theta, response_, {system_.residual.data(), problem_.size()});
+    }
+  }
+
+  /// θ of all parameters, the free ones where Ceres has them.
+  const std::vector<double>& Theta() {
+    for (std::size_t j = 0; j < free.size(); ++j) theta_[problem_.parameters.free()[j]] = free[j];
+    return theta_;
+  }
+  [[nodiscard]] const ArrowSystem& system() const { return system_; }
+  [[nodiscard]] std::unique_ptr<TurnedRecords> TakeRecords() { return std::move(records_); }
+
+  std::vector<double> free;       // Ceres' parameter blocks: θ of the free parameters, …
+  std::vector<double> overshoot;  // … and each of these by itself
+
+ private:
+  Problem problem_;  // of the turned records
+  const ScaledRecords& given_;
+  std::vector<double> theta_;
+  Response& response_;
+  std::unique_ptr<TurnedRecords> records_;
+  ArrowSystem system_;
+  bool has_jacobian_ = false;
+};
+
+/// The rows of one stroke, which depend on the parameters and on the few overshoots that its
+/// branches start from.
+class StrokeCost final : public ceres::CostFunction {
+ public:
+  StrokeCost(const TurnedResiduals& residuals, Eigen::Index begin, Eigen::Index end,
+             std::vector<Eigen::Index> overshoots)
+      : residuals_(residuals), begin_(begin), overshoots_(std::move(overshoots)) {
+    set_num_residuals(static_cast<int>(end - begin));
+    if (!residuals.free.empty()) {
+      mutable_parameter_block_sizes()->push_back(static_cast<int>(residuals.free.size()));
+    }
+    mutable_parameter_block_sizes()->resize(
+        mutable_parameter_block_sizes()->size() + overshoots_.size(), 1);
+  }
+
+  bool Evaluate(double const* const* /*parameters*/, double* residuals,
+                double** jacobians) const override {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const ArrowSystem& system = residuals_.system();
+    const Eigen::Index rows = num_residuals();
+    Eigen::Map<Eigen::VectorXd>(residuals, rows) = system.residual.segment(begin_, rows);
+    if (!Eigen::Map<Eigen::VectorXd>(residuals, rows).allFinite()) return false;
+    if (jacobians == nullptr) return true;
+    const std::size_t dense = residuals_.free.empty() ? 0 : 1;
+    if (dense != 0 && jacobians[0] != nullptr) {
+      Eigen::Map<RowMajor>(jacobians[0], rows, system.jacobian.cols()) =
+          system.jacobian.middleRows(begin_, rows);
+    }
+    for (std::size_t k = 0; k < overshoots_.size(); ++k) {
+      if (jacobians[dense + k] == nullptr) continue;
+      Eigen::Map<Eigen::VectorXd> column(jacobians[dense + k], rows);
+      column.setZero();
+      for (SparseColumns::InnerIterator entry(system.overshoots, overshoots_[k]); entry; ++entry) {
+        if (entry.row() >= begin_ && entry.row() < begin_ + rows) {
+          column[entry.row() - begin_] = entry.value();
+        }
+      }
+    }
+    return true;
+  }
+
+ private:
+  const TurnedResiduals& residuals_;
+  Eigen::Index begin_;
+  std::vector<Eigen::Index> overshoots_;
+};
+
+/// First rows of the strokes of all records, and behind the last.
+std::vector<Eigen::Index> StrokesOf(const ScaledRecords& data) {
+  std::vector<Eigen::Index> first;
+  std::size_t row = 0;
+  for (const ScaledRecord& record : data.records) {
+    first.push_back(static_cast<Eigen::Index>(row));
+    for (const std::size_t reversal : record.reversals) {
+      if (reversal > 0) first.push_back(static_cast<Eigen::Index>(row + reversal));
+    }
+    row += record.size();
+  }
+  first.push_back(static_cast<Eigen::Index>(row));
+  return first;
 }
 
 }  // namespace
@@ -366,14 +462,12 @@ TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solut
   Problem at_samples = problem;
   at_samples.data = &turned->data;
   const ArrowSystem system = Linearise(at_samples, solution.theta, response);
-  const std::vector<unsigned char> none(std::max(system.free.size(), longest.size()), 0);
-  const ArrowStep step = SolveArrow(system, 0.0, none, none);
-  TurningPointStep result;
+  const ArrowStep step = GaussNewtonStep(system);
   if (!step.found) return {.left = system.residual, .overshoot = longest};
-  result.left = system.residual + system.jacobian * step.dense + system.overshoots * step.sparse;
+  TurningPointStep result{.left = step.left, .overshoot = {}};
   for (std::size_t k = 0; k < longest.size(); ++k) {
     result.overshoot.push_back(
-        std::clamp(overshoot[k] + step.sparse[static_cast<Eigen::Index>(k)], 0.0, longest[k]));
+        std::clamp(overshoot[k] + step.overshoot[static_cast<Eigen::Index>(k)], 0.0, longest[k]));
   }
   return result;
 }
@@ -381,99 +475,89 @@ TurningPointStep StepTurningPoints(const Problem& problem, const Solution& solut
 TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
                                  std::vector<double> overshoot, const SolverOptions& options,
                                  Response& response) {
-  constexpr double kMostDamping = 1e12;
   const std::vector<double> longest = LongestOvershoots(*problem.data);
-  TurningPointFit fit{PutInTurningPoints(*problem.data, overshoot), start};
-  Problem turned = problem;
-  turned.data = &fit.records->data;
-  std::vector<double> force;
-  double cost = CostAt(turned, fit.solution.theta, response, force);
-  double damping = 1e-3;
-  fit.solution.converged = false;
-  fit.solution.iterations = start.iterations;
-  fit.solution.termination = "The solver made its maximum number of iterations.";
-  // Below it residuals are rounding errors: a few more steps take the last digits.
-  const double floor = static_cast<double>(problem.data->counted) * kRoundingRms * kRoundingRms;
-  constexpr int kLastSteps = 3;
-  int steps_below = 0;
-  bool moved = true;
-  ArrowSystem system;
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    ++fit.solution.iterations;
-    if (moved) system = Linearise(turned, fit.solution.theta, response);
-    const Eigen::VectorXd dense_gradient = system.jacobian.transpose() * system.residual;
-    const Eigen::VectorXd sparse_gradient = system.overshoots.transpose() * system.residual;
-    std::vector<unsigned char> dense_frozen(system.free.size(), 0);
-    std::vector<unsigned char> sparse_frozen(longest.size(), 0);
-    for (std::size_t j = 0; j < system.free.size(); ++j) {
-      const Parameter& parameter = problem.parameters[system.free[j]];
-      const double at = fit.solution.theta[system.free[j]];
-      const double slope = dense_gradient[static_cast<Eigen::Index>(j)];
-      if ((at <= parameter.lower && slope > 0) || (at >= parameter.upper && slope < 0)) {
-        dense_frozen[j] = 1;
+  for (std::size_t k = 0; k < longest.size(); ++k) {
+    overshoot[k] = std::clamp(overshoot[k], 0.0, longest[k]);
+  }
+  TurnedResiduals residuals(problem, start, std::move(overshoot), response);
+  residuals.PrepareForEvaluation(/*evaluate_jacobians=*/true, /*new_evaluation_point=*/true);
+  const double first_cost = residuals.system().residual.squaredNorm();
+
+  ceres::Problem::Options of_problem;
+  of_problem.evaluation_callback = &residuals;
+  ceres::Problem ceres_problem(of_problem);
+  const auto strokes_of = [&] {
+    const std::unique_ptr<TurnedRecords> turned =
+        PutInTurningPoints(*problem.data, residuals.overshoot);
+    return StrokesOf(turned->data);
+  };
+  const std::vector<Eigen::Index> strokes = strokes_of();
+  // The overshoots of a stroke, by the samples that depend on them.
+  std::vector<std::vector<Eigen::Index>> of_stroke(strokes.size() - 1);
+  const SparseColumns& columns = residuals.system().overshoots;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    for (SparseColumns::InnerIterator entry(columns, k); entry; ++entry) {
+      const auto stroke = static_cast<std::size_t>(
+          std::ranges::upper_bound(strokes, static_cast<Eigen::Index>(entry.row())) -
+          strokes.begin() - 1);
+      if (of_stroke[stroke].empty() || of_stroke[stroke].back() != k) {
+        of_stroke[stroke].push_back(k);
       }
     }
-    for (std::size_t k = 0; k < longest.size(); ++k) {
-      const double slope = sparse_gradient[static_cast<Eigen::Index>(k)];
-      const double at = fit.records->overshoot[k];
-      if ((at <= 0 && slope > 0) || (at >= longest[k] && slope < 0)) sparse_frozen[k] = 1;
-    }
-    const ArrowStep step = SolveArrow(system, damping, dense_frozen, sparse_frozen);
-    if (!step.found) {
-      damping *= 10;
-      if (damping > kMostDamping) break;
-      moved = false;
-      continue;
-    }
-    std::vector<double> theta = fit.solution.theta;
-    bool any = false;
-    const auto moves = [&](double from, double to) {
-      return std::abs(to - from) >
-             options.parameter_tolerance * (std::abs(from) + options.parameter_tolerance);
-    };
-    for (std::size_t j = 0; j < system.free.size(); ++j) {
-      const Parameter& parameter = problem.parameters[system.free[j]];
-      double& value = theta[system.free[j]];
-      const double from = value;
-      value = std::clamp(from + step.dense[static_cast<Eigen::Index>(j)], parameter.lower,
-                         parameter.upper);
-      any = any || moves(from, value);
-    }
-    std::vector<double> trial(longest.size());
-    for (std::size_t k = 0; k < longest.size(); ++k) {
-      const double from = fit.records->overshoot[k];
-      trial[k] = std::clamp(from + step.sparse[static_cast<Eigen::Index>(k)], 0.0, longest[k]);
-      any = any || moves(from, trial[k]);
-    }
-    if (cost <= floor) ++steps_below;
-    if (!any || step.predicted <= options.function_tolerance * cost || steps_below > kLastSteps) {
-      fit.solution.converged = true;
-      fit.solution.termination = "No step can lower the cost by more than the function tolerance.";
-      break;
-    }
-    std::unique_ptr<TurnedRecords> records = PutInTurningPoints(*problem.data, trial);
-    turned.data = &records->data;
-    const double trial_cost = CostAt(turned, theta, response, force);
-    moved = trial_cost < cost;
-    if (moved) {
-      fit.records = std::move(records);
-      fit.solution.theta = std::move(theta);
-      cost = trial_cost;
-      damping = std::max(damping / 10, 1e-14);
-      continue;
-    }
-    turned.data = &fit.records->data;
-    damping *= 10;
-    if (damping > kMostDamping) {
-      fit.solution.converged = true;
-      fit.solution.termination = "No step lowers the cost.";
-      break;
-    }
   }
-  fit.solution.sum_of_squares = cost;
+  for (std::size_t k = 0; k + 1 < strokes.size(); ++k) {
+    if (strokes[k + 1] == strokes[k]) continue;
+    std::vector<double*> blocks;
+    if (!residuals.free.empty()) blocks.push_back(residuals.free.data());
+    for (const Eigen::Index o : of_stroke[k]) {
+      blocks.push_back(&residuals.overshoot[static_cast<std::size_t>(o)]);
+    }
+    if (blocks.empty()) continue;
+    ceres_problem.AddResidualBlock(
+        new StrokeCost(residuals, strokes[k], strokes[k + 1], of_stroke[k]), nullptr, blocks);
+  }
+  for (std::size_t j = 0; j < residuals.free.size(); ++j) {
+    const Parameter& parameter = problem.parameters[problem.parameters.free()[j]];
+    residuals.free[j] = std::clamp(residuals.free[j], parameter.lower, parameter.upper);
+    const auto place = static_cast<int>(j);
+    ceres_problem.SetParameterLowerBound(residuals.free.data(), place, parameter.lower);
+    ceres_problem.SetParameterUpperBound(residuals.free.data(), place, parameter.upper);
+  }
+  for (std::size_t k = 0; k < longest.size(); ++k) {
+    if (!ceres_problem.HasParameterBlock(&residuals.overshoot[k])) continue;
+    if (!(longest[k] > 0)) {
+      ceres_problem.SetParameterBlockConstant(&residuals.overshoot[k]);
+      continue;
+    }
+    ceres_problem.SetParameterLowerBound(&residuals.overshoot[k], 0, 0.0);
+    ceres_problem.SetParameterUpperBound(&residuals.overshoot[k], 0, longest[k]);
+  }
+  ceres::Solver::Options search;
+  search.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  search.max_num_iterations = options.max_iterations;
+  search.function_tolerance = options.function_tolerance;
+  search.parameter_tolerance = options.parameter_tolerance;
+  search.gradient_tolerance = std::numeric_limits<double>::min();
+  search.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(search, &ceres_problem, &summary);
+
+  TurningPointFit fit{nullptr, start};
+  residuals.PrepareForEvaluation(/*evaluate_jacobians=*/false, /*new_evaluation_point=*/true);
+  fit.solution.theta = residuals.Theta();
+  fit.solution.sum_of_squares = residuals.system().residual.squaredNorm();
+  fit.solution.converged = summary.termination_type == ceres::CONVERGENCE;
+  fit.solution.report = {
+      .solver = "solve",
+      .termination = ceres::TerminationTypeToString(summary.termination_type),
+      .message = summary.message,
+      .iterations = start.report.iterations + static_cast<int>(summary.iterations.size()),
+      .initial_cost = first_cost / 2,
+      .final_cost = fit.solution.sum_of_squares / 2};
   for (const std::size_t p : problem.parameters.free()) {
     fit.solution.side[p] = SideOf(problem.parameters[p], fit.solution.theta[p]);
   }
+  fit.records = residuals.TakeRecords();
   fit.records->data.turns_are_fitted = true;
   return fit;
 }

@@ -73,9 +73,9 @@ struct TurningPointFit {
   Solution solution;
 };
 
-/// Least squares in all free parameters and the overshoots, by Levenberg and Marquardt's method
-/// within their bounds. Overshoots are eliminated first: their normal matrix is as sparse as the
-/// history is shallow, so that the cost grows with their number, not with its square.
+/// Least squares in all free parameters and the overshoots within their bounds, by ceres::Solve
+/// with one residual block a stroke: a stroke depends on the few turning points that its branches
+/// start from, so that the normal equations are as sparse as the history is shallow.
 /// @param overshoot  to start from
 TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
                                  std::vector<double> overshoot, const SolverOptions& options,

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/loop/record.h"
+
+// The only public header that needs Ceres' own: who does not include it needs none of them.
+namespace mindahl::identification {
+
+/// A parameter of the problem and its parameter block, θ: non-dimensional and of order one.
+///   value = scale·exp(θ) where it is positive,  else  value = reference + scale·θ
+struct CeresParameter {
+  std::string name;  ///< as in FitResult::parameters
+  std::string unit;
+  double theta = 0.0;  ///< the parameter block, of size one
+  double lower = 0.0;  ///< bounds of θ
+  double upper = 0.0;
+  bool fixed = false;
+  bool positive = false;
+  double reference = 0.0;  ///< [unit]
+  double scale = 1.0;      ///< [unit]
+
+  [[nodiscard]] double Value() const { return ValueAt(theta); }
+  [[nodiscard]] double ValueAt(double at_theta) const;
+  [[nodiscard]] double ThetaAt(double value) const;
+};
+
+/// The least-squares problem of a fit, unprojected, as ceres::CostFunctions with analytic
+/// Jacobians:
+///   rᵢ = √wᵢ·(T_model(δᵢ; σ, α, Tc, rig, offsets, terms) − Tᵢ)/residual_unit
+/// over all parameters of the fit, one residual block a record; σ, α, Tc and the terms of the
+/// contact are shared by all records, offsets belong to each. To it residuals and priors of one's
+/// own are added, and ceres::Solve is called:
+///
+///     CeresProblem contact(records, options, fit, fit.force_noise);
+///     ceres::Problem problem;
+///     contact.AddTo(problem);
+///     problem.AddResidualBlock(prior, nullptr, &contact.Find("alpha").theta);
+///     ceres::Solve(solver_options, &problem, &summary);
+///     contact.Find("sigma").Value();
+///
+/// Without residuals of one's own its minimum is the fit's. Turning points that the fit found
+/// between samples, weights of noisy displacements and those of a robust loss are not part of it;
+/// a robust loss is given to AddTo(), which then adds one residual block a sample.
+class CeresProblem {
+ public:
+  /// @param records        [m], [N]; those of the fit
+  /// @param options        those of the fit
+  /// @param fit            gives initial state, sign of the force and the starting values
+  /// @param residual_unit  [N], or [m] in a fit of the displacement, > 0, by which residuals are
+  ///                       divided: with the noise's standard deviation ½Σr² is minus the
+  ///                       log-likelihood, to which that of a prior is added
+  /// @throws InvalidArgument as the fit does
+  CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
+               const FitResult& fit, double residual_unit = 1.0);
+  CeresProblem(CeresProblem&&) noexcept;
+  CeresProblem& operator=(CeresProblem&&) noexcept;
+  ~CeresProblem();
+
+  /// Those of the contact, then those of each record. The addresses of θ stay the same.
+  [[nodiscard]] std::span<CeresParameter> parameters();
+  /// @throws InvalidArgument where there is none of that name
+  [[nodiscard]] CeresParameter& Find(std::string_view name);
+
+  [[nodiscard]] std::size_t records() const;
+  /// Positions, among parameters(), of the blocks of a record's cost function, in its order.
+  [[nodiscard]] std::span<const std::size_t> BlocksOf(std::size_t record) const;
+  /// Residuals of all samples of a record, those that do not count are 0. It refers to this
+  /// problem.
+  [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeCostFunction(std::size_t record) const;
+
+  /// Adds a residual block for every record, bounds, and holds what the fit holds.
+  /// @param problem  takes ownership of what is added; this must outlive it
+  /// @param loss     of each sample, in residual units; none: least squares. Taken over
+  void AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss = nullptr);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mindahl::identification

@@ -1,0 +1,147 @@
+#include "mindahl/identification/ceres_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory_resource>
+#include <utility>
+
+#include "core/nearest_name.h"
+#include "identification/problem/problem.h"
+#include "identification/solve/unprojected_record.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/preparation.h"
+
+namespace mindahl::identification {
+namespace {
+
+ScaledRecords ScaleAsFit(loop::PreparedRecords& prepared, const FitOptions& options) {
+  LeaveOutBeyondLags(options, prepared);
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  ScaledRecords data = Scale(prepared, options, memory);
+  AddCovariates(options.covariates, /*with_others=*/false, prepared, options.offsets, data);
+  if (HasTerm(options, "lag")) SetClocks(data);
+  return data;
+}
+
+loop::PreparedRecords PrepareAsFit(std::span<const loop::RecordView> records,
+                                   const FitOptions& options, const FitResult& fit) {
+  loop::PreparationOptions preparation = options.preparation;
+  preparation.force_sense = fit.force_sense;
+  return loop::Prepare(records, preparation, std::pmr::get_default_resource());
+}
+
+}  // namespace
+
+double CeresParameter::ValueAt(double at_theta) const {
+  return positive ? scale * std::exp(at_theta) : reference + scale * at_theta;
+}
+
+double CeresParameter::ThetaAt(double value) const {
+  return positive ? std::log(value / scale) : (value - reference) / scale;
+}
+
+struct CeresProblem::State {
+  State(std::span<const loop::RecordView> views, const FitOptions& given, const FitResult& fit,
+        double residual_unit)
+      : options(given),
+        prepared(PrepareAsFit(views, options, fit)),
+        data(ScaleAsFit(prepared, options)),
+        problem{&data, options.model, fit.initial_state,
+                Parameters(data, options, fit.initial_state, std::pmr::get_default_resource())},
+        unit(residual_unit / data.response_unit()) {}
+
+  FitOptions options;
+  loop::PreparedRecords prepared;
+  ScaledRecords data;
+  Problem problem;
+  double unit;  // of residuals [units of the data]
+  std::vector<CeresParameter> parameters;
+  std::vector<std::size_t> place;                // of the problem's parameters among these
+  std::vector<std::vector<std::size_t>> blocks;  // of each record, among the parameters
+};
+
+CeresProblem::CeresProblem(std::span<const loop::RecordView> records, const FitOptions& options,
+                           const FitResult& fit, double residual_unit) {
+  RequirePositive("residual unit", residual_unit);
+  state_ = std::make_unique<State>(records, options, fit, residual_unit);
+  const Parameters& parameters = state_->problem.parameters;
+  state_->place.assign(parameters.size(), parameters.size());
+  for (const std::size_t p : parameters.reported()) {
+    const Parameter& parameter = parameters[p];
+    state_->place[p] = state_->parameters.size();
+    CeresParameter& block = state_->parameters.emplace_back();
+    block = {.name = parameters.NameOf(p),
+             .unit = parameters.UnitOf(p, !state_->data.records.front().velocity.empty()),
+             .theta = parameter.theta,
+             .lower = parameter.lower,
+             .upper = parameter.upper,
+             .fixed = parameter.fixed,
+             .positive = parameter.term->positive,
+             .reference = parameter.reference,
+             .scale = parameter.scale};
+    const ParameterEstimate* estimate = fit.Find(block.name);
+    if (estimate != nullptr && !parameter.fixed) {
+      block.theta = std::clamp(block.ThetaAt(estimate->value), block.lower, block.upper);
+    }
+  }
+  for (std::size_t r = 0; r < state_->data.records.size(); ++r) {
+    std::vector<std::size_t>& blocks = state_->blocks.emplace_back();
+    const UnprojectedRecord record(state_->problem, r, state_->unit);
+    for (const std::size_t p : record.blocks()) blocks.push_back(state_->place[p]);
+  }
+}
+
+CeresProblem::CeresProblem(CeresProblem&&) noexcept = default;
+CeresProblem& CeresProblem::operator=(CeresProblem&&) noexcept = default;
+CeresProblem::~CeresProblem() = default;
+
+std::span<CeresParameter> CeresProblem::parameters() { return state_->parameters; }
+
+CeresParameter& CeresProblem::Find(std::string_view name) {
+  const auto found = std::ranges::find(state_->parameters, name, &CeresParameter::name);
+  if (found != state_->parameters.end()) return *found;
+  std::vector<std::string> names;
+  for (const CeresParameter& parameter : state_->parameters) names.push_back(parameter.name);
+  throw InvalidArgument("parameter " + UnknownAmong(name, names));
+}
+
+std::size_t CeresProblem::records() const { return state_->blocks.size(); }
+
+std::span<const std::size_t> CeresProblem::BlocksOf(std::size_t record) const {
+  return state_->blocks.at(record);
+}
+
+std::unique_ptr<ceres::CostFunction> CeresProblem::MakeCostFunction(std::size_t record) const {
+  return CostOfRecord(std::make_shared<UnprojectedRecord>(state_->problem, record, state_->unit));
+}
+
+void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFunction> loss) {
+  // Ceres deletes a loss once, however many blocks share it.
+  ceres::LossFunction* const shared_loss = loss.release();
+  for (std::size_t r = 0; r < records(); ++r) {
+    std::vector<double*> blocks;
+    for (const std::size_t place : BlocksOf(r)) {
+      blocks.push_back(&state_->parameters[place].theta);
+    }
+    auto record = std::make_shared<UnprojectedRecord>(state_->problem, r, state_->unit);
+    if (shared_loss == nullptr) {
+      problem.AddResidualBlock(CostOfRecord(std::move(record)).release(), nullptr, blocks);
+      continue;
+    }
+    for (std::size_t i = 0; i < record->samples(); ++i) {
+      if (!record->Counts(i)) continue;
+      problem.AddResidualBlock(CostOfSample(record, i).release(), shared_loss, blocks);
+    }
+  }
+  for (CeresParameter& parameter : state_->parameters) {
+    if (!problem.HasParameterBlock(&parameter.theta)) continue;
+    if (parameter.fixed) {
+      problem.SetParameterBlockConstant(&parameter.theta);
+      continue;
+    }
+    problem.SetParameterLowerBound(&parameter.theta, 0, parameter.lower);
+    problem.SetParameterUpperBound(&parameter.theta, 0, parameter.upper);
+  }
+}
+
+}  // namespace mindahl::identification

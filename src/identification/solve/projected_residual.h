@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "identification/problem/problem.h"
+#include "identification/solve/linear_columns.h"
+
+namespace mindahl::identification {
+
+/// A coordinate of the search: a parameter's θ, or where Tc is eliminated ln(σ/Tc) or ln(Tc/k).
+struct SearchedParameter {
+  std::size_t parameter;
+  double lower;  // of the coordinate
+  double upper;
+  double LawPoint::*eliminated = nullptr;  // the coordinate of the law; null: θ itself
+  LawSensitivity sensitivity = {};         // of the residual over the scale
+};
+
+/// The residual of a problem after variable projection (Golub & Pereyra 2003): the scale of the
+/// response and all linear parameters take their least-squares values at every point, and the
+/// residual depends on the searched coordinates alone. Its Jacobian is Kaufman's: the derivatives
+/// of the response, orthogonal to the eliminated columns.
+///
+/// Tc is eliminated where t is searched over σ/Tc (and Tc/k of a rig). Where the user holds or
+/// bounds σ or k, these and Tc are searched instead. In a fit of the displacement Tc is searched
+/// and its factor Tc/σ eliminated, unless the user holds or bounds σ. A bound on an eliminated
+/// factor clamps it.
+class ProjectedResidual {
+ public:
+  /// @param problem   must outlive the use; its weights may change before the next Bind()
+  /// @param response  bound to the problem here
+  void Bind(const Problem& problem, Response& response);
+
+  /// Moves a parameter that the problem holds, of those without a column of their own.
+  void HoldAt(std::size_t parameter, double theta) { theta_[parameter] = theta; }
+
+  /// Lets all linear parameters go that were held at a bound.
+  void ReleaseLinear();
+  /// Holds the first linear parameter of θ that lies beyond its bounds at the bound it passed.
+  /// @returns false where none does
+  bool HoldPassed(std::span<double> theta);
+
+  [[nodiscard]] std::span<const SearchedParameter> searched() const { return searched_; }
+  [[nodiscard]] const Problem& problem() const { return *problem_; }
+  /// θ of what is held, and at the last evaluation of what is searched and not eliminated.
+  [[nodiscard]] std::span<const double> theta() const { return theta_; }
+
+  /// Writes the coordinates at θ, moved into their bounds.
+  void Load(std::span<const double> theta, std::span<double> u) const;
+  /// Writes θ of what is searched or eliminated, at the point of the last evaluation.
+  void Store(std::span<const double> u, std::span<double> theta) const;
+
+  /// Returns the sum of the squared weighted residuals; infinity where they are not finite.
+  double Evaluate(std::span<const double> u);
+  /// The same, and forms the normal equations.
+  double Linearise(std::span<const double> u);
+  /// JᵀJ and Jᵀr of the last Linearise().
+  [[nodiscard]] const Eigen::MatrixXd& normal() const { return normal_; }
+  [[nodiscard]] const Eigen::VectorXd& gradient() const { return gradient_; }
+  /// Weighted, model − measured, of the last evaluation.
+  [[nodiscard]] std::span<const double> residual() const { return residual_; }
+
+  /// Evaluates with the scale eliminated whatever is held, for looks at the plane of σ/Tc, or of a
+  /// displacement of Tc, and α.
+  /// @returns infinity where the regression has the wrong sign; else σ or Tc is written into θ
+  double EvaluateFreely(const LawPoint& at, std::span<double> theta);
+
+  /// Is Tc, or Tc/σ of a displacement, eliminated?
+  [[nodiscard]] bool scale_is_linear() const { return scale_is_linear_; }
+
+ private:
+  void ChooseSearched();
+  void FactoriseColumns();
+  [[nodiscard]] LawPoint PointOf(std::span<const double> u);
+  [[nodiscard]] std::pair<double, double> BoundsOfScale(double log_rate) const;
+  double Regress(double log_rate, bool is_free, double held_scale);
+  void DifferentiateResponse(const LawPoint& point);
+  [[nodiscard]] std::span<double> Derivative(std::size_t k) {
+    return {derivatives_.data() + k * samples_, samples_};
+  }
+  [[nodiscard]] bool is_forced() const { return problem_->data->is_forced(); }
+
+  const Problem* problem_ = nullptr;
+  Response* response_ = nullptr;
+  std::size_t samples_ = 0;
+  std::vector<SearchedParameter> searched_;
+  std::vector<std::span<double> ResponseColumns::*> bases_;  // derivatives of t that are needed
+  std::vector<std::size_t> place_of_base_;                   // among the derivatives
+  std::vector<unsigned char> held_;                          // linear parameters held at a bound
+  std::vector<double> theta_;  // θ at the last evaluation of what is not eliminated
+  LinearColumns columns_;
+  std::vector<double> derivatives_;  // of the residual by what is searched, and of t
+  std::vector<double> of_samples_;   // holds the next four
+  std::span<double> measured_;       // weighted, projected
+  std::span<double> weight_;
+  std::span<double> response_values_;  // t, weighted, projected
+  std::span<double> residual_;
+  double scale_ = 0.0;          // of t: Tc, or Tc/σ of a displacement
+  bool scale_is_free_ = false;  // not clamped to its bounds
+  bool scale_is_linear_ = false;
+  Eigen::MatrixXd normal_;
+  Eigen::VectorXd gradient_;
+};
+
+}  // namespace mindahl::identification
