@@ -9,7 +9,7 @@
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/main_strokes.h"
 #include "identification/inference/evidence.h"
-#include "identification/inference/intervals.h"
+#include "identification/intervals.h"
 
 namespace mindahl::identification {
 namespace {
@@ -27,7 +27,7 @@ struct Sums {
 };
 
 /// A closed interval that grows.
-struct Range {
+struct GrowingRange {
   double lower;
   double upper;
   void Include(double value) {
@@ -119,7 +119,7 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
   const double error =
       result.adequacy.misfit / std::sqrt(std::max(1.0, static_cast<double>(steps.size())));
   const double margin = std::hypot(ScatterOfCycles(facts) / load_ratio, error);
-  Range range{slip_force.value, slip_force.value};
+  GrowingRange range{slip_force.value, slip_force.value};
   range.Include(*half_gap - margin);
   range.Include(*half_gap + margin);
   const double carried = std::max(*half_gap, facts.peak_force / load_ratio) + margin;

@@ -7,7 +7,7 @@
 
 #include "identification/inference/column_test.h"
 #include "identification/inference/evidence.h"
-#include "identification/inference/intervals.h"
+#include "identification/intervals.h"
 
 namespace mindahl::identification {
 namespace {

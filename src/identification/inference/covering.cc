@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "identification/inference/estimates.h"
-#include "identification/inference/intervals.h"
+#include "identification/intervals.h"
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {

@@ -7,7 +7,7 @@
 
 #include "core/normal_quantile.h"
 #include "identification/inference/evidence.h"
-#include "identification/inference/intervals.h"
+#include "identification/intervals.h"
 
 namespace mindahl::identification {
 

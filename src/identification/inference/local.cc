@@ -168,7 +168,6 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   if (count == 0) return result;
 
   const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
-  Eigen::MatrixXd columns_of_unit = is_white ? Eigen::MatrixXd() : jacobian;
   Eigen::MatrixXd triangle = TriangleOf(jacobian);
   Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
@@ -183,8 +182,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   Eigen::MatrixXd root = half;
   result.absorbed = static_cast<double>(half.cols());
   if (!is_white) {
-    columns_of_unit *= inverse_norms.asDiagonal();
-    const Eigen::MatrixXd orthonormal = columns_of_unit * half;
+    const Eigen::MatrixXd orthonormal = jacobian * (inverse_norms.asDiagonal() * half);
     const Eigen::MatrixXd product =
         displacement.residuals.size() > 0
             ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement,

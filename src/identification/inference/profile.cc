@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "identification/inference/intervals.h"
+#include "identification/intervals.h"
 
 namespace mindahl::identification {
 namespace {

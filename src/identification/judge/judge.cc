@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "identification/inference/intervals.h"
+#include "identification/intervals.h"
 
 namespace mindahl::identification {
 namespace {

@@ -1,4 +1,4 @@
-#include "identification/inference/intervals.h"
+#include "identification/intervals.h"
 
 #include <algorithm>
 #include <cmath>
