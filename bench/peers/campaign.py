@@ -28,6 +28,16 @@ HERE = pathlib.Path(__file__).resolve().parent
 CONTACT = ("simulate --model mindlin --sigma 5e7 --slip-force 20 --lambda 1.2 "
            "--samples-per-cycle 200 --noise-force 0.2 --seed 1").split()
 
+# The same against partial slip, whose fits take more steps, and against a file that pandas reads
+# faster: numbers of six digits in two columns.
+PARTIAL_SLIP = ("simulate --model mindlin --sigma 5e7 --slip-force 20 --lambda 0.9 "
+                "--samples-per-cycle 200 --noise-force 0.066 --seed 1").split()
+SIX_DIGITS = """
+import sys, pandas
+table = pandas.read_csv(sys.argv[1])
+table.iloc[:, 1:].to_csv(sys.argv[2], index=False, float_format="%.6g")
+"""
+
 READ = """
 import sys, time, pandas
 start = time.process_time()
@@ -58,11 +68,16 @@ def main():
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1")
 
     with tempfile.TemporaryDirectory() as directory:
-        def simulated(cycles):
-            path = os.path.join(directory, f"{cycles}.csv")
+        def simulated(cycles, contact=CONTACT):
+            path = os.path.join(directory, f"{cycles}_{contact is CONTACT}.csv")
             if not os.path.exists(path):
-                subprocess.run([program, *CONTACT, "--cycles", str(cycles), "-o", path], check=True)
+                subprocess.run([program, *contact, "--cycles", str(cycles), "-o", path], check=True)
             return path
+
+        def read_by_pandas(path):
+            seconds, rows = subprocess.run([PYTHON, "-c", READ, path], check=True, text=True,
+                                           capture_output=True).stdout.split()
+            return float(seconds), int(rows)
 
         def track(path, *more):
             table = os.path.join(directory, "table.csv")
@@ -74,17 +89,16 @@ def main():
         os.sched_setaffinity(0, {max(cores)})
         times = {}
         for _ in range(arguments.rounds):
-            seconds, rows = subprocess.run([PYTHON, "-c", READ, record], check=True, text=True,
-                                           capture_output=True).stdout.split()
+            seconds, rows = read_by_pandas(record)
             lmfit = run_json(PYTHON, HERE / "lmfit_fit.py", one_cycle, "--repeats", "20",
                              "--initial-state", "steady")
             scipy = {route: run_json(PYTHON, HERE / "scipy_fit.py", one_cycle, "--route", route,
                                      "--repeats", repeats)
                      for route, repeats in (("closed", "20"), ("ode", "1"))}
             fits = run_json(arguments.build / "bench/peers/mindahl_cycles", simulated(400), "5")
-            cycles = int(rows) // 200
+            cycles = rows // 200
             for name, microseconds in {
-                    "pandas, reading": 1e6 * float(seconds) / cycles,
+                    "pandas, reading": 1e6 * seconds / cycles,
                     "mindahl track, reading and fits": 1e6 * cost_of(
                         track(record, "--threads", "1"))[0] / cycles,
                     "mindahl track, reading alone": 1e6 * cost_of(
@@ -109,6 +123,19 @@ def main():
             print(f"| {name} | {min(values) / min(peers):.3g} | {statistics.median(ratios):.3g} | "
                   f"{min(ratios):.3g} … {max(ratios):.3g} | {min(values):.3g} | "
                   f"{min(values) / least_fit:.3g} |")
+
+        six_digits = os.path.join(directory, "six_digits.csv")
+        subprocess.run([PYTHON, "-c", SIX_DIGITS, record, six_digits], check=True)
+        print("\n| record | `track` over pandas' reading of it | range |")
+        print("|---|---|---|")
+        for name, path in {"gross slip, three columns of 17 digits": record,
+                           "partial slip, three columns of 17 digits":
+                               simulated(arguments.cycles, PARTIAL_SLIP),
+                           "gross slip, two columns of six digits": six_digits}.items():
+            ratios = [cost_of(track(path, "--threads", "1"))[0] / read_by_pandas(path)[0]
+                      for _ in range(arguments.rounds)]
+            print(f"| {name} | {statistics.median(ratios):.3g} | "
+                  f"{min(ratios):.3g} … {max(ratios):.3g} |")
 
         os.sched_setaffinity(0, cores)
         print("\n| threads | time over one thread's |")

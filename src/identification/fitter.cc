@@ -197,10 +197,14 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
                                double look = std::numeric_limits<double>::infinity()) {
     return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers, attempt.memory);
   };
+  const auto descend = [&](Candidate& candidate, std::vector<Descent>* recorded) {
+    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
+    Descend(candidate, options, attempt.buffers, recorded);
+  };
   if (const std::optional<InitialState> given = GivenState(attempt)) {
     Candidate candidate = make(*given, first);
     find_starts(candidate);
-    Descend(candidate, options, attempt.buffers, descents);
+    descend(candidate, descents);
     return candidate;
   }
   Candidate virgin = make(InitialState::kVirgin, first);
@@ -213,16 +217,16 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   // is beyond the parameter that the two differ by, however few samples are left of it.
   constexpr double kClearlyWorse = 4.0;
   if (steady_cost > kClearlyWorse * virgin_cost) {
-    Descend(virgin, options, attempt.buffers, descents);
+    descend(virgin, descents);
     if (virgin.solution->converged) return virgin;
   } else if (virgin_cost > kClearlyWorse * steady_cost) {
-    Descend(steady, options, attempt.buffers, descents);
+    descend(steady, descents);
     if (steady.solution->converged) return steady;
   }
   std::vector<Descent> virgin_descents;
   std::vector<Descent> steady_descents;
-  Descend(virgin, options, attempt.buffers, descents != nullptr ? &virgin_descents : nullptr);
-  Descend(steady, options, attempt.buffers, descents != nullptr ? &steady_descents : nullptr);
+  descend(virgin, descents != nullptr ? &virgin_descents : nullptr);
+  descend(steady, descents != nullptr ? &steady_descents : nullptr);
   const Candidate& better =
       virgin.solution->sum_of_squares < steady.solution->sum_of_squares ? virgin : steady;
   bool is_virgin = true;

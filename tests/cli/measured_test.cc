@@ -207,5 +207,22 @@ TEST_F(MeasuredRecord, SealsAndDampersThatSlideHaveASlipForceThatContainsTheirGa
   }
 }
 
+TEST_F(MeasuredRecord, ModelWithALagFitsNoWorseThanWithoutIt) {
+  for (const char* file :
+       {"mr_damper_labcontrol/ensaio.B.1.csv", "mr_damper_utfsm/10mm_2Hz_1A.csv"}) {
+    SKIP_WITHOUT(file);
+    const auto rms = [&](const Words& options) {
+      return Fit(file, options)["residuals"]["rms"].get<double>();
+    };
+    const double viscous = rms({"--viscous", "fit"});
+    const double lag = rms({"--lag", "fit"});
+    const double both = rms({"--viscous", "fit", "--lag", "fit"});
+    // The search stops where a step gains 1e-10 of the cost. A lag leaves some samples out.
+    constexpr double kSame = 1.01;
+    EXPECT_LE(both, kSame * viscous) << file;
+    EXPECT_LE(both, (1 + 1e-8) * lag) << file;
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::cli::measured_test

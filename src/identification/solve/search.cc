@@ -1,6 +1,7 @@
 #include "identification/solve/search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -40,6 +41,43 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
                                 buffers.scratch, memory);
   return candidate.starts.empty() ? std::numeric_limits<double>::infinity()
                                   : candidate.starts.front().cost;
+}
+
+namespace {
+
+/// Returns the value with which a term on demand has no effect: a rigid rig, or zero.
+double NeutralTheta(const Parameters& parameters, std::size_t p) {
+  return p == kRig ? parameters[p].upper : parameters[p].ToTheta(0.0);
+}
+
+}  // namespace
+
+void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
+                              const FitOptions& options, SearchBuffers& buffers,
+                              std::pmr::memory_resource* memory) {
+  constexpr std::size_t kMostNested = 3;
+  if (!options.start.empty()) return;
+  const Parameters& parameters = candidate.problem.parameters;
+  std::vector<std::size_t> terms;
+  for (const std::size_t p : parameters.free()) {
+    if (parameters[p].term->presence == Presence::kOnDemand) terms.push_back(p);
+  }
+  Solution solution;
+  for (const std::size_t p : terms) {
+    const double neutral = NeutralTheta(parameters, p);
+    if (neutral < parameters[p].lower || neutral > parameters[p].upper) continue;
+    Candidate smaller(candidate, p, neutral, memory);
+    smaller.solution = &solution;
+    FindStartsOf(smaller, thinned, options, std::numeric_limits<double>::infinity(), buffers,
+                 memory);
+    if (terms.size() <= kMostNested) {
+      AddStartsOfSmallerModels(smaller, thinned, options, buffers, memory);
+    }
+    Descend(smaller, options, buffers, nullptr);
+    if (!std::isfinite(solution.sum_of_squares)) continue;
+    candidate.starts.push_back({.theta = {solution.theta.begin(), solution.theta.end(), memory},
+                                .cost = solution.sum_of_squares});
+  }
 }
 
 void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,

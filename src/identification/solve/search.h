@@ -32,6 +32,15 @@ struct Candidate {
       : problem{&data, options.model, state, Parameters(data, options, state, memory)},
         starts(memory) {}
 
+  /// The same with one more parameter held.
+  Candidate(const Candidate& other, std::size_t parameter, double theta,
+            std::pmr::memory_resource* memory)
+      : problem{other.problem.data, other.problem.model, other.problem.state,
+                Parameters(other.problem.parameters, memory)},
+        starts(memory) {
+    problem.parameters.Fix(parameter, theta);
+  }
+
   Problem problem;
   std::pmr::vector<StartingPoint> starts;
   Solution* solution = nullptr;  // of the caller's buffers
@@ -44,6 +53,13 @@ SolverOptions SolverOptionsOf(const FitOptions& options);
 /// @returns the least cost there; infinity where none has the sense of the force
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
                     double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory);
+
+/// Adds the solutions of the models with one term less as starting points, so that a model never
+/// fits worse than one that it contains. Those are solved from starting points of their own and,
+/// for at most three terms, from the solutions of the models that they contain in turn.
+void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
+                              const FitOptions& options, SearchBuffers& buffers,
+                              std::pmr::memory_resource* memory);
 
 /// Solves from each starting point and keeps the best solution.
 /// @param descents  every start is recorded here, unless null
