@@ -55,14 +55,15 @@ double NeutralTheta(const Parameters& parameters, std::size_t p) {
 void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
                               const FitOptions& options, SearchBuffers& buffers,
                               std::pmr::memory_resource* memory) {
-  constexpr std::size_t kMostNested = 3;
+  constexpr std::size_t kMostNested = std::tuple_size_v<decltype(SearchBuffers::smaller)>;
   if (!options.start.empty()) return;
   const Parameters& parameters = candidate.problem.parameters;
-  std::vector<std::size_t> terms;
+  std::pmr::vector<std::size_t> terms(memory);
   for (const std::size_t p : parameters.free()) {
     if (parameters[p].term->presence == Presence::kOnDemand) terms.push_back(p);
   }
-  Solution solution;
+  if (terms.empty()) return;
+  Solution& solution = buffers.smaller[std::min(terms.size(), kMostNested) - 1];
   for (const std::size_t p : terms) {
     const double neutral = NeutralTheta(parameters, p);
     if (neutral < parameters[p].lower || neutral > parameters[p].upper) continue;

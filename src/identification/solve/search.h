@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory_resource>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct SearchBuffers {
   Solver solver;
   Response response;
   Solution scratch;
+  std::array<Solution, 3> smaller;  // of models with one term less, and those that they contain
 };
 
 /// What was reached from one starting point.

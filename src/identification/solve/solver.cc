@@ -301,8 +301,9 @@ Solver::~Solver() = default;
 namespace {
 
 /// True if a coordinate that lies at one of its bounds would lower the cost on its way back.
-bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, double tolerance) {
-  std::vector<unsigned char> others(u.size(), 1);
+/// @param others  room for a mark of each coordinate
+bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, double tolerance,
+                 std::vector<unsigned char>& others) {
   bool any = false;
   for (std::size_t j = 0; j < u.size(); ++j) {
     const SearchedParameter& searched = residual.searched()[j];
@@ -374,7 +375,7 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
     search.trial_cost = residual_.Linearise(u);
     search.trial_is_linearised = true;
     search.trial_is_predicted = false;
-    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost)) break;
+    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost, search.clamped)) break;
   }
   double cost = search.cost;
   const bool hit_maximum = search.tiny.summary.status == Search::TinySolver::HIT_MAX_ITERATIONS;
