@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
@@ -57,11 +60,23 @@ identification::BackboneEstimate BackboneOf(const FitRequest& request,
 }
 
 /// @param provenance  asked for where a page is written: it reads the files once more
+/// Findings that stand where the model does not: those of the record. What else there is to say of
+/// an inadequate fit is in its text.
+bool IsOfTheRecord(std::string_view code) {
+  constexpr std::array<std::string_view, 7> kOfTheRecord = {
+      "reversals_uncertain", "glitches_left_out", "path_too_long",      "no_closed_cycle",
+      "few_places",          "loop_not_seen",     "weights_not_settled"};
+  return std::ranges::find(kOfTheRecord, code) != kOfTheRecord.end();
+}
+
 void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
                      const std::function<report::Provenance()>& provenance,
                      const Messages& messages, Console& console) {
+  const bool is_inadequate =
+      report.fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate;
   for (const report::Warning& warning : report.fit_warnings) {
     if (warning.code == "fit_failed") continue;  // an error, below
+    if (is_inadequate && !IsOfTheRecord(warning.code)) continue;
     messages.Warn(warning.message);
   }
   for (const report::Warning& warning : report.contact_warnings) {
@@ -113,6 +128,11 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
   report::Report report = FitRecords(request, messages);
   if (!options.backbone_path.empty() && !report.failed()) {
     report.backbone = BackboneOf(request, report);
+    for (identification::Cause& cause : report.fit.adequacy.causes) {
+      // Refused beside a backbone.
+      const std::string_view option = cause.option;
+      if (option.starts_with("--lag") || option.starts_with("--asymmetry")) cause.option.clear();
+    }
   }
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };

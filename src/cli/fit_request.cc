@@ -23,8 +23,6 @@ namespace {
 
 using request::kFitIt;
 
-constexpr std::string_view kColumnGroup = "Columns and units";
-
 CLI::Validator OneOfWords(std::span<const std::string_view> words) {
   return cli::OneOf(std::vector<std::string>(words.begin(), words.end()));
 }
@@ -126,7 +124,7 @@ std::string DescribeParameters() {
 
 }  // namespace
 
-void AddColumnOptions(CLI::App& command, FitRequest& options) {
+void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   const std::string group(kColumnGroup);
   const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
     command.add_option(name, choice.column, description)->type_name("COL")->group(group);
@@ -134,18 +132,31 @@ void AddColumnOptions(CLI::App& command, FitRequest& options) {
   const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
     command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
   };
-  column("--displacement", options.columns.displacement,
+  column("--displacement", columns.displacement,
          "column by header name or 1-based number; default a recognised name, else column 1");
-  column("--force", options.columns.force, "likewise, else column 2");
-  column("--time", options.columns.time, "time column; optional");
-  column("--normal-load-column", options.columns.normal_load, "normal load column; optional");
-  unit("--displacement-unit", options.columns.displacement,
+  column("--force", columns.force, "likewise, else column 2");
+  column("--time", columns.time, "time column; optional");
+  column("--normal-load-column", columns.normal_load, "normal load column; optional");
+  unit("--displacement-unit", columns.displacement,
        "m, mm, um, nm, in; of an angle rad, mrad, deg, rev;\ndefault the header's, else m");
-  unit("--force-unit", options.columns.force,
+  unit("--force-unit", columns.force,
        "N, mN, uN, kN, MN, lbf, kgf, kip; of a torque 'N m', 'mN m', 'uN m',\n"
        "'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
-  unit("--time-unit", options.columns.time, "s, ms, us, min; default the header's, else s");
-  unit("--normal-load-unit", options.columns.normal_load, "as --force-unit of a force");
+  unit("--time-unit", columns.time, "s, ms, us, min; default the header's, else s");
+  unit("--normal-load-unit", columns.normal_load, "as --force-unit of a force");
+}
+
+void RequireNoColumns(const io::RecordColumns& columns) {
+  const auto require = [](const io::ColumnChoice& choice, std::string_view option) {
+    const std::string_view given = choice.column.empty() ? choice.unit : choice.column;
+    if (given.empty()) return;
+    throw InputError(fmt::format("--{}{} {}: there is no record to read a column of: give --record",
+                                 option, choice.column.empty() ? "-unit" : "", given));
+  };
+  require(columns.displacement, "displacement");
+  require(columns.force, "force");
+  require(columns.time, "time");
+  require(columns.normal_load, "normal-load");
 }
 
 void AddModelOptions(CLI::App& command, FitRequest& options) {
@@ -238,7 +249,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
 }
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
-  AddColumnOptions(command, request);
+  AddColumnOptions(command, request.columns);
   AddLimitOptions(command, request);
   AddWindowOptions(command, request);
   AddModelOptions(command, request);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string_view>
 
 #include "cli/contact_options.h"
+#include "mindahl/io/record_reader.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::cli {
@@ -13,8 +15,15 @@ using request::kAutomatic;
 /// Adds them to a command.
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
 
-/// Of these, which columns there are, and in what unit.
-void AddColumnOptions(CLI::App& command, FitRequest& request);
+/// The group of the columns in the help of a command.
+inline constexpr std::string_view kColumnGroup = "Columns and units";
+
+/// Adds the options that say which columns of a record are read, and in what unit.
+void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
+
+/// @throws InputError where any of these is given, but no record that it would be of
+void RequireNoColumns(const io::RecordColumns& columns);
+
 /// And what is fitted to them.
 void AddModelOptions(CLI::App& command, FitRequest& request);
 

@@ -14,6 +14,7 @@
 
 #include "cli/commands.h"
 #include "cli/examples.h"
+#include "cli/fit_request.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
 #include "cli/one_of.h"
@@ -44,6 +45,7 @@ namespace {
 struct PlanOptions {
   LawOptions law;
   std::string record;
+  io::RecordColumns columns;
   std::optional<double> rig_stiffness;
   std::optional<double> force_noise;
   double displacement_noise = 0.0;
@@ -143,7 +145,10 @@ bool IsIdentified(const identification::FitResult& fit, std::string_view name) {
 /// --alpha or Mindlin's: the record has the other parameters to it.
 void ExpectFromRecord(const PlanOptions& options, Expectation& expected, Console& console) {
   constexpr double kMindlin = 1.0 / 3;
-  const io::RecordFile file = io::ReadRecord(options.record);
+  const io::RecordFile file = io::ReadRecord(options.record, options.columns);
+  for (const std::string& note : file.notes) {
+    console.err << fmt::format("mindahl plan: note: {}: {}\n", options.record, note);
+  }
   FitOptions fit_options = FitOptionsOf(options);
   if (options.law.alpha) fit_options.fixed["alpha"] = *options.law.alpha;
   identification::FitResult fit = identification::Fit({&file.record, 1}, fit_options);
@@ -185,6 +190,7 @@ Expectation ExpectationOf(const PlanOptions& options, Console& console) {
     }
     ExpectFromRecord(options, expected, console);
   } else {
+    RequireNoColumns(options.columns);
     if (!options.force_noise) {
       throw InputError("--force-noise missing: give the standard deviation of the force [N]");
     }
@@ -517,9 +523,11 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   const std::string expected = "What is expected";
   command
       ->add_option("--record", options->record,
-                   "its fit gives contact and noise; --alpha where it does not tell")
+                   "take contact and noise from a fit of this record; --alpha is used where\n"
+                   "the record does not determine it")
       ->type_name("FILE")
       ->group(expected);
+  AddColumnOptions(*command, options->columns);
   AddOptional(*command, "--rig-stiffness", options->rig_stiffness,
               "of the rig in series [N/m]; known, but for --with rig_stiffness", "K")
       ->group(expected);

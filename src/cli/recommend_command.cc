@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/drive_options.h"
 #include "cli/examples.h"
+#include "cli/fit_request.h"
 #include "cli/json_output.h"
 #include "cli/law_options.h"
 #include "cli/one_of.h"
@@ -44,6 +45,7 @@ struct RecommendCommandOptions {
   std::string criterion = "max";
   std::size_t transient_cycles = 0;
   std::string record;
+  io::RecordColumns columns;
   std::string json;
 };
 
@@ -267,17 +269,19 @@ void RunForRecord(const RecommendCommandOptions& options, const CLI::App& comman
                   Console& console) {
   for (const CLI::Option* option : command.get_options()) {
     const std::string& name = option->get_name();
-    if (option->count() == 0 || name == "--record" || name == "--json") continue;
+    const bool is_of_record = name == "--record" || option->get_group() == kColumnGroup;
+    if (option->count() == 0 || is_of_record || name == "--json") continue;
     throw InputError(fmt::format(
         "--record excludes {}: contact, motion and tolerance are those of the record", name));
   }
   std::vector<std::string> inputs = console.inputs;
   inputs.push_back(options.record);
   RequireOutputPaths({{"--json", options.json, /*dash_is_stdout=*/true}}, inputs);
-  RecommendForRecord(options.record, options.json, console);
+  RecommendForRecord(options.record, options.columns, options.json, console);
 }
 
 void RunRecommend(const RecommendCommandOptions& options, Console& console) {
+  RequireNoColumns(options.columns);
   Validate(options.law);
   RecommendOptions asked{.tolerance = ParseTolerance(options.tolerance),
                          .criterion = Criteria().at(options.criterion),
@@ -353,6 +357,7 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
                    "each fitted to it; instead of all of the above")
       ->type_name("FILE")
       ->group("What is asked");
+  AddColumnOptions(*command, options->columns);
   command->callback([options, command, &console] {
     if (options->record.empty()) {
       RunRecommend(*options, console);

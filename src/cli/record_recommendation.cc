@@ -10,7 +10,6 @@
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/identification/simpler_laws.h"
-#include "mindahl/io/record_reader.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/limit_law.h"
 #include "mindahl/tradeoff/cost_model.h"
@@ -157,8 +156,9 @@ nlohmann::ordered_json RecordRecommendationJson(const std::string& record, const
 
 }  // namespace
 
-void RecommendForRecord(const std::string& record, const std::string& json, Console& console) {
-  const io::RecordFile file = io::ReadRecord(record);
+void RecommendForRecord(const std::string& record, const io::RecordColumns& columns,
+                        const std::string& json, Console& console) {
+  const io::RecordFile file = io::ReadRecord(record, columns);
   for (const std::string& note : file.notes) {
     console.err << fmt::format("mindahl recommend: note: {}\n", note);
   }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/app.h"
+#include "mindahl/io/record_reader.h"
 
 namespace mindahl::cli {
 
@@ -10,6 +11,7 @@ namespace mindahl::cli {
 /// established where no law describes the record.
 /// @param json  path, or "-" for standard output, which then has nothing else
 /// @throws InputError naming the file, and line and column where there are any
-void RecommendForRecord(const std::string& record, const std::string& json, Console& console);
+void RecommendForRecord(const std::string& record, const io::RecordColumns& columns,
+                        const std::string& json, Console& console);
 
 }  // namespace mindahl::cli

@@ -607,7 +607,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                    "CSV records of one test, in order; a cycle ends with its file")
       ->type_name("FILE")
       ->required();
-  AddColumnOptions(*command, options->request);
+  AddColumnOptions(*command, options->request.columns);
   AddModelOptions(*command, options->request);
   const std::string cycles = "Cycles";
   AddOptional(*command, "--normal-load", options->normal_load,

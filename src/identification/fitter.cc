@@ -20,6 +20,7 @@
 #include "identification/diagnosis/main_strokes.h"
 #include "identification/diagnosis/record_findings.h"
 #include "identification/inference/adequacy_test.h"
+#include "identification/inference/backlash_trial.h"
 #include "identification/inference/covering.h"
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
@@ -428,14 +429,20 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   // A load that varies would have to be read as late.
   if (IsDoubtful(test, thresholds) && !problem.data->load_varies && !problem.data->is_forced()) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
+    DenyLagBeyondKnee(problem, solution, buffers.response, test);
+    std::vector<std::optional<loop::Backlash>> gaps;
+    for (const RecordFit& record : result.records) gaps.push_back(record.facts.backlash);
+    TryBacklash(problem, solution, gaps, SolverOptionsOf(options), buffers, test);
   }
   std::vector<DepartureFit> causes = CausesOf(test, thresholds);
-  result.adequacy = JudgeAdequacy(problem, solution, test, causes, thresholds, result.parameters);
+  result.adequacy = JudgeAdequacy(problem, solution, test, causes, options, result.parameters);
   const Eigen::VectorXd& residual = estimates.residual();
-  AddIrregularities(problem,
-                    FindIrregularities(problem, solution.theta, {residual.data(), problem.size()},
-                                       noise, options.loss != Loss::kNone, buffers.response),
-                    thresholds, result.adequacy);
+  AddIrregularities(
+      problem,
+      FindIrregularities(problem, solution.theta, {residual.data(), problem.size()}, noise,
+                         options.loss != Loss::kNone,
+                         result.adequacy.verdict != AdequacyVerdict::kAdequate, buffers.response),
+      options, result.adequacy);
   if (const auto limit = FindSearchLimit(problem, solution)) {
     Append(result.findings, limit);
     result.adequacy.verdict = AdequacyVerdict::kDoubtful;

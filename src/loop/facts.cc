@@ -219,6 +219,122 @@ std::optional<double> MedianSlope(const RecordView& record, std::span<const Poin
   return Median(slopes);
 }
 
+/// Forces [N] from the centre of the loop, in half gaps, that strokes are looked at.
+constexpr std::size_t kLevels = 17;
+constexpr double kLevelStep = 0.1;
+constexpr double kLowestLevel = -0.8;
+
+/// Travel [m] of a stroke until its force comes to each level; empty where it does not.
+using Passage = std::array<double, kLevels>;
+
+std::optional<Passage> PassageOf(const Stroke& stroke, double centre, double half_gap) {
+  const double sense = stroke.rises() ? 1.0 : -1.0;
+  Passage passage{};
+  std::size_t level = 0;
+  for (std::size_t i = 0; i < stroke.force.size() && level < kLevels; ++i) {
+    const double reached = sense * (stroke.force[i] - centre) / half_gap;
+    while (level < kLevels && reached >= kLowestLevel + kLevelStep * static_cast<double>(level)) {
+      passage[level++] = std::abs(stroke.displacement[i] - stroke.displacement.front());
+    }
+  }
+  if (level < kLevels) return std::nullopt;
+  return passage;
+}
+
+/// Where the force of a direction stands still.
+struct Flat {
+  std::size_t level = 0;  // at which it begins
+  double width = 0.0;     // [m]
+};
+
+/// Width [m] of a gap between the levels k and k + 2: the travel from a level before to one after,
+/// less what the slopes beyond these take.
+double GapAt(const Passage& passage, std::size_t k, double before, double after) {
+  return passage[k + 3] - passage[k - 1] - 4 * (before + after) / 2;
+}
+
+/// @param passages  of strokes of one direction
+std::optional<Flat> FlatOf(std::span<const Passage> passages) {
+  constexpr double kSofter = 2.0;    // than what is before and after
+  constexpr double kScatter = 0.25;  // of the width, between strokes
+  constexpr std::size_t kFewest = 2;
+  if (passages.size() < kFewest) return std::nullopt;
+  Passage typical{};
+  for (std::size_t k = 0; k < kLevels; ++k) {
+    std::vector<double> travels;
+    for (const Passage& passage : passages) travels.push_back(passage[k]);
+    typical[k] = Median(travels);
+  }
+  std::optional<Flat> flat;
+  double before = 0.0;
+  double after = 0.0;
+  // Of three levels before and after it, a level apart.
+  for (std::size_t k = 4; k + 6 < kLevels; ++k) {
+    const double one = (typical[k - 1] - typical[k - 4]) / 3;
+    const double other = (typical[k + 6] - typical[k + 3]) / 3;
+    const double here = (typical[k + 2] - typical[k]) / 2;
+    const double width = GapAt(typical, k, one, other);
+    if (!(here > kSofter * std::max(one, other)) || !(one > 0) || !(other > 0)) continue;
+    if (flat && flat->width >= width) continue;
+    flat = {k, width};
+    before = one;
+    after = other;
+  }
+  if (!flat) return std::nullopt;
+  for (const Passage& passage : passages) {
+    const double width = GapAt(passage, flat->level, before, after);
+    if (std::abs(width - flat->width) > kScatter * flat->width) return std::nullopt;
+  }
+  return flat;
+}
+
+std::optional<Backlash> FindBacklash(const RecordView& record, std::span<const Points> cycles,
+                                     double centre, double half_gap, double amplitude) {
+  // Narrower ones are within what a few samples, or the digits of the force, make of a steep
+  // branch.
+  constexpr double kLeastGap = 0.03;
+  std::array<std::vector<Passage>, 2> passages;
+  for (const Points& cycle : cycles) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Stroke stroke = StrokeOf(record, cycle[k], cycle[k + 1]);
+      const auto passage = PassageOf(stroke, centre, half_gap);
+      if (!passage) return std::nullopt;
+      passages[stroke.rises() ? 0 : 1].push_back(*passage);
+    }
+  }
+  Backlash backlash;
+  for (std::size_t direction = 0; direction < 2; ++direction) {
+    const auto flat = FlatOf(passages[direction]);
+    if (!flat) return std::nullopt;
+    const double level = kLowestLevel + kLevelStep * static_cast<double>(flat->level + 1);
+    backlash.width += flat->width / 2;
+    backlash.force += (centre + (direction == 0 ? 1 : -1) * level * half_gap) / 2;
+  }
+  if (backlash.width < kLeastGap * amplitude) return std::nullopt;
+  return backlash;
+}
+
+std::optional<double> SlidingFraction(const RecordView& record, std::span<const Points> cycles,
+                                      double centre, double half_gap) {
+  constexpr double kNearly = 0.9;  // of the half gap
+  std::vector<double> fractions;
+  for (const Points& cycle : cycles) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Stroke stroke = StrokeOf(record, cycle[k], cycle[k + 1]);
+      const double sense = stroke.rises() ? 1.0 : -1.0;
+      double left = 0.0;
+      for (std::size_t i = 0; i < stroke.force.size(); ++i) {
+        if (sense * (stroke.force[i] - centre) < kNearly * half_gap) continue;
+        left = std::abs(stroke.displacement.back() - stroke.displacement[i]) / stroke.width();
+        break;
+      }
+      fractions.push_back(std::min(left, 1.0));
+    }
+  }
+  if (fractions.empty()) return std::nullopt;
+  return Median(fractions);
+}
+
 double StandardDeviation(Column values) {
   const double mean = Mean(values);
   double squares = 0.0;
@@ -354,6 +470,14 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   facts.slope_after_reversal = MedianSlope(record, steady, 0.0, 0.1);
   facts.plateau_slope = MedianSlope(record, steady, 2.0 / 3, 1.0);
   facts.asymmetry = Asymmetry(record, steady, facts.peak_force);
+  if (facts.half_gap && *facts.half_gap > 0) {
+    const double centre =
+        Mean(SeriesOf(facts, [](const CycleFacts& cycle) {
+               return cycle.half_gap ? std::optional(cycle.centre_force) : std::nullopt;
+             }).values);
+    facts.sliding_fraction = SlidingFraction(record, steady, centre, *facts.half_gap);
+    facts.backlash = FindBacklash(record, steady, centre, *facts.half_gap, facts.amplitude);
+  }
   facts.path_ratio = PathRatio(record.displacement, points, facts.cycles.size());
   if (!record.normal_load.empty()) {
     facts.energy_friction_coefficient = EnergyFrictionCoefficient(facts, MeanLoad(record, steady));
@@ -362,6 +486,11 @@ LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
 }
 
 }  // namespace
+
+bool Slides(const LoopFacts& facts) {
+  constexpr double kSliding = 0.75;
+  return facts.closed && facts.energy_ratio > kSliding;
+}
 
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load) {
   if (!facts.sliding_amplitude || !(*facts.sliding_amplitude > 0) || !(normal_load > 0)) {

@@ -100,6 +100,18 @@ class Judge {
   bool any_brief_ = false;
 };
 
+/// Marks as unclear what would be a turn just before an end of the record, were there not many
+/// disturbances that are as brief and wider: the record may as well end within one of those.
+void DoubtEnds(Excursions excursions, const Judge& judge, const ReversalRules& rules,
+               std::span<Look> looks) {
+  std::size_t wider = 0;
+  for (std::size_t i = excursions.size(); i-- > 0;) {
+    if (looks[i] == Look::kOdd) ++wider;
+    const bool ends = excursions[i].reversals == 1 && judge.IsBrief(excursions[i]);
+    if (ends && looks[i] == Look::kDrive && wider >= rules.many) looks[i] = Look::kUnclear;
+  }
+}
+
 /// A range of gates [m] under which the count is the same.
 struct Plateau {
   double lower = 0.0;
@@ -201,6 +213,7 @@ ReversalGate ChooseReversalGate(std::span<const double> displacement, const Reve
   std::pmr::vector<Look> looks(scratch);
   looks.reserve(excursions.size());
   for (const Excursion& excursion : excursions) looks.push_back(judge.LookAt(excursion));
+  DoubtEnds(excursions, judge, rules, looks);
   const auto [chosen, rival] = WidestPlateaus(excursions, looks, rules);
   const Plateau smooth = AboveSmoothDisturbances(excursions, judge, rules);
   if (smooth.below > chosen.below) return Doubted(excursions, smooth.gate(), chosen.gate());

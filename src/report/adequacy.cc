@@ -32,7 +32,11 @@ struct CauseRow {
   const char* unsized = nullptr;  // of one of several numbers, where the first says little
 };
 
-constexpr std::array<CauseRow, 23> kCauses = {{
+constexpr const char* kLookAtTheLoad =
+    "look whether the normal load varies with the position; where it is recorded, name its column "
+    "with --normal-load-column";
+
+constexpr std::array<CauseRow, 26> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
@@ -72,11 +76,17 @@ constexpr std::array<CauseRow, 23> kCauses = {{
      "a force reading that gains {} of what is beyond nine tenths of its peak",
      "look at the ranges of the force sensor and its amplifier", 1.0, nullptr,
      "a force that is not read linearly near its peak"},
-    {"load_varies", "a friction that grows by {} from the middle of the stroke to its end",
-     "a friction that falls by {} from the middle of the stroke to its end",
-     "look whether the normal load varies with the position; where it is recorded, name its column "
-     "with --normal-load-column",
-     std::numeric_limits<double>::infinity(), nullptr, "a friction that varies along the stroke"},
+    {"slip_position", "a slip force that grows by {} from the middle of the stroke to its end",
+     "a slip force that falls by {} from the middle of the stroke to its end", kLookAtTheLoad,
+     std::numeric_limits<double>::infinity(), nullptr,
+     "a slip force that depends on the position, differently in each direction"},
+    {"slip_position_quadratic",
+     "a slip force that grows by {} from the middle of the stroke to its end, and bends",
+     "a slip force that falls by {} from the middle of the stroke to its end, and bends",
+     kLookAtTheLoad, std::numeric_limits<double>::infinity(), nullptr,
+     "a slip force that depends on the position, differently in each direction"},
+    {"speed_power", "a force that depends on the speed by a power", nullptr,
+     "record the time, and compare tests at several speeds"},
     {"force_of_position", "a force that depends on the position", nullptr,
      "look for a spring, a cable or a tilt beside the contact, and measure it without it"},
     {"covariate", "a force in proportion to another column of the file, {}", nullptr,
@@ -94,6 +104,10 @@ constexpr std::array<CauseRow, 23> kCauses = {{
     {"displacement_drift", "a displacement that drifts by {}", nullptr, "give --drift"},
     {"heavy_tails", "readings, {} of all, that are far off their neighbours", nullptr,
      "look for disturbances of the channel"},
+    {"position_ripple",
+     "a ripple with a period of {} along the displacement, in one phase in all strokes of a "
+     "direction, as a drive screw or a gear makes",
+     nullptr, "look at the drive; the ripple averages out of slip_force"},
     {"stick_slip", "stick-slip, drops of {} that recur while the contact slides", nullptr,
      "stiffen the rig or change the speed; slip_force is that of the mean between the drops"},
 }};
@@ -148,13 +162,12 @@ std::string WhatIncludesIt(const identification::FitResult& fit) {
 bool IsJudged(const Report& report) { return !report.failed() && report.fit.adequacy.tried > 0; }
 
 std::string WhyNoOption(const Cause& cause) {
-  return cause.code == "viscous_force" ? "needs a column of the time"
-                                       : "no option takes it into account yet";
+  const bool is_of_speed = cause.code == "viscous_force" || cause.code == "speed_power";
+  return is_of_speed ? "needs a column of the time" : "no option takes it into account yet";
 }
 
-void AdaptCauses(const Units& units, bool has_time, std::vector<Cause>& causes) {
+void AdaptCauses(const Units& units, std::vector<Cause>& causes) {
   for (Cause& cause : causes) {
-    if (!has_time && cause.code == "viscous_force") cause.option = {};
     cause.unit = UnitIn(units, cause.unit);
     if (units.force == kUnitsOfForce.force) continue;
     for (const auto& [of_force, of_torque] : kOthersOfForce) {
@@ -163,15 +176,28 @@ void AdaptCauses(const Units& units, bool has_time, std::vector<Cause>& causes) 
   }
 }
 
+namespace {
+
+/// A column's factor that is known, as a piston's area is, is better held than fitted: a column
+/// that goes with the motion takes its share of the slip force.
+std::string OrHeld(const Cause& cause) {
+  if (cause.code != "covariate") return "";
+  return fmt::format(", or {}=C where its factor is known", cause.option);
+}
+
+}  // namespace
+
 std::string Sentence(const Cause& cause, loop::Channel response) {
   const CauseRow& row = RowOf(cause);
   const bool is_other =
       response == loop::Channel::kDisplacement && row.remedy_of_displacement != nullptr;
-  return fmt::format("{}, which explains {:.0f} % of the residuals' variance: {}", Looks(cause),
-                     100 * cause.explains,
+  const std::string why = cause.is_measured ? "over which the force stands still in every stroke"
+                                            : fmt::format("which explains {:.0f} % of the misfit",
+                                                          100 * cause.explains);
+  return fmt::format("{}, {}: {}", Looks(cause), why,
                      cause.option.empty()
                          ? std::string(is_other ? row.remedy_of_displacement : row.remedy)
-                         : fmt::format("give {}", cause.option));
+                         : fmt::format("give {}{}", cause.option, OrHeld(cause)));
 }
 
 std::vector<std::string_view> CauseCodes() {
@@ -179,6 +205,29 @@ std::vector<std::string_view> CauseCodes() {
   codes.reserve(kCauses.size());
   for (const CauseRow& row : kCauses) codes.push_back(row.code);
   return codes;
+}
+
+bool IsUsable(const Report& report) {
+  return !IsJudged(report) || report.fit.adequacy.verdict != AdequacyVerdict::kInadequate ||
+         std::ranges::any_of(report.fit.parameters,
+                             &identification::ParameterEstimate::includes_discrepancy);
+}
+
+std::string MisfitSentence(const Report& report) {
+  const Adequacy& adequacy = report.fit.adequacy;
+  const bool is_of_force = report.fit.response == loop::Channel::kForce;
+  std::string sentence = fmt::format("{} misses the {} by {} rms", report.fit.model->name,
+                                     is_of_force ? "force" : "displacement",
+                                     Quantity(adequacy.misfit, report.units.response, 3));
+  if (adequacy.misfit_over_half_gap) {
+    sentence += fmt::format(" ({:.2g} % of the half gap)", 100 * *adequacy.misfit_over_half_gap);
+  }
+  const double repeats = report.fit.WidestRecord().structure.repeatable_share;
+  if (repeats > 0) {
+    sentence +=
+        fmt::format(", {:.0f} % of its variance in the same way in every stroke", 100 * repeats);
+  }
+  return sentence;
 }
 
 std::string VerdictSentence(const Report& report) {
@@ -190,24 +239,25 @@ std::string VerdictSentence(const Report& report) {
         "its parameters mean nothing for this record",
         std::max(0.0, 100 * unseen->Number("r_squared").value_or(0.0)));
   }
-  const std::string noise = fmt::format("{:.2g} times the noise ({})", adequacy.misfit_over_noise,
-                                        ChanceText(adequacy.p_value, 2));
   if (adequacy.verdict == AdequacyVerdict::kAdequate) {
-    return fmt::format("adequate: what the model misses is {}, and looks like noise", noise);
+    return fmt::format("adequate: the residuals, {} rms, look like noise ({})",
+                       Quantity(report.fit.residuals.rms, report.units.response, 3),
+                       ChanceText(adequacy.p_value, 2));
   }
-  const bool is_of_force = report.fit.response == loop::Channel::kForce;
-  const std::string gap =
-      adequacy.misfit_over_half_gap
-          ? fmt::format("{:.2g} % of the half gap, ", 100 * *adequacy.misfit_over_half_gap)
-          : "";
-  std::string found = fmt::format(
-      "{}, {}: the model misses the {} by {} rms, {}{}; {}", Name(adequacy.verdict),
-      adequacy.use == identification::Use::kNone ? "of no use for the law's shape"
-                                                 : Name(adequacy.use),
-      is_of_force ? "force" : "displacement", Quantity(adequacy.misfit, report.units.response, 3),
-      gap, noise, WhatIncludesIt(report.fit));
-  if (adequacy.causes.empty()) return found + ". It looks like nothing that was tried";
-  return found + ". It looks like " + Sentence(adequacy.causes.front(), report.fit.response);
+  return fmt::format("{}, {}: {}, which noise alone does not make ({}); {}", Name(adequacy.verdict),
+                     adequacy.use == identification::Use::kNone ? "of no use for the law's shape"
+                                                                : Name(adequacy.use),
+                     MisfitSentence(report), ChanceText(adequacy.p_value, 2),
+                     WhatIncludesIt(report.fit));
+}
+
+std::string NextStep(const Report& report) {
+  const Adequacy& adequacy = report.fit.adequacy;
+  if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate ||
+      adequacy.causes.empty()) {
+    return "";
+  }
+  return "it looks like " + Sentence(adequacy.causes.front(), report.fit.response);
 }
 
 }  // namespace mindahl::report

@@ -18,8 +18,8 @@ bool IsJudged(const Report& report);
 /// Why no option takes a cause into account.
 std::string WhyNoOption(const identification::Cause& cause);
 
-/// Units of the causes in those of the record, and without the options that it has no column for.
-void AdaptCauses(const Units& units, bool has_time, std::vector<identification::Cause>& causes);
+/// Puts the causes into the units of the record.
+void AdaptCauses(const Units& units, std::vector<identification::Cause>& causes);
 
 /// A cause in words, without an end of line: what it looks like with its size, how much it
 /// explains, and the option that takes it into account or, where there is none, what to look at.
@@ -31,7 +31,17 @@ std::string Sentence(const identification::Cause& cause,
 /// Every code that has a sentence.
 std::vector<std::string_view> CauseCodes();
 
-/// The verdict in words, in one paragraph: what was found, the best cause and what to do.
+/// False of an inadequate fit: nothing of its parameters is shown.
+bool IsUsable(const Report& report);
+
+/// Says how far the model is from the record: the rms in its unit and of the measured half gap, and
+/// how much of it comes back in every stroke.
+std::string MisfitSentence(const Report& report);
+
+/// The verdict in words, with the misfit.
 std::string VerdictSentence(const Report& report);
+
+/// The first cause and what to do about it; empty of an adequate fit, or where there is none.
+std::string NextStep(const Report& report);
 
 }  // namespace mindahl::report

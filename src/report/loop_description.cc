@@ -72,11 +72,21 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
   }
   const double peak = models::SteadyPeakForce(*fit.model, law, loop.contact_amplitude);
   loop.slip_force_share = peak / law.slip_force;
-  const bool slips = SlipsGrossly(*fit.model, law, loop.contact_amplitude);
+  const bool slips_by_law = SlipsGrossly(*fit.model, law, loop.contact_amplitude);
+  const bool is_seen_to_slide = loop::Slides(widest.facts);
+  if (is_seen_to_slide) {
+    loop.sliding_fraction = widest.facts.sliding_fraction;
+    if (!slips_by_law) {  // a law that is not there yet at this amplitude contradicts the record
+      loop.gross_slip_displacement.reset();
+      loop.gross_slip_energy_ratio.reset();
+    }
+  }
+  const bool slips = slips_by_law || is_seen_to_slide;
   // Any slip force above a lower limit of Tc fits as well: by none of these does less slip.
   const ParameterEstimate& slip_force = *fit.Find("slip_force");
   const bool is_bounded = slip_force.identifiability == Identifiability::kBoundedBelow;
-  if (!HasValue(slip_force) && !(is_bounded && !slips)) return loop;
+  const bool is_open = !HasValue(slip_force) && !(is_bounded && !slips);
+  if (is_open && !is_seen_to_slide) return loop;
   loop.regime = slips ? SlipRegime::kGross : SlipRegime::kPartial;
   loop.stick_radius_ratio =
       slips ? 0.0 : contact::StickRadiusRatio(std::min(peak, law.slip_force), law.slip_force);

@@ -75,6 +75,16 @@ const std::vector<Field<LoopFacts>>& MeasuredFields() {
             "sliding_amplitude", "m", "half the width of the loop midway between its strokes",
             [](const Item& item) { return Number(item.sliding_amplitude); }, kNoMiddle),
         Fact(
+            "sliding_fraction", "-",
+            "of the strokes' travel, after the force came to nine tenths of half_gap",
+            [](const Item& item) { return Number(item.sliding_fraction); }, kNoMiddle),
+        Fact(
+            "backlash", "m", "travel after each reversal over which the force stands still",
+            [](const Item& item) {
+              return item.backlash ? Number(item.backlash->width) : Missing();
+            },
+            "the force does not stand still after the reversals, or not over the same travel"),
+        Fact(
             "slope_after_reversal", "N/m", "over the first tenth of the strokes, their median",
             [](const Item& item) { return Number(item.slope_after_reversal); },
             "the strokes have too few samples"),

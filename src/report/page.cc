@@ -72,6 +72,8 @@ std::string VerdictSection(const Report& report) {
   html += SentenceList(ParameterVerdicts(report.fit));
   const identification::Adequacy& adequacy = report.fit.adequacy;
   if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return html;
+  const std::string next = NextStep(report);
+  if (!next.empty()) html += Paragraph("Next: " + next);
   std::vector<std::string> others;
   for (std::size_t i = 1; i < adequacy.causes.size(); ++i) {
     others.push_back(Sentence(adequacy.causes[i], report.fit.response));
@@ -152,7 +154,7 @@ std::string NextSection(const Report& report, const Provenance& provenance) {
   if (IsJudged(report) && fit.adequacy.verdict != AdequacyVerdict::kAdequate) {
     for (const identification::Cause& cause : fit.adequacy.causes) {
       if (cause.option.empty()) continue;
-      add(fmt::format("Takes into account what explains {:.0f} % of the residuals' variance:",
+      add(fmt::format("Takes into account what explains {:.0f} % of the misfit:",
                       100 * cause.explains),
           cause.option);
     }

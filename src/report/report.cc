@@ -104,8 +104,7 @@ Report MakeReport(ReportInput input) {
     report.units.response = report.units.displacement;
     report.units.excitation = report.units.force;
   }
-  AdaptCauses(report.units, !report.records.front().record.time.empty(),
-              report.fit.adequacy.causes);
+  AdaptCauses(report.units, report.fit.adequacy.causes);
   SayFindings(report);
   SayLoadPieces(report);
   for (Warning& note : TrimNotes(report)) report.notes.push_back(std::move(note));

@@ -102,7 +102,18 @@ std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& un
       Quantity(Needed(finding, "rig_stiffness"), units.stiffness, 4), Needed(finding, "alpha"));
 }
 
-std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, const Units& units) {
+/// Did the record itself show a loop that slides? Then no larger amplitude is asked for.
+bool Slides(const FitResult& fit) { return loop::Slides(fit.WidestRecord().facts); }
+
+std::string SlipForceBoundedBelow(const Finding& finding, const FitResult& fit,
+                                  const Units& units) {
+  if (Slides(fit)) {
+    return fmt::format(
+        "slip_force: the loop slides, but its force goes on changing there (T* = {}), which the "
+        "law takes for the way to slip: any larger slip force fits as well; the measured half gap "
+        "stands",
+        Quantity(Needed(finding, "peak_force"), units.force, 4));
+  }
   return fmt::format(
       "slip_force: the loop (T* = {} at X = {}) does not approach gross slip and fits any larger "
       "slip force as well; raise the amplitude until the force levels off (mindahl plan --record "
@@ -114,7 +125,7 @@ std::string SlipForceBoundedBelow(const Finding& finding, const FitResult&, cons
 /// Then a larger amplitude shows less of the branches still.
 bool SeesSlip(const FitResult& fit) {
   const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
-  return slip_force != nullptr && slip_force->is_known();
+  return Slides(fit) || (slip_force != nullptr && slip_force->is_known());
 }
 
 std::string TooWide(const char* parameter, const Finding& finding, const FitResult& fit,
@@ -132,6 +143,10 @@ std::string TooWide(const char* parameter, const Finding& finding, const FitResu
 std::string AlphaNotIdentifiable(const Finding& finding, const FitResult& fit, const Units&) {
   if (finding.kind == "wide") return TooWide("alpha", finding, fit, "-");
   if (finding.kind != "with_slip_force") ThrowKind(finding);
+  if (Slides(fit)) {
+    return "alpha: known only together with slip_force, though the loop slides: the force goes on "
+           "changing there; fix one of them";
+  }
   return "alpha: known only together with slip_force (the ratio alpha/slip_force enters the loop); "
          "raise the amplitude until the force levels off (mindahl plan --record says how far), or "
          "fix one of them";
@@ -220,7 +235,13 @@ std::string ModelInadequate(const Finding& finding, const FitResult& fit, const 
                            finding.parameters.size() > 1 ? "are" : "is"));
 }
 
-std::string SlipForceExtrapolated(const Finding& finding, const FitResult&, const Units&) {
+std::string SlipForceExtrapolated(const Finding& finding, const FitResult& fit, const Units&) {
+  if (Slides(fit)) {
+    return fmt::format(
+        "slip_force: the asymptote of a law with alpha = {:.3g}, of which the loop reaches {:.0f} "
+        "%, though it slides: no force was measured near it; the measured half gap stands",
+        Needed(finding, "alpha"), 100 * Needed(finding, "share"));
+  }
   return fmt::format(
       "slip_force: the asymptote of a law with alpha = {:.3g}, of which the loop reaches {:.0f} %: "
       "no force was measured near it; raise the amplitude until the force levels off",
@@ -357,9 +378,10 @@ std::string SystematicResidual(const Finding& finding, const FitResult& fit, con
 
 std::string SlowResiduals(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "what the model misses goes on in one sense for {:.2g} strokes, which noise does not: "
-      "something that changes slowly, or from cycle to cycle, is not in the model; look at the "
-      "residual over the time, or fit parts of the record with --cycles",
+      "the residual drifts slowly, over {:.2g} strokes, which noise does not: something that "
+      "changes "
+      "in time or from cycle to cycle is not in the model; plot it against time, or fit parts of "
+      "the record with --cycles",
       Needed(finding, "strokes"));
 }
 

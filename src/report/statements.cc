@@ -42,12 +42,12 @@ struct ComparisonWords {
 };
 
 constexpr std::array<ComparisonWords, 6> kComparisons = {{
-    {"virgin_branch", "virgin branch"},
-    {"directions", "directions"},
+    {"virgin_branch", "first loading and later branches"},
+    {"directions", "up and down strokes"},
     {"amplitudes", "amplitudes"},
     {"slope_at_reversal", "slopes after reversals"},
     {"return_point", "way on after inner loops"},
-    {"other_law", "what the other law fits"},
+    {"other_law", "this law and the other one"},
 }};
 
 std::string BranchShapesStatement(const FitResult& fit) {
@@ -126,7 +126,11 @@ std::string VarianceStatement(const PropagatedValue& value) {
 }
 
 std::string SlipStatement(const LoopDescription& loop, const Units& units) {
-  if (!loop.regime) return "whether it slips is open: so is slip_force";
+  if (loop.sliding_fraction) {
+    return fmt::format("gross, it slides over {:.0f} % of the stroke",
+                       100 * *loop.sliding_fraction);
+  }
+  if (!loop.regime) return "slip regime not determined: slip_force is not identifiable";
   if (loop.gross_slip_displacement) {
     return fmt::format("{}, the contact slips as a whole from an amplitude of {}",
                        Name(*loop.regime),
@@ -144,7 +148,6 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   constexpr double kNormalQuantile = 1.96;
   constexpr double kFar = 3.0;  // as wide as of an error that is taken three times too small
   std::vector<const ParameterEstimate*> wide;
-  double widest = 0.0;
   for (const ParameterEstimate& estimate : fit.parameters) {
     const double error = estimate.standard_error.value_or(0.0);
     const bool has_both = estimate.lower95 && estimate.upper95;
@@ -152,7 +155,6 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
     const double ratio = (*estimate.upper95 - *estimate.lower95) / (2 * kNormalQuantile * error);
     if (!(ratio > kFar)) continue;
     wide.push_back(&estimate);
-    widest = std::max(widest, ratio);
   }
   const auto any_set_by = [&](IntervalSource source) {
     return std::ranges::any_of(
@@ -160,7 +162,7 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   };
   std::vector<std::string> covered;
   if (any_set_by(IntervalSource::kOmittedTerms)) {
-    covered.emplace_back("what the causes above would change");
+    covered.emplace_back("what the omitted terms could change");
   }
   if (any_set_by(IntervalSource::kPlateau)) {
     const identification::RecordFit& record = fit.WidestRecord();
@@ -171,9 +173,8 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   if (covered.empty()) return "";
   std::vector<std::string> names;
   for (const ParameterEstimate* estimate : wide) names.push_back(estimate->name);
-  return fmt::format(
-      "intervals of {}: up to {:.0f} times as wide as standard errors make them, to cover {}",
-      fmt::join(names, ", "), widest, fmt::join(covered, ", and "));
+  return fmt::format("intervals of {} are widened, to cover {}", fmt::join(names, ", "),
+                     fmt::join(covered, ", and "));
 }
 
 std::string SlipForcesStatement(const Report& report) {
@@ -274,13 +275,15 @@ std::string MemoryStatement(const Report& report) {
         std::ranges::find(memory.comparisons, row.code, &identification::MemoryComparison::code);
     if (found == memory.comparisons.end()) continue;
     if (memory.verdict == kNeither) {
-      compared.push_back(fmt::format("{} ({}, {})", row.words, p(found->p_value),
-                                     Quantity(found->size, report.units.force, 2)));
+      compared.push_back(fmt::format("{} differ by {} ({})", row.words,
+                                     Quantity(found->size, report.units.force, 2),
+                                     p(found->p_value)));
     } else {
       compared.emplace_back(row.words);
     }
   }
-  text += fmt::format("; compared: {}", fmt::join(compared, ", "));
+  text += fmt::format("; {}{}",
+                      memory.verdict == kNeither ? "" : "compared: ", fmt::join(compared, ", "));
   if (memory.verdict == kUndecided) {
     const auto has = [&](std::string_view code) {
       return std::ranges::find(memory.comparisons, code, &identification::MemoryComparison::code) !=

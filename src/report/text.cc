@@ -37,8 +37,8 @@ struct ParameterWords {
 /// Of one that is fitted.
 ParameterWords ParameterInWords(const ParameterEstimate& estimate) {
   switch (WhatIsShown(estimate)) {
-    case Shown::kNothing:
-      return {"-", "-"};
+    case Shown::kNothing:  // has no row
+      return {};
     case Shown::kLowerLimit:
       return {"> " + (estimate.lower95 ? Quantity(*estimate.lower95, estimate.unit) : "open"), "-"};
     case Shown::kHeld:
@@ -60,7 +60,12 @@ std::string ParameterTable(const FitResult& fit, const Style& style) {
                                               "value ± std error", "95 % interval", "verdict")) +
                      "\n";
   std::vector<std::string> held;
+  std::vector<std::string> open;
   for (const ParameterEstimate& estimate : fit.parameters) {
+    if (WhatIsShown(estimate) == Shown::kNothing) {
+      open.push_back(estimate.name);
+      continue;
+    }
     if (estimate.status == ParameterStatus::kFixed) {
       held.push_back(
           fmt::format("{} = {}", estimate.name, Quantity(estimate.value, estimate.unit, 6)));
@@ -70,6 +75,7 @@ std::string ParameterTable(const FitResult& fit, const Style& style) {
     text += fmt::format("{:<22} {:<27} {:<24} {}\n", estimate.name, words.value, words.interval,
                         style.Judged(JudgementOf(estimate), VerdictWords(estimate)));
   }
+  if (!open.empty()) text += Wrapped(fmt::format("not identifiable: {}", fmt::join(open, ", ")), 2);
   if (held.empty()) return text;
   return text + Wrapped(fmt::format("held, not fitted: {}", fmt::join(held, ", ")), 2);
 }
@@ -127,6 +133,14 @@ std::string MeasuredText(const Report& report) {
   } else {
     add("half gap", facts.half_gap, units.force);
   }
+  if (loop::Slides(facts) && facts.sliding_fraction) {
+    parts.push_back(
+        fmt::format("it slides over {:.0f} % of the stroke", 100 * *facts.sliding_fraction));
+  }
+  if (facts.backlash) {
+    parts.push_back(fmt::format("the force stands still for {} after each reversal",
+                                Quantity(facts.backlash->width, units.displacement, 3)));
+  }
   add("sliding amplitude", facts.sliding_amplitude, units.displacement);
   parts.push_back(fmt::format("energy {} a cycle", Quantity(facts.energy_per_cycle, "J", 5)));
   add("energy ratio", facts.energy_ratio, "-");
@@ -145,23 +159,22 @@ std::string Coloured(const std::string& sentence, const Report& report, const St
   return style.Judged(JudgementOf(word), word) + sentence.substr(word.size());
 }
 
-/// The verdict, and the causes that explain most besides the best.
+/// The verdict, and what to do next.
 std::string AdequacyText(const Report& report, const Style& style) {
   std::string text = Coloured(Wrapped(VerdictSentence(report), 2), report, style);
-  const identification::Adequacy& adequacy = report.fit.adequacy;
-  if (!IsJudged(report) || adequacy.verdict == identification::AdequacyVerdict::kAdequate) {
-    return text;
-  }
+  const std::string next = NextStep(report);
+  return next.empty() ? text : text + Wrapped("next: " + next, 6);
+}
+
+/// Other causes, which the next step may leave.
+std::string OtherCausesText(const Report& report) {
+  const std::vector<identification::Cause>& causes = report.fit.adequacy.causes;
   constexpr std::size_t kMost = 3;
-  for (std::size_t i = 1; i < std::min(kMost, adequacy.causes.size()); ++i) {
-    text += Wrapped("  or " + Sentence(adequacy.causes[i], report.fit.response), 5);
+  std::string text;
+  for (std::size_t i = 1; i < std::min(kMost, causes.size()); ++i) {
+    text += Wrapped("or like " + Sentence(causes[i], report.fit.response), 8);
   }
-  if (adequacy.causes.size() > kMost) {
-    const std::size_t more = adequacy.causes.size() - kMost;
-    text += fmt::format("  or like {} other{} that explain{} less, which --json lists\n", more,
-                        more == 1 ? "" : "s", more == 1 ? "s" : "");
-  }
-  return text;
+  return text.empty() ? text : "\n" + text;
 }
 
 std::string LawText(const Report& report) {
@@ -180,29 +193,52 @@ std::string NotesText(const Report& report) {
   return text.empty() ? text : "\n" + text;
 }
 
+/// Sums over the records of a fit.
+struct Totals {
+  std::size_t samples = 0;
+  std::size_t left_out = 0;
+  std::size_t reversals = 0;
+  std::size_t cycles = 0;
+};
+
+Totals TotalsOf(const FitResult& fit) {
+  Totals totals;
+  for (const RecordFit& record : fit.records) {
+    totals.samples += record.residual.size();
+    totals.reversals += record.reversals.size();
+    totals.cycles += record.measures.cycles;
+    totals.left_out += record.left_out;
+  }
+  return totals;
+}
+
+std::string SamplesText(const Report& report) {
+  const Totals totals = TotalsOf(report.fit);
+  const loop::ReversalGate& gate = report.fit.WidestRecord().gate;
+  return fmt::format(
+      "{} samples{}, {} reversals ({}gate {}), {} cycles", totals.samples,
+      totals.left_out > 0 ? fmt::format(", {} of them left out", totals.left_out) : "",
+      totals.reversals, gate.certain ? "" : "not certain, ",
+      Quantity(gate.gate, report.units.excitation, 3), totals.cycles);
+}
+
 /// What was fitted to what.
 std::string FitText(const Report& report) {
   const FitResult& fit = report.fit;
-  std::size_t reversals = 0;
-  std::size_t cycles = 0;
-  std::size_t samples = 0;
-  std::size_t left_out = 0;
-  for (const RecordFit& record : fit.records) {
-    samples += record.residual.size();
-    reversals += record.reversals.size();
-    cycles += record.measures.cycles;
-    left_out += record.left_out;
-  }
   std::string text = Wrapped(
-      fmt::format(
-          "{}, {} initial state: {}; {} samples{}, {} reversals (gate {}), {} cycles, {} of "
-          "force and displacement",
-          fit.model->title, Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
-          samples, left_out > 0 ? fmt::format(", {} of them left out", left_out) : "", reversals,
-          Quantity(fit.WidestRecord().gate.gate, report.units.excitation, 3), cycles,
-          fit.force_sense > 0 ? "same sign" : "opposite signs"),
+      fmt::format("{}, {} initial state: {}; {}, {} of force and displacement", fit.model->title,
+                  Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
+                  SamplesText(report), fit.force_sense > 0 ? "same sign" : "opposite signs"),
       2);
   if (!fit.converged) text += Wrapped("not converged: " + fit.solver.message, 2);
+  return text;
+}
+
+/// All of a fit that is not usable, in ten lines: the verdict, the next step, and what stands.
+std::string UnusableText(const Report& report, const Style& style) {
+  std::string text = AdequacyText(report, style) + MeasuredText(report) +
+                     Wrapped("reversals: " + SamplesText(report), 11);
+  for (const Warning& note : report.notes) text += Wrapped("note: " + note.message, 6);
   return text;
 }
 
@@ -260,22 +296,22 @@ std::string ToText(const Report& report, const TextOptions& options) {
   RequireFitted(report, "a text");
   const FitResult& fit = report.fit;
   const Style style(options.has_colours);
+  if (!IsUsable(report)) {
+    const std::string unusable = UnusableText(report, style);
+    return report.selection ? unusable + "\n" + SelectionText(*report.selection, report.units)
+                            : unusable;
+  }
   std::string text = AdequacyText(report, style) + "\n" + ParameterTable(fit, style);
   const std::string wide = WideIntervalStatement(fit, report.units);
   if (!wide.empty()) text += Wrapped(wide, 2);
   const std::string slip_forces = SlipForcesStatement(report);
   if (!slip_forces.empty()) text += Wrapped(slip_forces, 13);
-  for (const Warning& warning : report.fit_warnings) {
-    if (warning.code == "no_model_fits") text += Wrapped(warning.message, 2);
-  }
-  std::string rest;
+  std::string rest = OtherCausesText(report);
   if (report.selection) rest += "\n" + SelectionText(*report.selection, report.units);
   rest += "\n" + FitText(report) + MeasuredText(report) + MemoryText(report) + ResidualText(report);
+  // Of an inadequate model no curve is shown, and nothing that follows from it.
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
-    return text +
-           Wrapped("no loop of the model, and no contact: the model does not describe this record",
-                   2) +
-           rest + NotesText(report);
+    return text + rest + NotesText(report);
   }
   text += "\n" + LoopText(report) + LawText(report);
   if (report.is_torsional()) {

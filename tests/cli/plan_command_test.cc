@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,51 @@ TEST(PlanCommand, ExitsWithThreeWhereNoAmplitudeDoes) {
   const Outcome outcome = RunPlan({"--force-noise", "0.4", "--want", "alpha=1e-6"});
   EXPECT_EQ(outcome.status, kNotEstablished);
   EXPECT_THAT(outcome.out, HasSubstr("no amplitude reaches it with 3 cycles"));
+}
+
+TEST(PlanCommand, ReadsARecordByTheColumnsAndUnitsOfAFit) {
+  const TemporaryDirectory directory;
+  const std::string clean = directory.path() / "clean.csv";
+  ASSERT_EQ(RunCommand({"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "2",
+                        "--cycles", "3", "--noise-force", "0.05", "-o", clean})
+                .status,
+            kDone);
+  // The same in µm and mN, behind another column, without a header.
+  std::ifstream in(clean);
+  std::string text;
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    const std::vector<std::string> cells = testing::Cells(line);
+    text += "7," + std::to_string(1e3 * std::stod(cells[2])) + "," +
+            std::to_string(1e6 * std::stod(cells[1])) + "\n";
+  }
+  const std::string file = directory.Write("columns.csv", text).string();
+  const Words columns = {"--displacement", "3", "--displacement-unit", "um",
+                         "--force",        "2", "--force-unit",        "mN"};
+  for (const char* command : {"plan", "recommend"}) {
+    SCOPED_TRACE(command);
+    const auto run = [&](const std::string& record, Words more) {
+      more.insert(more.begin(), {command, "--record", record, "--json", "-"});
+      const Outcome outcome = RunCommand(more);
+      EXPECT_EQ(outcome.status, kDone) << outcome.err;
+      const json result = outcome.Json();
+      return command == std::string("plan") ? result["expected"]["slip_force"].get<double>()
+                                            : result["record"]["peak_force"].get<double>();
+    };
+    EXPECT_NEAR(run(file, columns) / run(clean, {}), 1.0, 1e-4) << "six digits of the file";
+  }
+  const Outcome assumed = RunCommand({"plan", "--record", file, "--displacement", "3", "--force",
+                                      "2", "--force-unit", "mN", "--amplitude", "1"});
+  EXPECT_THAT(assumed.err, HasSubstr("plan: note: "));
+  for (const Words& words : {Words{"plan", "--sigma", "4e7", "--slip-force", "40"},
+                             Words{"recommend", "--sigma", "4e7", "--slip-force", "40"}}) {
+    Words all = words;
+    all.insert(all.end(), {"--force-unit", "kN"});
+    const Outcome refused = RunCommand(all);
+    EXPECT_EQ(refused.status, kBadInput);
+    EXPECT_THAT(refused.err, HasSubstr("--force-unit kN"));
+  }
 }
 
 TEST(PlanCommand, ARecordThatDoesNotTellAlphaIsPlannedForWithMindlins) {

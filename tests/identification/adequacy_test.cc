@@ -245,7 +245,7 @@ TEST(Adequacy, CauseOfSeveralNumbersHasASizeWhereTheFirstIsToldFromNone) {
       record.force[i] += kNoise * Normal(generator);
     }
     const FitResult fit = Fitted(record);
-    const Cause* const cause = Find(fit, "load_varies");
+    const Cause* const cause = Find(fit, square != 0 ? "slip_position_quadratic" : "slip_position");
     return cause == nullptr ? Cause{} : *cause;
   };
   constexpr double kGrowth = 0.05;
@@ -255,7 +255,7 @@ TEST(Adequacy, CauseOfSeveralNumbersHasASizeWhereTheFirstIsToldFromNone) {
   EXPECT_NEAR(tilted.size / kGrowth, 1.0, kSizeError);
   // Alike at both ends of the stroke: nothing of it grows from one to the other.
   const Cause hollow = cause_of(0.0, kGrowth);
-  EXPECT_EQ(hollow.code, "load_varies");
+  EXPECT_EQ(hollow.code, "slip_position_quadratic");
   EXPECT_EQ(hollow.unit, "");
 }
 

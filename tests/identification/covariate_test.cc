@@ -143,6 +143,16 @@ TEST(Covariate, IsRefusedWhereARecordHasNoSuchColumnOrItNeverChanges) {
   EXPECT_THAT(RefusalOf({shorter}, options), HasSubstr("p"));
 }
 
+TEST(Covariate, IsRefusedBesideTheSameChannelInAnotherUnit) {
+  Record record = LoopBesideTwo();
+  record.covariates.push_back(
+      {.name = "volts", .unit = "V", .values = record.covariates[0].values});
+  for (double& value : record.covariates.back().values) value = 0.5 - 0.02 * value;
+  FitOptions options;
+  options.covariates = {"p", "volts"};
+  EXPECT_THAT(RefusalOf({record}, options), HasSubstr("'p' and 'volts' are one channel"));
+}
+
 /// The first cause that a fit without terms finds.
 const Cause& FirstCause(const FitResult& fit) {
   static const Cause none{.code = "none", .unit = {}, .option = {}};

@@ -290,6 +290,21 @@ Simulate WithDerivative(int order) {
   };
 }
 
+/// Tc·size times a power of the speed, in half ranges of the motion a half duration of the first
+/// record.
+Simulate WithSpeed(double power) {
+  const Simulate with_velocity = WithDerivative(1);
+  return [power, with_velocity](const Departed& departed, double size) {
+    std::vector<double> force = departed.contact.Force(departed.motion.displacement);
+    const std::vector<double> with = with_velocity(departed, 1.0);
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      const double speed = (with[i] - force[i]) * (kDuration / 2) / kLength;
+      force[i] += size * kSlipForce * std::copysign(std::pow(std::abs(speed), power), speed);
+    }
+    return force;
+  };
+}
+
 /// A motion that loses `gap` at each reversal.
 std::vector<double> WithGap(const Departed& departed, double gap) {
   const History& drive = departed.motion.displacement;
@@ -391,13 +406,10 @@ std::vector<Case> Cases() {
       {"force_saturates", 1, 1, made([](auto&, double size, double force, double, double) {
          return force + size * kSlipForce * std::pow(force / kSlipForce, 3);
        })},
-      {"load_varies", 0, 1, made([](auto&, double size, double force, double x, double) {
+      {"slip_position", 0, 1, made([](auto&, double size, double force, double x, double) {
          return force * (1 + size * x);
        })},
-      {"load_varies", 1, 1, made([](auto&, double size, double force, double x, double) {
-         return force * (1 + size * x * x);
-       })},
-      {"load_varies", 2, 1, made([](auto&, double size, double force, double x, double) {
+      {"slip_position", 1, 1, made([](auto&, double size, double force, double x, double) {
          return force + std::abs(force) * size * x;
        })},
       {"force_of_position", 0, 1, made([](auto&, double size, double force, double x, double) {
@@ -417,6 +429,24 @@ std::vector<Case> Cases() {
          }
          return force;
        }},
+      {"speed_power", 0, 1, WithSpeed(0.5), kDifferences},
+      {"speed_power", 1, 1, WithSpeed(1.0), kDifferences},
+      {"slip_position_quadratic", 0, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force * (1 + size * x);
+       })},
+      {"slip_position_quadratic", 1, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force * (1 + size * x * x);
+       })},
+      {"slip_position_quadratic", 2, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force + std::abs(force) * size * x;
+       })},
+      {"slip_position_quadratic", 3, 1,
+       made([](auto&, double size, double force, double x, double) {
+         return force + std::abs(force) * size * x * x;
+       })},
   };
 }
 

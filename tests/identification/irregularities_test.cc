@@ -41,15 +41,21 @@ Record Noisy(std::uint64_t seed, Wave wave = Wave::kTriangle) {
   return record;
 }
 
-/// A tooth of so much, of so many samples, wherever the contact slides.
+/// A tooth of so much, of so many samples, wherever the contact slides, at other places in each
+/// stroke.
 Record WithTeeth(double drop, std::size_t samples, std::uint64_t seed) {
   const Record quiet = Noisy(seed);
   Record record = quiet;
   std::size_t along = 0;
+  Generator generator(seed + 2000);
   for (std::size_t i = 1; i < record.size(); ++i) {
     const double sense = record.displacement[i] > record.displacement[i - 1] ? 1.0 : -1.0;
     const bool slides = sense * quiet.force[i] > 0.95 * kLaw.slip_force;
-    along = slides ? along + 1 : 0;
+    if (!slides) {
+      along =
+          static_cast<std::size_t>(testing::Uniform(generator, 0, static_cast<double>(samples)));
+    }
+    ++along;
     if (!slides) continue;
     const double share =
         static_cast<double>(along % samples) / static_cast<double>(samples - 1) - 0.5;

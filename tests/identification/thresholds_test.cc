@@ -579,7 +579,7 @@ bool IsSlow(const Thresholds& thresholds, double strokes) {
 bool IsDoubted(const Thresholds& thresholds, double chance) {
   const Stages stages(SlippingLoop(), With(thresholds));
   const auto judge = [&](double p_value) {
-    return JudgeAdequacy(stages.problem, {}, TestWith({}, p_value), {}, thresholds, {});
+    return JudgeAdequacy(stages.problem, {}, TestWith({}, p_value), {}, With(thresholds), {});
   };
   // The chance that is judged is some multiple of the test's.
   constexpr double kSmall = 1e-6;
@@ -810,6 +810,22 @@ const std::map<std::string_view, Case>& Cases() {
            return CausesAmong(t, {other, best});
          };
          return causes(kBelow * 0.5) == 1 && causes(kAbove * 0.5) == 2;
+       }},
+      {"simpler_cause",
+       [](const Thresholds& t) {
+         // Of a power of the speed and a viscous force, which is a part of it, one is left.
+         const auto left = [&](double share) {
+           const auto fit_of = [](std::string_view code, double explains) {
+             DepartureFit fit = FitWith(1e-9, -90);
+             while (Departures()[fit.departure].code != code) ++fit.departure;
+             fit.explains = explains;
+             return fit;
+           };
+           const std::vector<DepartureFit> causes = CausesOf(
+               TestWith({fit_of("speed_power", 0.3), fit_of("viscous_force", share * 0.3)}), t);
+           return causes.size() == 1 ? Departures()[causes[0].departure].code : "both";
+         };
+         return left(kBelow * 0.85) == "speed_power" && left(kAbove * 0.85) == "viscous_force";
        }},
       {"noise_memory",
        [](const Thresholds& t) { return IsSlow(t, kAbove * 0.5) && !IsSlow(t, kBelow * 0.5); }},

@@ -70,6 +70,55 @@ LoopFacts FactsOf(const Record& record, int force_sense = 1) {
   return MeasureFacts(record, FindReversals(record.displacement, 0.0), force_sense);
 }
 
+TEST(SlidingFraction, IsWhatIsLeftOfTheStrokeFromNineTenthsOfTheHalfGapOn) {
+  const Parallelogram loop;
+  const LoopFacts facts = FactsOf(MakeRecord(loop));
+  // From −Tc to 0.9 Tc along σ, of a stroke of 2 m; the force passes there within a sample.
+  const double stick = 1.9 * loop.slip_force / loop.stiffness / 2;
+  ASSERT_TRUE(facts.sliding_fraction);
+  EXPECT_NEAR(*facts.sliding_fraction, 1 - stick, 1.5 / kStroke);
+  EXPECT_FALSE(facts.backlash);
+}
+
+TEST(Slides, FromAnEnergyRatioOfThreeQuartersOn) {
+  // A parallelogram's is 1 − Tc/(σX).
+  Parallelogram loop;
+  for (const double ratio : {0.7, 0.8}) {
+    loop.stiffness = loop.slip_force / (1 - ratio);
+    EXPECT_EQ(Slides(FactsOf(MakeRecord(loop))), ratio > 0.75);
+  }
+  EXPECT_FALSE(Slides(LoopFacts()));
+}
+
+/// The displacement before a gap that is on the side of the force, over a twentieth of Tc.
+/// @param growth  of the gap in every other cycle
+Record BehindAGap(const Parallelogram& loop, double gap, double growth = 0.0) {
+  Record record = MakeRecord(loop);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double wider = i / (2 * kStroke) % 2 == 0 ? 1 : 1 + growth;
+    const double side = (record.force[i] - loop.offset) / (0.05 * loop.slip_force);
+    record.displacement[i] += wider * gap / 2 * std::clamp(side, -1.0, 1.0);
+  }
+  return record;
+}
+
+TEST(Backlash, IsTheTravelOverWhichTheForceStandsStill) {
+  constexpr double kGap = 0.2;  // [m]
+  Parallelogram loop;
+  loop.offset = 0.3;
+  const LoopFacts facts = FactsOf(BehindAGap(loop, kGap));
+  ASSERT_TRUE(facts.backlash);
+  // A level is passed up to a sample late: two ends, each of 2X/400.
+  EXPECT_NEAR(facts.backlash->width, kGap, 2 * 2.0 / kStroke);
+  EXPECT_NEAR(facts.backlash->force, loop.offset, 0.1 * loop.slip_force) << "a level";
+}
+
+TEST(Backlash, IsNoneWhoseWidthChangesFromStrokeToStroke) {
+  EXPECT_TRUE(FactsOf(BehindAGap({}, 0.1)).backlash);
+  EXPECT_FALSE(FactsOf(BehindAGap({}, 0.1, 0.9)).backlash) << "a third to either side of the mean";
+  EXPECT_FALSE(FactsOf(BehindAGap({}, 0.02)).backlash) << "less than 3 % of the amplitude";
+}
+
 TEST(MeasureFacts, OfAParallelogramAreThoseOfItsStickAndSlip) {
   const Parallelogram loop{.centre = -11.0, .offset = 7.0, .normal_load = 5.0};
   const LoopFacts facts = FactsOf(MakeRecord(loop));

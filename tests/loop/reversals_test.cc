@@ -366,6 +366,31 @@ TEST(ChooseReversalGate, SeesThroughNoiseInADwell) {
   }
 }
 
+TEST(ChooseReversalGate, SeesThroughJerksThatTheRecordMayEndIn) {
+  // An encoder's last digit everywhere, and on the way twelve jerks of some samples that grow to a
+  // thirtieth of a stroke; the record ends within one of them.
+  constexpr std::size_t kStroke = 2000;
+  constexpr double kDigit = 1e-3;
+  History history;
+  for (std::size_t i = 0; i < 6 * kStroke; ++i) {
+    const double way = static_cast<double>(i % kStroke) / kStroke;
+    history.push_back(i / kStroke % 2 == 0 ? way : 1 - way);
+  }
+  for (std::size_t jerk = 0; jerk < 12; ++jerk) {
+    const std::size_t begin = 900 + 800 * jerk;
+    const double size = 0.005 + 0.002 * static_cast<double>(jerk);
+    for (std::size_t k = 0; k < 20; ++k) {
+      history[begin + k] -= size * std::sin(std::numbers::pi * static_cast<double>(k) / 20);
+    }
+  }
+  for (std::size_t k = 0; k < 10; ++k) history.push_back(0.006 * static_cast<double>(k + 1) / 10);
+  Generator generator(11);
+  for (double& x : history) {
+    x = kDigit * std::round(x / kDigit + 0.5 * Normal(generator));
+  }
+  EXPECT_EQ(CountGated(history), 5U);
+}
+
 TEST(ChooseReversalGate, ASingleNoisyStrokeHasNone) {
   Generator generator(15);
   for (int i = 0; i < 100; ++i) {
@@ -461,6 +486,12 @@ TEST_F(MeasuredReversals, CycloidalRampsReverseAsTheTestsWereRun) {
   SKIP_WHERE_ABSENT();
   // Eight ramps up and down: five of ±4 Nm, three of ±40 Nm.
   EXPECT_EQ(CountGated(testing::Column(rows, 1)), 16U);
+}
+
+TEST_F(MeasuredReversals, CycloidalThatRunsInJerksAndReversesNoMoreForIt) {
+  const auto rows = Read("cycloidal/2024-07-10__16-31-56__torqueramp__split_runin5.csv", ',');
+  SKIP_WHERE_ABSENT();
+  EXPECT_EQ(CountGated(testing::Column(rows, 1)), 16U);  // the same eight ramps
 }
 
 TEST_F(MeasuredReversals, BandBrakeGrowsAndDecaysWithoutSpuriousReversals) {

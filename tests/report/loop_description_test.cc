@@ -66,6 +66,26 @@ TEST(LoopDescription, LeavesOpenWhetherALoopSlipsThatFitsAnyLargerSlipForce) {
   }
 }
 
+TEST(LoopDescription, ALoopThatIsSeenToSlideSlipsWhateverTheLawSays) {
+  constexpr double kAmplitude = 1.0e-6;  // two thirds of the law's gross slip
+  FitResult fit = MadeFit({MadeRecord(kAmplitude)}, kAmplitude, kMindlin);
+  EXPECT_EQ(DescribeLoop(fit).regime, SlipRegime::kPartial);
+  LoopFacts& facts = fit.records[0].facts;
+  facts.closed = true;
+  facts.amplitude = kAmplitude;
+  facts.peak_force = 30.0;
+  facts.energy_ratio = 0.9;
+  facts.energy_per_cycle = 0.9 * 4 * kAmplitude * 30.0;
+  facts.sliding_fraction = 0.97;
+  const LoopDescription loop = DescribeLoop(fit);
+  EXPECT_EQ(loop.regime, SlipRegime::kGross);
+  EXPECT_EQ(loop.stick_radius_ratio, 0.0);
+  EXPECT_EQ(loop.sliding_fraction, 0.97);
+  EXPECT_FALSE(loop.gross_slip_displacement) << "at an amplitude that was not reached";
+  fit.parameters[2].identifiability = Identifiability::kNotIdentifiable;
+  EXPECT_EQ(DescribeLoop(fit).regime, SlipRegime::kGross);
+}
+
 TEST(LoopDescription, JudgesTheSlipByTheContactsOwnAmplitude) {
   // δc = 1.5 µm; a rig of 3e7 N/m gives way by Tc/k_r = 1.33 µm under Tc.
   EXPECT_EQ(Describe(kMindlin, 1.6e-6).regime, SlipRegime::kGross);

@@ -50,7 +50,7 @@ TEST(Memory, HasItsComparisonsInTheJson) {
 TEST(Memory, OfNeitherLawSaysWhereBranchesDifferAndByHowMuch) {
   EXPECT_THAT(ToText(ReportOf(Neither())),
               AllOf(HasSubstr("memory: neither Masing's (p = 0.0025) nor Dahl's (p < 1e-6)"),
-                    HasSubstr("125 mN)")));
+                    HasSubstr("up and down strokes differ by 125 mN")));
 }
 
 TEST(Memory, ThatIsUndecidedSaysWhatWouldDecide) {

@@ -33,6 +33,7 @@ struct Cause {
   std::string option;       ///< that takes it into account; empty where there is none yet
   /// By how much it would move σ, α and Tc, in halves of their 95 % intervals: the largest.
   double moves = 0.0;
+  bool is_measured = false;  ///< seen in the record without the model, and named first
 };
 
 /// A fit's judgement of itself: docs/identification.md.

@@ -45,6 +45,7 @@ struct Thresholds {
   double doubt = 0.005;
   double cause = 1e-3;
   double rival_cause = 0.5;
+  double simpler_cause = 0.85;
   double noise_memory = 0.5;
   double rival_past = 10.0;
   double fewest_places = 16.0;

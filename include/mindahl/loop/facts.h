@@ -37,6 +37,12 @@ struct Trend {
   double p_value = 1.0;         ///< of no trend, two-sided, by Student's t
 };
 
+/// A gap that the motion takes up after each reversal, where the force stands still.
+struct Backlash {
+  double width = 0.0;  ///< [m]: travel over it, mean over the directions
+  double force = 0.0;  ///< [N]: at which it is taken up, mean over the directions
+};
+
 /// What a record says before any model is asked.
 ///
 /// Means are those of the widest steady cycles, whose amplitude is at least 0.95 of the widest
@@ -44,12 +50,15 @@ struct Trend {
 struct LoopFacts {
   bool closed = false;  ///< false: the record closes no cycle, and there are no facts
   std::vector<CycleFacts> cycles;
-  std::size_t steady_cycles = 0;                      ///< of the widest amplitude
-  double amplitude = 0.0;                             ///< X [m]
-  double peak_force = 0.0;                            ///< T* [N]
-  double energy_per_cycle = 0.0;                      ///< W [J]
-  double energy_ratio = 0.0;                          ///< W/(4XT*) [-] of the means
-  std::optional<double> sliding_amplitude;            ///< [m]
+  std::size_t steady_cycles = 0;            ///< of the widest amplitude
+  double amplitude = 0.0;                   ///< X [m]
+  double peak_force = 0.0;                  ///< T* [N]
+  double energy_per_cycle = 0.0;            ///< W [J]
+  double energy_ratio = 0.0;                ///< W/(4XT*) [-] of the means
+  std::optional<double> sliding_amplitude;  ///< [m]
+  /// [-]: of the strokes' travel, what is left once the force has come to nine tenths of the half
+  /// gap beyond the loop's centre: the median over the strokes.
+  std::optional<double> sliding_fraction;
   std::optional<double> half_gap;                     ///< [N]
   std::optional<double> half_gap_standard_deviation;  ///< [N] between cycles; of two or more
   /// [N/m]: of the least-squares line over the first tenth of each stroke, the median over strokes.
@@ -66,9 +75,17 @@ struct LoopFacts {
   double path_ratio = 0.0;
   /// µ_W = W/(4·N·sliding amplitude) [-], N the mean load; empty where that is not known.
   std::optional<double> energy_friction_coefficient;
+  /// Where the force rises at less than half the slope that it has before and after, between −0.4
+  /// and 0.4 half gaps, in both directions and by the same travel in all strokes to a quarter, of 3
+  /// % of the amplitude or more. No contact's branch does: it only softens.
+  std::optional<Backlash> backlash;
   std::optional<Trend> half_gap_trend;  ///< [N a cycle]: of three or more steady cycles
   std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
 };
+
+/// Does the loop slide, as far as it was measured: is its energy ratio above 0.75? Masing's loop of
+/// α ≤ 1 then reaches 0.999 of its slip force, and 0.95 for α = 2.
+bool Slides(const LoopFacts& facts);
 
 /// µ_W = W/(4·N·sliding amplitude) [-]; empty where the contact slides nowhere or N [N] is not > 0.
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load);

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
 
+#include "identification/diagnosis/advice.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
 
@@ -21,30 +23,77 @@ double ChanceOfNoise(const AdequacyTest& test) {
   return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
 }
 
-/// Would a fit be given an asymmetry? Not by Dahl's own law or under a load that varies, nor beside
-/// offsets of a contact that had slipped before, which take it up.
-bool TellsAsymmetry(const Problem& problem) {
-  if (problem.model->memory == models::Memory::kNone || problem.data->load_varies) return false;
-  return problem.state == models::InitialState::kVirgin || problem.parameters.any_zero_is_known();
-}
-
 /// What to type: a covariate's has its name, quoted where it has blanks.
-std::string OptionOf(const Problem& problem, const DepartureFit& fit) {
+std::string OptionOf(const Problem& problem, const FitOptions& options, const DepartureFit& fit) {
   const Departure& departure = Departures()[fit.departure];
-  if (problem.data->is_forced()) {
-    // What is beside a force has no place in a fit of the displacement.
-    return departure.term == "displacement_drift" ? std::string(departure.option) : "";
+  if (!fit.covariate) {
+    // Of a displacement that is fitted a drift is its own.
+    const bool is_of_force = departure.term == "force_drift";
+    if (problem.data->is_forced() && is_of_force) return "";
+    // No mass and no gap is negative, nor a spring unless too much of one was taken off.
+    constexpr std::array<std::string_view, 3> kPositive = {"rig_in_series", "inertia", "backlash"};
+    const bool is_positive = std::ranges::find(kPositive, departure.code) != kPositive.end();
+    if (is_positive && fit.size < 0 && !problem.parameters.has_rig()) return "";
+    return AcceptedOptions(problem, options, departure.option);
   }
-  if (departure.term == "asymmetry" && !TellsAsymmetry(problem)) return "";
-  if (!fit.covariate) return std::string(departure.option);
   const std::string_view name = problem.data->covariates[*fit.covariate].name;
   const char* const quote = name.find(' ') == std::string_view::npos ? "" : "'";
-  return fmt::format("--covariate {}{}{}", quote, name, quote);
+  return AcceptedOptions(problem, options, fmt::format("--covariate {}{}{}", quote, name, quote));
 }
 
 double SizeOf(const DepartureFit& fit) {
   if (!Departures()[fit.departure].is_square) return fit.size;
   return std::copysign(std::sqrt(std::abs(fit.size)), fit.size);
+}
+
+}  // namespace
+
+namespace {
+
+const DepartureFit* FindCause(std::span<const DepartureFit> causes, std::string_view code) {
+  const auto found = std::ranges::find_if(
+      causes, [&](const DepartureFit& fit) { return Departures()[fit.departure].code == code; });
+  return found == causes.end() ? nullptr : &*found;
+}
+
+/// True if a simpler cause explains nearly as much as another that contains it, and leaves hardly
+/// more.
+bool IsEnough(const DepartureFit& simpler, const DepartureFit& fit, const Thresholds& thresholds) {
+  constexpr double kLittle = 0.05;  // of the sum of squares
+  constexpr double kMore = 1.5;     // times what the other leaves
+  return simpler.explains >= thresholds.simpler_cause * fit.explains &&
+         1 - simpler.explains <= std::max(kLittle, kMore * (1 - fit.explains));
+}
+
+/// Of a cause and a simpler one that it contains: leaves the simpler where that explains nearly as
+/// much, else the other.
+void KeepOneOfNested(std::vector<DepartureFit>& causes, const Thresholds& thresholds) {
+  std::vector<std::string_view> dropped;
+  for (const DepartureFit& fit : causes) {
+    const Departure& departure = Departures()[fit.departure];
+    for (const std::string_view code : departure.simpler) {
+      const DepartureFit* const simpler = FindCause(causes, code);
+      if (simpler == nullptr) continue;
+      const bool is_enough = IsEnough(*simpler, fit, thresholds);
+      dropped.push_back(is_enough ? departure.code : code);
+    }
+  }
+  std::erase_if(causes, [&](const DepartureFit& fit) {
+    return std::ranges::find(dropped, Departures()[fit.departure].code) != dropped.end();
+  });
+}
+
+/// A knee that is rounded by a force of the speed moves with the speed as a late channel does. A
+/// lag is one time for all speeds: it is claimed where it explains more than the forces of speed.
+void DenyLagOfSpeed(std::vector<DepartureFit>& causes) {
+  const DepartureFit* const lag = FindCause(causes, "channel_lag");
+  if (lag == nullptr) return;
+  const bool is_of_speed =
+      std::ranges::any_of(std::array{"viscous_force", "speed_power"}, [&](const char* code) {
+        const DepartureFit* const speed = FindCause(causes, code);
+        return speed != nullptr && speed->delta_aicc < lag->delta_aicc;
+      });
+  if (is_of_speed) causes.erase(causes.begin() + (lag - causes.data()));
 }
 
 }  // namespace
@@ -56,12 +105,15 @@ bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds) {
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
   std::vector<DepartureFit> causes;
   for (const DepartureFit& fit : test.fits) {
-    if (fit.p_value < thresholds.cause && fit.delta_aicc < 0) causes.push_back(fit);
+    const bool helps = fit.p_value < thresholds.cause && fit.delta_aicc < 0;
+    if (helps || fit.is_measured) causes.push_back(fit);
   }
+  DenyLagOfSpeed(causes);
+  KeepOneOfNested(causes, thresholds);
   std::ranges::stable_sort(causes, {}, &DepartureFit::delta_aicc);
   const double best = causes.empty() ? 0.0 : causes.front().explains;
   std::erase_if(causes, [&](const DepartureFit& fit) {
-    return fit.explains < thresholds.rival_cause * best;
+    return fit.explains < thresholds.rival_cause * best && !fit.is_measured;
   });
   return causes;
 }
@@ -71,8 +123,9 @@ bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds) {
 }
 
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes, const Thresholds& thresholds,
+                       std::span<const DepartureFit> causes, const FitOptions& options,
                        std::span<const ParameterEstimate> estimates) {
+  const Thresholds& thresholds = options.thresholds;
   Adequacy adequacy;
   adequacy.misfit_over_noise = test.misfit_over_noise;
   adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->response_unit();
@@ -87,7 +140,8 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
               .explains = fit.explains,
               .size = SizeOf(fit),
               .unit = SaysItsSize(fit, thresholds) ? fit.unit : std::string_view(),
-              .option = OptionOf(problem, fit)});
+              .option = OptionOf(problem, options, fit),
+              .is_measured = fit.is_measured});
     for (std::size_t k = 0; k < reported.size(); ++k) {
       if (reported[k] > kSlipForce) continue;
       cause.moves =
@@ -98,26 +152,66 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
   return adequacy;
 }
 
+namespace {
+
+/// What is named first: what was measured without the model; then what another column of the file
+/// has, then what can be tried, of few numbers before of many; a lag, which much else looks like,
+/// and what no option takes into account come last.
+int RankOf(const Cause& cause) {
+  if (cause.is_measured) return 0;
+  if (cause.code == "covariate") return 1;
+  if (cause.option.empty()) return 5;
+  if (cause.code == "channel_lag") return 4;
+  return cause.code == "slip_position_quadratic" ? 3 : 2;
+}
+
+/// The best first; of those that explain nearly as much as the best by their rank.
+void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
+  std::ranges::stable_sort(causes, {}, &Cause::delta_aicc);
+  if (causes.empty()) return;
+  const double best = causes.front().explains;
+  std::erase_if(causes, [&](const Cause& cause) {
+    return cause.explains < thresholds.rival_cause * best && !cause.is_measured;
+  });
+  std::ranges::stable_sort(causes, {}, [&](const Cause& cause) {
+    const bool is_near = cause.explains >= thresholds.simpler_cause * best;
+    constexpr int kFar = 6;
+    return is_near || cause.is_measured ? RankOf(cause) : kFar;
+  });
+}
+
+/// With its number where the option has one, in SI.
+std::string OptionOf(const Problem& problem, const FitOptions& options, const Irregularity& found,
+                     double size) {
+  const std::string_view option = found.option;
+  const std::size_t place = option.find("PERIOD");
+  if (place == std::string_view::npos) return AcceptedOptions(problem, options, option);
+  return AcceptedOptions(problem, options, fmt::format("{}{:.4g}", option.substr(0, place), size));
+}
+
+}  // namespace
+
 void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
-                       const Thresholds& thresholds, Adequacy& adequacy) {
+                       const FitOptions& options, Adequacy& adequacy) {
+  const Thresholds& thresholds = options.thresholds;
   for (const IrregularityFit& fit : found) {
     if (fit.p_value >= thresholds.cause || fit.delta_aicc >= 0) continue;
     const auto tried = static_cast<double>(Irregularities().size());
     adequacy.p_value = std::min(adequacy.p_value, std::min(1.0, 2 * tried * fit.p_value));
     const Irregularity& irregularity = Irregularities()[fit.irregularity];
+    const double unit = irregularity.unit == "N"   ? problem.data->force
+                        : irregularity.unit == "m" ? problem.data->length
+                                                   : 1.0;
     adequacy.causes.push_back(
         {.code = irregularity.code,
          .delta_aicc = fit.delta_aicc,
          .explains = fit.explains,
-         .size = irregularity.unit == "N" ? fit.size * problem.data->force : fit.size,
+         .size = fit.size * unit,
          .unit = irregularity.unit,
-         .option = std::string(irregularity.option)});
+         .option = OptionOf(problem, options, irregularity, fit.size * unit)});
     adequacy.verdict = AdequacyVerdict::kDoubtful;
   }
-  std::ranges::stable_sort(adequacy.causes, {}, &Cause::delta_aicc);
-  const double best = adequacy.causes.empty() ? 0.0 : adequacy.causes.front().explains;
-  std::erase_if(adequacy.causes,
-                [&](const Cause& cause) { return cause.explains < thresholds.rival_cause * best; });
+  Order(adequacy.causes, thresholds);
 }
 
 bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {

@@ -8,6 +8,7 @@
 #include "identification/inference/irregularities.h"
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 
@@ -26,13 +27,14 @@ bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
 
 /// @param estimates  of the reported parameters, with the intervals that the model itself gives
 Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes, const Thresholds& thresholds,
+                       std::span<const DepartureFit> causes, const FitOptions& options,
                        std::span<const ParameterEstimate> estimates);
 
 /// Adds the irregularities that noise alone does not make to the causes, the best first, without
-/// those that another beats clearly, and doubts the record where one is there.
+/// those that another beats clearly, and doubts the record where one is there. Of causes that
+/// explain nearly as much as the best those that were measured, or can be tried, come first.
 void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
-                       const Thresholds& thresholds, Adequacy& adequacy);
+                       const FitOptions& options, Adequacy& adequacy);
 
 /// Does the record hardly tell whether the contact was virgin or in a steady loop?
 /// @param delta_aicc  of the two

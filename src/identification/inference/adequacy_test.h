@@ -21,6 +21,7 @@ struct DepartureFit {
   double size = 0.0;                          // of its first column, in its unit
   double size_p_value = 1.0;                  // that noise alone makes that
   std::string_view unit = {};
+  bool is_measured = false;        // without the model, and fitted as it was
   std::vector<double> step = {};   // of θ, one a free parameter
   std::vector<double> error = {};  // standard error of θ with it, likewise
 };

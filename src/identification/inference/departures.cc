@@ -10,6 +10,7 @@
 #include "identification/inference/branch_places.h"
 #include "identification/inference/displacement_departures.h"
 #include "identification/inference/sampled_time.h"
+#include "identification/problem/one_channel.h"
 
 namespace mindahl::identification {
 namespace {
@@ -19,6 +20,7 @@ struct ForcePlace {
   double displacement = 0.0;
   double time = 0.0;  // from the record's middle
   double velocity = 0.0;
+  double speed = 0.0;  // velocity over a fiftieth of a stroke to either side, with its sign
   double acceleration = 0.0;
   double force_rate = 0.0;  // of the whole force
   double force = 0.0;       // of the contact, over the slip force
@@ -70,16 +72,19 @@ enum DepartureRow : std::size_t {
   kUnequal,
   kRunningIn,
   kSaturation,
-  kLoad,
+  kSlipPosition,
   kPosition,
   kCovariate,
   kSmoothing,
   kHeld,
   kAmplitude,
+  kDisplacementDrift,
+  kSpeedPower,
+  kSlipPositionQuadratic,
 };
 
 // Sizes are of the first column; where there are several, the meaning says what the others are.
-constexpr std::array<Departure, 21> kDepartures = {{
+constexpr std::array<Departure, 23> kDepartures = {{
     {.code = "channel_lag",
      .meaning = "by which the force's channel is late",
      .unit = "s",
@@ -123,7 +128,7 @@ constexpr std::array<Departure, 21> kDepartures = {{
     {.code = "backlash",
      .meaning = "the whole way that is lost at a reversal",
      .unit = "m",
-     .option = ""},
+     .option = "--backlash fit"},
     {.code = "displacement_sensor",
      .meaning = "the contact sees x + size·x²/L, x from the record's middle; and x³",
      .unit = "",
@@ -131,7 +136,7 @@ constexpr std::array<Departure, 21> kDepartures = {{
     {.code = "inertia",
      .meaning = "mass in front of the sensor of the force, m·d²δ/dt²",
      .unit = "kg",
-     .option = "",
+     .option = "--inertia fit",
      .unit_by_sample = "N samples²/m"},
     {.code = "unequal_directions",
      .meaning = "(1 ± size)·T, + where it is in the sense of a positive displacement; and of a "
@@ -149,11 +154,12 @@ constexpr std::array<Departure, 21> kDepartures = {{
      .meaning = "lost of what is beyond nine tenths of the largest force; and T³",
      .unit = "-",
      .option = ""},
-    {.code = "load_varies",
-     .meaning =
-         "growth of the contact's force over L from the record's middle; and over x², and of |T|",
+    {.code = "slip_position",
+     .meaning = "growth of the contact's force over L from the record's middle; and of |T|, which "
+                "differs by direction",
      .unit = "-",
-     .option = ""},
+     .option = "--slip-position linear",
+     .simpler = {"plateau_slope"}},
     {.code = "force_of_position", .meaning = "size·Tc·(x/L)²; and x³", .unit = "", .option = ""},
     {.code = "covariate",
      .meaning = "C of a force C·column; each of up to 8 columns that nobody asked for",
@@ -180,6 +186,18 @@ constexpr std::array<Departure, 21> kDepartures = {{
      .option = "--drift",
      .term = "displacement_drift",
      .unit_by_sample = "m/sample"},
+    {.code = "speed_power",
+     .meaning = "forces in proportion to the square root of the speed, along the motion, and to "
+                "the velocity",
+     .unit = "",
+     .option = "--viscous fit --speed-exponent fit",
+     .simpler = {"viscous_force"}},
+    {.code = "slip_position_quadratic",
+     .meaning = "growth of the contact's force over L from the record's middle; and over x², each "
+                "also of |T|, which differs by direction",
+     .unit = "-",
+     .option = "--slip-position quadratic",
+     .simpler = {"slip_position", "plateau_slope"}},
 }};
 
 /// How far the branch has come, of the way to slip.
@@ -198,7 +216,7 @@ double Bulge(const ForcePlace& at) {
 /// Of slip forces that differ; nothing but an offset of the force of a contact that had slipped.
 double ByAsymmetry(const ForcePlace& at) { return at.asymmetry; }
 
-constexpr std::array<ForceColumn, 27> kForceColumns = {{
+constexpr std::array<ForceColumn, 32> kForceColumns = {{
     {kLag, Along::kForce, [](const ForcePlace& at) { return -at.force_rate; }},
     {kViscous, Along::kForce, [](const ForcePlace& at) { return at.velocity; }},
     {kPlateauSlope, Along::kForce, [](const ForcePlace& at) { return at.displacement; }},
@@ -228,10 +246,8 @@ constexpr std::array<ForceColumn, 27> kForceColumns = {{
        return -std::copysign(std::max(0.0, std::abs(at.force) - kFrom * at.peak), at.force);
      }},
     {kSaturation, Along::kForce, [](const ForcePlace& at) { return Cube(at.force); }},
-    {kLoad, Along::kForce, [](const ForcePlace& at) { return at.force * at.displacement; }},
-    {kLoad, Along::kForce,
-     [](const ForcePlace& at) { return at.force * at.displacement * at.displacement; }},
-    {kLoad, Along::kForce,
+    {kSlipPosition, Along::kForce, [](const ForcePlace& at) { return at.force * at.displacement; }},
+    {kSlipPosition, Along::kForce,
      [](const ForcePlace& at) { return std::abs(at.force) * at.displacement; }},
     {kPosition, Along::kForce,
      [](const ForcePlace& at) { return at.displacement * at.displacement; }},
@@ -240,6 +256,17 @@ constexpr std::array<ForceColumn, 27> kForceColumns = {{
     // A turn is the first of its repeats, where nothing is missed.
     {kHeld, Along::kBranch, [](const ForcePlace& at) { return at.slope * at.missed; }},
     {kAmplitude, Along::kForce, [](const ForcePlace& at) { return at.force * at.amplitude; }},
+    {kSpeedPower, Along::kForce,
+     [](const ForcePlace& at) { return std::copysign(std::sqrt(std::abs(at.speed)), at.speed); }},
+    {kSpeedPower, Along::kForce, [](const ForcePlace& at) { return at.speed; }},
+    {kSlipPositionQuadratic, Along::kForce,
+     [](const ForcePlace& at) { return at.force * at.displacement; }},
+    {kSlipPositionQuadratic, Along::kForce,
+     [](const ForcePlace& at) { return at.force * at.displacement * at.displacement; }},
+    {kSlipPositionQuadratic, Along::kForce,
+     [](const ForcePlace& at) { return std::abs(at.force) * at.displacement; }},
+    {kSlipPositionQuadratic, Along::kForce,
+     [](const ForcePlace& at) { return std::abs(at.force) * at.displacement * at.displacement; }},
 }};
 
 /// Second derivative by time, of the parabola through every other sample: one between neighbours
@@ -257,6 +284,23 @@ void DeriveTwice(std::span<const double> values, std::span<const double> time,
     const double on = time[after] - time[i];
     second[samples[k]] =
         2 * ((values[after] - values[i]) / on - (values[i] - values[before]) / back) / (back + on);
+  }
+}
+
+/// Velocity by the chord from a fiftieth of a stroke before a sample to as much after it. The root
+/// of a speed is largest where it changes its sign: of that between neighbours it would be one of
+/// the displacement's noise.
+void DeriveSmoothly(const ScaledRecord& record, std::span<const double> time,
+                    std::span<const std::size_t> samples, std::span<double> speed) {
+  constexpr std::size_t kPartOfStroke = 50;
+  if (samples.size() < 2) return;
+  const std::size_t reach =
+      std::max<std::size_t>(samples.size() / (record.reversals.size() + 1) / kPartOfStroke, 1);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const std::size_t before = samples[k > reach ? k - reach : 0];
+    const std::size_t after = samples[std::min(k + reach, samples.size() - 1)];
+    speed[samples[k]] =
+        (record.displacement[after] - record.displacement[before]) / (time[after] - time[before]);
   }
 }
 
@@ -343,10 +387,12 @@ std::vector<ForcePlace> ForcePlacesOf(const ScaledRecord& record, std::span<cons
                                       const models::OriginSensitivity& sensitivity, double peak) {
   const std::size_t count = record.size();
   std::vector<double> velocity(count);
+  std::vector<double> speed(count);
   std::vector<double> acceleration(count);
   std::vector<double> rate(count);
   std::vector<double> curvature(count);
   Derive(record.displacement, time, neighbours, false, velocity);
+  DeriveSmoothly(record, time, neighbours.samples, speed);
   DeriveTwice(record.displacement, time, neighbours.samples, acceleration);
   Derive(complete, time, neighbours, true, rate);
   DeriveTwice(complete, time, neighbours.samples, curvature);
@@ -356,6 +402,7 @@ std::vector<ForcePlace> ForcePlacesOf(const ScaledRecord& record, std::span<cons
     places[i] = {.displacement = record.displacement[i],
                  .time = time[i],
                  .velocity = velocity[i],
+                 .speed = speed[i],
                  .acceleration = acceleration[i],
                  .force_rate = rate[i],
                  .force = force[i],
@@ -412,6 +459,14 @@ double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock
   }
 }
 
+/// "--speed-exponent" of "--viscous fit --speed-exponent fit".
+std::string_view LastOption(std::string_view words) {
+  const std::size_t begin = words.rfind("--");
+  if (begin == std::string_view::npos) return {};
+  words.remove_prefix(begin);
+  return words.substr(0, words.find(' '));
+}
+
 std::size_t FittedCovariates(const Problem& problem) {
   return static_cast<std::size_t>(std::ranges::count_if(
       problem.parameters, [](const Parameter& parameter) { return parameter.term->of_column; }));
@@ -445,6 +500,16 @@ bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
   return true;
 }
 
+/// Is a column that nobody asked for the same channel as one that is fitted, or as a later one?
+/// What an acquisition reads comes before what is made of it.
+bool IsReadAgain(const ScaledRecords& data, std::size_t covariate, std::size_t fitted) {
+  for (std::size_t other = 0; other < data.covariates.size(); ++other) {
+    const bool stays = other < fitted || other > covariate;
+    if (stays && other != covariate && AreOneChannel(data, covariate, other)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::span<const Departure> Departures() { return kDepartures; }
@@ -466,10 +531,24 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
                                !problem.data->load_varies;
   DepartureColumns result;
   result.timed = clock.timed;
+  std::vector<std::size_t> covariates;
+  const std::size_t fitted = FittedCovariates(problem);
+  for (std::size_t c = fitted; c < problem.data->covariates.size(); ++c) {
+    const bool is_new =
+        !IsReadAgain(*problem.data, c, fitted) && !RepeatsTheOthers(*problem.data, c);
+    if (is_new) covariates.push_back(c);
+  }
+  std::size_t room = most;  // for what is before the covariates, then for what is after them
   std::vector<const ForceColumn*> wanted;
   for (std::size_t d = 0; d < kDepartures.size(); ++d) {
+    if (d == kCovariate) {
+      covariates.resize(std::min(covariates.size(), room - wanted.size()));
+      room -= covariates.size();
+    }
     const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
-      return problem.parameters[p].term->name == kDepartures[d].term;
+      const Term& term = *problem.parameters[p].term;
+      return term.name == kDepartures[d].term ||
+             (!term.option.empty() && term.option == LastOption(kDepartures[d].option));
     });
     const bool is_unknown =
         d == kMeasuredLoad && std::ranges::all_of(records, [](const ScaledRecord& record) {
@@ -481,7 +560,10 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       return column.departure == d && (column.value != ByAsymmetry || tells_asymmetry);
     };
     const auto count = static_cast<std::size_t>(std::ranges::count_if(kForceColumns, is_of));
-    if (wanted.size() + count > most) break;
+    if (wanted.size() + count > room) {
+      if (d < kCovariate) covariates.clear();
+      break;
+    }
     if (count > 0) ++result.groups;
     for (const ForceColumn& column : kForceColumns | std::views::filter(is_of)) {
       wanted.push_back(&column);
@@ -490,10 +572,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       result.unit_of_size.push_back(UnitOfSize(d, *problem.data, clock.unit, slip_force));
     }
   }
-  for (std::size_t c = FittedCovariates(problem);
-       c < problem.data->covariates.size() && wanted.size() + result.covariates.size() < most;
-       ++c) {
-    if (RepeatsTheOthers(*problem.data, c)) continue;
+  for (const std::size_t c : covariates) {
     result.covariates.push_back(c);
     result.of.push_back(kCovariate);
     result.group.push_back(result.groups++);

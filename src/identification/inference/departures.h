@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <array>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -16,7 +17,8 @@ struct Departure {
   std::string_view meaning;  // of the size, with its sign; L is the half range of displacement
   std::string_view unit;     // of the size, which is the first column's; empty where it says little
   std::string_view option;   // of the command line; empty where there is none
-  /// Names the term of a fit that is the same; it is not looked for where that is fitted.
+  /// Names the term of a fit that is the same; it is not looked for where that is fitted, or the
+  /// term of its last option.
   std::string_view term = {};
   std::string_view unit_by_sample = {};  // where records have no time; empty where it is the same
   /// The column is in proportion to the square of the size.
@@ -24,6 +26,9 @@ struct Departure {
   /// Where parts of a record have a contact of their own: by how much its force differs from the
   /// mean in them, over the size.
   double apart = 0.0;
+  /// Codes of causes whose columns this one has too, or nearly: of two that explain the same the
+  /// simpler is named.
+  std::array<std::string_view, 2> simpler = {};
 };
 
 /// Columns of all departures at a solution.

@@ -1,5 +1,6 @@
 #include "identification/inference/irregularities.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -7,14 +8,15 @@
 
 #include "identification/inference/evidence.h"
 #include "identification/inference/heavy_tails.h"
+#include "identification/inference/ripple.h"
 #include "identification/inference/stick_slip.h"
 
 namespace mindahl::identification {
 namespace {
 
-enum IrregularityRow : std::size_t { kHeavyTails, kStickSlip };
+enum IrregularityRow : std::size_t { kHeavyTails, kStickSlip, kRipple };
 
-constexpr std::array<Irregularity, 2> kIrregularities = {{
+constexpr std::array<Irregularity, 3> kIrregularities = {{
     {.code = "heavy_tails",
      .meaning = "share of the readings that are far off both their neighbours",
      .unit = "-",
@@ -23,6 +25,11 @@ constexpr std::array<Irregularity, 2> kIrregularities = {{
      .meaning = "median drop of the force, against the motion, while the contact slides",
      .unit = "N",
      .option = ""},
+    {.code = "position_ripple",
+     .meaning = "period along the displacement of a force that has one phase in all strokes of a "
+                "direction",
+     .unit = "m",
+     .option = "--ripple PERIOD"},
 }};
 
 std::vector<FittedSample> SamplesOf(const Problem& problem, std::span<const double> theta,
@@ -61,7 +68,7 @@ std::span<const Irregularity> Irregularities() { return kIrregularities; }
 std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
                                                 std::span<const double> theta,
                                                 std::span<const double> residual,
-                                                const Noise& noise, bool robust,
+                                                const Noise& noise, bool robust, bool doubtful,
                                                 Response& response) {
   std::vector<IrregularityFit> found;
   double squares = 0.0;
@@ -78,7 +85,19 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
   };
   if (!robust) add(kHeavyTails, FindHeavyTails(samples, evidence));
   // A force that is imposed drops by itself.
-  if (!problem.data->is_forced()) add(kStickSlip, FindStickSlip(samples));
+  if (problem.data->is_forced()) return found;
+  // What has one phase in all strokes is the drive's: a contact that sticks and slips has none.
+  const std::optional<IrregularityFit> stick_slip = FindStickSlip(samples);
+  const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
+    return problem.parameters[p].term->option == "--ripple";
+  });
+  std::optional<IrregularityFit> ripple;
+  if (!is_fitted && (doubtful || stick_slip)) ripple = FindRipple(samples);
+  if (ripple) {
+    add(kRipple, ripple);
+  } else {
+    add(kStickSlip, stick_slip);
+  }
   return found;
 }
 

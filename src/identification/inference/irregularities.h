@@ -43,10 +43,12 @@ struct FittedSample {
 /// Those that the residuals show, of what can be told. Cost: n log n, next to nothing beside a fit.
 /// @param residual  weighted, of all samples
 /// @param robust    large residuals count less already, and are not looked for
+/// @param doubtful  then a ripple is looked for, and else only where the force drops: it costs more
+///   than the rest
 std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
                                                 std::span<const double> theta,
                                                 std::span<const double> residual,
-                                                const Noise& noise, bool robust,
+                                                const Noise& noise, bool robust, bool doubtful,
                                                 Response& response);
 
 }  // namespace mindahl::identification

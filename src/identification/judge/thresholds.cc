@@ -127,11 +127,16 @@ constexpr std::array kTable = {
                  "one adequate loop in two hundred is doubted"},
     ThresholdRow{"cause", &Thresholds::cause, "p",
                  "a departure that noise alone makes less often is a cause",
-                 "of the 16 that are tried, one loop in sixty then has one by chance"},
+                 "of the 23 that are tried, one loop in forty then has one by chance"},
     ThresholdRow{"rival_cause", &Thresholds::rival_cause, "of what the best explains",
                  "a cause that explains so much is one that intervals cover",
                  "departures are taken to first order: of two imperfect accounts the better need "
                  "not be the true one"},
+    ThresholdRow{
+        "simpler_cause", &Thresholds::simpler_cause, "of what the other explains",
+        "a cause that is part of another and explains so much is named in its place",
+        "likewise one that can be tried in place of one that cannot: the rest is less than "
+        "15 % of the residuals' variance, 40 % of their rms"},
     ThresholdRow{"noise_memory", &Thresholds::noise_memory, "strokes",
                  "a poor misfit whose residuals remember for longer is not taken for noise",
                  "within half a stroke the force does all that a law says of it: noise of that "

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/extremes.h"
+#include "identification/problem/one_channel.h"
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
 
@@ -372,6 +373,14 @@ void AddCovariates(std::span<const std::string> fitted, bool with_others,
     const double scale = CovariateScale(name, records);
     RequireScale(fmt::format("half range of the covariate '{}'", name), scale);
     add(name, scale);
+    const std::size_t last = data.covariates.size() - 1;
+    for (std::size_t other = 0; other < last; ++other) {
+      if (!AreOneChannel(data, other, last)) continue;
+      throw InvalidArgument(fmt::format(
+          "the covariates '{}' and '{}' are one channel, the one a linear function of the other: "
+          "name one of them",
+          fitted[other], name));
+    }
   }
   if (!with_others) return;
   for (const loop::Covariate& covariate : first.covariates) {

@@ -136,7 +136,8 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
 /// that the offset of the force keeps its meaning; literally where there are no offsets.
 /// @param fitted       names of those that a term is fitted to; they come first
 /// @param with_others  also those that change and that all records have
-/// @throws InvalidArgument where a record has no column that is fitted, or it never changes
+/// @throws InvalidArgument where a record has no column that is fitted, or it never changes, or two
+///   of them are one channel
 void AddCovariates(std::span<const std::string> fitted, bool with_others,
                    const loop::PreparedRecords& records, bool offsets, ScaledRecords& data);
 

@@ -1,0 +1,311 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identification/diagnosis/advice.h"
+#include "identification/inference/lag_trial.h"
+#include "identification/stages.h"
+
+// Which cause is named first: contacts with something beside the law, as measured records have it,
+// whose cause is known because it was put in.
+namespace mindahl::identification::causes_test {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Generator;
+using testing::History;
+using testing::Model;
+using testing::Normal;
+using testing::Respond;
+using testing::Stages;
+
+constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+constexpr double kReach = 3e-5;  // [m], twenty times gross slip, as a damper or a seal has it
+constexpr double kNoise = 0.002 * kLaw.slip_force;
+constexpr double kCycles = 4.0;
+constexpr int kSamples = 400;  // a cycle
+
+double SineAt(double phase) { return std::sin(2 * std::numbers::pi * phase); }
+double CosineAt(double phase) { return std::cos(2 * std::numbers::pi * phase); }
+
+/// What is beside the contact at a sample, over Tc.
+struct Place {
+  double position;   // over the reach
+  double speed;      // over its largest, with its sign
+  double direction;  // of the motion
+  double force;      // of the contact, over Tc
+};
+
+/// A sine with something beside the contact's force.
+Record With(const std::function<double(const Place&)>& beside, double frequency = 1.0) {
+  Record record;
+  for (int i = 0; i <= static_cast<int>(kCycles * kSamples); ++i) {
+    const double phase = static_cast<double>(i) / kSamples;
+    record.time.push_back(phase / frequency);
+    record.displacement.push_back(kReach * SineAt(phase));
+  }
+  record.force = Respond(Model("mindlin-dahl"), kLaw, record.displacement);
+  Generator generator(1);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double phase = static_cast<double>(i) / kSamples;
+    const double speed = CosineAt(phase);
+    const Place place{.position = SineAt(phase),
+                      .speed = speed,
+                      .direction = speed < 0 ? -1.0 : 1.0,
+                      .force = record.force[i] / kLaw.slip_force};
+    record.force[i] += kLaw.slip_force * beside(place) + kNoise * Normal(generator);
+  }
+  return record;
+}
+
+FitResult Fitted(const Record& record, const FitOptions& options = {}) {
+  return Fit({&record, 1}, options, Depth::kIntervals);
+}
+
+const Cause* Find(const FitResult& fit, std::string_view code) {
+  const auto found = std::ranges::find(fit.adequacy.causes, code, &Cause::code);
+  return found == fit.adequacy.causes.end() ? nullptr : &*found;
+}
+
+std::string_view FirstOf(const FitResult& fit) {
+  return fit.adequacy.causes.empty() ? "none" : fit.adequacy.causes.front().code;
+}
+
+// --- speed and lag
+
+TEST(FirstCause, OfAKneeThatTheSpeedRoundsIsAPowerOfTheSpeedAtAnyFrequency) {
+  for (const double frequency : {0.25, 5.0}) {
+    SCOPED_TRACE(frequency);
+    const FitResult fit = Fitted(
+        With([](const Place& at) { return 0.3 * at.direction * std::sqrt(std::abs(at.speed)); },
+             frequency));
+    EXPECT_EQ(FirstOf(fit), "speed_power");
+    EXPECT_GT(fit.adequacy.causes.front().explains, 0.8);
+    EXPECT_EQ(Find(fit, "channel_lag"), nullptr);
+    EXPECT_EQ(Find(fit, "viscous_force"), nullptr) << "a part of it";
+  }
+}
+
+TEST(FirstCause, OfAViscousForceIsTheSimplerOne) {
+  const FitResult fit = Fitted(With([](const Place& at) { return 0.3 * at.speed; }));
+  EXPECT_EQ(FirstOf(fit), "viscous_force");
+  EXPECT_EQ(Find(fit, "speed_power"), nullptr);
+  EXPECT_EQ(Find(fit, "channel_lag"), nullptr);
+}
+
+TEST(FirstCause, OfALateChannelIsTheLag) {
+  constexpr std::size_t kLate = 2;  // samples
+  Record record = With([](const Place&) { return 0.0; });
+  for (std::size_t i = record.size(); i-- > kLate;) record.force[i] = record.force[i - kLate];
+  EXPECT_EQ(FirstOf(Fitted(testing::From(record, kLate))), "channel_lag");
+}
+
+TEST(LagBeyondKnee, IsDeniedFromTheDurationOfTheStickOn) {
+  // A triangle and Jenkins' element: to nine tenths of slip in 1.9·Tc/σ at a constant speed.
+  constexpr double kStep = 1e-7;  // [m a sample]
+  constexpr BranchLaw kJenkins{4e7, 0.0, 40.0};
+  constexpr double kKnee = 1.9 * kJenkins.slip_force / kJenkins.tangential_stiffness / kStep;
+  Record record;
+  record.displacement = testing::Cycling(testing::Wave::kTriangle, 100 * kStep, 4.0, 400);
+  record.force = Respond(Model("mindlin-dahl"), kJenkins, record.displacement);
+  Stages stages(record);
+  Solution solution;
+  solution.theta = stages.ThetaOf(Fitted(record));
+  const auto is_kept = [&](double lag) {
+    AdequacyTest test;
+    test.fits.push_back({.departure = 0, .size = lag});
+    DenyLagBeyondKnee(stages.problem, solution, stages.buffers.response, test);
+    return !test.fits.empty();
+  };
+  ASSERT_EQ(Departures()[0].code, "channel_lag");
+  for (const double sign : {1.0, -1.0}) {
+    // The knee ends up to a sample later.
+    EXPECT_TRUE(is_kept(sign * (kKnee - 1)));
+    EXPECT_FALSE(is_kept(sign * (kKnee + 1.5)));
+  }
+}
+
+// --- position
+
+TEST(FirstCause, OfASlipForceThatGrowsAlongTheStrokeIsThat) {
+  const FitResult fit = Fitted(With(
+      [](const Place& at) { return at.force * (at.direction > 0 ? 0.1 : 0.05) * at.position; }));
+  EXPECT_EQ(FirstOf(fit), "slip_position");
+  EXPECT_GT(fit.adequacy.causes.front().explains, 0.9);
+  // Of the mean of both directions, by first order: the law has bent to a hundredth of the force.
+  EXPECT_NEAR(fit.adequacy.causes.front().size, 0.075, 0.01);
+}
+
+TEST(FirstCause, OfASlipForceThatBendsAlongTheStrokeIsTheQuadraticOne) {
+  const FitResult fit = Fitted(With([](const Place& at) {
+    return at.force * (at.direction > 0 ? 0.1 : -0.05) * at.position * at.position;
+  }));
+  EXPECT_EQ(FirstOf(fit), "slip_position_quadratic");
+  EXPECT_EQ(Find(fit, "slip_position"), nullptr);
+}
+
+TEST(FirstCause, OfASpringBesideTheContactIsThePlateauSlope) {
+  const FitResult fit = Fitted(With([](const Place& at) { return 0.1 * at.position; }));
+  EXPECT_EQ(FirstOf(fit), "plateau_slope");
+  EXPECT_EQ(Find(fit, "slip_position"), nullptr) << "on a plateau nearly the same";
+}
+
+// --- a drive's ripple, and stick-slip
+
+/// A sawtooth along the displacement, which drops against the motion; a tooth is ten samples long
+/// in the middle of the stroke.
+double Tooth(double position, double direction) {
+  constexpr double kPeriod = 0.15;  // of the reach
+  const double place = direction * position / kPeriod + (direction > 0 ? 0.2 : 0.7);
+  return 0.1 * (place - std::floor(place) - 0.5) * direction;
+}
+
+TEST(FirstCause, OfTeethInOnePhaseInAllStrokesIsARippleAndNoStickSlip) {
+  const FitResult fit = Fitted(With([](const Place& at) {
+    return std::abs(at.force) > 0.95 ? Tooth(at.position, at.direction) : 0.0;
+  }));
+  EXPECT_EQ(FirstOf(fit), "position_ripple");
+  const Cause& ripple = fit.adequacy.causes.front();
+  EXPECT_EQ(ripple.unit, "m");
+  // Of a stroke of thirteen periods the frequency is known to a small part of one over its length.
+  EXPECT_NEAR(ripple.size / (0.15 * kReach), 1.0, 0.02);
+  EXPECT_EQ(Find(fit, "stick_slip"), nullptr);
+}
+
+TEST(FirstCause, OfTeethInAnotherPhaseInEachStrokeIsStickSlip) {
+  Generator generator(3);
+  double shift = 0.0;
+  double last = 0.0;
+  const FitResult fit = Fitted(With([&](const Place& at) {
+    if (at.direction != last) shift = testing::Uniform(generator, 0.0, 1.0);
+    last = at.direction;
+    return std::abs(at.force) > 0.95 ? Tooth(at.position + shift, at.direction) : 0.0;
+  }));
+  EXPECT_EQ(FirstOf(fit), "stick_slip");
+  EXPECT_EQ(Find(fit, "position_ripple"), nullptr);
+}
+
+// --- backlash
+
+/// A contact behind a gap of which its force is free: half of it to the side of the force.
+Record BehindAGap(double gap) {
+  constexpr int kFine = 4000;  // samples a cycle
+  constexpr double kTurnsOver = 0.02;
+  const History contact = testing::Cycling(testing::Wave::kSine, kReach, kCycles, kFine);
+  const std::vector<double> force = Respond(Model("mindlin-dahl"), kLaw, contact);
+  Record record;
+  Generator generator(2);
+  for (std::size_t i = kFine / 4; i < contact.size(); ++i) {
+    const double side = std::clamp(force[i] / (kTurnsOver * kLaw.slip_force), -1.0, 1.0);
+    record.displacement.push_back(contact[i] + gap / 2 * side);
+    record.force.push_back(force[i] + kNoise * Normal(generator));
+    record.time.push_back(static_cast<double>(i) / kFine);
+  }
+  return record;
+}
+
+TEST(FirstCause, OfAGapThatIsTakenUpAtZeroForceIsTheBacklashThatWasMeasured) {
+  constexpr double kGap = 0.15 * kReach;
+  const FitResult fit = Fitted(BehindAGap(kGap));
+  ASSERT_TRUE(fit.records[0].facts.backlash);
+  // Beside the gap the contact's own travel over 0.4 half gaps is taken off by the slopes around
+  // it: of Mindlin's branch these differ by a factor below two, on 0.4·Tc/σ = 0.09 of the gap.
+  EXPECT_NEAR(fit.records[0].facts.backlash->width / kGap, 1.0, 0.09);
+  EXPECT_EQ(FirstOf(fit), "backlash");
+  EXPECT_TRUE(fit.adequacy.causes.front().is_measured);
+  EXPECT_GT(fit.adequacy.causes.front().explains, 0.5);
+  EXPECT_EQ(Find(fit, "force_saturates"), nullptr);
+}
+
+TEST(Backlash, IsNotSeenWhereThereIsNone) {
+  EXPECT_FALSE(Fitted(With([](const Place&) { return 0.0; })).records[0].facts.backlash);
+  const auto rounded = [](const Place& at) {
+    return 0.3 * at.direction * std::sqrt(std::abs(at.speed));
+  };
+  EXPECT_FALSE(Fitted(With(rounded)).records[0].facts.backlash);
+}
+
+// --- columns of the file
+
+Record WithPressure() {
+  std::vector<double> pressure;
+  Record record = With([&](const Place&) {
+    const auto i = static_cast<double>(pressure.size());
+    pressure.push_back(5 + 0.2 * std::sin(0.037 * i));
+    return pressure.back() - 5;
+  });
+  std::vector<double> volts;
+  std::vector<double> command;
+  Generator generator(4);
+  for (std::size_t i = 0; i < pressure.size(); ++i) {
+    volts.push_back(0.1 + 0.02 * pressure[i] + 2e-4 * Normal(generator));
+    command.push_back(0.1 * record.force[i] + 0.05 * Normal(generator));
+  }
+  record.covariates = {{.name = "volts", .unit = "V", .values = volts},
+                       {.name = "bar", .unit = "bar", .values = pressure},
+                       {.name = "command", .unit = "V", .values = command}};
+  return record;
+}
+
+TEST(Covariates, ThatAreOneChannelAreOneCauseByTheLastOfThem) {
+  const FitResult fit = Fitted(WithPressure());
+  EXPECT_EQ(FirstOf(fit), "covariate");
+  EXPECT_EQ(fit.adequacy.causes.front().option, "--covariate bar");
+  const auto count = std::ranges::count(fit.adequacy.causes, "covariate", &Cause::code);
+  EXPECT_EQ(count, 1) << "neither the volts, nor what follows the force itself";
+}
+
+TEST(Covariates, ThatAreFittedAlreadyInAnotherUnitAreNoCause) {
+  FitOptions options;
+  options.covariates = {"volts"};
+  EXPECT_EQ(Find(Fitted(WithPressure(), options), "covariate"), nullptr);
+}
+
+// --- advice
+
+std::string Accepted(const Stages& stages, std::string_view wanted) {
+  return AcceptedOptions(stages.problem, stages.options, wanted);
+}
+
+TEST(Advice, IsWithheldWhereTheProgramWouldRefuseIt) {
+  Record record = With([](const Place&) { return 0.0; });
+  EXPECT_EQ(Accepted(Stages(record), "--viscous fit"), "--viscous fit");
+  EXPECT_EQ(Accepted(Stages(record), "--no-such-option"), "");
+  EXPECT_EQ(Accepted(Stages(record), "--viscous fit --no-such-option fit"), "");
+  Record untimed = record;
+  untimed.time.clear();
+  EXPECT_EQ(Accepted(Stages(untimed), "--viscous fit"), "");
+  EXPECT_EQ(Accepted(Stages(untimed), "--lag fit"), "--lag fit") << "in samples";
+  FitOptions dahl;
+  dahl.model = &Model("dahl");
+  EXPECT_EQ(Accepted(Stages(record, dahl), "--asymmetry fit"), "");
+  EXPECT_EQ(Accepted(Stages(record, {}, InitialState::kSteady), "--asymmetry fit"), "");
+  FitOptions viscous;
+  viscous.terms = {"viscous"};
+  EXPECT_EQ(Accepted(Stages(record, viscous), "--viscous fit --drift"), "--drift");
+  FitOptions held;
+  held.fixed["viscous"] = 1.0;
+  EXPECT_EQ(Accepted(Stages(record, held), "--viscous fit"), "") << "two values of one option";
+}
+
+TEST(Advice, OfAnAsymmetryNamesTheInitialStateThatItNeeds) {
+  const Record record = With([](const Place&) { return 0.0; });
+  EXPECT_EQ(Accepted(Stages(record), "--asymmetry fit"), "--asymmetry fit --initial-state virgin");
+  FitOptions asymmetric;
+  asymmetric.terms = {"asymmetry"};
+  EXPECT_EQ(Accepted(Stages(record, asymmetric), "--lag fit"), "--lag fit --initial-state virgin");
+  asymmetric.initial_state = InitialState::kVirgin;
+  EXPECT_EQ(Accepted(Stages(record, asymmetric), "--lag fit"), "--lag fit");
+}
+
+}  // namespace
+}  // namespace mindahl::identification::causes_test
