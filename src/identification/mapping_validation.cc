@@ -160,7 +160,7 @@ Errors Compare(const Trial& trial, const FitResult& fit) {
   CompareContact(trial, fit.law, errors);
   const auto judge = [&](const char* name, double value) {
     const ParameterEstimate& estimate = *fit.Find(name);
-    if (estimate.identifiability != Identifiability::kIdentifiable) {
+    if (!estimate.is_known()) {
       errors.undetermined = true;
       return;
     }
