@@ -27,7 +27,7 @@ def request_of(
     *, model: str, initial_state: str, force_sign: str, offsets: Union[bool, str],
     terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
     starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
-    noise_in: str = "force",
+    noise_in: str = "force", term_choice: Union[str, Sequence[str]] = "none",
 ) -> _mindahl.FitRequest:
     request = _mindahl.FitRequest()
     request.model = model
@@ -39,6 +39,7 @@ def request_of(
     request.fix = assignments("fix", fix)
     request.start = assignments("start", start)
     request.bound = bounds(bound)
+    request.term_choice = term_choice if isinstance(term_choice, str) else ",".join(term_choice)
     request.loss = loss
     request.starts = count("starts", starts, 1)
     request.seed = count("seed", seed, 0)
@@ -63,6 +64,7 @@ def fit(
     noise_in: str = "force", offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
     asymmetry: Optional[Asked] = None, drift: bool = False,
+    terms: Union[str, Sequence[str]] = "none",
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
@@ -98,6 +100,8 @@ def fit(
         rig_stiffness [N/m], viscous [N s/m], lag [s], asymmetry [-] of slip forces
             slip_force·(1 ± asymmetry): a known value, or "fit".
         plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
+        terms: "auto" adds those that the record requires, one at a time by predicting cycles
+            held out of the fit; "none"; or names of what is fitted.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
         fix, start: parameter to value; bound: parameter to (low, high); SI units.
@@ -127,7 +131,7 @@ def fit(
                "lag": lag, "asymmetry": asymmetry, "drift": drift},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
-        reversal_gate=reversal_gate)
+        reversal_gate=reversal_gate, term_choice=terms)
     request.cycles = "" if cycles is None else pair("cycles", cycles)
     request.samples = "" if samples is None else pair("samples", samples)
     request.skip_cycles = count("skip_cycles", skip_cycles, 0)

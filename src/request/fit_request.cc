@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mindahl/core/error.h"
+#include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/request/one_of.h"
@@ -142,6 +143,36 @@ void ApplyCovariates(const std::vector<std::string>& texts, FitOptions& fit) {
   }
 }
 
+/// Names of groups of terms, each of which is fitted; nothing where they are chosen or none.
+void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
+  if (request.term_choice == kNoTerms || request.term_choice == kAutomatic) return;
+  std::vector<std::string_view> names = {kAutomatic, kNoTerms};
+  for (const identification::TermGroup& group : identification::TermGroups()) {
+    names.push_back(group.name);
+  }
+  std::vector<std::string_view> given;
+  for (std::string_view left = request.term_choice;;) {
+    const std::size_t comma = left.find(',');
+    const std::string_view name = left.substr(0, comma);
+    RequireOneOf("--terms", name, names);
+    if (std::ranges::find(given, name) != given.end()) ThrowTwice("--terms", name);
+    given.push_back(name);
+    const identification::TermGroup* group = identification::FindTermGroup(name);
+    if (group == nullptr) {
+      throw InputError(fmt::format("--terms: '{}' stands alone: write auto, none or names", name));
+    }
+    for (const std::string_view term : group->terms) {
+      if (request.terms.contains(term)) {
+        throw InputError(fmt::format("--terms {} and {} say the same: give one of the two", name,
+                                     identification::FindTerm(term)->option));
+      }
+      ApplyTerm(*identification::FindTerm(term), std::string(kFitIt), fit);
+    }
+    if (comma == std::string_view::npos) return;
+    left.remove_prefix(comma + 1);
+  }
+}
+
 loop::CountRange ParseCountRange(std::string_view text, std::string_view option) {
   constexpr std::string_view kForm = "LO:HI, counted from 1, e.g. 2:5";
   const auto [first, last] = Split(text, ':', option, kForm);
@@ -169,6 +200,7 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
     if (name != kDriftOfForce) refuse(identification::FindTerm(name)->option, kBeside);
   }
   if (!request.covariates.empty()) refuse("--covariate", kBeside);
+  if (request.term_choice != kNoTerms) refuse("--terms", kBeside);
   if (request.model == kAutomatic) {
     refuse("--model auto", "models are chosen by fits of the force; name one");
   }
@@ -308,6 +340,7 @@ FitOptions MakeFitOptions(const FitRequest& options) {
     ApplyTerm(*identification::FindTerm(is_of_displacement ? kDriftOfDisplacement : name), text,
               fit);
   }
+  ApplyTermNames(options, fit);
   ApplyCovariates(options.covariates, fit);
   if (!options.cycles.empty()) preparation.cycles = ParseCountRange(options.cycles, "--cycles");
   if (!options.samples.empty()) preparation.samples = ParseCountRange(options.samples, "--samples");
