@@ -78,7 +78,9 @@ def track(
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
-    drift: bool = False, terms: Union[str, Sequence[str]] = "none",
+    drift: bool = False, speed_exponent: Optional[Asked] = None,
+    inertia: Optional[Asked] = None, slip_position: Optional[str] = None,
+    slip_speed: Optional[Asked] = None, ripple: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
     fix: Optional[Mapping[str, float]] = None,
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
     loss: str = "none", starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
@@ -106,7 +108,9 @@ def track(
     request.fit = request_of(
         model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
-               "lag": lag, "asymmetry": None, "drift": drift},  # cycles have no column for it
+               "lag": lag, "asymmetry": None, "drift": drift,  # cycles have no column for that one
+               "speed_exponent": speed_exponent, "inertia": inertia,
+               "slip_position": slip_position, "slip_speed": slip_speed, "ripple": ripple},
         covariate=None, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate, term_choice=terms)

@@ -32,7 +32,9 @@ struct TermCandidate {
   [[nodiscard]] std::size_t size() const { return terms.size() + (covariate.empty() ? 0 : 1); }
   [[nodiscard]] bool is_lag() const { return considered.name == "lag"; }
   [[nodiscard]] bool is_of_speed() const {
-    return std::ranges::find(terms, "viscous") != terms.end();
+    return std::ranges::any_of(terms, [](const std::string& term) {
+      return term == "viscous" || term == "speed_exponent" || term == "slip_speed";
+    });
   }
 };
 
@@ -154,7 +156,8 @@ std::optional<double> FirstGuess(std::string_view term, const FitResult& law) {
 }
 
 /// True if a fit has a slip force that another one has lost: the interval that was closed is open,
-/// or, of a loop that mostly slides, Tc ran away from the half gap that was measured.
+/// or, of a loop that mostly slides, Tc left the half gap that was measured by more than half of
+/// it.
 /// @param widest_ratio  of the ends of an interval that is closed
 bool LosesSlipForce(const FitResult& without, const FitResult& with, double widest_ratio) {
   constexpr double kMostlySlides = 0.5;  // energy ratio
@@ -167,8 +170,19 @@ bool LosesSlipForce(const FitResult& without, const FitResult& with, double wide
   if (is_closed(without) && !is_closed(with)) return true;
   const loop::LoopFacts& facts = without.WidestRecord().facts;
   if (!facts.half_gap || !(facts.energy_ratio > kMostlySlides)) return false;
-  const double limit = kRunsAway * std::abs(*facts.half_gap);
-  return without.law.slip_force <= limit && with.law.slip_force > limit;
+  const auto is_that_of_the_gap = [&](const FitResult& fit) {
+    const double ratio = fit.law.slip_force / std::abs(*facts.half_gap);
+    return ratio <= kRunsAway && ratio >= 1 / kRunsAway;
+  };
+  return is_that_of_the_gap(without) && !is_that_of_the_gap(with);
+}
+
+/// True if a mass or a damping is negative: the term stands for something else.
+bool IsUnphysical(const FitResult& fit) {
+  return std::ranges::any_of(fit.parameters, [](const ParameterEstimate& estimate) {
+    const bool is_positive = estimate.name == "inertia" || estimate.name == "viscous";
+    return is_positive && estimate.status != ParameterStatus::kFixed && estimate.value < 0;
+  });
 }
 
 class Selection {
@@ -188,8 +202,8 @@ class Selection {
   bool Predict(CandidateModel& model);
   void Judge(const CandidateModel& base, const CandidateModel& trial,
              ConsideredTerm& considered) const;
-  TermCandidate* Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
-                       double effective_samples);
+  bool Round(std::vector<TermCandidate>& candidates, CandidateModel& base, FitResult& judged);
+  bool Accept(CandidateModel& model, FitResult& judged);
   [[nodiscard]] double SquaresOf(const FitResult& fit) const;
 
   std::span<const RecordView> records_;
@@ -314,18 +328,19 @@ void Selection::Judge(const CandidateModel& base, const CandidateModel& trial,
   considered.p_value = t > 0 ? beyond : 1 - beyond;
 }
 
-/// Moves to the model with the best candidate that is no chance; null where there is none.
-TermCandidate* Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
-                                double effective_samples) {
-  constexpr std::size_t kJudged = 3;
+/// Moves to the model with the best candidate that is no chance; false where there is none.
+bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
+                      FitResult& judged) {
+  constexpr std::size_t kPredicted = 4;
   constexpr double kHopeless = 0.1;  // of the least gain: not tried again in later rounds
-  const Evidence evidence(samples_.count,
-                          std::min(effective_samples, static_cast<double>(samples_.count)));
+  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
+                                                   static_cast<double>(samples_.count)));
   const double before = evidence.Aicc(base.sum_of_squares, CountFreeParameters(base.fit));
   struct Trial {
     TermCandidate* candidate;
     CandidateModel model;
     double delta_aicc;
+    double rank;  // ln of the rms with each parameter taken for worth the least gain; or ΔAICc
   };
   std::vector<Trial> trials;
   double least_of_speed = std::numeric_limits<double>::infinity();
@@ -341,36 +356,79 @@ TermCandidate* Selection::Round(std::vector<TermCandidate>& candidates, Candidat
     considered.p_value =
         ratio > 0 ? PValueOfChiSquared(ratio, static_cast<double>(candidate.size())) : 1.0;
     considered.is_predicted = false;
-    if (considered.obstacle == "rate_dependent") considered.obstacle = "";
+    if (considered.obstacle != "confounded") considered.obstacle = "";
     candidate.is_given_up =
         !result_.added.empty() && considered.gain < kHopeless * selection_.smallest_gain;
     if (candidate.is_of_speed()) least_of_speed = std::min(least_of_speed, model->sum_of_squares);
     const double delta =
         evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) - before;
-    trials.push_back({&candidate, std::move(*model), delta});
+    const double rank = parts_.empty()
+                            ? delta
+                            : std::log(model->sum_of_squares) / 2 +
+                                  selection_.smallest_gain * static_cast<double>(candidate.size());
+    trials.push_back({&candidate, std::move(*model), delta, rank});
   }
-  std::ranges::stable_sort(trials, {}, &Trial::delta_aicc);
+  std::ranges::stable_sort(trials, {}, &Trial::rank);
   const double chance = selection_.chance / static_cast<double>(std::max<std::size_t>(tried, 1));
-  std::size_t judged = 0;
+  // Of terms that another candidate has among others, where these hardly gain more.
+  const auto simpler_does = [&](const Trial& trial) {
+    const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
+    return std::ranges::any_of(trials, [&](const Trial& other) {
+      return other.candidate->terms.size() < trial.candidate->terms.size() &&
+             other.candidate->covariate.empty() &&
+             std::ranges::all_of(other.candidate->terms,
+                                 [&](const std::string& term) {
+                                   return std::ranges::find(trial.candidate->terms, term) !=
+                                          trial.candidate->terms.end();
+                                 }) &&
+             other.model.sum_of_squares <= nearly * trial.model.sum_of_squares;
+    });
+  };
+  std::size_t predicted = 0;
   for (Trial& trial : trials) {
     ConsideredTerm& considered = trial.candidate->considered;
-    if (!(trial.delta_aicc < 0) || considered.gain < selection_.smallest_gain) continue;
+    if (simpler_does(trial)) continue;
+    if (parts_.empty() && !(trial.delta_aicc < 0)) continue;
+    if (considered.gain < selection_.smallest_gain) continue;
     if (considered.obstacle == "confounded") continue;
     if (trial.candidate->is_lag() && trial.model.sum_of_squares > least_of_speed / 2) {
       considered.obstacle = "rate_dependent";
       continue;
     }
-    if (judged == kJudged) break;
-    ++judged;
+    if (IsUnphysical(trial.model.fit)) {
+      considered.obstacle = "unphysical";
+      continue;
+    }
+    if (predicted == kPredicted) break;
+    ++predicted;
     if (!parts_.empty()) {
       if (!Predict(base) || !Predict(trial.model)) continue;
       Judge(base, trial.model, considered);
     }
     if (!(considered.p_value < chance) || considered.gain < selection_.smallest_gain) continue;
+    if (!Accept(trial.model, judged)) {
+      considered.obstacle = "confounded";
+      continue;
+    }
+    considered.added = true;
+    result_.added.push_back(considered.name);
     base = std::move(trial.model);
-    return trial.candidate;
+    return true;
   }
-  return nullptr;
+  return false;
+}
+
+/// True if a larger model keeps the slip force of the one that was judged, which it then replaces.
+bool Selection::Accept(CandidateModel& model, FitResult& judged) {
+  // Its minimum may be elsewhere.
+  std::optional<CandidateModel> anew = FitAnew(model.options);
+  if (anew && anew->sum_of_squares < model.sum_of_squares) model = std::move(*anew);
+  Fitter fitter(ContinuedFrom(model.fit, model.options));
+  const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
+  if (!IsFitted(now) || IsUnphysical(now)) return false;
+  if (LosesSlipForce(judged, now, model.options.thresholds.widest_ratio)) return false;
+  judged = now;
+  return true;
 }
 
 void Selection::Run(const FitOptions& options) {
@@ -393,23 +451,7 @@ void Selection::Run(const FitOptions& options) {
 
   std::vector<TermCandidate> candidates = ListTermCandidates(records_, options, result_.fit);
   FitResult judged = result_.fit;
-  while (result_.added.size() < selection_.most_terms) {
-    CandidateModel larger = base;
-    TermCandidate* added = Round(candidates, larger, judged.residuals.effective_samples);
-    if (added == nullptr) break;
-    // A larger model may have its minimum elsewhere.
-    std::optional<CandidateModel> anew = FitAnew(larger.options);
-    if (anew && anew->sum_of_squares < larger.sum_of_squares) larger = std::move(*anew);
-    Fitter fitter(ContinuedFrom(larger.fit, larger.options));
-    const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
-    if (!IsFitted(now) || LosesSlipForce(judged, now, options.thresholds.widest_ratio)) {
-      added->considered.obstacle = "confounded";
-      continue;
-    }
-    added->considered.added = true;
-    result_.added.push_back(added->considered.name);
-    base = std::move(larger);
-    judged = now;
+  while (result_.added.size() < selection_.most_terms && Round(candidates, base, judged)) {
     if (judged.adequacy.verdict == AdequacyVerdict::kAdequate) break;
   }
   for (const TermCandidate& candidate : candidates)
@@ -421,32 +463,35 @@ void Selection::Run(const FitOptions& options) {
   std::ranges::stable_sort(result_.considered, {}, place);
   if (result_.added.empty()) return;
   result_.options = base.options;
-  Fitter last(base.options);
-  const double best = base.fit.rms;
-  result_.fit = last.Fit(records_, Depth::kThorough);
-  if (!(result_.fit.rms > best)) return;
-  // What was reached from the smaller models is the better minimum.
-  Fitter from_smaller([&] {
-    FitOptions continued = base.options;
-    continued.initial_state = base.fit.initial_state;
-    for (const ParameterEstimate& parameter : base.fit.parameters) {
-      if (parameter.status != ParameterStatus::kFixed) {
-        continued.start[parameter.name] = parameter.value;
-      }
+  FitOptions from_here = base.options;
+  for (const ParameterEstimate& parameter : base.fit.parameters) {
+    if (parameter.status != ParameterStatus::kFixed) {
+      from_here.start[parameter.name] = parameter.value;
     }
-    return continued;
-  }());
-  const FitResult& other = from_smaller.Fit(records_, Depth::kThorough);
-  if (other.rms < result_.fit.rms) result_.fit = other;
+  }
+  Fitter last(from_here);
+  result_.fit = last.Fit(records_, Depth::kThorough);
 }
 
 }  // namespace
 
 std::span<const TermGroup> TermGroups() {
   static const std::vector<TermGroup> groups = {
-      {"viscous", {"viscous"}},         {"plateau_slope", {"plateau_slope"}},
-      {"force_drift", {"force_drift"}}, {"rig_stiffness", {"rig_stiffness"}},
-      {"asymmetry", {"asymmetry"}},     {"lag", {"lag"}},
+      {"viscous", {"viscous"}},
+      {"speed_exponent", {"speed_exponent", "viscous"}},
+      {"inertia", {"inertia"}},
+      {"plateau_slope", {"plateau_slope"}},
+      {"slip_speed", {"slip_speed", "slip_speed_exponent"}},
+      {"slip_position", {"slip_slope", "plateau_slope"}},
+      {"slip_position_quadratic",
+       {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"}},
+      {"ripple",
+       {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
+        "ripple_sine_down"}},
+      {"force_drift", {"force_drift"}},
+      {"rig_stiffness", {"rig_stiffness"}},
+      {"asymmetry", {"asymmetry"}},
+      {"lag", {"lag"}},
   };
   return groups;
 }

@@ -80,7 +80,7 @@ const std::vector<Field<identification::ConsideredTerm>>& ConsideredTermFields()
        [](const Item& item) { return Flag(item.is_predicted); }},
       {"added", "", "whether the fit has it", [](const Item& item) { return Flag(item.added); }},
       {"obstacle", "",
-       "why it is not added though it gains: confounded, rate_dependent; may be empty",
+       "why it is not added though it gains: confounded, rate_dependent, unphysical; may be empty",
        [](const Item& item) { return Text(item.obstacle); }},
   };
   return fields;

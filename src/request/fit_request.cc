@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <span>
 #include <utility>
@@ -26,6 +27,9 @@ namespace {
 // --drift is of the channel that is fitted.
 constexpr std::string_view kDriftOfForce = "force_drift";
 constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
+
+// The term that has the option --slip-position.
+constexpr std::string_view kSlipPosition = "slip_slope";
 
 double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
   double value = 0.0;
@@ -83,6 +87,22 @@ std::map<std::string, Interval> ParseBounds(const std::vector<std::string>& text
     if (!bounds.emplace(name, parsed).second) ThrowTwice("--bound", name);
   }
   return bounds;
+}
+
+/// Fits the other terms of a group, those that are not given.
+void ApplyCompanions(std::string_view group, std::string_view but, FitOptions& fit) {
+  for (const std::string_view name : identification::FindTermGroup(group)->terms) {
+    const std::string term(name);
+    if (name == but || fit.fixed.contains(term)) continue;
+    if (std::ranges::find(fit.terms, term) == fit.terms.end()) fit.terms.push_back(term);
+  }
+}
+
+/// --slip-position linear or quadratic.
+void ApplySlipPosition(std::string_view text, FitOptions& fit) {
+  constexpr std::array<std::string_view, 2> kForms = {"linear", "quadratic"};
+  RequireOneOf("--slip-position", text, kForms);
+  ApplyCompanions(text == kForms[0] ? "slip_position" : "slip_position_quadratic", "", fit);
 }
 
 /// What was asked of a term: to be fitted, or a value that is known.
@@ -161,13 +181,11 @@ void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
     if (group == nullptr) {
       throw InputError(fmt::format("--terms: '{}' stands alone: write auto, none or names", name));
     }
-    for (const std::string_view term : group->terms) {
-      if (request.terms.contains(term)) {
-        throw InputError(fmt::format("--terms {} and {} say the same: give one of the two", name,
-                                     identification::FindTerm(term)->option));
-      }
-      ApplyTerm(*identification::FindTerm(term), std::string(kFitIt), fit);
+    if (const std::string_view term = group->terms.front(); request.terms.contains(term)) {
+      throw InputError(fmt::format("--terms {} and {} say the same: give one of the two", name,
+                                   identification::FindTerm(term)->option));
     }
+    ApplyCompanions(name, "", fit);
     if (comma == std::string_view::npos) return;
     left.remove_prefix(comma + 1);
   }
@@ -337,8 +355,16 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   for (const auto& [name, text] : options.terms) {
     const bool is_of_displacement =
         name == kDriftOfForce && fit.response() == loop::Channel::kDisplacement;
+    if (name == kSlipPosition) continue;
     ApplyTerm(*identification::FindTerm(is_of_displacement ? kDriftOfDisplacement : name), text,
               fit);
+  }
+  // Those that bring others come last: what is given of these is known.
+  for (const auto& [name, text] : options.terms) {
+    if (name == kSlipPosition) ApplySlipPosition(text, fit);
+    if (name == "speed_exponent") ApplyCompanions("speed_exponent", name, fit);
+    if (name == "slip_speed_exponent") ApplyCompanions("slip_speed", name, fit);
+    if (name == "ripple_period") ApplyCompanions("ripple", name, fit);
   }
   ApplyTermNames(options, fit);
   ApplyCovariates(options.covariates, fit);

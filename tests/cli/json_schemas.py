@@ -53,6 +53,7 @@ COMMANDS = [
     (f"fit {BALL} --fix sigma=4e7 --drift --plateau-slope --viscous fit --lag fit", 0),
     (f"fit {BALL} --terms auto", 0),
     ("fit walk.csv --terms auto", 0),
+    (f"fit {BALL} --speed-exponent 0.5 --inertia fit --slip-position quadratic --ripple 1e-7", None),
     (f"fit {BALL} --asymmetry fit", 0),
     (f"fit {BALL} --asymmetry 0.1 --fix slip_force=15", 0),
     (f"fit {BALL} --backbone backbone.csv", 0),

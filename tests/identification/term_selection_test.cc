@@ -112,14 +112,38 @@ TEST(TermSelection, ForceOfPositionIsAddedAlone) {
 }
 
 TEST(TermSelection, TwoForcesAreAddedTheLargerFirst) {
-  const double viscous = 0.2 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
-  const double slope = 0.06 * kLaw.slip_force / kReach;
+  const double viscous = 0.06 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  const double slope = 0.2 * kLaw.slip_force / kReach;
   Record record = Clean();
   for (std::size_t i = 0; i < record.size(); ++i) {
     record.force[i] += viscous * SpeedAt(i) + slope * record.displacement[i];
   }
   const TermSelection selection = Select(Noisy(record, 4));
-  EXPECT_THAT(selection.added, ElementsAre("viscous", "plateau_slope"));
+  EXPECT_THAT(selection.added, ElementsAre("plateau_slope", "viscous"));
+}
+
+TEST(TermSelection, SlipForceOfTheSpeedIsAddedAndTcIsThatOfTheHalfGap) {
+  Record record = Clean();
+  const double largest = kReach * 2 * std::numbers::pi / kPeriod;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] *= 1 + 0.6 * (std::sqrt(std::abs(SpeedAt(i)) / largest) - 1);
+  }
+  const TermSelection selection = Select(Noisy(record, 8));
+  ASSERT_THAT(selection.added, ::testing::Not(IsEmpty()));
+  EXPECT_EQ(selection.added.front(), "slip_speed");
+  // A third of the half gap is as much as a term may take from it or give to it.
+  const double half_gap = *selection.fit.WidestRecord().facts.half_gap;
+  EXPECT_GT(selection.fit.law.slip_force, half_gap / 1.5);
+  EXPECT_LT(selection.fit.law.slip_force, half_gap * 1.5);
+}
+
+TEST(TermSelection, NegativeDampingIsNotAdded) {
+  const double viscous = -0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
+  const TermSelection selection = Select(Noisy(record, 9));
+  EXPECT_FALSE(TermOf(selection, "viscous").added);
+  EXPECT_EQ(TermOf(selection, "viscous").obstacle, "unphysical");
 }
 
 TEST(TermSelection, LagIsAddedWhereNoForceOfSpeedDoesHalfAsWell) {

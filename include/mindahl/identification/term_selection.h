@@ -47,7 +47,7 @@ struct ConsideredTerm {
   double p_value = 1.0;  ///< that the gain is chance
   bool is_predicted = false;
   bool added = false;
-  /// Why it was not added though it gains: "" or "confounded", "same_channel", "rate_dependent".
+  /// Why it was not added though it gains: "" or "confounded", "rate_dependent", "unphysical".
   std::string_view obstacle;
 };
 
@@ -65,13 +65,13 @@ struct TermSelection {
 /// Fits a record with the terms that it requires and no others (forward selection).
 ///
 /// A record that the law describes adequately gets none: its fit is Fit()'s to the last digit.
-/// Otherwise each candidate for which there are data is fitted from the solution without it, and
-/// the one whose AICc on effective samples falls most is judged on cycles held out of the fit, or
-/// on strokes where there are fewer than four cycles, or, where there are fewer than four strokes,
-/// by AICc alone. It is added where the paired gain of prediction is no chance (one-sided t of the
-/// logarithms of the ratios of errors, with the correlation of folds, Nadeau & Bengio 2003) and
-/// worth `smallest_gain`; else the next is judged, up to three a round. The rounds end when none is
-/// added or the model is adequate.
+/// Otherwise each candidate for which there are data is fitted from the solution without it. In the
+/// order of their rms, each parameter being worth `smallest_gain` of it, up to four are judged on
+/// cycles held out of the fit, or on strokes where there are fewer than four cycles; where there
+/// are fewer than four strokes AICc decides. One is added where the paired gain of prediction is no
+/// chance (one-sided t of the logarithms of the ratios of errors, with the correlation of folds,
+/// Nadeau & Bengio 2003) and worth `smallest_gain`, and where the slip force is not lost by it. The
+/// rounds end when none is added or the model is adequate.
 ///
 /// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
 /// a candidate before it or of the velocity, or where it follows the contact's force, |r| > 0.3:
