@@ -27,7 +27,7 @@ def request_of(
     *, model: str, initial_state: str, force_sign: str, offsets: Union[bool, str],
     terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
     starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
-    noise_in: str = "force",
+    noise_in: str = "force", term_choice: Union[str, Sequence[str]] = "none",
 ) -> _mindahl.FitRequest:
     request = _mindahl.FitRequest()
     request.model = model
@@ -39,6 +39,7 @@ def request_of(
     request.fix = assignments("fix", fix)
     request.start = assignments("start", start)
     request.bound = bounds(bound)
+    request.term_choice = term_choice if isinstance(term_choice, str) else ",".join(term_choice)
     request.loss = loss
     request.starts = count("starts", starts, 1)
     request.seed = count("seed", seed, 0)
@@ -49,7 +50,9 @@ def request_of(
         asked = terms[option.removeprefix("--").replace("-", "_")]
         if asked is None or asked is False:
             continue
-        request.set_term(name, "fit" if asked is True else number_text(option, asked))
+        is_word = option == "--slip-position" and isinstance(asked, str)
+        request.set_term(name, "fit" if asked is True else
+                         asked if is_word else number_text(option, asked))
     return request
 
 
@@ -63,6 +66,10 @@ def fit(
     noise_in: str = "force", offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
     asymmetry: Optional[Asked] = None, drift: bool = False,
+    speed_exponent: Optional[Asked] = None, inertia: Optional[Asked] = None,
+    slip_position: Optional[str] = None, slip_speed: Optional[Asked] = None,
+    ripple: Optional[Asked] = None,
+    terms: Union[str, Sequence[str]] = "none",
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
@@ -97,7 +104,14 @@ def fit(
         offsets: of force [N] and displacement [m], fitted unless False.
         rig_stiffness [N/m], viscous [N s/m], lag [s], asymmetry [-] of slip forces
             slip_force·(1 ± asymmetry): a known value, or "fit".
+        speed_exponent [-], of a force C·sgn(v)|v|^m in place of the viscous one, inertia [kg],
+            ripple: period [m] of a force over the position; likewise.
+        slip_speed [-]: exponent of a slip force that depends on the speed.
+        slip_position: "linear" or "quadratic", a slip force that depends on position, differently
+            in the two directions.
         plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
+        terms: "auto" adds those that the record requires, one at a time by predicting cycles
+            held out of the fit; "none"; or names of what is fitted.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
         fix, start: parameter to value; bound: parameter to (low, high); SI units.
@@ -124,10 +138,12 @@ def fit(
         model=model, initial_state=initial_state, force_sign=force_sign, noise_in=noise_in,
         offsets=offsets,
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
-               "lag": lag, "asymmetry": asymmetry, "drift": drift},
+               "lag": lag, "asymmetry": asymmetry, "drift": drift,
+               "speed_exponent": speed_exponent, "inertia": inertia,
+               "slip_position": slip_position, "slip_speed": slip_speed, "ripple": ripple},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
-        reversal_gate=reversal_gate)
+        reversal_gate=reversal_gate, term_choice=terms)
     request.cycles = "" if cycles is None else pair("cycles", cycles)
     request.samples = "" if samples is None else pair("samples", samples)
     request.skip_cycles = count("skip_cycles", skip_cycles, 0)

@@ -75,6 +75,7 @@ class FitRequest:
     noise_in: str
     offsets: str
     covariates: list[str]
+    term_choice: str
     load_window: str
     cycles: str
     samples: str

@@ -78,7 +78,10 @@ def track(
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
-    drift: bool = False, fix: Optional[Mapping[str, float]] = None,
+    drift: bool = False, speed_exponent: Optional[Asked] = None,
+    inertia: Optional[Asked] = None, slip_position: Optional[str] = None,
+    slip_speed: Optional[Asked] = None, ripple: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
+    fix: Optional[Mapping[str, float]] = None,
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
     loss: str = "none", starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
@@ -93,6 +96,7 @@ def track(
     average: so many cycles in a row are one fit. every: one fit of so many that there could be.
     alpha: "cycle", each its own; "shared", one for all cycles: the mean of a first pass by errors.
     broken_rows: of files, "refuse" or "skip". threads: that fit; by default one a core.
+    terms: as of fit(); "auto" chooses by the head of the first source, for all cycles.
     The others: as of fit(), but that model="auto" and covariates are not for single cycles.
     Returns the columns of `mindahl track --output` (docs/track.md), in SI units.
     Warns with FitWarning of what was assumed of columns and units, of uncertain reversals and of
@@ -104,10 +108,12 @@ def track(
     request.fit = request_of(
         model=model, initial_state=initial_state, force_sign=force_sign, offsets=offsets,
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
-               "lag": lag, "asymmetry": None, "drift": drift},  # cycles have no column for it
+               "lag": lag, "asymmetry": None, "drift": drift,  # cycles have no column for that one
+               "speed_exponent": speed_exponent, "inertia": inertia,
+               "slip_position": slip_position, "slip_speed": slip_speed, "ripple": ripple},
         covariate=None, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
-        reversal_gate=reversal_gate)
+        reversal_gate=reversal_gate, term_choice=terms)
     request.normal_load = optional_number("normal_load", normal_load)
     request.average = count("average", average, 1)
     request.every = count("every", every, 1)

@@ -103,6 +103,7 @@ void AddFit(py::module_& module) {
       .def_readwrite("noise_in", &FitRequest::noise_in)
       .def_readwrite("offsets", &FitRequest::offsets)
       .def_readwrite("covariates", &FitRequest::covariates)
+      .def_readwrite("term_choice", &FitRequest::term_choice)
       .def_readwrite("load_window", &FitRequest::load_window)
       .def_readwrite("cycles", &FitRequest::cycles)
       .def_readwrite("samples", &FitRequest::samples)

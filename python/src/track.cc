@@ -23,6 +23,7 @@
 #include "mindahl/io/record_stream.h"
 #include "mindahl/report/quantity.h"
 #include "mindahl/report/units.h"
+#include "mindahl/request/fit_records.h"
 #include "mindahl/request/fit_request.h"
 #include "record.h"
 
@@ -72,6 +73,7 @@ class Run {
   void Begin(const loop::RecordView& head, bool is_torsional, std::string_view source) {
     tracked_.is_torsional = is_torsional;
     reading_ = campaign::ChooseReading(head, fit_);
+    request::ChooseTermsOfCycles(request_.fit, head, fit_);
     if (auto doubt = campaign::DoubtAbout(reading_, source)) Warn(std::move(*doubt));
     tracker_.emplace(campaign::TrackOptions{.fit = fit_,
                                             .together = request_.together,

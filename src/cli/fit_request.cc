@@ -12,6 +12,7 @@
 #include "cli/text_output.h"
 #include "cli/whole_number.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
 
@@ -109,6 +110,14 @@ void AddTermOptions(CLI::App& command, FitRequest& options, const std::string& g
   }
 }
 
+std::string TermGroupNames() {
+  std::string names;
+  for (const identification::TermGroup& group : identification::TermGroups()) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", group.name);
+  }
+  return names;
+}
+
 std::string DescribeParameters() {
   std::string contact;
   std::string record;
@@ -199,6 +208,14 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       ->check(OneOfWords(request::kOnOff))
       ->group(group);
   AddTermOptions(command, options, group);
+  command
+      .add_option("--terms", options.term_choice,
+                  "auto adds the terms that the record requires, one at a time by cycles held\n"
+                  "out of the fit; NAME,NAME,... fits these: " +
+                      TermGroupNames())
+      ->capture_default_str()
+      ->type_name("auto|none|NAME,...")
+      ->group(group);
   command
       .add_flag_callback(
           "--follow-load",

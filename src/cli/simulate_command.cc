@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/added_forces.h"
 #include "cli/commands.h"
 #include "cli/drive_options.h"
 #include "cli/examples.h"
@@ -46,6 +47,7 @@ struct SimulateOptions {
   LawOptions law;
   DriveOptions drive;
   double asymmetry = 0.0;
+  AddedForces forces;
   double force_noise = 0.0;
   double displacement_noise = 0.0;
   std::string method = "exact";
@@ -219,6 +221,11 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
     models::EvaluateForceUnderLoad(law, motion.displacement, motion.normal_load, force);
   }
 
+  if (!options.drive.force_path.empty() && options.forces != AddedForces{}) {
+    throw InputError(
+        "--force-path imposes the whole force: leave out --viscous and whatever else adds to it");
+  }
+  AddForces(options.forces, motion.time, motion.displacement, force);
   WarnOfDoubts(options.law.contact, "simulate", console);
   boost::random::mt19937_64 engine(options.drive.seed);
   AddNoise(force, options.force_noise, engine);
@@ -258,6 +265,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
                    "displacement and Tc(1 - A) where it is not [-]")
       ->type_name("A")
       ->capture_default_str();
+  AddAddedForceOptions(*command, options->forces);
   AddDriveOptions(*command, options->drive);
   AddLoadColumnOptions(*command, options->drive);
   AddForcePathOptions(*command, options->drive);

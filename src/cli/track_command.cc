@@ -46,6 +46,7 @@
 #include "mindahl/io/record_stream.h"
 #include "mindahl/report/quantity.h"
 #include "mindahl/report/units.h"
+#include "mindahl/request/fit_records.h"
 #include "report/statements.h"
 
 namespace mindahl::cli {
@@ -166,7 +167,7 @@ class TrackRun {
 
  private:
   void PoolAlpha();
-  [[nodiscard]] FitOptions OptionsFor(const io::Samples& head, campaign::Reading& reading) const;
+  [[nodiscard]] FitOptions OptionsFor(const io::Samples& head, campaign::Reading& reading);
   void Begin(io::RecordStream& stream, const io::Samples& head);
   void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
   void SayReading() const;
@@ -190,6 +191,7 @@ class TrackRun {
   Messages messages_;
   FitOptions fit_;
   bool is_torsional_ = false;
+  std::string chosen_terms_;
   WhatWasRead reading_;
   Totals totals_;
   campaign::DissipatedEnergy energy_;
@@ -207,10 +209,11 @@ class TrackRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-FitOptions TrackRun::OptionsFor(const io::Samples& head, campaign::Reading& reading) const {
+FitOptions TrackRun::OptionsFor(const io::Samples& head, campaign::Reading& reading) {
   FitOptions fit = request::MakeCycleFitOptions(options_.request);
   if (options_.normal_load) fit.normal_loads = {*options_.normal_load};
   reading = campaign::ChooseReading(campaign::ViewOf(head), fit);
+  chosen_terms_ = request::ChooseTermsOfCycles(options_.request, campaign::ViewOf(head), fit);
   return fit;
 }
 
@@ -278,6 +281,7 @@ void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
 }
 
 void TrackRun::SayReading() const {
+  if (!chosen_terms_.empty()) messages_.Note(chosen_terms_);
   const campaign::Reading& reading = reading_.of_head;
   const double gate = *fit_.preparation.reversal_gate;
   if (!reading.gate_is_given && gate > 0) {

@@ -798,6 +798,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   LeaveOutBeyondLags(given, prepared);
   ScaledRecords data = Scale(prepared, given, &arena);
   AddCovariates(given.covariates, depth >= Depth::kIntervals, prepared, given.offsets, data);
+  AddColumnsOfTerms(given, data);
   if (HasTerm(given, "lag")) SetClocks(data);
   ThinnedRecords thin(data, &arena);
   const Attempt attempt{given, prepared, data, thin, buffers, &arena};

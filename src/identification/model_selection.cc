@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "identification/free_parameters.h"
+#include "identification/held_out.h"
 #include "identification/inference/evidence.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/parameters.h"
@@ -21,30 +22,6 @@ namespace mindahl::identification {
 using loop::RecordView;
 
 namespace {
-
-/// One vector a record, one entry a sample, 1 where it counts.
-using SampleMask = std::vector<std::vector<unsigned char>>;
-
-struct ScoredSamples {
-  SampleMask mask;
-  std::size_t count = 0;
-  double rounding = 0.0;  // [N]: residuals below it mean nothing
-};
-
-/// A closed cycle, [begin, end).
-struct Cycle {
-  std::size_t record = 0;
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  double samples = 0.0;  // that are scored
-};
-
-struct MeanOverCycles {
-  double mean = 0.0;
-  double standard_error = 0.0;
-};
-
-bool IsFitted(const FitResult& fit) { return !fit.parameters.empty(); }
 
 std::vector<std::size_t> Positions(std::size_t count) {
   std::vector<std::size_t> positions(count);
@@ -81,20 +58,6 @@ FitOptions OptionsOf(const ModelScore& score, FitOptions options) {
   options.model = score.model;
   if (score.rig) options.terms.emplace_back("rig_stiffness");
   return options;
-}
-
-ScoredSamples CountedSamples(const FitResult& fit, std::span<const RecordView> records) {
-  ScoredSamples samples;
-  double half_range = 0.0;
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::vector<unsigned char>& counts = fit.records[r].counts;
-    samples.mask.emplace_back(counts);
-    samples.count += counts.size() - fit.records[r].left_out;
-    const auto [lowest, highest] = std::ranges::minmax(records[r].force);
-    half_range = std::max(half_range, highest / 2 - lowest / 2);
-  }
-  samples.rounding = kRoundingRms * half_range;
-  return samples;
 }
 
 /// The residuals [N] that are scored, one series a record.
@@ -149,12 +112,6 @@ void LeaveOutOutliers(ScoredSamples& samples, std::span<const FitResult> fits) {
   }
 }
 
-/// Sum of squares [–], in units of rounding, whose own is what Evidence takes for nothing.
-double SumOfSquares(double rms, const ScoredSamples& samples) {
-  const double in_units = kRoundingRms * rms / samples.rounding;
-  return static_cast<double>(samples.count) * in_units * in_units;
-}
-
 void WeighCandidates(std::vector<ModelScore>& scores) {
   double least = std::numeric_limits<double>::infinity();
   for (const ModelScore& score : scores) {
@@ -171,114 +128,14 @@ void WeighCandidates(std::vector<ModelScore>& scores) {
   }
 }
 
-/// From one reversal to the next but one. A single cycle of a record is none: without it nothing of
-/// the kind would be left to fit.
-std::vector<Cycle> ClosedCycles(const FitResult& fit, const SampleMask& mask,
-                                std::size_t skip_cycles) {
-  std::vector<Cycle> cycles;
-  const std::size_t first = skip_cycles > 0 ? 2 * skip_cycles - 1 : 0;
-  for (std::size_t r = 0; r < mask.size(); ++r) {
-    const std::vector<std::size_t>& reversals = fit.records[r].reversals;
-    std::vector<Cycle> closed;
-    for (std::size_t j = first; j + 2 < reversals.size(); j += 2) {
-      Cycle cycle{.record = r, .begin = reversals[j], .end = reversals[j + 2]};
-      for (std::size_t i = cycle.begin; i < cycle.end; ++i) cycle.samples += mask[r][i];
-      if (cycle.samples > 0) closed.push_back(cycle);
-    }
-    if (closed.size() >= 2) cycles.insert(cycles.end(), closed.begin(), closed.end());
-  }
-  return cycles;
-}
-
-/// Those that the options hold out, and the cycles of one fold: every so many, so that slow changes
-/// of the contact are in every fold.
-std::vector<std::vector<bool>> HeldOut(std::span<const RecordView> records,
-                                       const FitOptions& options, std::span<const Cycle> cycles,
-                                       std::size_t fold, std::size_t folds) {
-  std::vector<std::vector<bool>> mask = options.preparation.held_out;
-  mask.resize(records.size());
-  for (std::size_t r = 0; r < records.size(); ++r) mask[r].resize(records[r].size(), false);
-  for (std::size_t c = fold; c < cycles.size(); c += folds) {
-    std::vector<bool>& held_out = mask[cycles[c].record];
-    std::fill(held_out.begin() + static_cast<std::ptrdiff_t>(cycles[c].begin),
-              held_out.begin() + static_cast<std::ptrdiff_t>(cycles[c].end), true);
-  }
-  return mask;
-}
-
-/// Options under which the fit is found again from where it is.
-FitOptions Continued(const FitResult& fit, bool rig, FitOptions options) {
-  options.model = fit.model;
-  if (rig) options.terms.emplace_back("rig_stiffness");
-  options.initial_state = fit.initial_state;
-  options.preparation.force_sense = fit.force_sense;
-  options.starts = 1;
-  for (const ParameterEstimate& parameter : fit.parameters) {
-    if (parameter.status == ParameterStatus::kFixed) continue;
-    // One that ran to a bound stays there.
-    (parameter.status == ParameterStatus::kFree ? options.start : options.fixed)[parameter.name] =
-        parameter.value;
-  }
-  return options;
-}
-
-/// Mean square error [N²] of each cycle's prediction; empty where a fit failed.
-std::vector<double> PredictCycles(std::span<const RecordView> records, const FitOptions& options,
-                                  const FitResult& full, bool rig, const ScoredSamples& samples,
-                                  std::span<const Cycle> cycles, std::size_t folds) {
-  std::vector<double> mean_square(cycles.size(), 0.0);
-  FitOptions partial = Continued(full, rig, options);
-  for (std::size_t fold = 0; fold < folds; ++fold) {
-    partial.preparation.held_out = HeldOut(records, options, cycles, fold, folds);
-    auto left = static_cast<double>(samples.count);
-    for (std::size_t c = fold; c < cycles.size(); c += folds) left -= cycles[c].samples;
-    if (left < static_cast<double>(CountFreeParameters(full))) return {};
-    Fitter fitter(partial);
-    const FitResult& fit = fitter.Fit(records, Depth::kEstimate);
-    if (!fit.converged) return {};
-    for (std::size_t c = fold; c < cycles.size(); c += folds) {
-      const Cycle& cycle = cycles[c];
-      for (std::size_t i = cycle.begin; i < cycle.end; ++i) {
-        if (samples.mask[cycle.record][i] == 0) continue;
-        const double error = fit.records[cycle.record].residual[i];
-        mean_square[c] += error * error / cycle.samples;
-      }
-    }
-  }
-  return mean_square;
-}
-
-/// Mean over samples, with its error from the scatter between cycles. The folds' fits share most of
-/// their samples, so that their predictions err together: Nadeau & Bengio (2003) add to the
-/// variance of a mean over K folds, 1/K, the ratio of predicted to fitted samples, 1/(K − 1).
-MeanOverCycles Mean(std::span<const double> values, std::span<const Cycle> cycles,
-                    std::size_t folds) {
-  double samples = 0.0;
-  double sum = 0.0;
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    samples += cycles[c].samples;
-    sum += cycles[c].samples * values[c];
-  }
-  MeanOverCycles result{.mean = sum / samples};
-  double squares = 0.0;
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    const double deviation = cycles[c].samples / samples * (values[c] - result.mean);
-    squares += deviation * deviation;
-  }
-  const auto count = static_cast<double>(values.size());
-  const auto parts = static_cast<double>(folds);
-  result.standard_error = std::sqrt(squares * count / (count - 1) * (1 + parts / (parts - 1)));
-  return result;
-}
-
 /// Does `other` predict worse than `best`, by a standard error of the difference or more?
 bool PredictsWorse(std::span<const double> other, std::span<const double> best,
-                   std::span<const Cycle> cycles, std::size_t folds, double rounding) {
+                   std::span<const Part> cycles, std::size_t folds, double rounding) {
   if (other.empty() || best.empty()) return false;
   std::vector<double> difference;
   difference.reserve(cycles.size());
   for (std::size_t c = 0; c < cycles.size(); ++c) difference.push_back(other[c] - best[c]);
-  const MeanOverCycles mean = Mean(difference, cycles, folds);
+  const MeanOverParts mean = Mean(difference, cycles, folds);
   return mean.mean > mean.standard_error + rounding * rounding;
 }
 
@@ -455,7 +312,7 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   WeighCandidates(result.scores);
   FindRedundant(result.scores, fits, evidence, samples, options.thresholds);
 
-  const std::vector<Cycle> cycles =
+  const std::vector<Part> cycles =
       ClosedCycles(best_fit, samples.mask, options.preparation.skip_cycles);
   result.held_out_cycles = cycles.size();
   result.folds = std::min(selection.folds, cycles.size());
@@ -463,13 +320,13 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   for (std::size_t i = 0; i < fits.size() && !cycles.empty(); ++i) {
     ModelScore& score = result.scores[i];
     if (!score.converged || score.redundant) continue;  // those predict as the simpler one does
-    predictions[i] =
-        PredictCycles(records, options, fits[i], score.rig, samples, cycles, result.folds);
+    predictions[i] = PredictParts(records, ContinuedFrom(fits[i], OptionsOf(score, options)),
+                                  score.free_parameters, samples, cycles, result.folds);
     if (predictions[i].empty()) {
       AddRemark(score, "no fit without some of the cycles");
       continue;
     }
-    const MeanOverCycles mean_square = Mean(predictions[i], cycles, result.folds);
+    const MeanOverParts mean_square = Mean(predictions[i], cycles, result.folds);
     score.held_out_rms = std::sqrt(mean_square.mean);
     // d√m = dm/(2√m)
     score.held_out_standard_error =

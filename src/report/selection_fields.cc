@@ -68,6 +68,42 @@ const std::vector<Field<identification::ModelSelection>>& SelectionFields() {
   return fields;
 }
 
+const std::vector<Field<identification::ConsideredTerm>>& ConsideredTermFields() {
+  using Item = identification::ConsideredTerm;
+  static const std::vector<Field<Item>> fields = {
+      {"name", "", "of the term", [](const Item& item) { return Text(item.name); }},
+      {"gain", "-", "fraction by which the rms error of prediction falls with it",
+       [](const Item& item) { return Number(item.gain); }},
+      {"p", "-", "probability that the gain is chance",
+       [](const Item& item) { return Number(item.p_value); }},
+      {"predicted", "", "whether the gain is of held-out parts, else of the fitted samples",
+       [](const Item& item) { return Flag(item.is_predicted); }},
+      {"added", "", "whether the fit has it", [](const Item& item) { return Flag(item.added); }},
+      {"obstacle", "",
+       "why it is not added though it gains: confounded, rate_dependent, unphysical; may be empty",
+       [](const Item& item) { return Text(item.obstacle); }},
+  };
+  return fields;
+}
+
+const std::vector<Field<identification::TermSelection>>& TermSelectionFields() {
+  using Item = identification::TermSelection;
+  static const std::vector<Field<Item>> fields = {
+      {"mode", "", "auto", [](const Item&) { return Text("auto"); }},
+      {"considered", "", "every candidate, those added first",
+       [](const Item& item) { return List(ConsideredTermFields(), item.considered); }},
+      {"added", "", "names of the terms that the fit has, in their order",
+       [](const Item& item) {
+         Value::Array names;
+         for (const std::string& name : item.added) names.push_back(Text(name));
+         return Value{std::move(names)};
+       }},
+      {"held_out_parts", "", "cycles or strokes held out, each predicted once",
+       [](const Item& item) { return Count(item.held_out_parts); }},
+  };
+  return fields;
+}
+
 }  // namespace
 
 void AddSelectionFields(FieldTable& table) {
@@ -76,7 +112,13 @@ void AddSelectionFields(FieldTable& table) {
        [](const Report& report) {
          return report.selection ? Value{Render(SelectionFields(), *report.selection)} : Value{};
        }},
+      {"terms", "", "how terms were chosen; absent unless they were",
+       [](const Report& report) {
+         return report.terms ? Value{Render(TermSelectionFields(), *report.terms)} : Value{};
+       }},
   });
+  table.Describe("terms.", TermSelectionFields());
+  table.Describe("terms.considered[].", ConsideredTermFields());
   table.Describe("model_selection.", SelectionFields());
   table.Describe("model_selection.models[].", ScoreFields());
 }

@@ -110,6 +110,22 @@ std::string SelectionText(const identification::ModelSelection& selection, const
   return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
 }
 
+/// Returns which terms were added and what each gained, in one line.
+std::string TermsText(const identification::TermSelection& terms) {
+  if (terms.added.empty())
+    return terms.considered.empty() ? "" : "terms: none of those tried helps";
+  std::vector<std::string> added;
+  for (const identification::ConsideredTerm& term : terms.considered) {
+    if (!term.added) continue;
+    added.push_back(
+        fmt::format("{} (-{:.0f} %, p = {:.1g})", term.name, 100 * term.gain, term.p_value));
+  }
+  return fmt::format("terms added: {}; rms error of {}", fmt::join(added, ", "),
+                     terms.held_out_parts > 0
+                         ? fmt::format("{} held-out parts", terms.held_out_parts)
+                         : "the fit");
+}
+
 /// What needs no model.
 std::string MeasuredText(const Report& report) {
   const RecordFit& widest = report.fit.WidestRecord();
@@ -298,10 +314,17 @@ std::string ToText(const Report& report, const TextOptions& options) {
   const Style style(options.has_colours);
   if (!IsUsable(report)) {
     const std::string unusable = UnusableText(report, style);
-    return report.selection ? unusable + "\n" + SelectionText(*report.selection, report.units)
+    return report.selection ? unusable + "
+" + SelectionText(*report.selection, report.units)
                             : unusable;
   }
-  std::string text = AdequacyText(report, style) + "\n" + ParameterTable(fit, style);
+  std::string text = AdequacyText(report, style);
+  if (report.terms) {
+    const std::string terms = TermsText(*report.terms);
+    if (!terms.empty()) text += Wrapped(terms, 2);
+  }
+  text += "
+" + ParameterTable(fit, style);
   const std::string wide = WideIntervalStatement(fit, report.units);
   if (!wide.empty()) text += Wrapped(wide, 2);
   const std::string slip_forces = SlipForcesStatement(report);

@@ -13,6 +13,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/too_few_samples.h"
 #include "mindahl/io/load_pieces.h"
 #include "mindahl/io/time_window.h"
@@ -222,16 +223,28 @@ void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::F
                    *mean));
 }
 
-/// The fit that the request asks for, of the model that it names or leaves to be chosen.
+/// The fit that the request asks for, of the model and terms that it names or leaves to be chosen.
 /// @param selection  written where the model is chosen
+/// @param terms      written where terms are chosen or named together
 identification::FitResult FitAsked(const FitRequest& request, const FitOptions& options,
                                    std::span<const Record> records,
-                                   std::optional<identification::ModelSelection>& selection) {
+                                   std::optional<identification::ModelSelection>& selection,
+                                   std::optional<identification::TermSelection>& terms) {
   try {
-    if (request.model != kAutomatic)
-      return identification::Fit(records, options, identification::Depth::kThorough);
-    selection = identification::SelectModel(records, options);
-    return selection->fit;
+    const bool chooses_terms = request.term_choice == kAutomatic;
+    FitOptions of_terms = options;
+    if (request.model == kAutomatic) {
+      selection = identification::SelectModel(records, options);
+      if (!chooses_terms) return selection->fit;
+      const identification::ModelScore& chosen = selection->scores[selection->chosen];
+      of_terms.model = chosen.model;
+      if (chosen.rig) of_terms.terms.emplace_back("rig_stiffness");
+    }
+    if (chooses_terms) {
+      terms = identification::SelectTerms(records, of_terms);
+      return terms->fit;
+    }
+    return identification::Fit(records, options, identification::Depth::kThorough);
   } catch (const identification::TooFewSamples& error) {
     throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));
   }
@@ -257,6 +270,20 @@ void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
   if (all_begin_later && !options.initial_state) {
     options.initial_state = models::InitialState::kSteady;
   }
+}
+
+std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,
+                                FitOptions& options) {
+  if (request.term_choice != kAutomatic) return "";
+  FitOptions of_head = options;
+  // As its cycles are fitted: an asymmetry is then an offset of each.
+  of_head.initial_state = models::InitialState::kSteady;
+  const identification::TermSelection selection =
+      identification::SelectTerms(std::span(&head, 1), of_head);
+  options.terms = selection.options.terms;
+  if (selection.added.empty()) return "terms: the first cycles require none";
+  return fmt::format("terms that the first cycles require, of all cycles: {}",
+                     fmt::join(selection.added, ", "));
 }
 
 void Validate(const FitRequest& request) {
@@ -296,7 +323,8 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   std::vector<loop::Trim> trims = FindTrims(request, options, records);
   LeaveOutTrimmed(trims, options);
   std::optional<identification::ModelSelection> selection;
-  identification::FitResult fit = FitAsked(request, options, records, selection);
+  std::optional<identification::TermSelection> terms;
+  identification::FitResult fit = FitAsked(request, options, records, selection, terms);
   contact::KnownContact known = request.contact.known;
   UseMeasuredNormalLoad(known, fit, records, options.preparation.load_window, note);
   return report::MakeReport({.files = std::move(names),
@@ -305,7 +333,8 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                              .known = known,
                              .load_window = options.preparation.load_window,
                              .trims = std::move(trims),
-                             .selection = std::move(selection)});
+                             .selection = std::move(selection),
+                             .terms = std::move(terms)});
 }
 
 }  // namespace mindahl::request

@@ -4,11 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <span>
 #include <utility>
 
 #include "mindahl/core/error.h"
+#include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/request/one_of.h"
@@ -25,6 +27,9 @@ namespace {
 // --drift is of the channel that is fitted.
 constexpr std::string_view kDriftOfForce = "force_drift";
 constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
+
+// The term that has the option --slip-position.
+constexpr std::string_view kSlipPosition = "slip_slope";
 
 double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
   double value = 0.0;
@@ -82,6 +87,22 @@ std::map<std::string, Interval> ParseBounds(const std::vector<std::string>& text
     if (!bounds.emplace(name, parsed).second) ThrowTwice("--bound", name);
   }
   return bounds;
+}
+
+/// Fits the other terms of a group, those that are not given.
+void ApplyCompanions(std::string_view group, std::string_view but, FitOptions& fit) {
+  for (const std::string_view name : identification::FindTermGroup(group)->terms) {
+    const std::string term(name);
+    if (name == but || fit.fixed.contains(term)) continue;
+    if (std::ranges::find(fit.terms, term) == fit.terms.end()) fit.terms.push_back(term);
+  }
+}
+
+/// --slip-position linear or quadratic.
+void ApplySlipPosition(std::string_view text, FitOptions& fit) {
+  constexpr std::array<std::string_view, 2> kForms = {"linear", "quadratic"};
+  RequireOneOf("--slip-position", text, kForms);
+  ApplyCompanions(text == kForms[0] ? "slip_position" : "slip_position_quadratic", "", fit);
 }
 
 /// What was asked of a term: to be fitted, or a value that is known.
@@ -143,6 +164,34 @@ void ApplyCovariates(const std::vector<std::string>& texts, FitOptions& fit) {
   }
 }
 
+/// Names of groups of terms, each of which is fitted; nothing where they are chosen or none.
+void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
+  if (request.term_choice == kNoTerms || request.term_choice == kAutomatic) return;
+  std::vector<std::string_view> names = {kAutomatic, kNoTerms};
+  for (const identification::TermGroup& group : identification::TermGroups()) {
+    names.push_back(group.name);
+  }
+  std::vector<std::string_view> given;
+  for (std::string_view left = request.term_choice;;) {
+    const std::size_t comma = left.find(',');
+    const std::string_view name = left.substr(0, comma);
+    RequireOneOf("--terms", name, names);
+    if (std::ranges::find(given, name) != given.end()) ThrowTwice("--terms", name);
+    given.push_back(name);
+    const identification::TermGroup* group = identification::FindTermGroup(name);
+    if (group == nullptr) {
+      throw InputError(fmt::format("--terms: '{}' stands alone: write auto, none or names", name));
+    }
+    if (const std::string_view term = group->terms.front(); request.terms.contains(term)) {
+      throw InputError(fmt::format("--terms {} and {} say the same: give one of the two", name,
+                                   identification::FindTerm(term)->option));
+    }
+    ApplyCompanions(name, "", fit);
+    if (comma == std::string_view::npos) return;
+    left.remove_prefix(comma + 1);
+  }
+}
+
 loop::CountRange ParseCountRange(std::string_view text, std::string_view option) {
   constexpr std::string_view kForm = "LO:HI, counted from 1, e.g. 2:5";
   const auto [first, last] = Split(text, ':', option, kForm);
@@ -170,6 +219,7 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
     if (name != kDriftOfForce) refuse(identification::FindTerm(name)->option, kBeside);
   }
   if (!request.covariates.empty()) refuse("--covariate", kBeside);
+  if (request.term_choice != kNoTerms) refuse("--terms", kBeside);
   if (request.model == kAutomatic) {
     refuse("--model auto", "models are chosen by fits of the force; name one");
   }
@@ -306,9 +356,18 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   for (const auto& [name, text] : options.terms) {
     const bool is_of_displacement =
         name == kDriftOfForce && fit.response() == loop::Channel::kDisplacement;
+    if (name == kSlipPosition) continue;
     ApplyTerm(*identification::FindTerm(is_of_displacement ? kDriftOfDisplacement : name), text,
               fit);
   }
+  // Those that bring others come last: what is given of these is known.
+  for (const auto& [name, text] : options.terms) {
+    if (name == kSlipPosition) ApplySlipPosition(text, fit);
+    if (name == "speed_exponent") ApplyCompanions("speed_exponent", name, fit);
+    if (name == "slip_speed_exponent") ApplyCompanions("slip_speed", name, fit);
+    if (name == "ripple_period") ApplyCompanions("ripple", name, fit);
+  }
+  ApplyTermNames(options, fit);
   ApplyCovariates(options.covariates, fit);
   if (!options.cycles.empty()) preparation.cycles = ParseCountRange(options.cycles, "--cycles");
   if (!options.samples.empty()) preparation.samples = ParseCountRange(options.samples, "--samples");

@@ -44,7 +44,7 @@ std::string Words(const Term& term) {
     case Presence::kReported:
       return fmt::format("`{}`, else 0", term.option);
     case Presence::kOnDemand:
-      return fmt::format("`{}`", term.option);
+      return term.option.empty() ? "with the row above" : fmt::format("`{}`", term.option);
     case Presence::kLoadSeries:
       return "loads that differ";
     case Presence::kNever:

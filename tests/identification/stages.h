@@ -46,6 +46,7 @@ class Stages {
     identification::ScaledRecords data = identification::Scale(prepared, options, Memory());
     identification::AddCovariates(options.covariates, /*with_others=*/true, prepared,
                                   options.offsets, data);
+    identification::AddColumnsOfTerms(options, data);
     if (identification::HasTerm(options, "lag")) identification::SetClocks(data);
     return data;
   }

@@ -38,6 +38,9 @@ struct TermUnits {
   double force_sense = 1.0;             ///< ±1: the force's sense in the file
   double force_reference = 0.0;         ///< [N], what was taken off the record's force
   double displacement_reference = 0.0;  ///< [m], likewise
+  double speed = 1.0;                   ///< [m/s] of a scaled velocity of one
+  double speed_resolution = 0.0;        ///< of the velocity, scaled; 0 where it is exact
+  double reference_speed = 1.0;         ///< scaled: its mean in the middle third of the strokes
 };
 
 /// What a linear parameter is the factor of, sample by sample in those units.
@@ -45,9 +48,16 @@ enum class Regressor {
   kNone,          ///< it is not linear, or a factor of the model's own response
   kOne,           ///< an offset
   kDisplacement,  ///< δ
+  kDisplacementSquared,
   kTime,          ///< −1 … 1 over the record
-  kVelocity,      ///< of the displacement, in the first record's time
-  kCovariate,     ///< the column of the record that the parameter is called after
+  kVelocity,      ///< of the displacement, in the first record's time; or its power
+  kAcceleration,  ///< likewise
+  // cos and sin of 2πδ/λ in strokes of growing displacement, then of falling displacement:
+  kRippleCosineUp,
+  kRippleSineUp,
+  kRippleCosineDown,
+  kRippleSineDown,
+  kCovariate,  ///< the column of the record that the parameter is called after
 };
 
 /// A parameter of a fit: all that layout, solver, command line, help and documents need to know of
@@ -67,6 +77,11 @@ struct Term {
   double (*reference)(const TermUnits&) = nullptr;  ///< none: 0
   Regressor column = Regressor::kNone;
   bool needs_time = false;
+  /// The search may begin at `start`, of a parameter that is not linear.
+  bool has_start = false;
+  double start = 0.0;
+  /// How the names of the linear parameters begin whose columns depend on this one.
+  std::string_view shapes = {};
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;
   std::string_view unit_by_sample = {};  ///< where records have no time; empty: the same

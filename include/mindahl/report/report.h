@@ -8,6 +8,7 @@
 #include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
+#include "mindahl/identification/term_selection.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/loop/trim.h"
 #include "mindahl/report/load_series.h"
@@ -30,6 +31,7 @@ struct ReportInput {
   /// What was left out of each record as no part of its test; empty where that was not asked for.
   std::vector<loop::Trim> trims = {};
   std::optional<identification::ModelSelection> selection = {};   ///< where the model was chosen
+  std::optional<identification::TermSelection> terms = {};        ///< where terms were chosen
   std::optional<identification::BackboneEstimate> backbone = {};  ///< where it was asked for
 };
 

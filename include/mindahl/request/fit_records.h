@@ -25,6 +25,14 @@ void LeaveOutTrimmed(std::span<const loop::Trim> trims, identification::FitOptio
 /// @throws InvalidArgument or InputError for options that break a rule whatever the records are
 void Validate(const FitRequest& request);
 
+/// Adds the terms that the first cycles of a test require to the options of its cycles' fits, where
+/// the request leaves them to be chosen.
+/// @param head     samples of the first cycles
+/// @param options  of MakeCycleFitOptions()
+/// @returns what to say of it; empty where nothing was chosen
+std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordView& head,
+                                identification::FitOptions& options);
+
 /// Keeps the samples in the request's time window, where it has one, with a note in the record.
 /// @param name  the record's, for messages
 /// @throws InputError as io::KeepTimeWindow()

@@ -18,8 +18,10 @@
 /// options.
 namespace mindahl::request {
 
-/// --model auto
+/// --model auto, --terms auto
 inline constexpr std::string_view kAutomatic = "auto";
+/// --terms none
+inline constexpr std::string_view kNoTerms = "none";
 /// --rig-stiffness fit
 inline constexpr std::string_view kFitIt = "fit";
 
@@ -48,6 +50,7 @@ struct FitRequest {
   std::string noise_in = "force";
   std::string offsets = "on";
   std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
+  std::string term_choice{kNoTerms};              // or kAutomatic, or names of what is fitted
   std::vector<std::string> covariates;
   std::string load_window;
   std::string cycles;

@@ -9,6 +9,7 @@
 
 #include "core/nearest_name.h"
 #include "identification/problem/lagged_motion.h"
+#include "identification/problem/ripple.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -86,6 +87,9 @@ Parameter MakeParameter(const Term& term, std::size_t record, const ScaledRecord
       break;
     case Presence::kOnDemand:
       parameter.fixed = parameter.absent = !IsAskedFor(options, term);
+      if (term.has_start && !parameter.absent) {
+        parameter.theta = term.positive ? std::log(StartingPeriod(all)) : term.start;
+      }
       break;
     case Presence::kLoadSeries:
       parameter.fixed = parameter.absent = !all.is_load_series;
@@ -170,6 +174,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     }
   }
   ApplyOptions(options);
+  RequireShapedColumns();
   if (state == models::InitialState::kSteady) HoldConfoundedAsymmetry();
   if (data.load_varies) KeepShapeBelowOne(options);
   for (const Parameter& parameter : parameters_) {
@@ -211,6 +216,20 @@ bool Parameters::any_zero_is_known() const {
   return std::ranges::any_of(parameters_, [](const Parameter& parameter) {
     return parameter.term->name == "force_offset" && parameter.fixed;
   });
+}
+
+/// What shapes columns of other parameters needs one of these.
+void Parameters::RequireShapedColumns() const {
+  for (const Parameter& shaping : parameters_) {
+    if (shaping.absent || shaping.term->shapes.empty()) continue;
+    const bool any = std::ranges::any_of(parameters_, [&](const Parameter& parameter) {
+      return !parameter.absent && parameter.term->column != Regressor::kNone &&
+             parameter.term->name.starts_with(shaping.term->shapes);
+    });
+    if (any) continue;
+    throw InvalidArgument(fmt::format("{} has no effect without a term {}: add it",
+                                      shaping.term->name, shaping.term->shapes));
+  }
 }
 
 /// Of a contact that had slipped before it is a force that is always there, as an offset is.

@@ -140,6 +140,7 @@ class Parameters {
 
  private:
   void ApplyOptions(const FitOptions& options);
+  void RequireShapedColumns() const;
   void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne(const FitOptions& options);
   void Sort();

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 
 namespace mindahl::identification {
@@ -43,6 +44,10 @@ constexpr std::array kLawRows = {
     LawRow{"alpha", &ResponseColumns::shape_exponent, 1.0, true},
     LawRow{"lag", &ResponseColumns::lag, 0.02},  // cycles
     LawRow{"asymmetry", &ResponseColumns::asymmetry, 0.25},
+    LawRow{"slip_slope", &ResponseColumns::slip_slope, 0.25},
+    LawRow{"slip_curvature", &ResponseColumns::slip_curvature, 0.25},
+    LawRow{"slip_speed", &ResponseColumns::slip_speed, 0.25},
+    LawRow{"slip_speed_exponent", &ResponseColumns::slip_speed_exponent, 0.25},
 };
 
 }  // namespace
@@ -73,6 +78,7 @@ LawSensitivity SensitivityTo(const Problem& problem, std::size_t parameter) {
     result.longest_step = 0.5;
   } else {
     const auto row = std::ranges::find(kLawRows, term.name, &LawRow::term);
+    if (ShapesColumns(problem, parameter)) result.longest_step = 0.2;
     if (row == kLawRows.end()) return result;
     if (row->column == &ResponseColumns::lag && !problem.parameters.has_lag()) return result;
     add({.column = row->column});
@@ -99,6 +105,13 @@ void Response::Bind(const Problem& problem) {
                               problem.state, histories_[r]);
   }
   asymmetry_ = problem.parameters.PositionOf("asymmetry", 0);
+  slip_slope_ = problem.parameters.PositionOf("slip_slope", 0);
+  slip_curvature_ = problem.parameters.PositionOf("slip_curvature", 0);
+  slip_speed_ = problem.parameters.PositionOf("slip_speed", 0);
+  slip_speed_exponent_ = problem.parameters.PositionOf("slip_speed_exponent", 0);
+  slip_goes_by_speed_ = !problem.parameters[slip_speed_].absent;
+  slip_varies_ = slip_goes_by_speed_ || !problem.parameters[slip_slope_].absent ||
+                 !problem.parameters[slip_curvature_].absent;
   lag_ = problem.parameters.PositionOf("lag", 0);
   has_lag_ = problem.parameters.has_lag();
   if (!has_lag_) return;
@@ -152,6 +165,17 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
 
 void Response::Evaluate(const LawPoint& at, std::span<double> t) { Differentiate(at, t, {}); }
 
+/// What moves a branch moves its forces in proportion to the slip force where they are read.
+void Response::ScaleSensitivity(std::size_t r, const LawPoint& at,
+                                models::OriginSensitivity& sensitivity) const {
+  const ScaledRecord& record = problem_->data->records[r];
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double factor = SlipFactor(record, at, i);
+    sensitivity.sample_slope[i] *= factor;
+    sensitivity.sample_gain[i] *= factor;
+  }
+}
+
 void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
                                       models::OriginSensitivity& sensitivity) {
   const ScaledRecord& record = problem_->data->records[r];
@@ -166,10 +190,12 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
       }
       column->resize(motion.places().size());
     }
+    if (slip_varies_) ScaleSensitivity(r, at, sensitivity);
     return;
   }
   response_.DifferentiateByOrigins(*problem_->model, law, PathOf(r, at.theta), record.displacement,
                                    sensitivity);
+  if (slip_varies_) ScaleSensitivity(r, at, sensitivity);
 }
 
 /// Of one record over its own slip force.
@@ -277,17 +303,23 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
                                 .unloaded = part(columns.unloaded),
                                 .log_spring_travel = part(columns.log_spring_travel),
                                 .lag = part(columns.lag),
-                                .asymmetry = part(columns.asymmetry)};
+                                .asymmetry = part(columns.asymmetry),
+                                .slip_slope = part(columns.slip_slope),
+                                .slip_curvature = part(columns.slip_curvature),
+                                .slip_speed = part(columns.slip_speed),
+                                .slip_speed_exponent = part(columns.slip_speed_exponent)};
     const std::span<double> values = part(t);
     if (has_lag_) {
       DifferentiateLagged(at, r, values, parts);
     } else {
       DifferentiateRecord(at, r, values, parts);
     }
+    if (slip_varies_) ScaleBySlipForce(r, at, values, parts);
     if (record.load != 1) {
       for (const std::span<double> column :
            {values, parts.log_rate, parts.shape_exponent, parts.unloaded, parts.log_spring_travel,
-            parts.lag, parts.asymmetry}) {
+            parts.lag, parts.asymmetry, parts.slip_slope, parts.slip_curvature, parts.slip_speed,
+            parts.slip_speed_exponent}) {
         for (double& value : column) value *= record.load;
       }
     }
@@ -295,17 +327,187 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
   }
 }
 
-void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r, double factor,
-               std::span<double> to) {
-  const Parameter& linear = problem.parameters[parameter];
-  if (linear.term->scope == Scope::kRecord && linear.record != r) return;
-  if (linear.term->column == Regressor::kOne) {
-    for (double& value : to) value += factor;
-    return;
+namespace {
+
+/// ln(v/v₀) of a sample; far below zero, and finite, where it does not move.
+double LogSpeedRatio(const ScaledRecord& record, std::size_t sample) {
+  constexpr double kStandstill = 1e-12;
+  const double speed = std::hypot(record.velocity[sample], record.units.speed_resolution);
+  return std::log(std::max(speed / record.units.reference_speed, kStandstill));
+}
+
+}  // namespace
+
+double Response::SlipFactor(const ScaledRecord& record, const LawPoint& at,
+                            std::size_t sample) const {
+  const double position = record.displacement[sample];
+  double factor = 1 + position * (at.theta[slip_slope_] + at.theta[slip_curvature_] * position);
+  if (slip_goes_by_speed_) {
+    factor += at.theta[slip_speed_] *
+              std::expm1(at.theta[slip_speed_exponent_] * LogSpeedRatio(record, sample));
   }
-  const std::span<const double> column =
-      problem.data->records[r].ColumnOf(linear.term->column, linear.column);
-  for (std::size_t i = 0; i < column.size(); ++i) to[i] += factor * column[i];
+  return factor;
+}
+
+void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<double> t,
+                                const ResponseColumns& columns) const {
+  const ScaledRecord& record = problem_->data->records[r];
+  const double slope = at.theta[slip_slope_];
+  const double curvature = at.theta[slip_curvature_];
+  const double of_speed = at.theta[slip_speed_];
+  const double exponent = at.theta[slip_speed_exponent_];
+  const std::array scaled = {t,
+                             columns.log_rate,
+                             columns.shape_exponent,
+                             columns.unloaded,
+                             columns.log_spring_travel,
+                             columns.lag,
+                             columns.asymmetry};
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double position = record.displacement[i];
+    double factor = 1 + position * (slope + curvature * position);
+    if (!columns.slip_slope.empty()) columns.slip_slope[i] = t[i] * position;
+    if (!columns.slip_curvature.empty()) columns.slip_curvature[i] = t[i] * position * position;
+    if (slip_goes_by_speed_) {
+      const double log_ratio = LogSpeedRatio(record, i);
+      const double change = std::expm1(exponent * log_ratio);
+      factor += of_speed * change;
+      if (!columns.slip_speed.empty()) columns.slip_speed[i] = t[i] * change;
+      if (!columns.slip_speed_exponent.empty()) {
+        columns.slip_speed_exponent[i] = t[i] * of_speed * log_ratio * (1 + change);
+      }
+    }
+    for (const std::span<double> column : scaled) {
+      if (!column.empty()) column[i] *= factor;
+    }
+  }
+}
+
+namespace {
+
+/// The power of the speed in units of the data, so that C keeps the unit of a viscous force:
+///   φ(v) = v·(((v² + v_ε²)u²)^((m−1)/2),  u the unit of v [m/s], v_ε its resolution
+/// which is v for m = 1, C·sgn(v)|v|^m far above the resolution, and smooth below it.
+struct SpeedPower {
+  double exponent = 1.0;
+  double unit = 1.0;
+  double resolution = 0.0;
+
+  /// ln of the speed [m/s]; 0 where there is none.
+  [[nodiscard]] double LogSpeed(double velocity) const {
+    const double speed = std::hypot(velocity, resolution) * unit;
+    return speed > 0 ? std::log(speed) : 0.0;
+  }
+  [[nodiscard]] double At(double velocity) const {
+    return exponent == 1 ? velocity : velocity * std::exp((exponent - 1) * LogSpeed(velocity));
+  }
+  /// ∂φ/∂m
+  [[nodiscard]] double Derivative(double velocity) const {
+    return At(velocity) * LogSpeed(velocity);
+  }
+};
+
+SpeedPower SpeedPowerOf(const Problem& problem, const ScaledRecord& record,
+                        std::span<const double> theta) {
+  const std::size_t p = problem.parameters.PositionOf("speed_exponent", 0);
+  const bool is_there = p < problem.parameters.size() && !problem.parameters[p].absent;
+  return {.exponent = is_there ? theta[p] : 1.0,
+          .unit = record.units.speed,
+          .resolution = record.units.speed_resolution};
+}
+
+/// cos or sin of 2πδ/λ in the strokes of one direction, and its derivative by ln λ.
+struct Ripple {
+  bool is_sine = false;
+  double direction = 1.0;
+  double rate = 0.0;   // 2π/λ
+  double shift = 0.0;  // of the record's middle from that of the first
+
+  [[nodiscard]] double At(double position) const {
+    const double phase = rate * (position + shift);
+    return is_sine ? std::sin(phase) : std::cos(phase);
+  }
+  [[nodiscard]] double Derivative(double position) const {
+    const double phase = rate * (position + shift);
+    return phase * (is_sine ? -std::cos(phase) : std::sin(phase));
+  }
+};
+
+Ripple RippleOf(const Problem& problem, const ScaledRecord& record, Regressor column,
+                std::span<const double> theta) {
+  const TermUnits& first = problem.data->records.front().units;
+  const bool is_up = column == Regressor::kRippleCosineUp || column == Regressor::kRippleSineUp;
+  const std::size_t period = problem.parameters.PositionOf("ripple_period", 0);
+  return {
+      .is_sine = column == Regressor::kRippleSineUp || column == Regressor::kRippleSineDown,
+      .direction = is_up ? 1.0 : -1.0,
+      .rate = 2 * std::numbers::pi * std::exp(-theta[period]),
+      .shift = (record.units.displacement_reference - first.displacement_reference) / first.length};
+}
+
+bool IsRipple(Regressor column) {
+  return column == Regressor::kRippleCosineUp || column == Regressor::kRippleSineUp ||
+         column == Regressor::kRippleCosineDown || column == Regressor::kRippleSineDown;
+}
+
+}  // namespace
+
+void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r,
+               std::span<const double> theta, double factor, std::span<double> to) {
+  const Parameter& linear = problem.parameters[parameter];
+  if (linear.absent || (linear.term->scope == Scope::kRecord && linear.record != r)) return;
+  const ScaledRecord& record = problem.data->records[r];
+  const Regressor kind = linear.term->column;
+  if (kind == Regressor::kOne) {
+    for (double& value : to) value += factor;
+  } else if (kind == Regressor::kDisplacementSquared) {
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      to[i] += factor * record.displacement[i] * record.displacement[i];
+    }
+  } else if (IsRipple(kind)) {
+    const Ripple ripple = RippleOf(problem, record, kind, theta);
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (record.direction[i] != ripple.direction) continue;
+      to[i] += factor * ripple.At(record.displacement[i]);
+    }
+  } else if (kind == Regressor::kVelocity) {
+    const SpeedPower power = SpeedPowerOf(problem, record, theta);
+    for (std::size_t i = 0; i < record.velocity.size(); ++i) {
+      to[i] += factor * power.At(record.velocity[i]);
+    }
+  } else {
+    const std::span<const double> column = record.ColumnOf(kind, linear.column);
+    for (std::size_t i = 0; i < column.size(); ++i) to[i] += factor * column[i];
+  }
+}
+
+bool ShapesColumns(const Problem& problem, std::size_t parameter) {
+  return !problem.parameters[parameter].term->shapes.empty();
+}
+
+void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t r,
+                            std::span<const double> theta, double factor, std::span<double> to) {
+  const std::string_view shaped = problem.parameters[parameter].term->shapes;
+  const ScaledRecord& record = problem.data->records[r];
+  for (std::size_t q = 0; q < problem.parameters.size(); ++q) {
+    const Parameter& linear = problem.parameters[q];
+    const Regressor kind = linear.term->column;
+    const bool is_shaped = kind != Regressor::kNone && linear.term->name.starts_with(shaped);
+    if (!is_shaped || linear.absent || theta[q] == 0) continue;
+    const double size = factor * theta[q];
+    if (IsRipple(kind)) {
+      const Ripple ripple = RippleOf(problem, record, kind, theta);
+      for (std::size_t i = 0; i < to.size(); ++i) {
+        if (record.direction[i] != ripple.direction) continue;
+        to[i] += size * ripple.Derivative(record.displacement[i]);
+      }
+    } else {
+      const SpeedPower power = SpeedPowerOf(problem, record, theta);
+      for (std::size_t i = 0; i < record.velocity.size(); ++i) {
+        to[i] += size * power.Derivative(record.velocity[i]);
+      }
+    }
+  }
 }
 
 namespace {
@@ -320,7 +522,7 @@ void Complete(const Problem& problem, std::span<const double> theta, std::span<d
     std::size_t begin = 0;
     for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
       const std::size_t count = problem.data->records[r].size();
-      AddColumn(problem, p, r, theta[p], predicted.subspan(begin, count));
+      AddColumn(problem, p, r, theta, theta[p], predicted.subspan(begin, count));
       begin += count;
     }
   }
@@ -392,7 +594,8 @@ void Differentiate(const Problem& problem, std::span<const double> theta, Respon
       k += record.size();
       std::ranges::fill(column, 0.0);
       if (parameter.term->scope == Scope::kRecord && parameter.record != r) continue;
-      if (parameter.term->column != Regressor::kNone) AddColumn(problem, p, r, 1.0, column);
+      if (parameter.term->column != Regressor::kNone) AddColumn(problem, p, r, theta, 1.0, column);
+      if (ShapesColumns(problem, p)) AddDerivativeOfColumns(problem, p, r, theta, 1.0, column);
       for (const Sensitivity& summand : sensitivities[c].all()) {
         const std::span<const double> derivative =
             summand.column == nullptr ? t : gradient.*summand.column;

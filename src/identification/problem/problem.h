@@ -61,6 +61,10 @@ struct ResponseColumns {
   std::span<double> log_spring_travel;
   std::span<double> lag;        // by θ of the lag; where the problem has one
   std::span<double> asymmetry;  // likewise
+  std::span<double> slip_slope;
+  std::span<double> slip_curvature;
+  std::span<double> slip_speed;
+  std::span<double> slip_speed_exponent;
 };
 
 /// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where no column stands for t itself.
@@ -115,6 +119,13 @@ class Response {
   [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
                                                  std::span<const double> theta) const;
   /// In the scaled time of a record.
+  void ScaleBySlipForce(std::size_t record, const LawPoint& at, std::span<double> t,
+                        const ResponseColumns& columns) const;
+  /// The slip force at a sample over Tc.
+  [[nodiscard]] double SlipFactor(const ScaledRecord& record, const LawPoint& at,
+                                  std::size_t sample) const;
+  void ScaleSensitivity(std::size_t record, const LawPoint& at,
+                        models::OriginSensitivity& sensitivity) const;
   [[nodiscard]] double LagOf(std::size_t record, std::span<const double> theta) const;
   const LaggedMotion& MotionOf(std::size_t record, std::span<const double> theta);
   void DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
@@ -135,7 +146,13 @@ class Response {
   models::NormalizedResponse response_;
   models::NormalizedDisplacement displacement_;
   std::vector<double> scratch_;
-  std::size_t asymmetry_ = 0;  // position of the parameter
+  std::size_t asymmetry_ = 0;   // position of the parameter
+  std::size_t slip_slope_ = 0;  // likewise
+  std::size_t slip_curvature_ = 0;
+  std::size_t slip_speed_ = 0;
+  std::size_t slip_speed_exponent_ = 0;
+  bool slip_varies_ = false;  // over the positions or speeds
+  bool slip_goes_by_speed_ = false;
   // Of a problem with a lag:
   std::size_t lag_ = 0;  // its position
   bool has_lag_ = false;
@@ -159,9 +176,19 @@ void EvaluateResidual(const Problem& problem, std::span<const double> theta, Res
 
 /// Adds a multiple of the column of a linear parameter, without weights; nothing where it is
 /// another record's.
-/// @param to  of the record's samples
-void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record, double factor,
-               std::span<double> to);
+/// @param theta  of all parameters: a column may depend on some (Term::shapes)
+/// @param to     of the record's samples
+void AddColumn(const Problem& problem, std::size_t parameter, std::size_t record,
+               std::span<const double> theta, double factor, std::span<double> to);
+
+/// True if columns of linear parameters depend on this one.
+bool ShapesColumns(const Problem& problem, std::size_t parameter);
+
+/// Adds a multiple of ∂(Σ θ_q·column_q)/∂θ by a parameter that shapes columns, without weights.
+/// @param theta  of all parameters, the linear ones included
+/// @param to     of the record's samples
+void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t record,
+                            std::span<const double> theta, double factor, std::span<double> to);
 
 /// The weighted residuals, model − measured, and their derivatives by the parameters at `columns`.
 /// The response is bound to the problem.

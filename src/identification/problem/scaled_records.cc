@@ -65,6 +65,64 @@ void FillVelocity(ScaledRecord& record, double unit) {
   }
 }
 
+/// Central differences of the velocity, one-sided at the ends; 0 where time stands still.
+void FillAcceleration(ScaledRecord& record, double unit) {
+  const double units = record.units.half_duration / unit;
+  record.acceleration.resize(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1;
+    const std::size_t after = std::min(i + 1, record.size() - 1);
+    const double duration = units * (record.time[after] - record.time[before]);
+    record.acceleration[i] =
+        duration > 0 ? (record.velocity[after] - record.velocity[before]) / duration : 0.0;
+  }
+}
+
+/// Of the stroke that ends at a reversal, or begins at the last one.
+void FillDirection(ScaledRecord& record) {
+  record.direction.resize(record.size());
+  std::size_t begin = 0;
+  for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
+    const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
+    const double direction = record.displacement[end] >= record.displacement[begin] ? 1.0 : -1.0;
+    for (std::size_t i = s == 0 ? 0 : begin + 1; i <= end; ++i) record.direction[i] = direction;
+    begin = end;
+  }
+}
+
+/// Standard deviation of white noise with the median fourth difference of a velocity: what is
+/// smooth leaves next to nothing of it.
+double ResolutionOf(std::span<const double> velocity) {
+  constexpr double kOfFourthDifference = 8.366600265340756;  // √70
+  constexpr double kMedianOfNormal = 0.6744897501960817;     // of its size, Φ⁻¹(0.75)
+  if (velocity.size() < 5) return 0.0;
+  std::vector<double> differences;
+  differences.reserve(velocity.size());
+  for (std::size_t i = 2; i + 2 < velocity.size(); ++i) {
+    differences.push_back(std::abs(velocity[i - 2] - 4 * velocity[i - 1] + 6 * velocity[i] -
+                                   4 * velocity[i + 1] + velocity[i + 2]));
+  }
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::ranges::nth_element(differences, middle);
+  return *middle / (kMedianOfNormal * kOfFourthDifference);
+}
+
+/// Mean speed in the middle third of the range of the positions, of all records; 1 where there is
+/// none.
+double SpeedInTheMiddle(const ScaledRecords& data) {
+  constexpr double kMiddle = 1.0 / 3;
+  double sum = 0.0;
+  double count = 0.0;
+  for (const ScaledRecord& record : data.records) {
+    for (std::size_t i = 0; i < record.velocity.size(); ++i) {
+      if (record.counts[i] == 0 || std::abs(record.displacement[i]) > kMiddle) continue;
+      sum += std::abs(record.velocity[i]);
+      ++count;
+    }
+  }
+  return sum > 0 ? sum / count : 1.0;
+}
+
 /// Does a sample say under which load the record was made? Cycles that are only held out do.
 bool TellsLoad(const loop::PreparedRecord& record, const loop::PreparationOptions& options,
                std::size_t r, std::size_t sample) {
@@ -204,6 +262,8 @@ void ForEachColumn(ScaledRecord& to, const ScaledRecord& from, Visit visit) {
   visit(to.force, from.force);
   visit(to.time, from.time);
   visit(to.velocity, from.velocity);
+  visit(to.acceleration, from.acceleration);
+  visit(to.direction, from.direction);
   visit(to.load_ratio, from.load_ratio);
   visit(to.load_change, from.load_change);
   visit(to.root_weight, from.root_weight);
@@ -269,10 +329,17 @@ std::span<const double> ScaledRecord::ColumnOf(Regressor column, std::size_t cov
       return time;
     case Regressor::kVelocity:
       return velocity;
+    case Regressor::kAcceleration:
+      return acceleration;
     case Regressor::kCovariate:
       return covariates[covariate];
     case Regressor::kNone:
     case Regressor::kOne:
+    case Regressor::kDisplacementSquared:
+    case Regressor::kRippleCosineUp:
+    case Regressor::kRippleSineUp:
+    case Regressor::kRippleCosineDown:
+    case Regressor::kRippleSineDown:
       break;
   }
   return {};
@@ -349,10 +416,29 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
       target.root_weight[i] = prepared.counts[i] != 0 ? 1.0 : 0.0;
     }
     target.counts.assign(prepared.counts.begin(), prepared.counts.end());
-    if (!time.empty()) FillVelocity(target, scaled.records.front().units.half_duration);
+    if (time.empty()) continue;
+    const double unit = scaled.records.front().units.half_duration;
+    FillVelocity(target, unit);
+    target.units.speed = target.units.length / unit;
   }
   TakeLoads(scaled, records, options);
   return scaled;
+}
+
+void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
+  const bool asks_slip_speed = HasTerm(options, "slip_speed_exponent");
+  const bool asks_power = HasTerm(options, "speed_exponent") || asks_slip_speed;
+  const bool asks_acceleration = HasTerm(options, "inertia");
+  const bool asks_direction = HasTerm(options, "ripple_period");
+  const double unit = data.records.front().units.half_duration;
+  for (ScaledRecord& record : data.records) {
+    if (asks_power) record.units.speed_resolution = ResolutionOf(record.velocity);
+    if (asks_acceleration && !record.velocity.empty()) FillAcceleration(record, unit);
+    if (asks_direction) FillDirection(record);
+  }
+  if (!asks_slip_speed) return;
+  const double reference = SpeedInTheMiddle(data);
+  for (ScaledRecord& record : data.records) record.units.reference_speed = reference;
 }
 
 void AddCovariates(std::span<const std::string> fitted, bool with_others,

@@ -21,6 +21,8 @@ struct ScaledRecord {
         force(memory),
         time(memory),
         velocity(memory),
+        acceleration(memory),
+        direction(memory),
         load_ratio(memory),
         load_change(memory),
         root_weight(memory),
@@ -33,6 +35,9 @@ struct ScaledRecord {
   std::pmr::vector<double> force;         // (sense·T − force_reference)/force unit
   std::pmr::vector<double> time;      // −1 … 1 over the record; by sample where it has no time
   std::pmr::vector<double> velocity;  // in the first record's time; empty where there is none
+  std::pmr::vector<double> acceleration;  // likewise; empty unless a term asks for it
+  /// +1 in strokes of growing displacement, −1 in others; empty unless a term asks for it.
+  std::pmr::vector<double> direction;
   /// N over its mean, where the law knows that it varies: empty where it is taken as constant.
   std::pmr::vector<double> load_ratio;
   std::pmr::vector<double> load_change;  // N over its mean less 1, where it varies and is not known
@@ -140,6 +145,10 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
 ///   of them are one channel
 void AddCovariates(std::span<const std::string> fitted, bool with_others,
                    const loop::PreparedRecords& records, bool offsets, ScaledRecords& data);
+
+/// Adds what terms need beyond the columns of every fit: accelerations, directions of strokes, and
+/// the resolution of the velocity.
+void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data);
 
 /// The records by fewer samples: all reversals, and of each stroke some, densest at its start: the
 /// same history for a law that knows no rate, at a fraction of the cost. They are made when they

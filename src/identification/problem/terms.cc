@@ -21,6 +21,16 @@ constexpr double kLongestLag = 0.05;
 // The theories have exponents of the load between 0 and 1.
 constexpr double kLargestLoadExponent = 5.0;
 
+// Below the least exponent the force is as good as a slip force.
+constexpr double kLeastSpeedExponent = 0.2;
+// With both the slip force stays positive over the whole stroke.
+constexpr double kLargestSlipChange = 0.5;
+// So much of the slip force that goes by the speed: the rest is positive.
+constexpr double kLargestSlipBySpeed = 0.95;
+// Of a period, in half ranges of the displacement: two in a stroke.
+constexpr double kShortestPeriod = 0.01;
+constexpr double kLongestPeriod = 1.0;
+
 // One slip force is then nine times the other. Nearer to −1 and 1 a virgin branch grows twice as
 // large as the contact's, as branches of a contact are that was cycled.
 constexpr double kLargestAsymmetry = 0.8;
@@ -113,6 +123,148 @@ constexpr std::array kTerms = {
         .option = "--viscous",
         .argument = "C|fit",
         .help = "viscous force C·dδ/dt, C [N s/m], or fit; needs a time column"},
+    Term{.name = "speed_exponent",
+         .unit = "-",
+         .meaning =
+             "m of a force C·v^m along the motion, v the speed in m/s, in place of the viscous "
+             "force",
+         .presence = Presence::kOnDemand,
+         .lowest = kLeastSpeedExponent,
+         .highest = 1.0,
+         .scale = One,
+         .needs_time = true,
+         .has_start = true,
+         .start = 0.5,
+         .shapes = "viscous",
+         .option = "--speed-exponent",
+         .argument = "M|fit",
+         .help = "force of speed C·sgn(v)|v|^M in place of C·v, M [-] from 0.2 to 1, or\n"
+                 "fit; C is that of --viscous, fitted unless it is given"},
+    Term{.name = "inertia",
+         .unit = "kg",
+         .meaning = "M of a force M·d²δ/dt² in addition to the contact's",
+         .entry = Entry::kLinear,
+         .presence = Presence::kOnDemand,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale =
+             [](const TermUnits& units) {
+               return units.force * units.half_duration * units.half_duration / units.length;
+             },
+         .column = Regressor::kAcceleration,
+         .needs_time = true,
+         .option = "--inertia",
+         .argument = "M|fit",
+         .help = "force M·d²δ/dt² of a mass between contact and load cell, M [kg],\n"
+                 "or fit; needs a time column"},
+    Term{.name = "slip_slope",
+         .unit = "-",
+         .meaning = "m₁ of a slip force Tc(1 + m₁ξ + m₂ξ²), ξ the position, ±1 at the ends of the "
+                    "widest stroke",
+         .presence = Presence::kOnDemand,
+         .lowest = -kLargestSlipChange,
+         .highest = kLargestSlipChange,
+         .scale = One,
+         .has_start = true,
+         .option = "--slip-position",
+         .argument = "linear|quadratic",
+         .help = "fit a slip force that depends on position, differently in the two\n"
+                 "directions: Tc(1 + b₁±ξ), or Tc(1 + b₁±ξ + b₂±ξ²)"},
+    Term{.name = "slip_curvature",
+         .unit = "-",
+         .meaning = "m₂, likewise",
+         .presence = Presence::kOnDemand,
+         .lowest = -kLargestSlipChange,
+         .highest = kLargestSlipChange,
+         .scale = One,
+         .has_start = true},
+    Term{.name = "slip_speed",
+         .unit = "-",
+         .meaning = "c of a slip force Tc(1 + c((v/v₀)^m − 1)), v₀ the mean speed in the middle "
+                    "third of the strokes",
+         .presence = Presence::kOnDemand,
+         .lowest = -kLargestSlipBySpeed,
+         .highest = kLargestSlipBySpeed,
+         .scale = One,
+         .needs_time = true,
+         .has_start = true,
+         .start = 0.3},
+    Term{.name = "slip_speed_exponent",
+         .unit = "-",
+         .meaning = "m, likewise",
+         .presence = Presence::kOnDemand,
+         .lowest = kLeastSpeedExponent,
+         .highest = 1.0,
+         .scale = One,
+         .needs_time = true,
+         .has_start = true,
+         .start = 0.5,
+         .option = "--slip-speed",
+         .argument = "M|fit",
+         .help = "fit a slip force Tc(1 + c((v/v₀)^M − 1)) that depends on the speed, Tc at\n"
+                 "its mean v₀ in the middle of the strokes; M from 0.2 to 1, or fit"},
+    Term{
+        .name = "plateau_curvature",
+        .unit = "N/m²",
+        .meaning = "of a force in addition to the contact's, in proportion to δ² from the middle "
+                   "of the stroke",
+        .entry = Entry::kLinear,
+        .presence = Presence::kOnDemand,
+        .lowest = -kWidest,
+        .highest = kWidest,
+        .scale = [](const TermUnits& units) { return units.force / (units.length * units.length); },
+        .column = Regressor::kDisplacementSquared},
+    Term{.name = "ripple_period",
+         .unit = "m",
+         .meaning = "λ of a periodic force A±cos(2πδ/λ + φ±), one phase for each direction",
+         .presence = Presence::kOnDemand,
+         .positive = true,
+         .lowest = kShortestPeriod,
+         .highest = kLongestPeriod,
+         .scale = Length,
+         .has_start = true,
+         .shapes = "ripple_",
+         .option = "--ripple",
+         .argument = "PERIOD|fit",
+         .help = "fit a force that is periodic in the position, as of a drive screw,\n"
+                 "with this period [m], or fit"},
+    Term{.name = "ripple_cosine_up",
+         .unit = "N",
+         .meaning = "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "
+                    "first record",
+         .entry = Entry::kLinear,
+         .presence = Presence::kOnDemand,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = Force,
+         .column = Regressor::kRippleCosineUp},
+    Term{.name = "ripple_sine_up",
+         .unit = "N",
+         .meaning = "factor of sin(2πδ/λ), likewise",
+         .entry = Entry::kLinear,
+         .presence = Presence::kOnDemand,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = Force,
+         .column = Regressor::kRippleSineUp},
+    Term{.name = "ripple_cosine_down",
+         .unit = "N",
+         .meaning = "factor of cos(2πδ/λ) where the displacement falls",
+         .entry = Entry::kLinear,
+         .presence = Presence::kOnDemand,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = Force,
+         .column = Regressor::kRippleCosineDown},
+    Term{.name = "ripple_sine_down",
+         .unit = "N",
+         .meaning = "factor of sin(2πδ/λ), likewise",
+         .entry = Entry::kLinear,
+         .presence = Presence::kOnDemand,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = Force,
+         .column = Regressor::kRippleSineDown},
     Term{.name = "lag",
          .unit = "s",
          .meaning = "by which the contact's force is read after the displacement; in samples where "

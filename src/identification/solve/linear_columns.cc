@@ -34,7 +34,7 @@ void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned c
     std::size_t row = 0;
     for (std::size_t r = 0; r < data.records.size(); ++r) {
       const std::size_t size = data.records[r].size();
-      AddColumn(problem, p, r, -theta[p], measured.subspan(row, size));
+      AddColumn(problem, p, r, theta, -theta[p], measured.subspan(row, size));
       row += size;
     }
   }
@@ -51,14 +51,14 @@ void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned c
       const bool is_own = parameter.term->scope == Scope::kRecord && parameter.record == r;
       if (is_own && is_free(p)) members_.push_back(p);
     }
-    AddBlock(problem, row, size, weight);
+    AddBlock(problem, row, size, theta, weight);
     row += size;
   }
   members_.clear();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     if (parameters[p].term->scope == Scope::kContact && is_free(p)) members_.push_back(p);
   }
-  AddBlock(problem, 0, problem.size(), weight);
+  AddBlock(problem, 0, problem.size(), theta, weight);
   const auto count = static_cast<Eigen::Index>(independent_.size());
   measured_projections_.resize(count);
   response_projections_.setZero(count);
@@ -72,7 +72,7 @@ void LinearColumns::Factorise(const Problem& problem, std::span<const unsigned c
 }
 
 void LinearColumns::AddBlock(const Problem& problem, std::size_t first_row, std::size_t rows,
-                             std::span<const double> weight) {
+                             std::span<const double> theta, std::span<const double> weight) {
   std::vector<std::size_t>& kept = members_;
   if (kept.empty()) return;
   parameters_.insert(parameters_.end(), kept.begin(), kept.end());
@@ -89,7 +89,7 @@ void LinearColumns::AddBlock(const Problem& problem, std::size_t first_row, std:
       for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
         const std::size_t size = problem.data->records[r].size();
         if (row >= first_row && row + size <= first_row + rows) {
-          AddColumn(problem, kept[static_cast<std::size_t>(j)], r, 1.0,
+          AddColumn(problem, kept[static_cast<std::size_t>(j)], r, theta, 1.0,
                     column.subspan(row - first_row, size));
         }
         row += size;

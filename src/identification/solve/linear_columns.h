@@ -49,7 +49,7 @@ class LinearColumns {
 
   /// Factorises the columns of members_ over some rows, and leaves the independent ones there.
   void AddBlock(const Problem& problem, std::size_t first_row, std::size_t rows,
-                std::span<const double> weight);
+                std::span<const double> theta, std::span<const double> weight);
   [[nodiscard]] std::span<const double> Basis(const Block& block, std::size_t k) const {
     return {basis_.data() + block.offset + k * block.rows, block.rows};
   }

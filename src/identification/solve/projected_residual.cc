@@ -169,9 +169,14 @@ bool ProjectedResidual::HoldPassed(std::span<double> theta) {
 }
 
 LawPoint ProjectedResidual::PointOf(std::span<const double> u) {
+  bool columns_move = false;
   for (std::size_t j = 0; j < searched_.size(); ++j) {
-    if (searched_[j].eliminated == nullptr) theta_[searched_[j].parameter] = u[j];
+    const std::size_t p = searched_[j].parameter;
+    if (searched_[j].eliminated != nullptr) continue;
+    columns_move = columns_move || (theta_[p] != u[j] && ShapesColumns(*problem_, p));
+    theta_[p] = u[j];
   }
+  if (columns_move) FactoriseColumns();
   LawPoint point = PointAt(*problem_, theta_);
   for (std::size_t j = 0; j < searched_.size(); ++j) {
     if (searched_[j].eliminated != nullptr) point.*searched_[j].eliminated = u[j];
@@ -295,11 +300,33 @@ void ProjectedResidual::DifferentiateResponse(const LawPoint& point) {
   }
 }
 
+/// Fills the derivatives by what shapes linear columns, over the scale and without weights, at the
+/// linear parameters that were eliminated.
+void ProjectedResidual::DifferentiateColumns() {
+  const auto shapes = [&](const SearchedParameter& searched) {
+    return ShapesColumns(*problem_, searched.parameter);
+  };
+  if (std::ranges::none_of(searched_, shapes)) return;
+  std::vector<double> theta = theta_;
+  columns_.Solve(scale_, theta);
+  for (std::size_t j = 0; j < searched_.size(); ++j) {
+    if (!shapes(searched_[j])) continue;
+    std::size_t row = 0;
+    for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
+      const std::size_t size = problem_->data->records[r].size();
+      AddDerivativeOfColumns(*problem_, searched_[j].parameter, r, theta, 1 / scale_,
+                             Derivative(j).subspan(row, size));
+      row += size;
+    }
+  }
+}
+
 double ProjectedResidual::Linearise(std::span<const double> u) {
   const LawPoint point = PointOf(u);
   DifferentiateResponse(point);
   const double cost =
       Regress(point.log_rate, scale_is_linear_, std::exp(LogScaleAt(*problem_, theta_)));
+  DifferentiateColumns();
   const double square = scale_is_free_ ? Dot(response_values_, response_values_) : 0.0;
   for (std::size_t j = 0; j < searched_.size(); ++j) {
     const std::span<double> column = Derivative(j);

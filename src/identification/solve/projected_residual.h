@@ -36,7 +36,10 @@ class ProjectedResidual {
   void Bind(const Problem& problem, Response& response);
 
   /// Moves a parameter that the problem holds, of those without a column of their own.
-  void HoldAt(std::size_t parameter, double theta) { theta_[parameter] = theta; }
+  void HoldAt(std::size_t parameter, double theta) {
+    theta_[parameter] = theta;
+    if (ShapesColumns(*problem_, parameter)) FactoriseColumns();
+  }
 
   /// Lets all linear parameters go that were held at a bound.
   void ReleaseLinear();
@@ -79,6 +82,7 @@ class ProjectedResidual {
   [[nodiscard]] std::pair<double, double> BoundsOfScale(double log_rate) const;
   double Regress(double log_rate, bool is_free, double held_scale);
   void DifferentiateResponse(const LawPoint& point);
+  void DifferentiateColumns();
   [[nodiscard]] std::span<double> Derivative(std::size_t k) {
     return {derivatives_.data() + k * samples_, samples_};
   }

@@ -16,6 +16,30 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
           .last_step = kLastStep * options.function_tolerance};
 }
 
+namespace {
+
+/// Adds the starts of the law alone, where terms that are not linear are searched with it: a model
+/// that is larger must not end higher than the law.
+void AddStartsOfLaw(const Problem& problem, const FitOptions& options, SearchBuffers& buffers,
+                    std::pmr::memory_resource* memory, std::pmr::vector<StartingPoint>& starts) {
+  Problem law = problem;
+  bool is_larger = false;
+  for (const std::size_t p : problem.parameters.free()) {
+    const Term& term = *problem.parameters[p].term;
+    if (term.presence != Presence::kOnDemand || p == kRig) continue;
+    law.parameters.Fix(p, problem.parameters[p].theta);
+    is_larger = is_larger || term.has_start;
+  }
+  if (!is_larger) return;
+  for (StartingPoint& start :
+       FindStarts(law, options, std::numeric_limits<double>::infinity(), buffers.solver,
+                  buffers.response, buffers.scratch, memory)) {
+    starts.push_back(std::move(start));
+  }
+}
+
+}  // namespace
+
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
                     double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory) {
   if (auto given = GivenStart(candidate.problem.parameters, options, memory)) {
@@ -39,6 +63,7 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
                         Parameters(candidate.problem.parameters, memory)};
   candidate.starts = FindStarts(problem, options, rival, buffers.solver, buffers.response,
                                 buffers.scratch, memory);
+  AddStartsOfLaw(problem, options, buffers, memory, candidate.starts);
   return candidate.starts.empty() ? std::numeric_limits<double>::infinity()
                                   : candidate.starts.front().cost;
 }

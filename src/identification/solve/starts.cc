@@ -355,7 +355,8 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
   StartingPoint start{.theta = std::pmr::vector<double>(memory)};
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     double& theta = start.theta.emplace_back(parameters[p].theta);
-    const bool is_searched = p == kSlipForce || parameters[p].term->entry == Entry::kLaw;
+    const bool is_searched = p == kSlipForce || (parameters[p].term->entry == Entry::kLaw &&
+                                                 !parameters[p].term->has_start);
     if (parameters[p].fixed || parameters.FindStart(options, p, theta)) continue;
     if (is_searched) return std::nullopt;
   }

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/record.h"
+
+namespace mindahl::identification {
+
+/// How terms are added to the law.
+struct TermSelectionOptions {
+  /// Parts into which cycles or strokes are divided for prediction; odd, so that each has strokes
+  /// of both directions.
+  std::size_t folds = 5;
+  /// Largest probability with which the gain of a term that is added is chance, over all candidates
+  /// of a round (Bonferroni).
+  double chance = 0.01;
+  /// Least fraction by which the error of prediction falls with a term that is added, unless the
+  /// model is adequate with it.
+  double smallest_gain = 0.05;
+  std::size_t most_terms = 5;  ///< that are added
+};
+
+/// A term, or a few that are one, that a record may require.
+struct TermGroup {
+  std::string_view name;
+  std::vector<std::string_view> terms;  ///< what FitOptions::terms calls them
+};
+
+/// Returns what can be added, besides covariates; `--terms` takes these names.
+std::span<const TermGroup> TermGroups();
+
+/// Returns nullptr where there is none of that name.
+const TermGroup* FindTermGroup(std::string_view name);
+
+/// A candidate and what it gained in the last round in which it was tried.
+struct ConsideredTerm {
+  std::string name;  ///< of the group, or NameOfCovariate()
+  /// Fraction by which the rms error of predicted cycles falls, of fitted samples where
+  /// `is_predicted` is false [–].
+  double gain = 0.0;
+  double p_value = 1.0;  ///< that the gain is chance
+  bool is_predicted = false;
+  bool added = false;
+  /// Why it was not added though it gains: "" or "confounded", "rate_dependent", "unphysical".
+  std::string_view obstacle;
+};
+
+struct TermSelection {
+  bool is_automatic = true;  ///< false: the user named them
+  std::vector<ConsideredTerm>
+      considered;  ///< those added first, in their order; then by their gain
+  std::vector<std::string> added;
+  std::size_t held_out_parts = 0;  ///< cycles or strokes, each predicted once; 0: AICc decided
+  std::size_t estimates = 0;       ///< fits at Depth::kEstimate that were made
+  FitOptions options;              ///< with the terms that were added
+  FitResult fit;                   ///< with them, at Depth::kThorough
+};
+
+/// Fits a record with the terms that it requires and no others (forward selection).
+///
+/// A record that the law describes adequately gets none: its fit is Fit()'s to the last digit.
+/// Otherwise each candidate for which there are data is fitted from the solution without it. In the
+/// order of their rms, each parameter being worth `smallest_gain` of it, up to four are judged on
+/// cycles held out of the fit, or on strokes where there are fewer than four cycles; where there
+/// are fewer than four strokes AICc decides. One is added where the paired gain of prediction is no
+/// chance (one-sided t of the logarithms of the ratios of errors, with the correlation of folds,
+/// Nadeau & Bengio 2003) and worth `smallest_gain`, and where the slip force is not lost by it. The
+/// rounds end when none is added or the model is adequate.
+///
+/// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
+/// a candidate before it or of the velocity, or where it follows the contact's force, |r| > 0.3:
+/// its factor and the slip force then share what the record shows. A lag is added where it leaves
+/// at most half the squared error of the best force of speed: a lag is the same at every speed, and
+/// a knee that is rounded by speed looks like one.
+/// @param records  [m], [N]
+/// @param options  of every fit; a term that these have is no candidate
+/// @throws InvalidArgument as Fit does, for folds < 2 or a chance outside (0, 1)
+/// Deterministic. Nothing is selected in a fit of the displacement.
+TermSelection SelectTerms(std::span<const loop::RecordView> records, const FitOptions& options,
+                          const TermSelectionOptions& selection = {});
+TermSelection SelectTerms(std::span<const loop::Record> records, const FitOptions& options,
+                          const TermSelectionOptions& selection = {});
+
+}  // namespace mindahl::identification

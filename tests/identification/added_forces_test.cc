@@ -1,0 +1,309 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "identification/solve/projected_residual.h"
+#include "identification/stages.h"
+#include "mindahl/core/error.h"
+
+// Forces of speed by a power, of position and direction, of a ripple and of a mass: recovered from
+// loops that have them, with exact derivatives.
+namespace mindahl::identification::added_forces_test {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::FitOne;
+using ::testing::HasSubstr;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Stages;
+using testing::Wave;
+
+constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
+constexpr double kReach = 4e-6;  // 2 of gross slip
+constexpr int kSamplesPerCycle = 160;
+constexpr double kStep = 0.01;  // [s]
+/// The regularised speed differs from |v|^m by ½(1 − m)(v_ε/v)², 1e-10 next to a turning point of
+/// these sines; the condition of the fit is 1e4 for the contact and up to ten times that with a
+/// force that looks like it.
+constexpr double kRecovered = 1e-5;
+
+Record Loop(double cycles = 2.3) {
+  const auto displacement = Cycling(Wave::kSine, kReach, cycles, kSamplesPerCycle);
+  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  record.time.clear();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(kStep * static_cast<double>(i));
+  }
+  return record;
+}
+
+/// Central differences, as a fit knows the velocity [m/s].
+std::vector<double> Velocity(const Record& record) {
+  const std::size_t last = record.size() - 1;
+  std::vector<double> velocity;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1;
+    const std::size_t after = std::min(i + 1, last);
+    velocity.push_back((record.displacement[after] - record.displacement[before]) /
+                       (record.time[after] - record.time[before]));
+  }
+  return velocity;
+}
+
+/// Direction of the stroke of each sample, a turning point ending its stroke.
+std::vector<double> Direction(const Record& record) {
+  std::vector<double> direction;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const std::size_t from = i == 0 ? 0 : i - 1;
+    direction.push_back(record.displacement[from + 1] > record.displacement[from] ? 1.0 : -1.0);
+  }
+  return direction;
+}
+
+double ValueOf(const FitResult& fit, const char* name) { return fit.Find(name)->value; }
+
+void ExpectLaw(const FitResult& fit) {
+  EXPECT_TRUE(fit.converged) << fit.solver.message;
+  EXPECT_NEAR(fit.law.tangential_stiffness, kLaw.tangential_stiffness,
+              kRecovered * kLaw.tangential_stiffness);
+  EXPECT_NEAR(fit.law.shape_exponent, kLaw.shape_exponent, kRecovered);
+  EXPECT_NEAR(fit.law.slip_force, kLaw.slip_force, kRecovered * kLaw.slip_force);
+}
+
+TEST(AddedForces, PowerOfTheSpeedIsRecovered) {
+  for (const double exponent : {0.35, 0.8}) {
+    Record record = Loop();
+    const std::vector<double> velocity = Velocity(record);
+    const double factor = 12 / std::pow(2 * std::numbers::pi * kReach / 1.6, exponent);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      record.force[i] +=
+          std::copysign(factor * std::pow(std::abs(velocity[i]), exponent), velocity[i]);
+    }
+    FitOptions options;
+    options.terms = {"viscous", "speed_exponent"};
+    const FitResult fit = FitOne(record, options);
+    ExpectLaw(fit);
+    EXPECT_NEAR(ValueOf(fit, "speed_exponent"), exponent, kRecovered);
+    // C belongs to 1 m/s: ∂ ln C/∂m = ln(u/v), of a speed of 1e-5 m/s.
+    EXPECT_NEAR(ValueOf(fit, "viscous"), factor, 12 * kRecovered * factor);
+  }
+}
+
+TEST(AddedForces, PowerOfOneIsTheViscousForce) {
+  Record record = Loop();
+  const std::vector<double> velocity = Velocity(record);
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += 5e5 * velocity[i];
+  FitOptions options;
+  options.terms = {"viscous"};
+  const FitResult viscous = FitOne(record, options);
+  options.fixed["speed_exponent"] = 1.0;
+  const FitResult power = FitOne(record, options);
+  EXPECT_EQ(ValueOf(power, "viscous"), ValueOf(viscous, "viscous"));
+  EXPECT_EQ(power.law.slip_force, viscous.law.slip_force);
+}
+
+TEST(AddedForces, SlipForceOfPositionAndDirectionIsRecovered) {
+  Record record = Loop();
+  constexpr double kSlope = 0.12;
+  constexpr double kCurvature = -0.2;
+  const double plateau_slope = 5 / kReach;
+  const double plateau_curvature = -4 / (kReach * kReach);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double position = record.displacement[i] / kReach;
+    record.force[i] *= 1 + kSlope * position + kCurvature * position * position;
+    record.force[i] += plateau_slope * record.displacement[i] +
+                       plateau_curvature * record.displacement[i] * record.displacement[i];
+  }
+  FitOptions options;
+  options.terms = {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"};
+  const FitResult fit = FitOne(record, options);
+  ExpectLaw(fit);
+  EXPECT_NEAR(ValueOf(fit, "slip_slope"), kSlope, kRecovered);
+  EXPECT_NEAR(ValueOf(fit, "slip_curvature"), kCurvature, kRecovered);
+  EXPECT_NEAR(ValueOf(fit, "plateau_slope"), plateau_slope, 10 * kRecovered * plateau_slope);
+  EXPECT_NEAR(ValueOf(fit, "plateau_curvature"), plateau_curvature,
+              -10 * kRecovered * plateau_curvature);
+}
+
+TEST(AddedForces, SlipForceOfTheSpeedIsRecoveredAtTheSpeedInTheMiddle) {
+  Record record = Loop();
+  constexpr double kOfSpeed = 0.4;
+  constexpr double kExponent = 0.5;
+  const std::vector<double> velocity = Velocity(record);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    if (std::abs(record.displacement[i]) > kReach / 3) continue;
+    sum += std::abs(velocity[i]);
+    ++count;
+  }
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double ratio = std::abs(velocity[i]) / (sum / count);
+    record.force[i] *= 1 + kOfSpeed * (std::pow(ratio, kExponent) - 1);
+  }
+  FitOptions options;
+  options.terms = {"slip_speed", "slip_speed_exponent"};
+  const FitResult fit = FitOne(record, options);
+  ExpectLaw(fit);
+  // At rest a fit has 1 − c(1 − (v_ε/v₀)^m), with a resolution of 1e-6 of the speed.
+  constexpr double kAtRest = 1e-3;
+  EXPECT_NEAR(ValueOf(fit, "slip_speed"), kOfSpeed, kAtRest);
+  EXPECT_NEAR(ValueOf(fit, "slip_speed_exponent"), kExponent, kAtRest);
+}
+
+TEST(AddedForces, RippleWithAPhaseForEachDirectionIsRecovered) {
+  Record record = Loop();
+  const double period = kReach / 3.7;
+  const std::vector<double> direction = Direction(record);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double phase = 2 * std::numbers::pi * record.displacement[i] / period;
+    record.force[i] += direction[i] > 0 ? 2 * std::cos(phase + 0.7) : 3 * std::cos(phase - 1.9);
+  }
+  FitOptions options;
+  options.terms = {"ripple_period", "ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down",
+                   "ripple_sine_down"};
+  const FitResult fit = FitOne(record, options);
+  ExpectLaw(fit);
+  EXPECT_NEAR(ValueOf(fit, "ripple_period"), period, kRecovered * period);
+  const double up = std::hypot(ValueOf(fit, "ripple_cosine_up"), ValueOf(fit, "ripple_sine_up"));
+  const double down =
+      std::hypot(ValueOf(fit, "ripple_cosine_down"), ValueOf(fit, "ripple_sine_down"));
+  EXPECT_NEAR(up, 2, 2 * 10 * kRecovered);
+  EXPECT_NEAR(down, 3, 3 * 10 * kRecovered);
+  // cos(φ + 0.7) = cos 0.7·cos φ − sin 0.7·sin φ
+  EXPECT_NEAR(std::atan2(-ValueOf(fit, "ripple_sine_up"), ValueOf(fit, "ripple_cosine_up")), 0.7,
+              10 * kRecovered);
+}
+
+TEST(AddedForces, MassIsRecovered) {
+  Record record = Loop();
+  const std::vector<double> velocity = Velocity(record);
+  constexpr double kMass = 1e5;  // [kg], of which these few micrometres make 6 N
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1;
+    const std::size_t after = std::min(i + 1, record.size() - 1);
+    record.force[i] +=
+        kMass * (velocity[after] - velocity[before]) / (record.time[after] - record.time[before]);
+  }
+  FitOptions options;
+  options.terms = {"inertia"};
+  const FitResult fit = FitOne(record, options);
+  ExpectLaw(fit);
+  EXPECT_NEAR(ValueOf(fit, "inertia"), kMass, kRecovered * kMass);
+}
+
+FitOptions AllOfThem() {
+  FitOptions options;
+  options.terms = {"slip_speed",
+                   "slip_speed_exponent",
+                   "viscous",
+                   "speed_exponent",
+                   "inertia",
+                   "slip_slope",
+                   "slip_curvature",
+                   "plateau_slope",
+                   "plateau_curvature",
+                   "ripple_period",
+                   "ripple_cosine_up",
+                   "ripple_sine_up",
+                   "ripple_cosine_down",
+                   "ripple_sine_down"};
+  return options;
+}
+
+/// A point away from all solutions.
+std::vector<double> PointOf(const Problem& problem) {
+  std::vector<double> theta;
+  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
+    const Parameter& parameter = problem.parameters[p];
+    theta.push_back(parameter.fixed ? parameter.theta : 0.1 + 0.01 * static_cast<double>(p));
+    if (parameter.term->name == "sigma") theta.back() = 1.5;
+    if (parameter.term->name == "speed_exponent") theta.back() = 0.6;
+    if (parameter.term->name == "ripple_period") theta.back() = std::log(0.4);
+  }
+  return theta;
+}
+
+/// Of the largest value: central differences err by h²f‴/6, f‴ up to (2π/0.4)³·0.3 of a ripple, and
+/// 1e-16/h by rounding.
+constexpr double kStepOfTheta = 1e-5;
+constexpr double kOfDifference = 1e-7;
+
+TEST(AddedForces, DerivativesAreThoseOfCentralDifferences) {
+  Stages stages(Loop(), AllOfThem());
+  const auto& free = stages.problem.parameters.free();
+  const std::vector<double> theta = PointOf(stages.problem);
+  const std::size_t samples = stages.problem.size();
+  std::vector<double> residual(samples);
+  std::vector<double> jacobian(samples * free.size());
+  Response response;
+  response.Bind(stages.problem);
+  Differentiate(stages.problem, theta, response, free, residual, jacobian);
+  for (std::size_t c = 0; c < free.size(); ++c) {
+    std::vector<double> moved = theta;
+    moved[free[c]] += kStepOfTheta;
+    const Eigen::VectorXd above = stages.ResidualsAt(moved);
+    moved[free[c]] -= 2 * kStepOfTheta;
+    const Eigen::VectorXd below = stages.ResidualsAt(moved);
+    const std::span<const double> column(jacobian.data() + c * samples, samples);
+    const auto [lowest, highest] = std::ranges::minmax(column);
+    const double size = std::max({1.0, highest, -lowest});
+    for (std::size_t i = 0; i < samples; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      ASSERT_NEAR(jacobian[c * samples + i], (above[row] - below[row]) / (2 * kStepOfTheta),
+                  size * kOfDifference)
+          << stages.problem.parameters.NameOf(free[c]) << " at " << i;
+    }
+  }
+}
+
+TEST(AddedForces, GradientOfTheProjectedResidualIsThatOfTheCost) {
+  // What Kaufman leaves out of the Jacobian is orthogonal to the residual: the gradient is exact.
+  Stages stages(Loop(), AllOfThem());
+  Response response;
+  ProjectedResidual projected;
+  projected.Bind(stages.problem, response);
+  const std::vector<double> theta = PointOf(stages.problem);
+  std::vector<double> u(projected.searched().size());
+  projected.Load(theta, u);
+  projected.Linearise(u);
+  const Eigen::VectorXd gradient = projected.gradient();
+  for (std::size_t j = 0; j < u.size(); ++j) {
+    std::vector<double> moved = u;
+    moved[j] += kStepOfTheta;
+    const double above = projected.Evaluate(moved);
+    moved[j] -= 2 * kStepOfTheta;
+    const double below = projected.Evaluate(moved);
+    const double slope = (above - below) / (4 * kStepOfTheta);  // of half the cost
+    // Sums over some 400 samples of what is checked above sample by sample.
+    EXPECT_NEAR(
+        gradient[static_cast<Eigen::Index>(j)], slope,
+        static_cast<double>(stages.problem.size()) * kOfDifference * std::max(1.0, std::abs(slope)))
+        << stages.problem.parameters.NameOf(projected.searched()[j].parameter);
+  }
+}
+
+TEST(AddedForces, WhatShapesAColumnNeedsIt) {
+  FitOptions options;
+  options.terms = {"speed_exponent"};
+  try {
+    FitOne(Loop(), options);
+    FAIL() << "accepted";
+  } catch (const InvalidArgument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("speed_exponent has no effect without a term viscous"));
+  }
+}
+
+}  // namespace
+}  // namespace mindahl::identification::added_forces_test

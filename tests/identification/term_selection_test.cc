@@ -1,0 +1,214 @@
+#include "mindahl/identification/term_selection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "recovery/recovered.h"
+
+// Which terms SelectTerms adds to the law of records whose terms are known.
+namespace mindahl::identification::term_selection_test {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using ::testing::ElementsAre;
+using testing::Generator;
+using ::testing::IsEmpty;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Wave;
+using testing::WithForceNoise;
+
+constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
+constexpr double kReach = 4e-6;  // 2 of gross slip
+constexpr double kCycles = 8.3;
+constexpr int kSamplesPerCycle = 120;
+constexpr double kPeriod = 1.0;  // [s]
+constexpr double kNoise = 0.2;   // [N], 1/300 of Tc
+/// An estimate lies within this many of its standard errors: beyond it once in 10⁷.
+constexpr double kStandardErrors = 5.3;
+
+double SpeedAt(std::size_t i) {
+  const double rate = 2 * std::numbers::pi / kPeriod;
+  return kReach * rate * std::cos(rate * kPeriod * static_cast<double>(i) / kSamplesPerCycle);
+}
+
+Record Clean() {
+  const auto displacement = testing::Cycling(Wave::kSine, kReach, kCycles, kSamplesPerCycle);
+  Record record = MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+  record.time.clear();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(kPeriod * static_cast<double>(i) / kSamplesPerCycle);
+  }
+  return record;
+}
+
+Record Noisy(const Record& record, std::uint64_t seed) {
+  Generator generator(seed);
+  return WithForceNoise(record, kNoise, generator);
+}
+
+TermSelection Select(const Record& record, const TermSelectionOptions& options = {}) {
+  return SelectTerms(std::vector{record}, {}, options);
+}
+
+const ConsideredTerm& TermOf(const TermSelection& selection, std::string_view name) {
+  return *std::ranges::find(selection.considered, name, &ConsideredTerm::name);
+}
+
+TEST(TermSelection, AdequateLoopGetsNoTermAndKeepsEveryDigit) {
+  const Record record = Noisy(Clean(), 1);
+  const TermSelection selection = Select(record);
+  ASSERT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  EXPECT_THAT(selection.added, IsEmpty());
+  EXPECT_THAT(selection.considered, IsEmpty());
+  const FitResult plain = Fit(std::vector{record}, {}, Depth::kThorough);
+  ASSERT_EQ(selection.fit.parameters.size(), plain.parameters.size());
+  for (std::size_t i = 0; i < plain.parameters.size(); ++i) {
+    EXPECT_EQ(selection.fit.parameters[i].value, plain.parameters[i].value);
+    EXPECT_EQ(selection.fit.parameters[i].upper95, plain.parameters[i].upper95);
+  }
+}
+
+TEST(TermSelection, ViscousForceIsAddedAloneAndRecovered) {
+  const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
+  const TermSelection selection = Select(Noisy(record, 2));
+  EXPECT_THAT(selection.added, ElementsAre("viscous"));
+  const ParameterEstimate& estimate = *selection.fit.Find("viscous");
+  // Central differences of a sine take the rate for sin(ωΔt)/(ωΔt) of it.
+  const double step = 2 * std::numbers::pi / kSamplesPerCycle;
+  const double bias = viscous * (1 - std::sin(step) / step);
+  EXPECT_NEAR(estimate.value, viscous, kStandardErrors * *estimate.standard_error + bias);
+
+  // 8.3 cycles turn 17 times, from a quarter of the first on: 8 cycles close, each predicted once.
+  EXPECT_EQ(selection.held_out_parts, 8u);
+  const ConsideredTerm& term = TermOf(selection, "viscous");
+  EXPECT_TRUE(term.added && term.is_predicted);
+  // What is left is noise: of an rms of viscous force and noise before, Pythagoras.
+  EXPECT_GT(term.gain, 0.5);
+  EXPECT_LT(term.p_value, 0.01);
+}
+
+TEST(TermSelection, ForceOfPositionIsAddedAlone) {
+  const double slope = 0.1 * kLaw.slip_force / kReach;
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += slope * record.displacement[i];
+  const TermSelection selection = Select(Noisy(record, 3));
+  EXPECT_THAT(selection.added, ElementsAre("plateau_slope"));
+  const ParameterEstimate& estimate = *selection.fit.Find("plateau_slope");
+  EXPECT_NEAR(estimate.value, slope, kStandardErrors * *estimate.standard_error);
+}
+
+TEST(TermSelection, TwoForcesAreAddedTheLargerFirst) {
+  const double viscous = 0.06 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  const double slope = 0.2 * kLaw.slip_force / kReach;
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] += viscous * SpeedAt(i) + slope * record.displacement[i];
+  }
+  const TermSelection selection = Select(Noisy(record, 4));
+  EXPECT_THAT(selection.added, ElementsAre("plateau_slope", "viscous"));
+}
+
+TEST(TermSelection, SlipForceOfTheSpeedIsAddedAndTcIsThatOfTheHalfGap) {
+  Record record = Clean();
+  const double largest = kReach * 2 * std::numbers::pi / kPeriod;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] *= 1 + 0.6 * (std::sqrt(std::abs(SpeedAt(i)) / largest) - 1);
+  }
+  const TermSelection selection = Select(Noisy(record, 8));
+  ASSERT_THAT(selection.added, ::testing::Not(IsEmpty()));
+  EXPECT_EQ(selection.added.front(), "slip_speed");
+  // A third of the half gap is as much as a term may take from it or give to it.
+  const double half_gap = *selection.fit.WidestRecord().facts.half_gap;
+  EXPECT_GT(selection.fit.law.slip_force, half_gap / 1.5);
+  EXPECT_LT(selection.fit.law.slip_force, half_gap * 1.5);
+}
+
+TEST(TermSelection, NegativeDampingIsNotAdded) {
+  const double viscous = -0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
+  const TermSelection selection = Select(Noisy(record, 9));
+  EXPECT_FALSE(TermOf(selection, "viscous").added);
+  EXPECT_EQ(TermOf(selection, "viscous").obstacle, "unphysical");
+}
+
+TEST(TermSelection, LagIsAddedWhereNoForceOfSpeedDoesHalfAsWell) {
+  Record record = Clean();
+  constexpr std::size_t kLate = 2;  // samples
+  const std::vector<double> force = record.force;
+  for (std::size_t i = 0; i < record.size(); ++i)
+    record.force[i] = force[i < kLate ? 0 : i - kLate];
+  const TermSelection selection = Select(Noisy(record, 5));
+  EXPECT_THAT(selection.added, ElementsAre("lag"));
+  const ParameterEstimate& estimate = *selection.fit.Find("lag");
+  EXPECT_NEAR(estimate.value, kLate * kPeriod / kSamplesPerCycle,
+              kStandardErrors * *estimate.standard_error);
+}
+
+/// Wanders in no step with the motion.
+std::vector<double> Wandering(std::size_t samples) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const auto at = static_cast<double>(i);
+    values.push_back(40 + std::sin(0.031 * at) * std::cos(0.012 * at + 1));
+  }
+  return values;
+}
+
+TEST(TermSelection, CovariateIsAddedOnceThoughTwoColumnsHaveIt) {
+  Record record = Clean();
+  constexpr double kPerBar = 6.0;
+  record.covariates = {{.name = "bar", .unit = "bar", .values = Wandering(record.size())},
+                       {.name = "volts", .unit = "V", .values = Wandering(record.size())}};
+  for (double& volts : record.covariates[1].values) volts = 0.5 + 0.02 * volts;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] += kPerBar * record.covariates[0].values[i];
+  }
+  const TermSelection selection = Select(Noisy(record, 6));
+  EXPECT_THAT(selection.added, ElementsAre("covariate_bar"));
+  const auto is_volts = [](const ConsideredTerm& term) { return term.name == "covariate_volts"; };
+  EXPECT_TRUE(std::ranges::none_of(selection.considered, is_volts));
+}
+
+TEST(TermSelection, ColumnThatFollowsTheContactIsConfoundedAndACopyIsNoCandidate) {
+  const double viscous = 0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  Record record = Clean();
+  const std::vector<double> contact = record.force;
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
+  record = Noisy(record, 7);
+  record.covariates = {{.name = "load cell", .unit = "V", .values = record.force},
+                       {.name = "pressure", .unit = "bar", .values = Wandering(record.size())}};
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.covariates[1].values[i] += contact[i] / kLaw.slip_force + 0.3 * SpeedAt(i) / kReach;
+  }
+  const TermSelection selection = Select(record);
+  EXPECT_THAT(selection.added, ElementsAre("viscous"));
+  EXPECT_EQ(TermOf(selection, "covariate_pressure").obstacle, "confounded");
+  const auto is_cell = [](const ConsideredTerm& term) {
+    return term.name == "covariate_load_cell";
+  };
+  EXPECT_TRUE(std::ranges::none_of(selection.considered, is_cell));
+}
+
+TEST(TermSelection, OptionsThatBreakARuleAreRefused) {
+  EXPECT_THROW(Select(Clean(), {.folds = 1}), InvalidArgument);
+  EXPECT_THROW(Select(Clean(), {.chance = 0.0}), InvalidArgument);
+  EXPECT_THROW(Select(Clean(), {.smallest_gain = -0.1}), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::identification::term_selection_test
