@@ -336,13 +336,13 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
   const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
                                                    static_cast<double>(samples_.count)));
   const double before = evidence.Aicc(base.sum_of_squares, CountFreeParameters(base.fit));
-  struct Trial {
+  struct TermTrial {
     TermCandidate* candidate;
     CandidateModel model;
     double delta_aicc;
     double rank;  // ln of the rms with each parameter taken for worth the least gain; or ΔAICc
   };
-  std::vector<Trial> trials;
+  std::vector<TermTrial> trials;
   double least_of_speed = std::numeric_limits<double>::infinity();
   std::size_t tried = 0;
   for (TermCandidate& candidate : candidates) {
@@ -368,12 +368,12 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
                                   selection_.smallest_gain * static_cast<double>(candidate.size());
     trials.push_back({&candidate, std::move(*model), delta, rank});
   }
-  std::ranges::stable_sort(trials, {}, &Trial::rank);
+  std::ranges::stable_sort(trials, {}, &TermTrial::rank);
   const double chance = selection_.chance / static_cast<double>(std::max<std::size_t>(tried, 1));
   // Of terms that another candidate has among others, where these hardly gain more.
-  const auto simpler_does = [&](const Trial& trial) {
+  const auto simpler_does = [&](const TermTrial& trial) {
     const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
-    return std::ranges::any_of(trials, [&](const Trial& other) {
+    return std::ranges::any_of(trials, [&](const TermTrial& other) {
       return other.candidate->terms.size() < trial.candidate->terms.size() &&
              other.candidate->covariate.empty() &&
              std::ranges::all_of(other.candidate->terms,
@@ -385,7 +385,7 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
     });
   };
   std::size_t predicted = 0;
-  for (Trial& trial : trials) {
+  for (TermTrial& trial : trials) {
     ConsideredTerm& considered = trial.candidate->considered;
     if (simpler_does(trial)) continue;
     if (parts_.empty() && !(trial.delta_aicc < 0)) continue;

@@ -314,8 +314,7 @@ std::string ToText(const Report& report, const TextOptions& options) {
   const Style style(options.has_colours);
   if (!IsUsable(report)) {
     const std::string unusable = UnusableText(report, style);
-    return report.selection ? unusable + "
-" + SelectionText(*report.selection, report.units)
+    return report.selection ? unusable + "\n" + SelectionText(*report.selection, report.units)
                             : unusable;
   }
   std::string text = AdequacyText(report, style);
@@ -323,8 +322,7 @@ std::string ToText(const Report& report, const TextOptions& options) {
     const std::string terms = TermsText(*report.terms);
     if (!terms.empty()) text += Wrapped(terms, 2);
   }
-  text += "
-" + ParameterTable(fit, style);
+  text += "\n" + ParameterTable(fit, style);
   const std::string wide = WideIntervalStatement(fit, report.units);
   if (!wide.empty()) text += Wrapped(wide, 2);
   const std::string slip_forces = SlipForcesStatement(report);
