@@ -117,6 +117,10 @@ TEST(Text, OfAForceWithoutALoopSaysSoFirst) {
 
 TEST(Text, HasNoChanceThatIsZero) {
   ReportInput input = MadeInput();
+  identification::ParameterEstimate& alpha = input.fit.parameters[1];
+  alpha.value = 0.5;
+  alpha.lower95 = 0.48;
+  alpha.upper95 = 0.52;
   identification::MindlinTest& test = input.fit.mindlin_test.emplace();
   test.likelihood_ratio = 5340.0;
   test.p_value = 0.0;
