@@ -149,6 +149,41 @@ double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compar
 
 int SignOf(double value) { return (value > 0) - (value < 0); }
 
+/// Returns the standard deviation of white noise by the median of second differences, which turns
+/// and knees of a loop do not move: of normal values a median is 0.6745 σ, of their second
+/// differences √6 σ.
+double NoiseOf(std::span<const double> values, std::pmr::memory_resource* scratch) {
+  if (values.size() < 3) return 0.0;
+  constexpr double kMedianOfNormal = 0.6744897501960817;
+  std::pmr::vector<double> differences(scratch);
+  differences.reserve(values.size() - 2);
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    differences.push_back(std::abs(values[i + 1] - 2 * values[i] + values[i - 1]));
+  }
+  return Median(differences) / (kMedianOfNormal * std::sqrt(6.0));
+}
+
+/// Returns Σ((v[i+1] − v[i−1])/2)², by which noise of the other channel enters ∮F dx.
+double SquaredSteps(std::span<const double> values) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    const double step = (values[i + 1] - values[i - 1]) / 2;
+    sum += step * step;
+  }
+  return sum;
+}
+
+/// Returns the standard deviation of the mean energy of closed cycles that noise of both channels
+/// makes.
+double NoiseOfMeanEnergy(const RecordView& record, std::size_t cycles,
+                         std::pmr::memory_resource* scratch) {
+  const double of_force =
+      NoiseOf(record.force, scratch) * std::sqrt(SquaredSteps(record.displacement));
+  const double of_displacement =
+      NoiseOf(record.displacement, scratch) * std::sqrt(SquaredSteps(record.force));
+  return std::hypot(of_force, of_displacement) / static_cast<double>(cycles);
+}
+
 std::pmr::vector<double> CycleEnergies(const RecordView& record,
                                        std::span<const std::size_t> reversals,
                                        std::pmr::memory_resource* scratch) {
@@ -239,13 +274,16 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
                std::pmr::memory_resource* scratch) {
   if (record.size() == 0) return 0;
-  constexpr double kThin = 0.01;  // energy over that of the rectangle round the loop, 4XT*
+  constexpr double kThin = 0.01;       // energy over that of the rectangle round the loop, 4XT*
+  constexpr double kDeviations = 5.0;  // of what noise makes of it: one record in 3.5 million
   const Extremes displacement = ExtremesOf(record.displacement);
   const Extremes force = ExtremesOf(record.force);
   const double rectangle =
       (displacement.greatest - displacement.least) * (force.greatest - force.least);
   const std::pmr::vector<double> energies = CycleEnergies(record, reversals, scratch);
-  if (!energies.empty() && std::abs(Mean(energies)) > kThin * rectangle) {
+  if (!energies.empty() && std::abs(Mean(energies)) > kThin * rectangle &&
+      std::abs(Mean(energies)) >
+          kDeviations * NoiseOfMeanEnergy(record, energies.size(), scratch)) {
     return SignOf(Mean(energies));
   }
   const double mean_displacement = Mean(record.displacement);
