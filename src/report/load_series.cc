@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <limits>
 
 #include "mindahl/report/contact.h"
 #include "mindahl/report/mapping_tests.h"
@@ -16,10 +17,11 @@ using identification::ParameterStatus;
 
 namespace {
 
-/// Error of a + factor·b, from their errors and correlation.
+/// Error of a + factor·b, from their errors and correlation; infinite where one of them is open.
 double ErrorOfSum(double a, double factor, double b, double correlation) {
   const double scaled = factor * b;
   if (scaled == 0) return a;
+  if (std::isinf(a) || std::isinf(scaled)) return std::numeric_limits<double>::infinity();
   return std::sqrt(std::max(a * a + scaled * scaled + 2 * correlation * a * scaled, 0.0));
 }
 

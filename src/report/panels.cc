@@ -192,7 +192,9 @@ PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
     greatest = std::max(greatest, contact.normal_load);
     if (!contact.alone) continue;
     const ParameterEstimate& estimate = (*contact.alone).*quantity.alone;
-    if (!estimate.lower95 || !estimate.upper95) continue;
+    // A loop far from slip leaves Tc open, up to more than a double holds.
+    if (!estimate.is_known() || !estimate.lower95 || !estimate.upper95) continue;
+    if (!std::isfinite(*estimate.lower95) || !std::isfinite(*estimate.upper95)) continue;
     alone.x.push_back(contact.normal_load);
     alone.y.push_back(quantity.scale * estimate.value);
     alone.lower.push_back(quantity.scale * *estimate.lower95);
