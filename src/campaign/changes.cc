@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -252,29 +253,85 @@ class PieceOf {
   std::optional<Settling> settling_;
 };
 
-/// n bins tell as much as n (1 − φ)/(1 + φ) independent ones, φ the residuals' lag-one correlation.
-/// Lines take of it about as many nths as they have parameters and places, three a stretch, and the
-/// estimate itself 1 + 3φ (Marriott & Pope 1954).
-double ShareOfIndependent(std::span<const Course::Bin> bins, const Lines& lines, const Cut& cut) {
-  double squares = 0.0;
-  double products = 0.0;
+/// Weighted residuals √w·(y − piece) of all bins of a cut, one part after the other.
+std::vector<double> ResidualsOf(std::span<const Course::Bin> bins, const Lines& lines,
+                                const Cut& cut) {
+  std::vector<double> residuals;
+  residuals.reserve(bins.size());
   for (std::size_t k = 0; k < cut.parts.size(); ++k) {
     const PieceOf piece(lines, cut, k);
-    double before = 0.0;
     for (std::size_t i = cut.parts[k].begin; i < cut.parts[k].end; ++i) {
-      const double residual = std::sqrt(bins[i].weight) * (bins[i].value - piece.At(bins[i].cycle));
-      squares += residual * residual;
-      products += before * residual;
-      before = residual;
+      residuals.push_back(std::sqrt(bins[i].weight) * (bins[i].value - piece.At(bins[i].cycle)));
+    }
+  }
+  return residuals;
+}
+
+/// Returns by how much correlation of neighbours inflates the variance of means, (1 + φ)/(1 − φ), φ
+/// the residuals' lag-one correlation. Lines take of it about as many nths as they have parameters
+/// and places, three a part, the estimate itself 1 + 3φ (Marriott & Pope 1954); and it is taken
+/// a standard error, 1/√n, larger than it was seen.
+double InflationOfNeighbours(std::span<const double> residuals, const Cut& cut, double bins) {
+  double squares = 0.0;
+  double products = 0.0;
+  auto residual = residuals.begin();
+  for (const Cut::Part& part : cut.parts) {
+    double before = 0.0;
+    for (std::size_t i = part.begin; i < part.end; ++i, ++residual) {
+      squares += *residual * *residual;
+      products += before * *residual;
+      before = *residual;
     }
   }
   constexpr double kMostCorrelated = 0.95;
+  constexpr double kStandardErrors = 1.0;
   if (!(squares > 0)) return 1.0;
   const double seen = products / squares;
-  const double taken =
-      (3 * static_cast<double>(cut.parts.size()) + 1 + 3 * seen) / static_cast<double>(bins.size());
-  const double phi = std::clamp(seen + taken, 0.0, kMostCorrelated);
-  return (1 - phi) / (1 + phi);
+  const double taken = (3 * static_cast<double>(cut.parts.size()) + 1 + 3 * seen) / bins;
+  const double phi =
+      std::clamp(seen + taken + kStandardErrors / std::sqrt(bins), 0.0, kMostCorrelated);
+  return (1 + phi) / (1 - phi);
+}
+
+/// Returns the largest inflation of the variance of the means of 2, 4, 8, … bins over that of
+/// uncorrelated ones: correlation over many bins, too weak to be seen between neighbours, is seen
+/// there. Lines and their places take three blocks of each part, kTaken; where fewer than that are
+/// left in all, a variance is not known to better than a factor of two.
+double InflationOfBlocks(std::span<const double> residuals, const Cut& cut) {
+  constexpr std::size_t kTaken = 3;
+  double squares = 0.0;
+  for (const double residual : residuals) squares += residual * residual;
+  const auto count = static_cast<double>(residuals.size());
+  const double free = count - static_cast<double>(kTaken * cut.parts.size());
+  double largest = 1.0;
+  if (!(squares > 0) || !(free > 0)) return largest;
+  for (std::size_t size = 2;; size *= 2) {
+    double of_blocks = 0.0;
+    std::size_t free_blocks = 0;
+    auto residual = residuals.begin();
+    for (const Cut::Part& part : cut.parts) {
+      const std::size_t length = part.end - part.begin;
+      const std::size_t blocks = length / size;
+      if (blocks > kTaken) {
+        free_blocks += blocks - kTaken;
+        for (std::size_t k = 0; k < blocks; ++k) {
+          const auto begin = residual + static_cast<std::ptrdiff_t>(k * size);
+          const double sum = std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(size), 0.0);
+          of_blocks += sum * sum / static_cast<double>(size);
+        }
+      }
+      residual += static_cast<std::ptrdiff_t>(length);
+    }
+    if (free_blocks < kTaken) return largest;
+    largest = std::max(largest, of_blocks / static_cast<double>(free_blocks) / (squares / free));
+  }
+}
+
+/// Returns what fraction of n bins are as good as independent.
+double ShareOfIndependent(std::span<const Course::Bin> bins, const Lines& lines, const Cut& cut) {
+  const std::vector<double> residuals = ResidualsOf(bins, lines, cut);
+  return 1 / std::max(InflationOfNeighbours(residuals, cut, static_cast<double>(bins.size())),
+                      InflationOfBlocks(residuals, cut));
 }
 
 /// Two-sided, of a standard normal deviate.
@@ -538,6 +595,62 @@ class Describer {
   double floor_ = 0.0;
 };
 
+/// Divides values by a power of two, so that the largest is about one and no square overflows, and
+/// weights by the largest; those below a trillionth of it are lost in rounding and are raised to
+/// it.
+/// @returns the power of two
+double Normalise(std::vector<Course::Bin>& bins) {
+  constexpr double kLeastWeight = 1e-12;
+  double largest = 0.0;
+  double heaviest = 0.0;
+  for (const Course::Bin& bin : bins) {
+    largest = std::max({largest, std::abs(bin.least), std::abs(bin.greatest)});
+    heaviest = std::max(heaviest, bin.weight);
+  }
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  --exponent;  // of the greatest double it is no double's exponent
+  for (Course::Bin& bin : bins) {
+    for (double* const value : {&bin.value, &bin.least, &bin.greatest}) {
+      *value = std::ldexp(*value, -exponent);
+    }
+    bin.weight = std::max(bin.weight / heaviest, kLeastWeight);
+  }
+  return std::ldexp(1.0, exponent);
+}
+
+/// Pulls single bins that lie far from the median of their neighbours to the edge of what others
+/// do: a change lasts for kLeastBins. Medians of seven leave steps and slopes as they are.
+void PullInOutliers(std::vector<Course::Bin>& bins) {
+  constexpr std::size_t kReach = kLeastBins - 1;
+  constexpr double kFarthest = 4.5;       // standard deviations
+  constexpr double kUsual = 0.9;          // of the bins are no outliers
+  constexpr double kDeviations = 1.6449;  // within which so many of a normal law are
+  std::vector<double> medians(bins.size());
+  std::vector<double> far(bins.size());
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const std::size_t reach = std::min({kReach, i, bins.size() - 1 - i});
+    std::array<double, 2 * kReach + 1> near{};
+    for (std::size_t k = 0; k <= 2 * reach; ++k) near[k] = bins[i - reach + k].value;
+    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(reach);
+    std::nth_element(near.begin(), middle, middle + static_cast<std::ptrdiff_t>(reach + 1));
+    medians[i] = *middle;
+    far[i] = std::sqrt(bins[i].weight) * std::abs(bins[i].value - medians[i]);
+  }
+  std::vector<double> sorted = far;
+  const auto usual =
+      sorted.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(sorted.size() - 1));
+  std::ranges::nth_element(sorted, usual);
+  const double farthest = kFarthest / kDeviations * *usual;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    if (!(far[i] > farthest)) continue;
+    const double reach = farthest / std::sqrt(bins[i].weight);
+    bins[i].value = std::clamp(bins[i].value, medians[i] - reach, medians[i] + reach);
+    bins[i].least = std::clamp(bins[i].least, medians[i] - reach, bins[i].value);
+    bins[i].greatest = std::clamp(bins[i].greatest, bins[i].value, medians[i] + reach);
+  }
+}
+
 }  // namespace
 
 /// The curve that has the values at the ends and the time constant between them.
@@ -560,7 +673,8 @@ void Course::Add(std::size_t cycle, double value, double weight) {
         bins_[i] = {.first_cycle = a.first_cycle,
                     .last_cycle = b.last_cycle,
                     .cycle = (a.cycle + b.cycle) / 2,
-                    .value = (a.weight * a.value + b.weight * b.value) / (a.weight + b.weight),
+                    .value = a.value * (a.weight / (a.weight + b.weight)) +
+                             b.value * (b.weight / (a.weight + b.weight)),
                     .weight = a.weight + b.weight,
                     .least = std::min(a.least, b.least),
                     .greatest = std::max(a.greatest, b.greatest),
@@ -579,7 +693,8 @@ void Course::Add(std::size_t cycle, double value, double weight) {
   const auto count = static_cast<double>(bin.count);
   bin.cycle += (static_cast<double>(cycle) - bin.cycle) / count;
   bin.weight += weight;
-  bin.value += (value - bin.value) * weight / bin.weight;
+  const double share = weight / bin.weight;
+  bin.value = bin.value * (1 - share) + value * share;
 }
 
 std::string_view NameOf(ChangeKind kind) {
@@ -596,7 +711,22 @@ std::string_view NameOf(ChangeKind kind) {
 
 CourseDescription FindChanges(const Course& course, const ChangeThresholds& thresholds) {
   if (course.bins().size() < 2) return {};
-  return Describer(course.bins(), thresholds).Describe();
+  std::vector<Course::Bin> bins(course.bins().begin(), course.bins().end());
+  double unit = Normalise(bins);
+  PullInOutliers(bins);
+  unit *= Normalise(bins);
+  CourseDescription description = Describer(bins, thresholds).Describe();
+  for (Stretch& stretch : description.stretches) {
+    stretch.at_start *= unit;
+    stretch.at_end *= unit;
+    stretch.slope = std::clamp(stretch.slope * unit, std::numeric_limits<double>::lowest(),
+                               std::numeric_limits<double>::max());
+  }
+  for (Change& change : description.changes) {
+    change.before *= unit;
+    change.after *= unit;
+  }
+  return description;
 }
 
 }  // namespace mindahl::campaign

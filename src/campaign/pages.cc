@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mindahl/campaign/shared_alpha.h"
+#include "mindahl/campaign/tracked_quantities.h"
 #include "mindahl/io/html.h"
 #include "mindahl/report/quantity.h"
 #include "report/page_parts.h"
@@ -112,7 +113,7 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
   if (is_failed) {
     body += report::VerdictBlock("bad", "failed", "no fit of a cycle converged");
   } else if (test.changes.empty()) {
-    body += report::VerdictBlock("good", "steady", "nothing changed beyond chance");
+    body += report::VerdictBlock("good", "steady", std::string(kNothingChanged));
   } else {
     body += report::VerdictBlock("poor", "changed", "these are beyond chance");
     body += SentenceList(test.changes);

@@ -34,6 +34,13 @@ constexpr std::array kQuantities = {
                     Rms, /*is_drawn=*/true},
 };
 
+/// Returns one over the square of an error, within what sums of a million million neither overflow
+/// nor lose.
+double WeightOf(double error) {
+  constexpr double kLargest = 1e290;
+  return std::clamp(1 / error / error, 1 / kLargest, kLargest);
+}
+
 /// "p 0.003", or that it is beyond telling.
 std::string ChanceText(double p_value) {
   return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
@@ -66,7 +73,7 @@ void TrackedCourses::Add(const CycleFit& fit) {
     // What has no error is exact, held or without noise: then all are alike.
     const std::optional<double> error = quantity.error(fit);
     const bool has_error = error && *error > 0;
-    courses_[k].Add(fit.number, *value, has_error ? 1 / (*error * *error) : 1.0);
+    courses_[k].Add(fit.number, *value, has_error ? WeightOf(*error) : 1.0);
     if (has_error) have_errors_[k] = true;
   }
 }
@@ -76,6 +83,16 @@ std::vector<CourseDescription> TrackedCourses::Describe() const {
   descriptions.reserve(courses_.size());
   for (const Course& course : courses_) descriptions.push_back(FindChanges(course));
   return descriptions;
+}
+
+std::vector<std::string> SmallTrendStatements(const CourseDescription& course,
+                                              const ChangeThresholds& thresholds) {
+  std::vector<std::string> lines;
+  for (const Stretch& stretch : course.stretches) {
+    if (stretch.trends || !(stretch.slope_p_value < thresholds.chance)) continue;
+    lines.push_back(TextOf(stretch));
+  }
+  return lines;
 }
 
 std::vector<std::string> ChangeStatements(const CourseDescription& course) {

@@ -48,6 +48,14 @@ TEST(DissipatedEnergy, CountsThePiecesOfACycleForOne) {
   EXPECT_EQ(energy.counts().left_out, 0U);
 }
 
+TEST(DissipatedEnergy, ReplacesAsManyCyclesAsARowStandsFor) {
+  constexpr std::size_t kCyclesPerRow = 5;
+  DissipatedEnergy energy = After(3, kCyclesPerRow);
+  // Half the steps of a closed one: half of its energy, five times.
+  energy.Add(Loop(11 * kEnergy, 101, {"not_closed"}));
+  EXPECT_DOUBLE_EQ(energy.total(), kCyclesPerRow * 3.5 * kEnergy);
+}
+
 TEST(DissipatedEnergy, ReplacesByTheMedianOfTheLastNine) {
   DissipatedEnergy energy(1);
   for (int k = 1; k <= 20; ++k) energy.Add(Loop(k * kEnergy));

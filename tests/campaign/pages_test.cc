@@ -85,6 +85,23 @@ TEST(Evolution, WithoutErrorsHasTheLeastAndGreatestOfItsCyclesForABand) {
   }
 }
 
+TEST(Evolution, HasTheBandOfOneCycleWhereAPointStandsForTwo) {
+  constexpr double kError = 2e5;
+  Evolution evolution{.name = "sigma", .unit = "N/m", .has_errors = true};
+  for (std::size_t cycle = 1; cycle <= 2 * Course::kMostBins; ++cycle) {
+    evolution.course.Add(cycle, 5e7, 1 / (kError * kError));
+  }
+  const std::vector<Evolution> evolutions = {evolution};
+  const io::PlotSeries course = EvolutionPanels(evolutions)[0].series[0];
+  ASSERT_THAT(course.x, SizeIs(Course::kMostBins));
+  constexpr double kQuantile95 = 1.959963984540054;
+  constexpr double kRounding = 1e-9;
+  for (std::size_t k = 0; k < course.x.size(); ++k) {  // [N/µm]
+    EXPECT_NEAR(course.upper[k] - course.y[k], kQuantile95 * 1e-6 * kError, kRounding);
+    EXPECT_NEAR(course.y[k] - course.lower[k], kQuantile95 * 1e-6 * kError, kRounding);
+  }
+}
+
 TEST(Evolution, OfOneCycleIsNoPicture) {
   Evolution evolution{.name = "sigma", .unit = "N/m"};
   evolution.course.Add(1, 5e7);

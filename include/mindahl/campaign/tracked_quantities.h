@@ -52,4 +52,11 @@ class TrackedCourses {
 /// running-in, which bends as it goes, is one. Numbers in SI.
 std::vector<std::string> ChangeStatements(const CourseDescription& course);
 
+/// Returns the trends that are beyond chance but too small to matter, likewise.
+std::vector<std::string> SmallTrendStatements(const CourseDescription& course,
+                                              const ChangeThresholds& thresholds = {});
+
+/// What there is to say where ChangeStatements() has nothing of any quantity.
+inline constexpr std::string_view kNothingChanged = "nothing changed beyond chance by 1 % or more";
+
 }  // namespace mindahl::campaign
