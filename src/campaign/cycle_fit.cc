@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "mindahl/campaign/cycle_table.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
 #include "mindahl/report/loop_description.h"
@@ -73,6 +74,17 @@ FittedValue FittedValueOf(const FitResult& result, std::string_view name, const 
   return {estimate->value, std::isfinite(error) ? std::optional(error) : std::nullopt};
 }
 
+/// Forces near the largest double overflow in squares and products: what is not finite then is not
+/// known, and a fit whose residuals overflow is none.
+void DropWhatOverflows(CycleFit& fit) {
+  const bool has_residuals = !fit.rms || std::isfinite(*fit.rms);
+  for (const CycleNumber& column : CycleNumbers()) {
+    std::optional<double>& number = column.of(fit);
+    if (number && !std::isfinite(*number)) number.reset();
+  }
+  if (!has_residuals && !fit.HasFlag("not_converged")) fit.flags.emplace_back("not_converged");
+}
+
 }  // namespace
 
 std::span<const CycleFlag> CycleFlags() { return kFlags; }
@@ -80,9 +92,16 @@ std::span<const CycleFlag> CycleFlags() { return kFlags; }
 CycleFitter::CycleFitter(FitOptions options) : fitter_(OfSteadyCycles(std::move(options))) {}
 
 CycleFit CycleFitter::Fit(const Cycle& cycle) {
+  CycleFit fit = FitAlone(cycle);
+  DropWhatOverflows(fit);
+  return fit;
+}
+
+CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   CycleFit fit;
   fit.number = cycle.number;
   fit.first_line = cycle.first_line;
+  fit.checksum = cycle.checksum;
   fit.samples = cycle.record.size();
   const loop::Record& record = cycle.record;
   if (!record.time.empty()) fit.start_time = record.time.front();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -22,6 +23,15 @@ std::vector<double> PartOf(const std::vector<double>& values, std::size_t begin,
           values.begin() + static_cast<std::ptrdiff_t>(end)};
 }
 
+/// Stirs a word into a checksum: the finaliser of SplitMix64 (Steele, Lea & Flood 2014), which
+/// takes every 64-bit word to another.
+std::uint64_t Stir(std::uint64_t checksum, std::uint64_t word) {
+  std::uint64_t mixed = (checksum ^ word) + 0x9e3779b97f4a7c15U;
+  mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9U;
+  mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebU;
+  return mixed ^ (mixed >> 31);
+}
+
 template <typename Value>
 void EraseFirst(std::vector<Value>& values, std::size_t count) {
   if (values.empty()) return;
@@ -30,8 +40,8 @@ void EraseFirst(std::vector<Value>& values, std::size_t count) {
 
 }  // namespace
 
-CycleSplitter::CycleSplitter(double gate, std::size_t together)
-    : gate_(gate), together_(together), finder_(gate) {
+CycleSplitter::CycleSplitter(double gate, std::size_t together, std::uint64_t seed)
+    : gate_(gate), together_(together), finder_(gate), checksum_(seed) {
   RequireNonNegative("reversal gate [m]", gate);
   if (together < 1) ThrowInvalid("cycles to a piece [-]", 0, "must be >= 1");
 }
@@ -52,6 +62,7 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
   EraseFirst(kept_.time, begin_);
   EraseFirst(kept_.normal_load, begin_);
   EraseFirst(lines_, begin_);
+  summed_ -= begin_;
   dropped_ += std::exchange(begin_, 0);
   if (kept_.size() > kMostSamples) {
     throw InvalidArgument(
@@ -63,6 +74,7 @@ void CycleSplitter::Add(const loop::RecordView& samples, std::span<const std::si
 
 void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycles) {
   const std::size_t turn = turning_point - dropped_;
+  SumUpTo(turn + 1);
   if (turns_ == 0) begin_ = turn;
   if (turns_ < 2 * together_) {
     ++turns_;
@@ -76,14 +88,28 @@ void CycleSplitter::Complete(std::size_t turning_point, std::vector<Cycle>& cycl
                     .record = {.displacement = part(kept_.displacement),
                                .force = part(kept_.force),
                                .time = part(kept_.time),
-                               .normal_load = part(kept_.normal_load)}});
+                               .normal_load = part(kept_.normal_load)},
+                    .checksum = checksum_});
   cycles_ += together_;
   begin_ = turn;
   turns_ = 1;
 }
 
+void CycleSplitter::SumUpTo(std::size_t end) {
+  for (; summed_ < end; ++summed_) {
+    checksum_ = Stir(checksum_, lines_[summed_]);
+    for (const std::vector<double>* channel :
+         {&kept_.displacement, &kept_.force, &kept_.time, &kept_.normal_load}) {
+      if (channel->empty()) continue;
+      checksum_ = Stir(checksum_, std::bit_cast<std::uint64_t>((*channel)[summed_]));
+    }
+  }
+}
+
 std::size_t CycleSplitter::Restart() {
   const std::size_t left = kept_.size();
+  SumUpTo(left);
+  summed_ = 0;
   kept_ = {};
   lines_.clear();
   finder_ = loop::ReversalFinder(gate_);

@@ -57,8 +57,8 @@ constexpr std::array kNumbers = {
 constexpr std::string_view kPartial = "partial";
 constexpr std::string_view kGross = "gross";
 
-// cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags.
-constexpr std::size_t kColumns = 3 + kNumbers.size() + 3;
+// cycle, first_line, samples; the numbers; slip_regime, accumulated_energy, flags, checksum.
+constexpr std::size_t kColumns = 3 + kNumbers.size() + 4;
 
 std::vector<std::string_view> CellsOf(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -91,7 +91,7 @@ std::string CycleTableHeader(bool is_torsional) {
     header += fmt::format(",{}", column.name);
     if (!column.unit.empty()) header += fmt::format(" [{}]", report::UnitIn(units, column.unit));
   }
-  return header + ",slip_regime,accumulated_energy [J],flags\n";
+  return header + ",slip_regime,accumulated_energy [J],flags,checksum\n";
 }
 
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
@@ -105,7 +105,8 @@ std::string CycleTableRow(const CycleFit& fit, double accumulated_energy) {
       fmt::format_to(end, FMT_COMPILE("{}"), *number);
   }
   const std::string_view regime = !fit.slips_grossly ? "" : *fit.slips_grossly ? kGross : kPartial;
-  fmt::format_to(end, ",{},{},{}\n", regime, accumulated_energy, fmt::join(fit.flags, " "));
+  fmt::format_to(end, ",{},{},{},{:016x}\n", regime, accumulated_energy, fmt::join(fit.flags, " "),
+                 fit.checksum);
   return fmt::to_string(row);
 }
 
@@ -121,14 +122,20 @@ CycleTableEntry ReadCycleTableRow(std::string_view line) {
   for (std::size_t k = 0; k < kNumbers.size(); ++k) {
     if (!cells[3 + k].empty()) kNumbers[k].of(entry.fit) = CellValue<double>(cells[3 + k]);
   }
-  const std::string_view regime = cells[kColumns - 3];
+  const std::string_view regime = cells[kColumns - 4];
   if (!regime.empty()) entry.fit.slips_grossly = regime == kGross;
-  entry.accumulated_energy = CellValue<double>(cells[kColumns - 2]);
-  std::string_view flags = cells[kColumns - 1];
+  entry.accumulated_energy = CellValue<double>(cells[kColumns - 3]);
+  std::string_view flags = cells[kColumns - 2];
   while (!flags.empty()) {
     const std::size_t blank = std::min(flags.find(' '), flags.size());
     entry.fit.flags.emplace_back(flags.substr(0, blank));
     flags.remove_prefix(std::min(blank + 1, flags.size()));
+  }
+  const std::string_view checksum = cells[kColumns - 1];
+  const auto [end, error] =
+      std::from_chars(checksum.data(), checksum.data() + checksum.size(), entry.fit.checksum, 16);
+  if (error != std::errc() || end != checksum.data() + checksum.size()) {
+    throw InputError(fmt::format("'{}' is no checksum", checksum));
   }
   return entry;
 }

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "mindahl/core/error.h"
+#include "mindahl/io/csv_table.h"
 #include "report/statements.h"
 
 namespace mindahl::campaign {
@@ -20,7 +21,9 @@ void RequireThatAlphaCanBeShared(const identification::FitOptions& fit,
   for (const std::string& file : files) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) continue;
+    const bool is_there_twice =
+        !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+    if (file != io::kStandardInput && is_there_twice) continue;
     throw InputError(fmt::format(
         "--alpha shared: {} can be read only once, and two passes are needed: write it to a file",
         file));

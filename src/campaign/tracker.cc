@@ -83,7 +83,8 @@ class Tracker::Workers {
 Tracker::Tracker(TrackOptions options, Done done)
     : options_(std::move(options)),
       done_(std::move(done)),
-      splitter_(options_.fit.preparation.reversal_gate.value_or(0.0), options_.together) {
+      splitter_(options_.fit.preparation.reversal_gate.value_or(0.0), options_.together,
+                options_.seed) {
   RequireCount("fits to choose one of [-]", options_.every);
   RequireCount("threads [-]", options_.threads);
   if (options_.skipped % kBatch != 0) {

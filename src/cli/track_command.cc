@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -117,8 +118,39 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
   RequireNotThere({"--output", options.output}, "--resume to go on with it, or --overwrite");
 }
 
+/// Returns a word of the options that rows depend on, FNV-1a (Fowler, Noll & Vo 1991) of their
+/// names and values: rows made with others are not gone on with, though the last ones be the same.
+std::uint64_t SeedOf(const CLI::App& command) {
+  constexpr std::array<std::string_view, 8> kOfNoRow = {"help",   "output", "json",      "plot",
+                                                        "report", "resume", "overwrite", "threads"};
+  std::uint64_t seed = 0xcbf29ce484222325U;
+  const auto add = [&seed](std::string_view text) {
+    for (const char character : text) {
+      seed = (seed ^ static_cast<unsigned char>(character)) * 0x100000001b3U;
+    }
+  };
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_lnames().empty()) continue;  // the files, whose content counts
+    const std::string& name = option->get_lnames().front();
+    if (std::ranges::find(kOfNoRow, name) != kOfNoRow.end()) continue;
+    add(name);
+    for (const std::string& value : option->results()) add("=" + value);
+    if (option->count() == 0) add("=" + option->get_default_str());
+  }
+  return seed;
+}
+
 io::BrokenRows BrokenRowsOf(const TrackCommandOptions& options) {
   return options.broken_rows == "skip" ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
+}
+
+/// Refuses the unit of a column that the record does not have.
+void RequireUnitOf(std::string_view option, const io::ColumnChoice& choice,
+                   const std::optional<io::ChosenColumn>& column) {
+  if (choice.unit.empty() || column) return;
+  throw InputError(fmt::format(
+      "{} {}: the record has no such column, so this has no effect: name it with {}", option,
+      choice.unit, option == "--time-unit" ? "--time" : "--normal-load-column"));
 }
 
 class TrackRun {
@@ -217,6 +249,9 @@ void TrackRun::PoolAlpha() {
 
 void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
   is_torsional_ = stream.layout().is_torsional;
+  RequireUnitOf("--time-unit", options_.request.columns.time, stream.layout().time);
+  RequireUnitOf("--normal-load-unit", options_.request.columns.normal_load,
+                stream.layout().normal_load);
   fit_ = OptionsFor(head, reading_.of_head);
   if (shared_alpha_) fit_.fixed["alpha"] = shared_alpha_->mean();
   SayReading();
@@ -236,7 +271,8 @@ void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
                                           .together = options_.average,
                                           .every = options_.every,
                                           .threads = options_.threads,
-                                          .skipped = kept_ ? kept_->fits - campaign::kBatch : 0},
+                                          .skipped = kept_ ? kept_->fits - campaign::kBatch : 0,
+                                          .seed = SeedOf(command_)},
                    [this](std::span<const CycleFit> fits) { Take(fits); });
   progress_.emplace(console_.err, "tracking cycles");
 }
@@ -277,11 +313,11 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
 }
 
 void TrackRun::ThrowOther() const {
-  throw InputError(
-      fmt::format("--resume: {} was made from another record or with other options, its row {} or "
-                  "one soon after comes out differently: give those, another --output, or "
-                  "--overwrite",
-                  options_.output, kept_->fits - campaign::kBatch + 1));
+  throw InputError(fmt::format(
+      "--resume: {} was made from another record or with other options, its rows {} to {} "
+      "come out differently or what was read before them: give those, another "
+      "--output, or --overwrite",
+      options_.output, kept_->fits - campaign::kBatch + 1, kept_->fits));
 }
 
 void TrackRun::SayProgress() {
@@ -415,8 +451,8 @@ void TrackRun::Draw() {
   if (options_.plot_path.empty() && options_.report_path.empty()) return;
   const campaign::TestSummary test = Summary();
   if (!options_.plot_path.empty()) {
-    const char* const changes = test.changes.empty() ? "nothing changed beyond chance"
-                                                     : "dashed where it changed beyond chance";
+    const std::string_view changes =
+        test.changes.empty() ? campaign::kNothingChanged : "dashed where it changed beyond chance";
     io::WritePlot(campaign::EvolutionPlot(test.evolutions, report::NameOf(test.files),
                                           fmt::format("{} cycles: {}", test.cycles, changes)),
                   options_.plot_path);
@@ -450,6 +486,7 @@ void TrackRun::WriteSummary() {
   }
   std::string courses;
   std::string changes;
+  std::string small_trends;
   for (std::size_t k = 0; k < tracked_.size(); ++k) {
     const campaign::CourseDescription& course = courses_[k];
     if (course.stretches.empty()) continue;
@@ -459,11 +496,16 @@ void TrackRun::WriteSummary() {
     for (const std::string& line : campaign::ChangeStatements(course)) {
       changes += fmt::format("  {:<21} {}\n", tracked_[k].name, line);
     }
+    for (const std::string& line : campaign::SmallTrendStatements(course)) {
+      small_trends += fmt::format("  {:<21} {}\n", tracked_[k].name, line);
+    }
   }
   if (!courses.empty()) {
     text +=
         fmt::format("\n  {:<30}{:>14}{:>14}\n{}", "over the test", "at first", "at last", courses);
-    text += changes.empty() ? "\nNothing changed beyond chance.\n" : "\nChanges:\n" + changes;
+    text += changes.empty() ? fmt::format("\nN{}.\n", campaign::kNothingChanged.substr(1))
+                            : "\nChanges:\n" + changes;
+    if (!small_trends.empty()) text += "\nBeyond chance, but less than 1 %:\n" + small_trends;
   }
   console_.out << text;
 }

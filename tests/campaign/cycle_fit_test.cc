@@ -9,6 +9,7 @@
 
 #include "campaign/test_record.h"
 #include "mindahl/campaign/cycle_splitter.h"
+#include "mindahl/campaign/cycle_table.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign::cycle_fit_test {
@@ -164,6 +165,22 @@ TEST(CycleFitter, SaysThatGlitchesWereLeftOut) {
   Cycle cycle = CyclesOf(TestRecord(2)).front();
   cycle.record.force[40] = 1e4;
   EXPECT_TRUE(HasFlag(CycleFitter({}).Fit(cycle), "glitches"));
+}
+
+// Squares of such forces are no doubles, and neither is what follows from them.
+TEST(CycleFitter, LeavesEmptyWhatOverflows) {
+  for (const double force : {1e300, -1e300, 1.7e308}) {
+    for (const std::size_t count : {1U, 3U, 60U}) {
+      Cycle cycle = CyclesOf(TestRecord(2)).front();
+      for (std::size_t i = 0; i < count; ++i) cycle.record.force[30 + i] = force;
+      CycleFit fit = CycleFitter({}).Fit(cycle);
+      for (const CycleNumber& column : CycleNumbers()) {
+        const std::optional<double> number = column.of(fit);
+        EXPECT_TRUE(!number || std::isfinite(*number)) << column.name << " of " << force;
+      }
+      EXPECT_TRUE(fit.rms || HasFlag(fit, "not_converged")) << force;
+    }
+  }
 }
 
 TEST(CycleFitter, SaysThatThereIsNoLoop) {

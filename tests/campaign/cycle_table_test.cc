@@ -40,6 +40,7 @@ CycleFit Filled() {
   }
   fit.slips_grossly = true;
   fit.flags = {"glitches", "alpha_open"};
+  fit.checksum = 0xfedcba9876543210U;
   return fit;
 }
 
@@ -59,6 +60,7 @@ TEST(CycleTable, LeavesOutWhatIsNotKnown) {
   fit.number = 3;
   const std::string row = CycleTableRow(fit, 0.0);
   EXPECT_TRUE(row.starts_with("3,0,0,,,")) << row;
+  EXPECT_TRUE(row.ends_with(",0,,0000000000000000\n")) << row;
   EXPECT_EQ(CycleTableRow(ReadCycleTableRow(WithoutEnd(row)).fit, 0.0), row);
 }
 

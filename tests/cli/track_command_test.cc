@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -13,6 +14,7 @@
 
 #include "campaign/test_record.h"
 #include "cli/command_line.h"
+#include "cli/standard_input.h"
 #include "io/temporary_directory.h"
 #include "mindahl/campaign/tracker.h"
 
@@ -164,6 +166,96 @@ TEST_F(TrackCommand, RefusesToGoOnWithAnotherTest) {
   const Outcome table = RunCommand({"track", record_, "--output", Path("else.csv"), "--resume"});
   EXPECT_EQ(table.status, 2);
   EXPECT_EQ(ContentOf(Path("else.csv")), "x,F\n1,2\n");
+}
+
+// The last batch of the table is the same; what came long before it is not.
+TEST_F(TrackCommand, RefusesToGoOnWhereAnEarlyRowOfTheRecordWasChanged) {
+  std::string part = Whole();
+  part.resize(part.size() * 4 / 5);
+  for (const std::size_t changed : {1U, 500U, 5'000U}) {
+    std::vector<std::string> lines = Lines(ContentOf(record_));
+    lines[changed] = lines[changed].substr(0, lines[changed].rfind(',')) + ",0.125";
+    const std::string other = Write("other.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+    Write("part.csv", part);
+    const Outcome outcome = RunCommand({"track", other, "--output", Path("part.csv"), "--resume"});
+    EXPECT_EQ(outcome.status, 2) << changed;
+    EXPECT_NE(outcome.err.find("what was read before them"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(ContentOf(Path("part.csv")) == part);
+  }
+}
+
+// A bound that no cycle reaches changes no value, and yet the rows were made with other options.
+TEST_F(TrackCommand, RefusesToGoOnWithOptionsOfNoEffectYet) {
+  std::string part = Whole();
+  part.resize(part.size() * 4 / 5);
+  Write("part.csv", part);
+  const auto resume = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"track", record_, "--output", Path("part.csv"), "--resume"};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words).status;
+  };
+  EXPECT_EQ(resume({"--bound", "slip_force=1:1000"}), 2);
+  EXPECT_EQ(ContentOf(Path("part.csv")), part);
+  EXPECT_EQ(resume({"--threads", "2", "--average", "1"}), 0) << "the default, said";
+}
+
+TEST_F(TrackCommand, HasNoInfinityInItsTableNorInItsSummary) {
+  std::vector<std::string> lines = Lines(ContentOf(record_));
+  for (const std::size_t line : {100U, 101U, 102U, 5'000U}) {
+    std::vector<std::string> cells = Cells(lines[line]);
+    lines[line] = fmt::format("{},{},{}", cells[0], cells[1], line % 2 == 0 ? "1e300" : "-1e308");
+  }
+  const std::string record = Write("huge.csv", fmt::format("{}\n", fmt::join(lines, "\n")));
+  const Outcome outcome =
+      RunCommand({"track", record, "--output", Path("huge_table.csv"), "--json", "-"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const std::string table = ContentOf(Path("huge_table.csv"));
+  EXPECT_EQ(Lines(table).size(), 1 + kCycles);
+  for (const char* word : {"inf", "nan"}) {
+    EXPECT_EQ(table.find(word), std::string::npos) << word;
+    EXPECT_EQ(
+        RunCommand({"track", record, "--output", Path("again.csv"), "--overwrite"}).out.find(word),
+        std::string::npos)
+        << word;
+  }
+  for (const auto& [name, quantity] : outcome.Json()["quantities"].items()) {
+    for (const nlohmann::json& stretch : quantity["stretches"]) {
+      for (const char* key : {"at_start", "at_end", "slope", "slope_p_value"}) {
+        EXPECT_TRUE(stretch[key].is_number()) << name << ' ' << key;
+      }
+    }
+  }
+}
+
+TEST_F(TrackCommand, GivesNoFrictionOfASlipForceThatIsOpen) {
+  const std::string record = std::string(MINDAHL_SOURCE_DIR) + "/data/far_from_slip.csv";
+  ASSERT_EQ(
+      RunCommand({"track", record, "--output", Path("far.csv"), "--normal-load", "80"}).status, 0);
+  const std::vector<std::string> rows = Lines(ContentOf(Path("far.csv")));
+  const std::vector<std::string> names = Cells(rows[0]);
+  const auto place = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  };
+  std::size_t open = 0;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const std::vector<std::string> cells = Cells(rows[k]);
+    if (cells[place("flags")].find("slip_force_open") == std::string::npos) continue;
+    ++open;
+    EXPECT_EQ(cells[place("friction_coefficient")], "") << rows[k];
+    EXPECT_EQ(cells[place("normal_load [N]")], "80");
+  }
+  EXPECT_GT(open, 0U);
+}
+
+TEST_F(TrackCommand, ReadsStandardInput) {
+  const std::string whole = Whole();
+  const testing::StandardInput input(record_);
+  EXPECT_EQ(RunCommand({"track", "-", "--output", Path("piped.csv")}).status, 0);
+  EXPECT_EQ(ContentOf(Path("piped.csv")), whole);
+  const Outcome twice =
+      RunCommand({"track", "-", "--output", Path("twice.csv"), "--alpha", "shared"});
+  EXPECT_EQ(twice.status, 2);
+  EXPECT_NE(twice.err.find("can be read only once"), std::string::npos) << twice.err;
 }
 
 TEST_F(TrackCommand, WritesOverNothingUnasked) {

@@ -28,7 +28,9 @@ def table_of(path, tmp_path, *options):
     program("track", path, "--output", output, *options)
     with open(output, encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    return {name.split(" [")[0]: [row[name] for row in rows] for name in rows[0]}
+    # The checksum is what --resume goes on by, which a table in memory has no use for.
+    return {name.split(" [")[0]: [row[name] for row in rows] for name in rows[0]
+            if name != "checksum"}
 
 
 def assert_same_table(tracked, table):

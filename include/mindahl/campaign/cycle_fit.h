@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -45,6 +46,7 @@ struct CycleFit {
   /// Tc/N, where the load is known and Tc identifiable.
   std::optional<double> friction_coefficient;
   std::optional<bool> slips_grossly;  ///< the fitted law at the cycle's amplitude
+  std::uint64_t checksum = 0;         ///< of all samples up to the cycle's last, as Cycle has it
   /// What to mind, each one of CycleFlags().
   std::vector<std::string> flags;
 
@@ -71,10 +73,13 @@ class CycleFitter {
   /// @throws InvalidArgument as Fitter
   explicit CycleFitter(identification::FitOptions options);
 
-  /// A cycle that cannot be fitted is one with the flag not_converged.
+  /// A cycle that cannot be fitted is one with the flag not_converged. Every number is finite: one
+  /// that overflows is empty.
   CycleFit Fit(const Cycle& cycle);
 
  private:
+  CycleFit FitAlone(const Cycle& cycle);
+
   identification::Fitter fitter_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct Cycle {
   std::size_t number = 1;      ///< of the first, counted from 1
   std::size_t first_line = 0;  ///< of the file
   loop::Record record;
+  /// Of every sample and line number from the test's first up to the cycle's last: two tests that
+  /// differ anywhere before differ in it, but for a chance of 2⁻⁶⁴.
+  std::uint64_t checksum = 0;
 };
 
 /// Cuts samples that arrive piece by piece into cycles. A cycle begins at the first turning point
@@ -25,8 +29,9 @@ class CycleSplitter {
  public:
   /// @param gate      [m]: excursions up to this are noise, as FindReversals() takes it
   /// @param together  cycles to a piece, >= 1
+  /// @param seed      what checksums begin with, of what else makes a test its own
   /// @throws InvalidArgument for a gate or a number beyond these
-  explicit CycleSplitter(double gate, std::size_t together = 1);
+  explicit CycleSplitter(double gate, std::size_t together = 1, std::uint64_t seed = 0);
 
   /// @param samples  the next, [m, N, s, N]; time and normal load may be empty, always or never
   /// @param lines    of the file, one a sample
@@ -47,6 +52,7 @@ class CycleSplitter {
 
  private:
   void Complete(std::size_t turning_point, std::vector<Cycle>& cycles);
+  void SumUpTo(std::size_t end);
 
   double gate_;
   std::size_t together_;
@@ -57,6 +63,8 @@ class CycleSplitter {
   std::size_t begin_ = 0;           // of the cycle, in those
   std::size_t turns_ = 0;           // turning points since the cycle's first, with it
   std::size_t cycles_ = 0;
+  std::size_t summed_ = 0;  // of the samples that are kept, those in the checksum
+  std::uint64_t checksum_;
 };
 
 }  // namespace mindahl::campaign

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <future>
@@ -22,6 +23,7 @@ struct TrackOptions {
   std::size_t every = 1;     ///< one fit of so many that there could be, >= 1
   std::size_t threads = 1;   ///< that fit, beside the one that calls, >= 1
   std::size_t skipped = 0;   ///< fits at the beginning that are not made: a multiple of kBatch
+  std::uint64_t seed = 0;    ///< what the checksums begin with, as CycleSplitter takes it
 };
 
 /// Fits of a batch begin one where the last one ended, the first anew: whatever the number of
