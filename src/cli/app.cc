@@ -5,13 +5,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <exception>
 #include <iterator>
 #include <memory>
+#include <new>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +25,7 @@
 #include "cli/toml.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 
 namespace mindahl::cli {
@@ -144,6 +148,31 @@ std::string CommandName(const CLI::App& app) {
   return running.empty() ? "mindahl" : "mindahl " + running.front()->get_name();
 }
 
+/// What the library calls a quantity, and the option that gives it where that has another name.
+struct NamedQuantity {
+  std::string_view quantity;
+  std::string_view option;
+};
+constexpr std::array kNamedQuantities = {NamedQuantity{"tangential stiffness", "--sigma"},
+                                         NamedQuantity{"shape exponent", "--alpha"}};
+constexpr std::string_view kCurvature = "relative curvature";
+
+/// The message of a broken precondition, "lag [s] = nan is invalid: …", with the option in place of
+/// the quantity where the user gave it: "--lag [s] = nan is invalid: …".
+std::string WithOption(const CLI::App& app, const std::string& message) {
+  const auto running = app.get_subcommands();
+  const std::size_t unit = message.find(" [");
+  if (running.empty() || unit == std::string::npos) return message;
+  if (message.starts_with(kCurvature)) return "--radius-1 and --radius-2: " + message;
+  const std::string quantity = message.substr(0, unit);
+  std::string name = "--" + quantity;
+  std::ranges::replace(name, ' ', '-');
+  const auto named = std::ranges::find(kNamedQuantities, quantity, &NamedQuantity::quantity);
+  if (named != kNamedQuantities.end()) name = named->option;
+  const CLI::Option* option = running.front()->get_option_no_throw(name);
+  return option == nullptr || option->count() == 0 ? message : name + message.substr(unit);
+}
+
 /// @returns `status`, or that of an output which cannot be written
 int Print(std::string_view results, const std::string& program, int status, std::ostream& out,
           std::ostream& err) {
@@ -217,7 +246,14 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
     err << fmt::format("{}: {}\n", CommandName(app), OneLine(error.what()));
     return kBadInput;
   } catch (const InvalidArgument& error) {
-    err << fmt::format("{}: {}\n", CommandName(app), OneLine(error.what()));
+    err << fmt::format("{}: {}\n", CommandName(app), WithOption(app, OneLine(error.what())));
+    return kBadInput;
+  } catch (const std::length_error&) {  // more elements than any memory holds
+    err << fmt::format("{}: more is asked for than memory can hold\n", CommandName(app));
+    return kBadInput;
+  } catch (const std::bad_alloc&) {
+    err << fmt::format("{}: {}\n", CommandName(app),
+                       OutOfMemoryText() + ": ask for less, or allow more");
     return kBadInput;
   } catch (const std::exception& error) {
     err << fmt::format("{}: internal error: {}\n", CommandName(app), OneLine(error.what()));

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cli/progress.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/request/fit_records.h"
 
@@ -21,8 +24,13 @@ std::vector<RecordFile> ReadInputs(const FitRequest& request, const Messages& me
   io::RecordColumns columns = request.columns;
   columns.covariates = CovariateColumns(request);
   std::vector<RecordFile> inputs;
+  io::ReadLimits left{.rows = request.max_rows,
+                      .memory = request.max_memory.value_or(MemoryOfProcess())};
   for (const std::string& file : request.files) {
-    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns));
+    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns, left));
+    const std::size_t rows = input.record.size();
+    left.rows -= std::min<std::uintmax_t>(left.rows, rows);
+    left.memory -= std::min(left.memory, io::ReadLimits::MemoryOf(rows, 0));
     request::KeepTimeWindow(request, file, input);
     for (const std::string& note : input.notes) messages.Note(note);
   }

@@ -29,6 +29,24 @@ CLI::Validator OneOfWords(std::span<const std::string_view> words) {
   return cli::OneOf(std::vector<std::string>(words.begin(), words.end()));
 }
 
+void AddLimitOptions(CLI::App& command, FitRequest& options) {
+  const std::string group(kColumnGroup);
+  command
+      .add_option("--max-rows", options.max_rows,
+                  "refuse files of more rows than that, all together")
+      ->capture_default_str()
+      ->check(WholeNumber(1, 1'000'000'000'000))
+      ->group(group);
+  command
+      .add_option("--max-memory", options.max_memory,
+                  "refuse files of which a fit needs more memory, as 4GB or 500MB;\n"
+                  "default what the machine has, or the process may have")
+      ->check(WholeNumber(1, 1'000'000'000'000'000'000))
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
+      ->type_name("SIZE")
+      ->group(group);
+}
+
 void AddWindowOptions(CLI::App& command, FitRequest& options) {
   const std::string group(kColumnGroup);
   command.add_option("--time-window", options.time_window, "fit only samples from LO to HI [s]")
@@ -221,6 +239,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddColumnOptions(command, request);
+  AddLimitOptions(command, request);
   AddWindowOptions(command, request);
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);

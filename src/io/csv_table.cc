@@ -4,38 +4,70 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
-#include <memory>
 #include <numeric>
 #include <optional>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "io/cell_fault.h"
 #include "io/csv_layout.h"
 #include "io/csv_tokenizer.h"
+#include "io/input_file.h"
 #include "io/number_cell.h"
 #include "io/thousands.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 
 namespace mindahl::io {
 namespace {
 
-std::string ReadFile(const std::filesystem::path& path) {
-  const auto fail = [&] {
-    throw InputError(fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
-  };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (!file) fail();
+/// Refuses a file that is larger than can be held, by as much of it as has been read.
+void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t bytes,
+                   const std::string& name) {
+  constexpr std::string_view kRemedy =
+      "fit a part of the file or one row of several, or each cycle on its own with mindahl track; "
+      "or allow more";
+  if (rows > limits.rows) {
+    throw InputError(fmt::format("{}: has more than the {} rows that --max-rows leaves for it: {}",
+                                 name, limits.rows, kRemedy));
+  }
+  const std::uintmax_t memory = ReadLimits::MemoryOf(rows, bytes);
+  if (memory > limits.memory) {
+    throw InputError(fmt::format(
+        "{}: {} of it need about {} of memory, more than the {} that --max-memory "
+        "leaves for it: {}",
+        name, BytesInWords(bytes), BytesInWords(memory), BytesInWords(limits.memory), kRemedy));
+  }
+}
+
+/// Reads as far as a table can be made of it: to a zero byte, of which RequireText() says where.
+std::string ReadFile(const std::filesystem::path& path, const ReadLimits& limits) {
+  const std::string name = NameOfInput(path);
+  const InputFile file = OpenInput(path);
+  std::error_code is_no_file;
+  const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
   std::string text;
   std::array<char, 1 << 16> block{};
-  while (const std::size_t size = std::fread(block.data(), 1, block.size(), file.get())) {
-    text.append(block.data(), size);
+  std::uintmax_t rows = 0;
+  std::size_t line = 0;  // where the last begins
+  while (const std::size_t read = std::fread(block.data(), 1, block.size(), file.get())) {
+    const std::string_view piece(block.data(), read);
+    text.append(piece);
+    if (piece.find('\0') != std::string_view::npos) return text;
+    if (text.size() == read && !is_no_file) {
+      RequireWithin(limits, 0, size, name);
+      text.reserve(size);
+    }
+    const std::size_t end = piece.find_last_of("\r\n");
+    if (end != std::string_view::npos) line = text.size() - read + end + 1;
+    if (text.size() - line > kLongestLine) ThrowLongLine(name);
+    rows += static_cast<std::uintmax_t>(std::ranges::count(piece, '\n'));
+    RequireWithin(limits, rows, text.size(), name);
   }
-  if (std::ferror(file.get()) != 0) fail();
+  if (std::ferror(file.get()) != 0) ThrowCannotRead(name);
   return text;
 }
 
@@ -123,8 +155,8 @@ CsvTable ParseCsvTable(std::string text, std::string file) {
   return table;
 }
 
-CsvTable ReadCsvTable(const std::filesystem::path& path) {
-  return ParseCsvTable(ReadFile(path), path.string());
+CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits) {
+  return ParseCsvTable(ReadFile(path, limits), NameOfInput(path));
 }
 
 CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source) {

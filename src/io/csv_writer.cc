@@ -11,6 +11,10 @@
 namespace mindahl::io {
 
 std::string CsvCell(const std::string& text) {
+  constexpr std::string_view kFormula = "=+-@";
+  if (text.size() > 1 && kFormula.find(text.front()) != std::string_view::npos) {
+    return CsvCell("./" + text);
+  }
   const bool plain = text.find_first_of(",;\"\r\n\t") == std::string::npos && !text.empty() &&
                      !text.starts_with('#') && text.front() != ' ' && text.back() != ' ';
   if (plain) return text;

@@ -2,12 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "io/input_file.h"
 
 namespace mindahl::io {
 
@@ -28,11 +28,10 @@ class LinePieces {
   [[nodiscard]] std::uintmax_t bytes() const { return bytes_; }
 
  private:
-  [[noreturn]] void Fail() const;
   [[nodiscard]] std::string_view Text() const { return {buffer_.data(), size_}; }
 
   std::string name_;
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  InputFile file_;
   std::vector<char> buffer_ = std::vector<char>(kPiece);
   std::size_t size_ = 0;   // bytes of it that were read
   std::size_t given_ = 0;  // bytes of these that were returned

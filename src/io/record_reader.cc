@@ -718,8 +718,9 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   return file;
 }
 
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns) {
-  return RecordOf(ReadCsvTable(path), columns);
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns,
+                      const ReadLimits& limits) {
+  return RecordOf(ReadCsvTable(path, limits), columns);
 }
 
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "io/csv_layout.h"
+#include "io/input_file.h"
 #include "io/line_pieces.h"
 #include "io/number_row.h"
 #include "io/record_columns.h"
@@ -49,7 +50,7 @@ struct RecordStream::State {
   };
 
   State(const std::filesystem::path& path, const RecordColumns& columns, BrokenRows policy)
-      : name(path.string()), pieces(path), broken(policy) {
+      : name(NameOfInput(path)), pieces(path), broken(policy) {
     Open(pieces.Next(), columns);
   }
 

@@ -1,11 +1,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <cstdlib>
+#include <iostream>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/standard_input.h"
 #include "io/temporary_directory.h"
 
 // Help, exit status and messages, of good usage and bad.
@@ -330,6 +334,20 @@ const std::vector<BadUsage> kBadUsage = {
       "--poisson-1", "0.3", "--radius-1", "inf", "--youngs-modulus-2", "1e9", "--poisson-2", "0.3",
       "--radius-2", "inf"},
      "two planes"},
+    {"ContactOfTwoPlanesNamesBothRadii",
+     {"contact", "--friction", "0.3", "--normal-load", "1", "--youngs-modulus-1", "1e9",
+      "--poisson-1", "0.3", "--radius-1", "inf", "--youngs-modulus-2", "1e9", "--poisson-2", "0.3",
+      "--radius-2", "inf"},
+     "--radius-1 and --radius-2: relative curvature"},
+    {"StiffnessIsNamedAsItsOption",
+     {"simulate", "--sigma", "nan", "--slip-force", "1", "--lambda", "1"},
+     "--sigma [N/m] = nan is invalid: must be finite and > 0"},
+    {"AsymmetryIsNamedAsItsOption",
+     {"fit", "@", "--asymmetry", "1"},
+     "--asymmetry [-] = 1 is invalid: must be in (-1, 1)"},
+    {"TradeoffOfAnExponentAlone",
+     {"tradeoff", "--alpha", "0.7", "--json", "#"},
+     "--sigma missing: give --sigma and --slip-force"},
     {"ContactBeyondDoubles",
      {"contact", "--friction", "0.3", "--normal-load", "1e300", "--contact-radius", "1e-200",
       "--compliance", "4e-300", "--json", "#"},
@@ -344,6 +362,54 @@ struct BadFile {
   const char* content;
   const char* message;
 };
+
+TEST(StandardInput, IsReadUnderADash) {
+  const auto without_name = [](const std::string& record) {
+    nlohmann::json json = RunCommand({"fit", record, "--json", "-"}).Json();
+    json["input"].erase("files");
+    return json;
+  };
+  const nlohmann::json of_file = without_name(SampleRecord());
+  const testing::StandardInput input(SampleRecord());
+  EXPECT_EQ(without_name("-"), of_file);
+  const TemporaryDirectory directory;
+  const testing::StandardInput broken(directory.Write("b.csv", "x [m],F [N]\n0,0\n1,one\n"));
+  const Outcome refused = RunCommand({"fit", "-"});
+  EXPECT_EQ(refused.status, cli::kBadInput);
+  EXPECT_THAT(refused.err, HasSubstr("standard input:3:2: 'one' is not a number"));
+}
+
+TEST(Limits, RefuseWhatCannotBeHeldAndSaySo) {
+  const Outcome rows = RunCommand({"fit", SampleRecord(), "--max-rows", "100"});
+  EXPECT_EQ(rows.status, cli::kBadInput);
+  ASSERT_THAT(rows.Errors(), SizeIs(1));
+  EXPECT_THAT(rows.err, HasSubstr("has more than the 100 rows that --max-rows leaves for it"));
+  const Outcome memory = RunCommand({"fit", SampleRecord(), "--max-memory", "10kB"});
+  EXPECT_EQ(memory.status, cli::kBadInput);
+  ASSERT_THAT(memory.Errors(), SizeIs(1));
+  EXPECT_THAT(memory.err, HasSubstr("more than the 0.01 MB that --max-memory leaves for it"));
+  EXPECT_EQ(RunCommand({"fit", SampleRecord(), "--max-memory", "1GB"}).status, cli::kDone);
+}
+
+// As `ulimit -v` makes of it: more is asked for than the process may have.
+TEST(Limits, MemoryThatRunsOutIsOneOfThem) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes terabytes of addresses for itself";
+#else
+  const auto simulate_in_little_memory = [] {
+    constexpr rlim_t kLittle = 1U << 30U;
+    const rlimit limit{.rlim_cur = kLittle, .rlim_max = kLittle};
+    if (::setrlimit(RLIMIT_AS, &limit) != 0) std::exit(1);
+    const Outcome outcome =
+        RunCommand({"simulate", "--sigma", "4e7", "--slip-force", "40", "--lambda", "1", "--cycles",
+                    "3", "--samples-per-cycle", "300000000"});
+    std::cerr << outcome.err;
+    std::exit(outcome.status);
+  };
+  EXPECT_EXIT(simulate_in_little_memory(), ::testing::ExitedWithCode(cli::kBadInput),
+              "memory ran out: the process had .* MB and may have 1.07 GB");
+#endif
+}
 
 TEST(BadFiles, AreRefusedWithOneLineThatSaysWhatIsWrong) {
   const std::vector<BadFile> files = {

@@ -343,6 +343,36 @@ TEST(CsvTable, ReadsFileOfSeveralBlocks) {
   EXPECT_EQ(table.Numbers(0).back(), 19999.0);
 }
 
+// A sparse file of 64 GB: what is not text is seen in its first piece.
+TEST(CsvTable, ReadsNoFurtherThanAZeroByte) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path path = directory.Write("sparse.csv", "x,F\n");
+  std::filesystem::resize_file(path, std::uintmax_t{64} << 30U);
+  EXPECT_EQ(MessageOf<InputError>([&] { ReadCsvTable(path); }),
+            path.string() + ":2: is not text, it holds a zero byte: export it as CSV");
+}
+
+TEST(CsvTable, RefusesALineThatDoesNotEnd) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path path =
+      directory.Write("line.csv", "x,F\n" + std::string((16U << 20U) + 1, '7'));
+  EXPECT_EQ(
+      MessageOf<InputError>([&] { ReadCsvTable(path); }),
+      path.string() + ": has a line of more than 16777216 bytes: lines must end in LF or CRLF");
+}
+
+TEST(CsvTable, RefusesWhatItsLimitsDoNotHold) {
+  const TemporaryDirectory directory;
+  std::string text = "x,F\n";
+  for (int row = 0; row < 20000; ++row) text += std::to_string(row) + ",0.25\n";
+  const std::filesystem::path path = directory.Write("long.csv", text);
+  EXPECT_EQ(ReadCsvTable(path, {.rows = 20001}).rows(), 20000U);  // and a header
+  EXPECT_THROW(ReadCsvTable(path, {.rows = 20000}), InputError);
+  const std::uintmax_t needed = ReadLimits::MemoryOf(20001, text.size());
+  EXPECT_EQ(ReadCsvTable(path, {.memory = needed}).rows(), 20000U);
+  EXPECT_THROW(ReadCsvTable(path, {.memory = needed - 1}), InputError);
+}
+
 TEST(CsvTable, NamesMissingFileAndReason) {
   EXPECT_EQ(MessageOf<InputError>([] { ReadCsvTable("/no/such.csv"); }),
             "cannot read '/no/such.csv': No such file or directory");

@@ -53,6 +53,15 @@ TEST(CsvWriter, QuotesNamesSoThatTheyReadBackAsThemselves) {
   EXPECT_NE(text.find(",plain\n"), std::string::npos);
 }
 
+TEST(CsvWriter, WritesNoCellThatASpreadsheetTakesForAFormula) {
+  EXPECT_EQ(CsvCell("=HYPERLINK(1)"), "./=HYPERLINK(1)");
+  EXPECT_EQ(CsvCell("+1.csv"), "./+1.csv");
+  EXPECT_EQ(CsvCell("-1.csv"), "./-1.csv");
+  EXPECT_EQ(CsvCell("@a,b"), "\"./@a,b\"");
+  EXPECT_EQ(CsvCell("-"), "-") << "standard input";
+  EXPECT_EQ(CsvCell("a=b"), "a=b");
+}
+
 TEST(CsvWriter, QuotesFirstNameThatWouldBeginComment) {
   const Numbers one = {1};
   EXPECT_EQ(CsvText({{"#", one}}), "\"#\"\n1\n");

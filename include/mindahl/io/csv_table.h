@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace mindahl::io {
@@ -12,6 +15,27 @@ namespace mindahl::io {
 struct NamedColumn {
   std::string name;            ///< as a header cell would have it, with its unit: "x [um]"
   std::vector<double> values;  ///< NaN where there is no number
+};
+
+/// The name of standard input where a file is asked for; ./- is a file of that name.
+inline constexpr std::string_view kStandardInput = "-";
+
+/// What of a file that is read whole can be held. A file beyond it is refused as soon as that
+/// shows, not when it has been read.
+struct ReadLimits {
+  std::uintmax_t rows = std::numeric_limits<std::uintmax_t>::max();
+  /// [bytes] of the table and of a fit of it: kMemoryOfRow a row and kMemoryOfText a byte.
+  std::uintmax_t memory = std::numeric_limits<std::uintmax_t>::max();
+
+  /// What a fit takes for a row, and reading it for a byte of text, measured for records of three
+  /// columns: 1.14 kB a row of 59 bytes.
+  static constexpr std::uintmax_t kMemoryOfRow = 1000;
+  static constexpr std::uintmax_t kMemoryOfText = 3;
+
+  /// @returns the memory [bytes] that so much takes
+  static std::uintmax_t MemoryOf(std::uintmax_t rows, std::uintmax_t text) {
+    return kMemoryOfRow * rows + kMemoryOfText * text;
+  }
 };
 
 /// A delimited text file of columns, read whole: the numbers as doubles, and the text itself, to
@@ -107,8 +131,10 @@ class CsvTable {
 CsvTable ParseCsvTable(std::string text, std::string file);
 
 /// ParseCsvTable() of a file.
-/// @throws InputError also when the file cannot be read
-CsvTable ReadCsvTable(const std::filesystem::path& path);
+/// @param path    kStandardInput reads that, called "standard input" in messages
+/// @throws InputError also when the file cannot be read, and where it is beyond the limits: a file
+///   that is too large, holds a zero byte or a line of more than 16 MiB is read no further
+CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits = {});
 
 /// A table of columns that are in memory, to be read as a file with these names in its first line
 /// is; its lines are the rows, counted from 1.

@@ -95,8 +95,9 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 ///
 /// @throws InputError naming the file and, where they exist, line and column: an unknown or
 ///   ambiguous column, one column for two roles, an unknown unit, a cell that is not a finite
-///   number, a time before that of the row above
-RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {});
+///   number, a time before that of the row above; a file beyond the limits
+RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {},
+                      const ReadLimits& limits = {});
 
 /// ReadRecord() of a table that is in memory.
 /// @throws InputError as ReadRecord()

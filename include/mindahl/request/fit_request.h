@@ -39,6 +39,8 @@ std::vector<std::string_view> ModelNames();
 struct FitRequest {
   std::vector<std::string> files;
   io::RecordColumns columns;
+  std::uint64_t max_rows = 20'000'000;      // of all files together
+  std::optional<std::uint64_t> max_memory;  // [bytes]; else what the process may have
   std::string time_window;
   std::string model = "mindlin-dahl";
   std::string initial_state = "auto";
