@@ -9,6 +9,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -34,6 +35,7 @@
 #include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/repeats.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/csv_writer.h"
@@ -179,7 +181,11 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, Strictness str
     result.fault = error.what();
   } catch (const InvalidArgument& error) {
     result.fault = fmt::format("{}: {}", file, error.what());
+  } catch (const std::bad_alloc&) {
+    result.fault = fmt::format("{}: {}", file, OutOfMemoryText());
   }
+  // A page that cannot be written, too, leaves a file that is not done.
+  result.done = result.done && result.fault.empty();
   result.messages = messages.str();
   result.result.fault = result.fault;
   return result;
@@ -329,9 +335,14 @@ Json JsonOf(const std::vector<FileFit>& fits, const BatchCommandOptions& options
   return json;
 }
 
-/// A directory that is there, or can be made where it is to be.
-void RequireReportDirectory(const std::string& directory) {
+/// A directory that is there, or can be made where it is to be, and no file that is written.
+void RequireReportDirectory(const BatchCommandOptions& options) {
+  const std::string& directory = options.report_directory;
   if (directory.empty()) return;
+  for (const auto& [option, path] :
+       {std::pair("--output", options.output), {"--json", options.json_path}}) {
+    RequireDistinctOutputs({option, path}, {"--report", directory});
+  }
   std::error_code error;
   if (std::filesystem::is_directory(directory, error)) return;
   if (std::filesystem::exists(directory, error)) {
@@ -369,7 +380,7 @@ void RunBatch(const BatchCommandOptions& options, const CLI::App& command, Conso
       {{"--output", options.output}, {"--json", options.json_path, /*dash_is_stdout=*/true}}, read);
   if (!options.overwrite) RequireNotThere({"--output", options.output}, "--overwrite");
   MakeFitOptions(request);  // what is wrong with the options is no fault of a file
-  RequireReportDirectory(options.report_directory);
+  RequireReportDirectory(options);
   std::vector<FileFit> fits;
   {
     Progress progress(console.err, "fitting files");

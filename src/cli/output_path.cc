@@ -60,13 +60,15 @@ void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
           fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
                       output.option, output.path, input));
     }
-    for (const OutputPath& other : files) {
-      if (!IsSameFile(output.path, other.path)) continue;
-      throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
-                                   other.option, output.option, output.path));
-    }
+    for (const OutputPath& other : files) RequireDistinctOutputs(other, output);
     files.push_back(output);
   }
+}
+
+void RequireDistinctOutputs(const OutputPath& first, const OutputPath& second) {
+  if (first.path.empty() || second.path.empty() || !IsSameFile(first.path, second.path)) return;
+  throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
+                               first.option, second.option, second.path));
 }
 
 void RequireDistinctFiles(std::span<const std::string> files) {

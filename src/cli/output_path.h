@@ -21,6 +21,9 @@ struct OutputPath {
 void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
                         std::span<const std::string> inputs = {});
 
+/// @throws InputError where two outputs are one file; an empty path is none
+void RequireDistinctOutputs(const OutputPath& first, const OutputPath& second);
+
 /// Refuses a file that is given twice, by one name or by two: its samples would count twice.
 /// @throws InputError naming both
 void RequireDistinctFiles(std::span<const std::string> files);

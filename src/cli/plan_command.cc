@@ -191,6 +191,7 @@ Expectation ExpectationOf(const PlanOptions& options, Console& console) {
     Validate(options.law);
     expected.law = ResolveLaw(options.law);
   }
+  RequireNonNegative("--displacement-noise [m]", options.displacement_noise);
   if (options.force_noise) expected.force_noise = *options.force_noise;
   if (options.displacement_noise > 0) expected.displacement_noise = options.displacement_noise;
   if (options.rig_stiffness) expected.rig.stiffness = *options.rig_stiffness;

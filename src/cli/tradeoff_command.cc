@@ -347,7 +347,8 @@ void RequireOutputs(const TradeoffOptions& options, std::vector<std::string> inp
 void RunTradeoff(const TradeoffOptions& options, Console& console) {
   Validate(options.law);
   RequireOutputs(options, console.inputs);
-  const BranchLaw law = IsAnythingGiven(options.law) ? ResolveLaw(options.law) : PaperContact();
+  const bool is_contact_given = IsAnythingGiven(options.law) || options.law.alpha;
+  const BranchLaw law = is_contact_given ? ResolveLaw(options.law) : PaperContact();
   WarnOfDoubts(options.law.contact, "tradeoff", console);
   const ModelRegionOptions studied;
   std::vector<MeasuredScene> scenes;

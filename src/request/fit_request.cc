@@ -99,7 +99,8 @@ void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
       ParseNumber(text, term.option,
                   term.unit == "-" ? std::string("a number, or fit")
                                    : fmt::format("a number in {}, or fit", term.unit));
-  if (term.positive) RequirePositive(fmt::format("{} [{}]", term.option, term.unit), value);
+  (term.positive ? RequirePositive : RequireFinite)(fmt::format("{} [{}]", term.option, term.unit),
+                                                    value);
   if (!fit.fixed.emplace(name, value).second) {
     throw InputError(
         fmt::format("{} and --fix {} say the same: give one of the two", term.option, name));

@@ -59,6 +59,42 @@ class BatchCommand : public ::testing::Test {
   TemporaryDirectory directory_;
 };
 
+TEST_F(BatchCommand, RefusesATableInPlaceOfItsPagesBeforeAnythingIsMade) {
+  const std::string record = Repeat(1);
+  for (const std::string& report : {Path("both"), Path("./both")}) {
+    const Outcome outcome =
+        RunCommand({"batch", record, "--output", Path("both"), "--report", report});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("--output and --report both write to"), std::string::npos)
+        << outcome.err;
+  }
+  EXPECT_EQ(RunCommand({"batch", record, "--output", Path("table.csv"), "--json", Path("both"),
+                        "--report", Path("both")})
+                .status,
+            2);
+  EXPECT_EQ(directory_.FileCount(), 1U) << "the record alone";
+}
+
+// A spreadsheet takes for a formula what begins with one of these.
+TEST_F(BatchCommand, WritesNoNameOfAFileAsAFormula) {
+  const std::string record = Repeat(1);
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(directory_.path());
+  for (const char* name : {"=1+2.csv", "@x.csv"}) std::filesystem::copy_file(record, name);
+  const Outcome outcome = Batch({"=1+2.csv", "@x.csv", "=none.csv"});
+  std::filesystem::current_path(here);
+  EXPECT_EQ(outcome.status, 3) << "one is not there";
+  const std::vector<std::vector<std::string>> table = Table();
+  ASSERT_EQ(table.size(), 4U);
+  EXPECT_EQ(table[1][0], "./=1+2.csv");
+  EXPECT_EQ(table[2][0], "./@x.csv");
+  for (const std::vector<std::string>& row : table) {
+    for (const std::string& cell : row) {
+      EXPECT_TRUE(cell.empty() || std::string("=+@").find(cell[0]) == std::string::npos) << cell;
+    }
+  }
+}
+
 TEST_F(BatchCommand, WritesOverNothingUnasked) {
   const std::string record = Repeat(1);
   ASSERT_EQ(Batch({record}).status, 0);

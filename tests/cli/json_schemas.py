@@ -82,6 +82,7 @@ COMMANDS = [
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --rig-stiffness 1e8 --with rig_stiffness "
      "--initial-state steady --want alpha=0.001,slip_force=1%", None),
     ("plan --record loop.csv --amplitude 1e-6", 0),
+    ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2", 0),
     ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3", 0),
     ("recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --cost 0.0001", 3),
     ("recommend --sigma 4e7 --slip-force 40 --lambda 5 --cycles 3 --tolerance 30% "

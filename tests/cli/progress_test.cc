@@ -26,16 +26,22 @@ constexpr const char* kErase = "\r\x1b[K";
 /// To be shown where patience is 0.
 constexpr std::chrono::milliseconds kLongEnough{200};
 
+/// Both ends of a pseudo-terminal, or -1 for the second where the machine has none mounted.
+std::array<int, 2> OpenTerminal() {
+  std::array<int, 2> ends{::posix_openpt(O_RDWR | O_NOCTTY), -1};
+  if (ends[0] < 0 || ::grantpt(ends[0]) != 0 || ::unlockpt(ends[0]) != 0) return ends;
+  const char* const name = ::ptsname(ends[0]);
+  if (name != nullptr) ends[1] = ::open(name, O_RDWR | O_NOCTTY);
+  return ends;
+}
+
 /// Standard error on a pseudo-terminal, or on a pipe, until this ends.
 class Redirected {
  public:
   explicit Redirected(bool terminal) : saved_(::dup(STDERR_FILENO)) {
     std::array<int, 2> ends{-1, -1};
     if (terminal) {
-      ends[0] = ::posix_openpt(O_RDWR | O_NOCTTY);
-      EXPECT_EQ(::grantpt(ends[0]), 0);
-      EXPECT_EQ(::unlockpt(ends[0]), 0);
-      ends[1] = ::open(::ptsname(ends[0]), O_RDWR | O_NOCTTY);
+      ends = OpenTerminal();
     } else {
       EXPECT_EQ(::pipe(ends.data()), 0);
     }
@@ -75,7 +81,19 @@ class Redirected {
   int reads_ = -1;
 };
 
-TEST(Progress, IsShownOnATerminalAndErasedAtItsEnd) {
+/// Skipped where there is no terminal to show anything on.
+class ProgressOnATerminal : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::array<int, 2> ends = OpenTerminal();
+    for (const int end : ends) {
+      if (end >= 0) ::close(end);
+    }
+    if (ends[1] < 0) GTEST_SKIP() << "this machine has no pseudo-terminal mounted (/dev/pts)";
+  }
+};
+
+TEST_F(ProgressOnATerminal, IsShownAndErasedAtItsEnd) {
   Redirected terminal(/*terminal=*/true);
   std::string shown;
   {
@@ -89,7 +107,7 @@ TEST(Progress, IsShownOnATerminalAndErasedAtItsEnd) {
   EXPECT_THAT(shown + last, Not(HasSubstr("\n"))) << "one line";
 }
 
-TEST(Progress, SaysWhatComesNext) {
+TEST_F(ProgressOnATerminal, SaysWhatComesNext) {
   Redirected terminal(/*terminal=*/true);
   {
     Progress progress(std::cerr, "one", std::chrono::milliseconds(0));
@@ -101,7 +119,7 @@ TEST(Progress, SaysWhatComesNext) {
   EXPECT_THAT(last, EndsWith(kErase));
 }
 
-TEST(Progress, OfWhatIsSoonDoneIsNotShown) {
+TEST_F(ProgressOnATerminal, OfWhatIsSoonDoneIsNotShown) {
   Redirected terminal(/*terminal=*/true);
   { const Progress progress(std::cerr, "fitting"); }
   std::cerr << "done" << std::flush;
@@ -110,7 +128,7 @@ TEST(Progress, OfWhatIsSoonDoneIsNotShown) {
   EXPECT_EQ(all, "done");
 }
 
-TEST(Progress, IsNotShownInAPipeNorBesideOtherMessages) {
+TEST(Progress, IsNotShownInAPipe) {
   Redirected pipe(/*terminal=*/false);
   {
     const Progress progress(std::cerr, "fitting", std::chrono::milliseconds(0));
@@ -118,7 +136,9 @@ TEST(Progress, IsNotShownInAPipeNorBesideOtherMessages) {
   }
   std::cerr << "done" << std::flush;
   EXPECT_EQ(pipe.ReadTo("done"), "done");
-  pipe.Restore();
+}
+
+TEST_F(ProgressOnATerminal, IsNotShownWhereMessagesGoElsewhere) {
   Redirected terminal(/*terminal=*/true);
   const std::ostringstream elsewhere;
   {
