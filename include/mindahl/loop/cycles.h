@@ -47,7 +47,8 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 /// channel does not change; without a closed cycle, or where the loop is so thin that rounding and
 /// noise decide (under 1 % of the rectangle round it, or five standard deviations of what noise of
 /// both channels makes of it), by the sign of the covariance of force and displacement: a contact
-/// that sticks has a slope that is known far better than its energy. 0 when neither has a sign (constant force or displacement).
+/// that sticks has a slope that is known far better than its energy. 0 when neither has a sign
+/// (constant force or displacement).
 /// @throws InvalidArgument when the record is inconsistent
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals);
 
