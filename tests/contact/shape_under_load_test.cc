@@ -153,6 +153,38 @@ TEST(SphereUnderLoad, SaysWhatIsMissing) {
               HasSubstr("the effective modulus needs the radii of both bodies"));
 }
 
+// All that is known of the materials is that both have one ν: the larger of its two errors is
+// carried, whichever body has it, as if both changed together.
+TEST(ShapeUnderLoad, PropagatesTheLargerErrorOfACommonPoissonRatio) {
+  constexpr double kStep = 1e-4;
+  constexpr double kTolerance = 1e-6;
+  const Truth truth = Make(kSteelBall, kSteelBall);
+  KnownContact known = Known(kSteelBall, kSteelBall);
+  known.body_1.youngs_modulus.reset();
+  known.body_2.youngs_modulus.reset();
+  const double nu = known.body_1.poisson_ratio->value;
+  const auto with = [&](UncertainValue first, UncertainValue second) {
+    known.body_1.poisson_ratio = first;
+    known.body_2.poisson_ratio = second;
+    return IdentifyShape(ContactShape::kSphere, truth.stiffness, known);
+  };
+  using Part = std::optional<PropagatedValue> ShapeUnderLoad::*;
+  const double more = nu * (1 + kStep);
+  const double less = nu * (1 - kStep);
+  for (const Part part : {&ShapeUnderLoad::tangential_compliance,
+                          &ShapeUnderLoad::effective_modulus, &ShapeUnderLoad::contact_radius}) {
+    const double change =
+        std::abs(((with(more, more).*part)->value - (with(less, less).*part)->value)) / 2;
+    ASSERT_GT(change, 0.0);
+    for (const bool first_is_larger : {true, false}) {
+      const UncertainValue larger{nu, kStep * nu};
+      const UncertainValue smaller{nu, kStep * nu / 3};
+      const ShapeUnderLoad shape = first_is_larger ? with(larger, smaller) : with(smaller, larger);
+      EXPECT_NEAR((shape.*part)->standard_error / change, 1.0, kTolerance);
+    }
+  }
+}
+
 TEST(ShapeUnderLoad, PropagatesEveryInputAsASmallChangeOfItActs) {
   // A central difference of relative step h is off by h² times a third derivative of order 10, and
   // by rounding over h.

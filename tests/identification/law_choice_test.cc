@@ -215,6 +215,15 @@ TEST(LawChoice, IsAmongLoopsOfOneAmplitudeWhereNoSwingIsShorter) {
   EXPECT_TRUE(has_one(Steady()));
   EXPECT_TRUE(has_one(Virgin("mindlin-dahl"))) << "its ends are parts of the same loop";
   EXPECT_FALSE(has_one(TwoAmplitudes("mindlin-dahl", 1.2 * kGrossSlip, 1e-6)));
+  // Swings at the ends, which need not be whole, are no wider either.
+  History late = Steady().displacement;
+  late.push_back(-0.8 * kGrossSlip);
+  late.push_back(2.4 * kGrossSlip);
+  History early(late.rbegin(), late.rend());
+  for (const History& ends_wide : {late, early}) {
+    EXPECT_FALSE(
+        has_one(MakeRecord(ends_wide, Respond(Model("mindlin-dahl"), kMindlin, ends_wide))));
+  }
   Record inner = Steady();
   History displacement = inner.displacement;
   for (const double share : {0.3, 0.1, -0.1, 0.1, 0.5, 0.9, 1.0, 0.5}) {

@@ -197,6 +197,28 @@ bool HasFewPlaces(const Thresholds& thresholds, std::size_t samples_a_cycle) {
   return FindFewPlaces(stages.problem, thresholds).has_value();
 }
 
+/// Places at which ten samples a cycle are, of which every other cycle is moved by so much of half
+/// the range.
+double PlacesOfMovedCycles(double moved) {
+  constexpr double kReach = 3e-6;
+  History displacement;
+  for (std::size_t i = 0; i < 100; ++i) {
+    const double phase = (static_cast<double>(i) + 0.3) / 10.0;
+    const double shift = (i / 10) % 2 == 0 ? 0.0 : moved;
+    displacement.push_back(kReach * (std::sin(2 * std::numbers::pi * phase) + shift));
+  }
+  Stages stages(LoopOf(kMindlin, displacement));
+  const std::optional<Finding> found = FindFewPlaces(stages.problem, {});
+  return found ? *found->Number("places") : 0.0;
+}
+
+TEST(FindFewPlaces, TakesForOnePlaceWhatIsWithinHalfAPercentOfTheRange) {
+  const double places = PlacesOfMovedCycles(0.0);
+  ASSERT_GT(places, 0.0);
+  EXPECT_EQ(PlacesOfMovedCycles(2 * 0.0035), places);
+  EXPECT_NE(PlacesOfMovedCycles(2 * 0.008), places) << "twenty are not few";
+}
+
 // --- tests and profiles on stages
 
 /// A rig tried for a loop of another shape, at a chance and a variance of the noise given by hand.

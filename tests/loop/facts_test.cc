@@ -229,6 +229,16 @@ TEST(MeasureFacts, ATrendIsFoundWhereThereIsOne) {
   EXPECT_LT(facts.energy_trend->p_value, 1e-6);
 }
 
+TEST(MeasureFacts, ATrendIsOverTheCyclesOfTheRecord) {
+  // Those of the widest amplitude are not numbered in a row, and a cycle makes 2 % of 2 N.
+  const LoopFacts facts =
+      FactsOf(MakeRecord({.growth = 0.02, .amplitudes = {1.0, 1.0, 0.6, 1.0, 1.0, 1.0}}));
+  ASSERT_TRUE(facts.cycles[1].steady && facts.cycles[4].steady);
+  ASSERT_FALSE(facts.cycles[2].steady);
+  ASSERT_TRUE(facts.half_gap_trend);
+  EXPECT_NEAR(facts.half_gap_trend->slope, 0.04, kRounding);
+}
+
 TEST(MeasureFacts, ATrendIsFoundByChanceAsOftenAsItsProbabilitySays) {
   // Of 400 records one in twenty, ±4 standard deviations of a binomial.
   constexpr int kRecords = 400;

@@ -237,6 +237,21 @@ TEST(FindGlitches, FindsDropoutsOfAnyLengthAlsoAtTheEnds) {
   for (const std::size_t i : zeros) EXPECT_EQ(glitches[i], Glitch::kDropout) << i;
 }
 
+TEST(FindGlitches, ARecordMayBeginAtZeroWhereAnotherZeroIsADropout) {
+  Record record;
+  record.displacement = Sine(3, 100);
+  record.force =
+      testing::Respond(testing::Model("mindlin"), {20, 1.0 / 3, 1.0}, record.displacement);
+  ASSERT_EQ(record.displacement.front(), 0.0);
+  ASSERT_EQ(record.force.front(), 0.0);
+  constexpr std::size_t kFarOff = 125;  // at the extreme of a sine
+  record.displacement[kFarOff] = record.force[kFarOff] = 0.0;
+  const std::vector<Glitch> glitches = FindGlitches(record);
+  EXPECT_EQ(CountGlitches(glitches).dropouts, 1U);
+  EXPECT_EQ(glitches[kFarOff], Glitch::kDropout);
+  EXPECT_EQ(glitches[0], Glitch::kNone);
+}
+
 TEST(FindGlitches, FindsAlmostAllDropoutsOfALoopAboutZero) {
   // One that falls on a crossing of both channels harms as little.
   constexpr double kFound = 0.95;

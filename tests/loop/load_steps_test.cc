@@ -46,6 +46,21 @@ void ExpectThreeLoads(const std::vector<ConstantLoad>& pieces, double tolerance)
   }
 }
 
+TEST(LoadSteps, AreNoneWhereOneOfThemDrifts) {
+  // Both within 2 % of themselves; a step of 3 N, of which 0.8 N are more than a tenth.
+  const auto second_load = [](double cycle) { return cycle < 5 ? 0.0 : 53.5; };
+  const auto level = [&](double cycle) { return std::max(second_load(cycle), 50.4); };
+  const auto drifting = [&](double cycle) {
+    return cycle < 5 ? 50.0 + 0.8 * cycle / 5 : second_load(cycle);
+  };
+  const auto drifting_later = [&](double cycle) {
+    return cycle < 5 ? 50.4 : 53.1 + 0.8 * (cycle - 5) / 5;
+  };
+  EXPECT_EQ(FindLoadSteps(Cycled(10, level)).size(), 2U);
+  EXPECT_EQ(FindLoadSteps(Cycled(10, drifting)).size(), 0U);
+  EXPECT_EQ(FindLoadSteps(Cycled(10, drifting_later)).size(), 0U);
+}
+
 TEST(LoadSteps, MakeARecordForEachConstantLoad) {
   const std::vector<ConstantLoad> pieces = FindLoadSteps(Cycled(15, Staircase));
   ExpectThreeLoads(pieces, 0.0);

@@ -163,6 +163,25 @@ TEST(Trim, LeavesARecordWholeThatDoesNotSettle) {
   }
 }
 
+// Of the last four of eight cycles, y = 1 + b k + r (1, −1, −1, 1): Student's t of their slope is
+// b √5/(√2 r) with two degrees of freedom, beyond which chance lies in one of a hundred at 9.92 to
+// either side, and at 6.96 to one.
+TEST(Trim, ATrendOfTheLastHalfIsJudgedToEitherSide) {
+  const auto settling_at = [](double t) {
+    constexpr double kSlope = 0.005;  // 1.5 % over the last half
+    const double ripple = kSlope * std::sqrt(2.5) / t;
+    const auto strength = [&](double cycle) {
+      // Cycles are from the first turn, a quarter in.
+      const int number = static_cast<int>(std::floor(cycle - 0.25)) - 4;
+      if (number < 0) return 1.0;
+      return 1 + kSlope * number + (number % 3 == 0 ? ripple : -ripple);
+    };
+    return FindTrim(Cycled(8.5, Always, strength)).settling;
+  };
+  EXPECT_EQ(settling_at(8.3), Settling::kSettled);
+  EXPECT_EQ(settling_at(12.0), Settling::kUnsettled);
+}
+
 TEST(Trim, LeavesARecordWholeThatIsOffForMoreThanHalfOfIt) {
   // A step after 13 of 20 cycles: the last half is on both sides of it.
   const Trim trim =

@@ -43,11 +43,10 @@ std::vector<double> CycleEnergies(const RecordView& record, std::span<const std:
 LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals);
 
 /// +1 when the force has the displacement's sense, −1 when it opposes it (a load cell on the other
-/// body). Decided by the sign of the mean energy of the closed cycles, which an offset in either
-/// channel does not change; without a closed cycle, or where the loop is so thin that rounding and
-/// noise decide (under 1 % of the rectangle round it, or five standard deviations of what noise of
-/// both channels makes of it), by the sign of the covariance of force and displacement: a contact
-/// that sticks has a slope that is known far better than its energy. 0 when neither has a sign (constant force or displacement).
+/// body): the sign of the mean energy of the closed cycles, which no offset changes; that of the
+/// covariance of force and displacement without a closed cycle, or where the loop is under 1 % of
+/// the rectangle round it or five standard deviations of what noise of both channels makes of its
+/// energy, so that noise would decide. 0 when neither has a sign (constant force or displacement).
 /// @throws InvalidArgument when the record is inconsistent
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals);
 
