@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/identification/fit.h"
@@ -54,7 +55,8 @@ int main() {
                       Agrees(fit, "alpha", kTruth.shape_exponent) &
                       Agrees(fit, "slip_force", kTruth.slip_force);
   for (const identification::Finding& finding : fit.findings) {
-    std::printf("finding: %.*s\n", static_cast<int>(finding.code.size()), finding.code.data());
+    const std::string_view code = finding.code;
+    std::printf("finding: %.*s\n", static_cast<int>(code.size()), code.data());
   }
   return agrees ? 0 : 1;
 }

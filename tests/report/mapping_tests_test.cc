@@ -98,7 +98,7 @@ TEST(AlphaTest, NeverContradictsTheIntervalOfAlpha) {
     for (const double widened : {0.0, 0.001, 0.01, 0.1}) {
       for (const double p_value : {1e-6, 0.5}) {
         FitResult fit = FitWithAlpha(above, widened);
-        fit.mindlin_test = {.likelihood_ratio = 1.0, .p_value = p_value};
+        fit.mindlin_test.emplace().p_value = p_value;
         const ParameterEstimate& alpha = fit.parameters[1];
         const bool is_inside = *alpha.lower95 <= 1.0 / 3 && 1.0 / 3 <= *alpha.upper95;
         const report::AlphaTest test = TestAlpha(fit);
