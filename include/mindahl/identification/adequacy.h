@@ -41,7 +41,7 @@ struct Adequacy {
   /// rms of what is explained by all causes together or comes back in every stroke, over that of
   /// the noise
   double misfit_over_noise = 0.0;
-  double misfit = 0.0;        ///< that rms [N]
+  double misfit = 0.0;        ///< rms of what the model misses [N or m]
   double p_value = 1.0;       ///< that noise alone looks like that
   std::vector<Cause> causes;  ///< those that help, the best first
   /// rms of what the model misses over the measured half gap; empty where no gap was measured.

@@ -1,9 +1,11 @@
 #include "identification/diagnosis/discrepancy.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "identification/diagnosis/grade.h"
@@ -20,10 +22,63 @@ std::size_t PlaceOf(const Problem& problem, std::size_t parameter) {
   return static_cast<std::size_t>(std::ranges::find(free, parameter) - free.begin());
 }
 
+constexpr std::size_t kParts = 6;  // thirds of the stroke, up and down
+
+/// A sample of a main stroke.
+struct StrokeSample {
+  Eigen::Index row = 0;  // of the Jacobian
+  std::size_t part = 0;
+};
+
+template <typename Visit>
+void ForEachSample(const Problem& problem, const Thresholds& thresholds, Visit visit) {
+  constexpr std::size_t kThirds = kParts / 2;
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : problem.data->records) {
+    for (const MainStroke& stroke :
+         MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke)) {
+      const double from = record.excitation()[stroke.begin];
+      const double width = record.excitation()[stroke.end] - from;
+      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
+        const double way = std::clamp((record.excitation()[i] - from) / width, 0.0, 1.0);
+        const auto third = static_cast<std::size_t>(way * static_cast<double>(kThirds));
+        visit(StrokeSample{static_cast<Eigen::Index>(begin + i),
+                           std::min(kThirds - 1, third) + (stroke.rises ? 0 : kThirds)});
+      }
+    }
+    begin += record.size();
+  }
+}
+
 /// Sums of a regression of one column.
 struct Sums {
   double product = 0.0;
   double squares = 0.0;
+};
+
+/// The slope of parallel straight lines, one a group of points.
+class Slope {
+ public:
+  void Add(double x, double y) {
+    ++count_;
+    const double off = x - mean_x_;
+    mean_x_ += off / count_;
+    mean_y_ += (y - mean_y_) / count_;
+    squares_ += off * (x - mean_x_);
+    product_ += off * (y - mean_y_);
+  }
+  void AddWithin(const Slope& other) {
+    squares_ += other.squares_;
+    product_ += other.product_;
+  }
+  [[nodiscard]] double Value() const { return product_ / squares_; }
+
+ private:
+  double count_ = 0.0;
+  double mean_x_ = 0.0;
+  double mean_y_ = 0.0;
+  double squares_ = 0.0;
+  double product_ = 0.0;
 };
 
 /// A closed interval that grows.
@@ -58,33 +113,18 @@ double SpreadOf(std::span<const double> steps) {
 
 }  // namespace
 
-std::vector<double> SlipForceOfParts(const Problem& problem, const Solution&,
-                                     const Estimates& estimates, const Thresholds& thresholds) {
-  constexpr std::size_t kParts = 3;
+std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& estimates,
+                                     const Thresholds& thresholds) {
   std::vector<double> steps;
   const std::size_t place = PlaceOf(problem, kSlipForce);
   if (place == problem.parameters.free().size() || problem.data->is_forced()) return steps;
   const auto& column = estimates.jacobian().col(static_cast<Eigen::Index>(place));
-  const Eigen::VectorXd& residual = estimates.residual();
-  std::array<Sums, 2 * kParts> sums{};
-  std::size_t begin = 0;
-  for (const ScaledRecord& record : problem.data->records) {
-    for (const MainStroke& stroke :
-         MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke)) {
-      const double from = record.excitation()[stroke.begin];
-      const double width = record.excitation()[stroke.end] - from;
-      for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
-        const double way = std::clamp((record.excitation()[i] - from) / width, 0.0, 1.0);
-        const std::size_t part =
-            std::min(kParts - 1, static_cast<std::size_t>(way * static_cast<double>(kParts)));
-        Sums& sum = sums[part + (stroke.rises ? 0 : kParts)];
-        const auto row = static_cast<Eigen::Index>(begin + i);
-        sum.product -= column(row) * residual(row);
-        sum.squares += column(row) * column(row);
-      }
-    }
-    begin += record.size();
-  }
+  std::array<Sums, kParts> sums{};
+  ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
+    Sums& sum = sums[sample.part];
+    sum.product -= column(sample.row) * estimates.residual()(sample.row);
+    sum.squares += column(sample.row) * column(sample.row);
+  });
   double most = 0.0;
   for (const Sums& sum : sums) most = std::max(most, sum.squares);
   constexpr double kLeast = 0.25;  // of the part that depends most on Tc
@@ -94,9 +134,135 @@ std::vector<double> SlipForceOfParts(const Problem& problem, const Solution&,
   return steps;
 }
 
+std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
+                                       const Thresholds& thresholds) {
+  const Eigen::Index count = estimates.jacobian().cols();
+  std::array<Eigen::MatrixXd, kParts> matrices;
+  std::array<Eigen::VectorXd, kParts> vectors;
+  matrices.fill(Eigen::MatrixXd::Zero(count, count));
+  vectors.fill(Eigen::VectorXd::Zero(count));
+  ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
+    const Eigen::VectorXd row = estimates.jacobian().row(sample.row).transpose();
+    matrices[sample.part].noalias() += row * row.transpose();
+    vectors[sample.part] -= estimates.residual()(sample.row) * row;
+  });
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd vector = Eigen::VectorXd::Zero(count);
+  for (std::size_t part = 0; part < kParts; ++part) {
+    matrix += matrices[part];
+    vector += vectors[part];
+  }
+  Eigen::MatrixXd steps(count, static_cast<Eigen::Index>(kParts));
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> rest(matrix - matrices[part]);
+    if (rest.rank() < count) return {};
+    steps.col(static_cast<Eigen::Index>(part)) = rest.solve(vector - vectors[part]);
+  }
+  steps.colwise() -= steps.rowwise().mean().eval();
+  constexpr double kAll = kParts;
+  const double quantile = StudentQuantile95(kAll - 1);
+  std::vector<double> spread;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    spread.push_back(quantile * std::sqrt((kAll - 1) / kAll) * steps.row(k).norm());
+  }
+  return spread;
+}
+
+std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
+                                       const Thresholds& thresholds) {
+  std::vector<double> ratios;
+  if (problem.data->is_forced()) return ratios;
+  for (const double window : {0.125, 0.25, 0.5}) {
+    Slope measured;
+    Slope model;
+    double strokes = 0.0;
+    double samples = 0.0;
+    std::size_t begin = 0;
+    for (const ScaledRecord& record : problem.data->records) {
+      const auto force_of_model = [&](std::size_t i) {
+        return record.force[i] +
+               estimates.residual()(static_cast<Eigen::Index>(begin + i)) / record.root_weight[i];
+      };
+      for (const MainStroke& stroke :
+           MainStrokes(record.displacement, record.reversals, thresholds.main_stroke)) {
+        Slope measured_here;
+        Slope model_here;
+        std::optional<double> first;
+        double last = 0.0;
+        for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
+          if (!(record.root_weight[i] > 0)) continue;
+          if (!first) first = force_of_model(i);
+          last = force_of_model(i);
+        }
+        if (!first) continue;
+        // The motion turned anywhere about its outermost sample.
+        for (std::size_t i = stroke.begin + 1; i < stroke.end; ++i) {
+          if (!(record.root_weight[i] > 0)) continue;
+          const double force = force_of_model(i);
+          if (std::abs(force - *first) > window * std::abs(last - *first)) break;
+          measured_here.Add(record.displacement[i], record.force[i]);
+          model_here.Add(record.displacement[i], force);
+          ++samples;
+        }
+        measured.AddWithin(measured_here);
+        model.AddWithin(model_here);
+        ++strokes;
+      }
+      begin += record.size();
+    }
+    constexpr double kFewest = 2;  // samples a stroke, for a chord
+    const double ratio = measured.Value() / model.Value();
+    if (samples < kFewest * strokes || !(ratio > 0) || !std::isfinite(ratio)) continue;
+    ratios.push_back(ratio);
+  }
+  // Each window is twice the one before: the line through the first two and the parabola through
+  // three, at a window of nothing; and as much again within the narrowest as is seen of it.
+  const std::size_t windows = ratios.size();
+  if (windows > 0) ratios.push_back(ratios[0] * ratios[0]);
+  if (windows > 1) ratios.push_back(2 * ratios[0] - ratios[1]);
+  if (windows > 2) ratios.push_back(8.0 / 3 * ratios[0] - 2 * ratios[1] + ratios[2] / 3);
+  std::erase_if(ratios, [](double ratio) { return !(ratio > 0); });
+  return ratios;
+}
+
+namespace {
+
+/// Widens σ and α by what leaving out a part of the strokes changes, and σ by the stiffness that
+/// the record itself has after its reversals.
+void CoverShape(const Problem& problem, const Solution& solution, const Estimates& estimates,
+                const Thresholds& thresholds, FitResult& result) {
+  const std::vector<double> spread = SpreadWithoutParts(problem, estimates, thresholds);
+  for (const std::size_t p : {kStiffness, kShape}) {
+    ParameterEstimate& estimate = result.parameters[p];
+    const std::size_t place = PlaceOf(problem, p);
+    if (place >= spread.size() || !estimate.lower95 || !estimate.upper95) continue;
+    const Parameter& parameter = problem.parameters[p];
+    constexpr double kFarthest = 3.0;  // of a linear step: a factor of e³
+    const double step = std::min(spread[place], kFarthest);
+    const double one = parameter.ToValue(solution.theta[p] - step);
+    const double other = parameter.ToValue(solution.theta[p] + step);
+    estimate.lower95 = std::min({*estimate.lower95, one, other});
+    estimate.upper95 = std::max({*estimate.upper95, one, other});
+    if (p == kShape) estimate.lower95 = std::max(*estimate.lower95, 0.0);
+  }
+  ParameterEstimate& stiffness = result.parameters[kStiffness];
+  if (stiffness.status == ParameterStatus::kFixed || !stiffness.lower95 || !stiffness.upper95) {
+    return;
+  }
+  const double lower = *stiffness.lower95;
+  const double upper = *stiffness.upper95;
+  for (const double ratio : StiffnessOfWindows(problem, estimates, thresholds)) {
+    stiffness.lower95 = std::min(*stiffness.lower95, ratio * lower);
+    stiffness.upper95 = std::max(*stiffness.upper95, ratio * upper);
+  }
+}
+
+}  // namespace
+
 void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Estimates& estimates,
                       std::span<const ParameterEstimate> plain, const Thresholds& thresholds,
                       FitResult& result) {
+  CoverShape(problem, solution, estimates, thresholds, result);
   ParameterEstimate& slip_force = result.parameters[kSlipForce];
   for (ParameterEstimate& estimate : result.parameters) {
     const bool is_closed = estimate.lower95 && estimate.upper95;
@@ -114,7 +280,7 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
   const bool is_free = slip_force.status != ParameterStatus::kFixed;
   if (!is_free || !half_gap || !SlidesOverMostOfStroke(facts, thresholds)) return;
 
-  const std::vector<double> steps = SlipForceOfParts(problem, solution, estimates, thresholds);
+  const std::vector<double> steps = SlipForceOfParts(problem, estimates, thresholds);
   // The gap is a mean over parts of the strokes in each of which the model misses so much.
   const double error =
       result.adequacy.misfit / std::sqrt(std::max(1.0, static_cast<double>(steps.size())));

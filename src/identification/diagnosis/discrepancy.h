@@ -16,8 +16,24 @@ namespace mindahl::identification {
 /// The steps ln(Tc'/Tc) that parts of the strokes ask for, each by itself, the other parameters
 /// held: thirds of the main strokes, up and down. Parts that hardly depend on Tc are left out.
 /// @returns none where Tc is held, or a displacement is fitted
-std::vector<double> SlipForceOfParts(const Problem& problem, const Solution& solution,
-                                     const Estimates& estimates, const Thresholds& thresholds);
+std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& estimates,
+                                     const Thresholds& thresholds);
+
+/// Half widths of 95 % intervals of the free θ from leaving out one part of the strokes after the
+/// other: √((n − 1)/n·Σ(θ₋ₖ − θ̄)²), the jackknife of n = 6 parts, times Student's quantile; each
+/// θ₋ₖ by one linear step of all free parameters.
+/// @returns none where the rest does not determine them
+std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
+                                       const Thresholds& thresholds);
+
+/// The stiffness of the record after its reversals over that of the model: slopes of least squares,
+/// each stroke with an intercept of its own, over the places where the model's force has changed by
+/// less than an eighth, a quarter and a half of what it changes by in the stroke, and, at the
+/// reversal itself, the line through the first two of these and the parabola through all,
+/// and the square of the narrowest window's.
+/// @returns those of windows that have two samples a stroke or more
+std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
+                                       const Thresholds& thresholds);
 
 /// Replaces the interval of Tc where the measured loop slides over most of its stroke. It becomes
 /// the union of the fitted value, the measured half gap with its margin, and, as far as they lie

@@ -1,0 +1,126 @@
+#include "identification/diagnosis/discrepancy.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "recovery/recovered.h"
+
+// Intervals of fits whose model misses something that comes back in every stroke.
+namespace mindahl::identification::discrepancy_test {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::FitOne;
+using testing::Generator;
+using testing::History;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Wave;
+using testing::WithForceNoise;
+
+constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+constexpr double kReach = 6e-6;  // [m], four times gross slip
+constexpr double kNoise = 0.002 * 40.0;
+
+Record Loop(double reach = kReach) {
+  const History displacement = Cycling(Wave::kSine, reach, 5.0, 300);
+  return MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));
+}
+
+/// Times 1 + b·x/X.
+Record OfPosition(double b, double reach = kReach) {
+  Record record = Loop(reach);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] *= 1 + b * record.displacement[i] / reach;
+  }
+  return record;
+}
+
+FitResult FitNoisy(const Record& record, std::uint64_t seed = 1, const FitOptions& options = {}) {
+  Generator generator(seed);
+  return FitOne(WithForceNoise(record, kNoise, generator), options);
+}
+
+bool Contains(const ParameterEstimate& estimate, double value) {
+  return estimate.lower95 && estimate.upper95 && *estimate.lower95 <= value &&
+         value <= *estimate.upper95;
+}
+
+TEST(Discrepancy, AdequateFitIsLeftAsItIs) {
+  const FitResult fit = FitNoisy(Loop());
+  ASSERT_EQ(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  EXPECT_EQ(fit.adequacy.use, Use::kQuantitative);
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    EXPECT_FALSE(estimate.includes_discrepancy) << estimate.name;
+    EXPECT_NE(estimate.identifiability, Identifiability::kEffective) << estimate.name;
+  }
+}
+
+TEST(Discrepancy, SlipForceOfALoopThatSlidesContainsTheGapWhateverTheUse) {
+  // The rms of b·x/X over a sine is 0.7b.
+  for (const double b : {0.05, 0.15, 0.4}) {
+    const FitResult fit = FitNoisy(OfPosition(b));
+    EXPECT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate) << b;
+    const ParameterEstimate& slip_force = *fit.Find("slip_force");
+    EXPECT_EQ(slip_force.identifiability, Identifiability::kEffective) << b;
+    EXPECT_TRUE(Contains(slip_force, *fit.WidestRecord().facts.half_gap)) << b;
+    EXPECT_TRUE(Contains(slip_force, kLaw.slip_force)) << b;
+    EXPECT_TRUE(Contains(slip_force, slip_force.value)) << b;
+  }
+}
+
+TEST(Discrepancy, WhatIsMissedMoreWidensMore) {
+  const auto width = [](double b) {
+    const ParameterEstimate estimate = *FitNoisy(OfPosition(b)).Find("slip_force");
+    return *estimate.upper95 - *estimate.lower95;
+  };
+  EXPECT_LT(width(0.02), width(0.08));
+  EXPECT_LT(width(0.08), width(0.3));
+}
+
+TEST(Discrepancy, LoopThatDoesNotSlideKeepsItsVerdictOnTheSlipForce) {
+  const FitResult fit = FitNoisy(OfPosition(0.4, /*reach=*/0.3e-6));  // a fifth of gross slip
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  EXPECT_FALSE(slip_force.is_known());
+  if (slip_force.identifiability != Identifiability::kBoundedBelow) return;
+  EXPECT_GE(*slip_force.lower95, 0.99 * fit.PeakForce()) << "a force that was carried";
+}
+
+TEST(Discrepancy, SlipForceDoesNotRunAwayFromALoopThatSlides) {
+  // A force of the speed by a power rounds the knee, and the law's exponent grows until Tc is an
+  // asymptote.
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double phase = 2 * std::acos(-1.0) * static_cast<double>(i) / 300;
+    record.force[i] +=
+        60.0 * std::copysign(std::pow(std::abs(std::cos(phase)), 0.5), std::cos(phase));
+  }
+  const FitResult fit = FitNoisy(record);
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  ASSERT_NE(fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  const double peak = fit.WidestRecord().facts.peak_force;
+  EXPECT_LE(slip_force.value, peak / 0.9);
+  EXPECT_EQ(slip_force.identifiability, Identifiability::kEffective);
+  EXPECT_TRUE(Contains(slip_force, *fit.WidestRecord().facts.half_gap));
+}
+
+TEST(Discrepancy, LimitOfTheUserStaysAsItIs) {
+  FitOptions options;
+  options.bounds["slip_force"] = {1.0, 500.0};
+  const FitResult fit = FitNoisy(OfPosition(0.1), 1, options);
+  EXPECT_EQ(fit.Find("slip_force")->status, ParameterStatus::kFree);
+  options.bounds.clear();
+  options.fixed["slip_force"] = 40.0;
+  EXPECT_FALSE(FitNoisy(OfPosition(0.1), 1, options).Find("slip_force")->includes_discrepancy);
+}
+
+}  // namespace
+}  // namespace mindahl::identification::discrepancy_test
