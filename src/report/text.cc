@@ -104,6 +104,14 @@ std::string SelectionText(const identification::ModelSelection& selection, const
   return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
 }
 
+/// Says of which amplitude an energy is, where cycles have several.
+std::string OfAmplitude(const Report& report) {
+  const std::vector<loop::CycleFacts>& cycles = report.fit.WidestRecord().facts.cycles;
+  if (std::ranges::all_of(cycles, &loop::CycleFacts::steady)) return "";
+  return fmt::format(" at X = {}",
+                     Quantity(report.loop->measured.amplitude, report.units.displacement, 4));
+}
+
 /// What needs no model.
 std::string MeasuredText(const Report& report) {
   const RecordFit& widest = report.fit.WidestRecord();
@@ -128,7 +136,8 @@ std::string MeasuredText(const Report& report) {
     add("half gap", facts.half_gap, units.force);
   }
   add("sliding amplitude", facts.sliding_amplitude, units.displacement);
-  parts.push_back(fmt::format("energy {} a cycle", Quantity(facts.energy_per_cycle, "J", 5)));
+  parts.push_back(fmt::format("energy {} a cycle{}", Quantity(facts.energy_per_cycle, "J", 5),
+                              OfAmplitude(report)));
   add("energy ratio", facts.energy_ratio, "-");
   add("energy friction coefficient", facts.energy_friction_coefficient, "-");
   add("slope after reversals", facts.slope_after_reversal, units.stiffness);
@@ -245,8 +254,8 @@ std::string ResidualText(const Report& report) {
 std::string LoopText(const Report& report) {
   const LoopDescription& loop = *report.loop;
   std::string text =
-      fmt::format("slip: {}; energy {} a cycle of the model", SlipStatement(loop, report.units),
-                  Quantity(loop.model_energy, "J", 5));
+      fmt::format("slip: {}; energy {} a cycle of the model{}", SlipStatement(loop, report.units),
+                  Quantity(loop.model_energy, "J", 5), OfAmplitude(report));
   if (loop.gross_slip_energy_ratio) {
     text +=
         fmt::format(", gross slip from an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);

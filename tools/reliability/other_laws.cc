@@ -228,16 +228,69 @@ OtherLoop WithBacklash(Draws& draws) {
   return loop;
 }
 
-constexpr std::array<OtherLaw, 6> kLaws = {{
+/// Elements of one stiffness with the density φ^χ of slip displacements, up to the largest.
+OtherLoop PowerLawSpectrum(Draws& draws) {
+  constexpr std::size_t kElements = 200;
+  Setting setting = DrawSetting(draws);
+  const double exponent = draws.Uniform(-0.8, 0.0);
+  methods::IwanElements elements;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kElements; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / kElements;
+    elements.stiffness.push_back(setting.slip_force / setting.travel / kElements);
+    elements.slip_force.push_back(std::pow(share, 1 / (exponent + 1)));
+    sum += elements.slip_force.back();
+  }
+  for (double& force : elements.slip_force) force *= setting.slip_force / sum;
+  methods::EvaluateIwanForce(elements, setting.dense.displacement, setting.dense.force);
+  return Recorded(setting, draws);
+}
+
+/// Masing's law with a force of the motion beside it.
+template <typename Force>
+OtherLoop Beside(Setting setting, Draws& draws, Force force) {
+  Record& dense = setting.dense;
+  Masing(MasingLaw(setting, draws))(dense.displacement, dense.force);
+  for (std::size_t i = 0; i < dense.size(); ++i) dense.force[i] += setting.slip_force * force(i);
+  return Recorded(setting, draws);
+}
+
+OtherLoop BesideASpring(Draws& draws) {
+  const Setting setting = DrawSetting(draws);
+  const double size = draws.Uniform(0.05, 0.3);
+  return Beside(setting, draws, [&](std::size_t i) {
+    return size * setting.dense.displacement[i] / setting.amplitude;
+  });
+}
+
+OtherLoop BesideADashpot(Draws& draws) {
+  const Setting setting = DrawSetting(draws);
+  const double size = draws.Uniform(0.05, 0.3);
+  OtherLoop loop = Beside(setting, draws, [&](std::size_t i) {
+    const std::size_t k = std::max<std::size_t>(i, 1);
+    const double step = setting.dense.displacement[k] - setting.dense.displacement[k - 1];
+    return std::copysign(size * SpeedAt(setting, i) / kFastest, step);
+  });
+  loop.stiffness.reset();  // of a triangle the force jumps
+  return loop;
+}
+
+constexpr std::array<OtherLaw, 9> kLaws = {{
     {"LuGre", Half::kDevelopment, LuGre, "static friction 0 to 30 % above the kinetic"},
-    {"Bouc-Wen", Half::kHeldOut, BoucWen, "n of 1 to 3, beta of 0.5 to 1, beta + gamma = 1"},
+    {"Bouc-Wen", Half::kDevelopment, BoucWen, "n of 1 to 3, beta of 0.5 to 1, beta + gamma = 1"},
     {"Stribeck", Half::kDevelopment, FallingWithSpeed,
      "Masing's law, alpha of 0 to 1, whose force falls with the speed by 5 to 40 %"},
-    {"sixty Gaussian asperities", Half::kHeldOut, SixtyGaussianAsperities,
+    {"sixty Gaussian asperities", Half::kDevelopment, SixtyGaussianAsperities,
      "of one stiffness, slip forces with a deviation of 20 to 50 %"},
-    {"friction of the position", Half::kHeldOut, OfPosition,
+    {"friction of the position", Half::kDevelopment, OfPosition,
      "linear and quadratic, up to 5 to 30 % each, other coefficients in either direction"},
     {"backlash", Half::kDevelopment, WithBacklash, "2 to 20 % of the amplitude"},
+    {"power-law spectrum", Half::kHeldOut, PowerLawSpectrum,
+     "Iwan's elements, exponents of -0.8 to 0"},
+    {"spring beside the contact", Half::kHeldOut, BesideASpring,
+     "Masing's law, alpha of 0 to 1; 5 to 30 % of Tc at the amplitude"},
+    {"dashpot beside the contact", Half::kHeldOut, BesideADashpot,
+     "Masing's law, alpha of 0 to 1; 5 to 30 % of Tc at the highest speed of a sine"},
 }};
 
 /// Errors and half widths of a parameter, over its truth.

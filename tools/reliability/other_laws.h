@@ -30,7 +30,8 @@ struct OtherLaw {
   std::string_view sentence;  ///< what is drawn
 };
 
-/// LuGre, Bouc–Wen, Stribeck, sixty asperities, friction of the position, backlash.
+/// LuGre, Bouc–Wen, Stribeck, sixty asperities, friction of the position and backlash, on which the
+/// intervals were developed; a power-law spectrum, a spring and a dashpot, which were held out.
 std::span<const OtherLaw> OtherLaws();
 
 /// How intervals of one parameter hold what is true.
