@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -241,9 +242,10 @@ void CoverShape(const Problem& problem, const Solution& solution, const Estimate
     const double step = std::min(spread[place], kFarthest);
     const double one = parameter.ToValue(solution.theta[p] - step);
     const double other = parameter.ToValue(solution.theta[p] + step);
-    estimate.lower95 = std::min({*estimate.lower95, one, other});
-    estimate.upper95 = std::max({*estimate.upper95, one, other});
-    if (p == kShape) estimate.lower95 = std::max(*estimate.lower95, 0.0);
+    const double least = p == kShape ? 0.0 : std::numeric_limits<double>::lowest();
+    Include(estimate, {.source = IntervalSource::kDiscrepancy,
+                       .lower = std::max(std::min(one, other), least),
+                       .upper = std::max(one, other)});
   }
   ParameterEstimate& stiffness = result.parameters[kStiffness];
   if (stiffness.status == ParameterStatus::kFixed || !stiffness.lower95 || !stiffness.upper95) {
@@ -252,8 +254,9 @@ void CoverShape(const Problem& problem, const Solution& solution, const Estimate
   const double lower = *stiffness.lower95;
   const double upper = *stiffness.upper95;
   for (const double ratio : StiffnessOfWindows(problem, estimates, thresholds)) {
-    stiffness.lower95 = std::min(*stiffness.lower95, ratio * lower);
-    stiffness.upper95 = std::max(*stiffness.upper95, ratio * upper);
+    Include(
+        stiffness,
+        {.source = IntervalSource::kDiscrepancy, .lower = ratio * lower, .upper = ratio * upper});
   }
 }
 
