@@ -39,14 +39,14 @@ bool Established(const FitResult& fit, Strictness strictness) {
 void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
                const std::string& group) {
   // A configuration has `strict = true`.
-  static const std::map<std::string, Strictness> kLevels = {{"adequate", Strictness::kAdequate},
-                                                            {"true", Strictness::kAdequate},
-                                                            {"doubtful", Strictness::kDoubtful},
-                                                            {"false", Strictness::kNone}};
+  static const std::map<std::string, Strictness> levels = {{"adequate", Strictness::kAdequate},
+                                                           {"true", Strictness::kAdequate},
+                                                           {"doubtful", Strictness::kDoubtful},
+                                                           {"false", Strictness::kNone}};
   const auto text = std::make_shared<std::string>();
   const auto read = [text, &strictness](const std::string& given) {
-    const auto level = kLevels.find(given);
-    if (level == kLevels.end()) {
+    const auto level = levels.find(given);
+    if (level == levels.end()) {
       throw InputError(fmt::format(
           "--strict: '{}' is no verdict: give --strict for adequate, or --strict=doubtful", given));
     }

@@ -11,9 +11,9 @@ namespace mindahl::identification {
 std::vector<double> EnergyOfCycles(const models::FrictionModel& model, const models::BranchLaw& law,
                                    const models::SeriesSpring& rig,
                                    const AsymmetricCycles& cycles) {
-  constexpr std::size_t kSteps = 1000;  // a stroke
-  constexpr std::size_t kSettled = 3;   // cycles, from where on one is like the other
-  const std::size_t count = std::min(cycles.cycles, kSettled);
+  constexpr std::size_t kSteps = 1000;       // a stroke
+  constexpr std::size_t kSettledCycles = 3;  // cycles, from where on one is like the other
+  const std::size_t count = std::min(cycles.cycles, kSettledCycles);
   std::vector<double> displacement = {0.0};
   std::vector<std::size_t> reversals;
   const double first = cycles.first_direction * cycles.amplitude;

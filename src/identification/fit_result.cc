@@ -47,7 +47,9 @@ const ParameterEstimate* FitResult::Find(std::string_view name) const {
 }
 
 const Finding* FitResult::FindFinding(FindingCode code) const {
-  const auto found = std::ranges::find(findings, code, &Finding::code);
+  const auto found = std::ranges::find_if(findings, [&](const Finding& finding) {
+    return std::string_view(finding.code) == std::string_view(code);
+  });
   return found == findings.end() ? nullptr : &*found;
 }
 

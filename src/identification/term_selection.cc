@@ -332,7 +332,7 @@ void Selection::Judge(const CandidateModel& base, const CandidateModel& trial,
 bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
                       FitResult& judged) {
   constexpr std::size_t kPredicted = 4;
-  constexpr double kHopeless = 0.1;  // of the least gain: not tried again in later rounds
+  constexpr double kHopelessGain = 0.1;  // of the least gain: not tried again in later rounds
   const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
                                                    static_cast<double>(samples_.count)));
   const double before = evidence.Aicc(base.sum_of_squares, CountFreeParameters(base.fit));
@@ -358,7 +358,7 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
     considered.is_predicted = false;
     if (considered.obstacle != "confounded") considered.obstacle = "";
     candidate.is_given_up =
-        !result_.added.empty() && considered.gain < kHopeless * selection_.smallest_gain;
+        !result_.added.empty() && considered.gain < kHopelessGain * selection_.smallest_gain;
     if (candidate.is_of_speed()) least_of_speed = std::min(least_of_speed, model->sum_of_squares);
     const double delta =
         evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) - before;

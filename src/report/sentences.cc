@@ -496,8 +496,11 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
 });
 
 constexpr bool EveryFindingHasASentence() {
-  return std::ranges::equal(kSentences, identification::kFindings, {}, &SentenceRow::code,
-                            &identification::FindingRow::code);
+  if (kSentences.size() != identification::kFindings.size()) return false;
+  for (std::size_t i = 0; i < kSentences.size(); ++i) {
+    if (std::string_view(kSentences[i].code) != identification::kFindings[i].code) return false;
+  }
+  return true;
 }
 static_assert(EveryFindingHasASentence(), "one row a finding, in the order of kFindings");
 

@@ -386,6 +386,7 @@ bool TurnsAreTried(const Thresholds& thresholds, double shift) {
     }
     Stages stages(record, Virgin(tried));
     const Solution best = stages.Solve();
+    if (best.theta.empty()) return std::pair(0.0, false);  // noise alone has no sign of the force
     const ScaledRecord& data = stages.data.records[0];
     double longest = 0.0;
     for (std::size_t k = 0; k < data.reversals.size(); ++k) {

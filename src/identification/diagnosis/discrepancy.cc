@@ -51,8 +51,8 @@ void ForEachSample(const Problem& problem, const Thresholds& thresholds, Visit v
   }
 }
 
-/// Sums of a regression of one column.
-struct Sums {
+/// ColumnSums of a regression of one column.
+struct ColumnSums {
   double product = 0.0;
   double squares = 0.0;
 };
@@ -120,16 +120,16 @@ std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& es
   const std::size_t place = PlaceOf(problem, kSlipForce);
   if (place == problem.parameters.free().size() || problem.data->is_forced()) return steps;
   const auto& column = estimates.jacobian().col(static_cast<Eigen::Index>(place));
-  std::array<Sums, kParts> sums{};
+  std::array<ColumnSums, kParts> sums{};
   ForEachSample(problem, thresholds, [&](const StrokeSample& sample) {
-    Sums& sum = sums[sample.part];
+    ColumnSums& sum = sums[sample.part];
     sum.product -= column(sample.row) * estimates.residual()(sample.row);
     sum.squares += column(sample.row) * column(sample.row);
   });
   double most = 0.0;
-  for (const Sums& sum : sums) most = std::max(most, sum.squares);
+  for (const ColumnSums& sum : sums) most = std::max(most, sum.squares);
   constexpr double kLeast = 0.25;  // of the part that depends most on Tc
-  for (const Sums& sum : sums) {
+  for (const ColumnSums& sum : sums) {
     if (sum.squares > kLeast * most) steps.push_back(sum.product / sum.squares);
   }
   return steps;
@@ -138,6 +138,7 @@ std::vector<double> SlipForceOfParts(const Problem& problem, const Estimates& es
 std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& estimates,
                                        const Thresholds& thresholds) {
   const Eigen::Index count = estimates.jacobian().cols();
+  if (count == 0) return {};
   std::array<Eigen::MatrixXd, kParts> matrices;
   std::array<Eigen::VectorXd, kParts> vectors;
   matrices.fill(Eigen::MatrixXd::Zero(count, count));
@@ -211,9 +212,9 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
       }
       begin += record.size();
     }
-    constexpr double kFewest = 2;  // samples a stroke, for a chord
+    constexpr double kFewestOfAStroke = 2;  // samples a stroke, for a chord
     const double ratio = measured.Value() / model.Value();
-    if (samples < kFewest * strokes || !(ratio > 0) || !std::isfinite(ratio)) continue;
+    if (samples < kFewestOfAStroke * strokes || !(ratio > 0) || !std::isfinite(ratio)) continue;
     ratios.push_back(ratio);
   }
   // Each window is twice the one before: the line through the first two and the parabola through

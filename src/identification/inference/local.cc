@@ -36,7 +36,7 @@ Eigen::MatrixXd TriangleOf(const Eigen::MatrixXd& columns) {
 /// R⁻¹; nothing where R is so near to singular that directions without effect must be looked for.
 std::optional<Eigen::MatrixXd> InverseIfRegular(const Eigen::MatrixXd& triangle) {
   if (!(triangle.diagonal().minCoeff() > kRegular)) return std::nullopt;  // of unit columns
-  const Eigen::MatrixXd inverse = triangle.triangularView<Eigen::Upper>().solve(
+  Eigen::MatrixXd inverse = triangle.triangularView<Eigen::Upper>().solve(
       Eigen::MatrixXd::Identity(triangle.rows(), triangle.cols()));
   // |R|·|R⁻¹| bounds the ratio of the singular values.
   if (!(triangle.norm() * inverse.norm() * kRegular < 1)) return std::nullopt;

@@ -72,7 +72,8 @@ double StartingPeriod(const ScaledRecords& data) {
       const std::size_t every = 1 + forces.size() / kMostSamples;
       std::complex<double> sum = 0.0;
       for (std::size_t i = 0; i < forces.size(); i += every) {
-        sum += std::polar(forces[i].force, 2 * std::numbers::pi * frequency * forces[i].position);
+        sum += forces[i].force *
+               std::polar(1.0, 2 * std::numbers::pi * frequency * forces[i].position);
       }
       if (!forces.empty()) {
         power += std::norm(sum) * static_cast<double>(every) / static_cast<double>(forces.size());

@@ -60,6 +60,7 @@ class CompressedCost final : public ceres::CostFunction {
 struct Solver::Search {
   struct Function {
     using Scalar = double;
+    // Names that TinySolver asks for. NOLINTNEXTLINE(readability-identifier-naming)
     enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
 
     [[nodiscard]] int NumParameters() const { return static_cast<int>(search->count); }

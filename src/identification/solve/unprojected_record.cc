@@ -88,15 +88,14 @@ UnprojectedRecord::UnprojectedRecord(const Problem& problem, std::size_t record,
 }
 
 void UnprojectedRecord::MoveTo(double const* const* theta, bool with_jacobian) {
-  const bool is_there = at_.size() == blocks_.size() && [&] {
-    for (std::size_t b = 0; b < at_.size(); ++b) {
-      if (at_[b] != *theta[b]) return false;
-    }
-    return true;
-  }();
+  bool is_there = at_.size() == blocks_.size();
+  for (std::size_t b = 0; b < at_.size(); ++b) is_there = is_there && at_[b] == *theta[b];
   if (is_there && (has_jacobian_ || !with_jacobian)) return;
   at_.resize(blocks_.size());
-  for (std::size_t b = 0; b < at_.size(); ++b) theta_[own_[b]] = at_[b] = *theta[b];
+  for (std::size_t b = 0; b < at_.size(); ++b) {
+    at_[b] = *theta[b];
+    theta_[own_[b]] = at_[b];
+  }
   const std::span<const std::size_t> columns =
       with_jacobian ? std::span<const std::size_t>(own_) : std::span<const std::size_t>();
   Differentiate(problem_, theta_, response_, columns, residual_, jacobian_);
