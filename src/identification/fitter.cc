@@ -724,6 +724,8 @@ void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& opti
 /// nowhere: the loop has carried it. Nothing where that is not so or the user limits Tc.
 std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const FitOptions& given) {
   constexpr const char* kName = "slip_force";
+  // Below, nothing says that the model does not follow the record.
+  if (result.depth < Depth::kIntervals) return std::nullopt;
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate || result.parameters.empty() ||
       result.response == loop::Channel::kDisplacement || given.bounds.contains(kName) ||
       given.fixed.contains(kName)) {

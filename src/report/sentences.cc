@@ -103,7 +103,9 @@ std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& un
 }
 
 /// Did the record itself show a loop that slides? Then no larger amplitude is asked for.
-bool Slides(const FitResult& fit) { return loop::Slides(fit.WidestRecord().facts); }
+bool Slides(const FitResult& fit) {
+  return !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
+}
 
 std::string SlipForceBoundedBelow(const Finding& finding, const FitResult& fit,
                                   const Units& units) {

@@ -430,9 +430,9 @@ TEST_F(FitTerms, ForceOfPositionIsCalledSystematic) {
 }
 
 TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThatOnBothStreams) {
-  // rms 0.3/√2 = 21 % of Tc.
+  // rms 0.9/√2 = 64 % of Tc.
   const std::vector<Sample> loop =
-      Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.3 * kSlipForce);
+      Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.9 * kSlipForce);
   EXPECT_TRUE(Warns(Fit(loop), "no_model_fits"));
   const Outcome outcome = RunCommand({"fit", Write(loop)});
   EXPECT_THAT(outcome.err, HasSubstr("warning: no parameters of mindlin-dahl follow this record"));

@@ -144,7 +144,7 @@ TEST(PlanCommand, RefusesWhatItDoesNotUnderstandInOneLine) {
       {{"--force-noise", "0.4", "--with", "lag"}, "--with: 'lag' cannot be planned for"},
       {{"--force-noise", "0.4", "--with", "covariate"}, "cannot be planned for"},
       {{"--force-noise", "0.4", "--with", "rig_stiffness"}, "needs --rig-stiffness"},
-      {{"--force-noise", "-1"}, "force noise"},
+      {{"--force-noise", "-1"}, "--force-noise"},
       {{"--force-noise", "0.4", "--autocorrelation", "1"}, "autocorrelation"},
       {{"--force-noise", "0.4", "--cycles", "0.5"}, "cycles"},
       {{"--force-noise", "0.4", "--amplitude", "0"}, "amplitude"},

@@ -56,6 +56,8 @@ FitOptions OptionsOf(const std::string& model, const std::string& term) {
   options.initial_state = InitialState::kVirgin;
   options.preparation.force_sense = 1;
   if (!term.empty()) options.terms = {term};
+  // The exponent of a force of the speed needs its factor.
+  if (term == "speed_exponent") options.terms.emplace_back("viscous");
   return options;
 }
 

@@ -103,12 +103,14 @@ FitResult Widened(const SlipForceProfile& profile, double peak_force, bool shape
     estimate.standard_error = 0.05;
     estimate.lower95 = 0.9;
     estimate.upper95 = 1.1;
+    estimate.interval = {{IntervalSource::kParabola, 0.9, 1.1}};
     estimate.status = ParameterStatus::kFree;
   }
   if (shape_is_fixed) {
     result.parameters[1].status = ParameterStatus::kFixed;
     result.parameters[1].standard_error = result.parameters[1].lower95 =
         result.parameters[1].upper95 = std::nullopt;
+    result.parameters[1].interval.clear();
   }
   WidenByProfile(stages.problem, profile, 2.0, peak_force, result);
   return result;

@@ -189,7 +189,7 @@ TEST(LoadLaws, HaveTheStiffnessOfAFitWithTheExponentHeld) {
   EXPECT_NEAR(law->stiffness.standard_error / error, 1, kOfAnError);
   EXPECT_LT(law->stiffness.standard_error, *fit.Find("sigma")->standard_error);
   const LoadLaw of_held = *Find(*DescribeLoadSeries(held, WithoutRadius()), "sphere");
-  EXPECT_EQ(of_held.stiffness.value, held.law.tangential_stiffness);
+  EXPECT_DOUBLE_EQ(of_held.stiffness.value, held.law.tangential_stiffness);
 }
 
 /// Series of noise of their own, and in how many of them the interval of each quantity covers it.

@@ -117,8 +117,9 @@ Parameter MakeParameterOfColumn(const Term& term, std::size_t column, const Scal
 
 }  // namespace
 
-bool HasTerm(const FitOptions& options, const std::string& name) {
-  return options.fixed.contains(name) ||
+bool HasTerm(const FitOptions& options, std::string_view name) {
+  return std::ranges::any_of(options.fixed,
+                             [&](const auto& fixed) { return fixed.first == name; }) ||
          std::ranges::find(options.terms, name) != options.terms.end();
 }
 

@@ -16,7 +16,7 @@
 namespace mindahl::identification {
 
 /// Does a fit have a term that is on demand, to find or at a given value?
-bool HasTerm(const FitOptions& options, const std::string& name);
+bool HasTerm(const FitOptions& options, std::string_view name);
 
 /// A term of one fit, as the solver sees it: θ, non-dimensional and of order one.
 ///   value = scale·exp(θ) where the term is positive,  else  value = reference + scale·θ

@@ -22,15 +22,16 @@ namespace {
 /// that is larger must not end higher than the law.
 void AddStartsOfLaw(const Problem& problem, const FitOptions& options, SearchBuffers& buffers,
                     std::pmr::memory_resource* memory, std::pmr::vector<StartingPoint>& starts) {
-  Problem law = problem;
-  bool is_larger = false;
-  for (const std::size_t p : problem.parameters.free()) {
-    const Term& term = *problem.parameters[p].term;
-    if (term.presence != Presence::kOnDemand || p == kRig) continue;
-    law.parameters.Fix(p, problem.parameters[p].theta);
-    is_larger = is_larger || term.has_start;
+  const auto& free = problem.parameters.free();
+  if (std::ranges::none_of(free,
+                           [&](std::size_t p) { return problem.parameters[p].term->has_start; })) {
+    return;
   }
-  if (!is_larger) return;
+  Problem law = problem;
+  for (const std::size_t p : free) {
+    if (problem.parameters[p].term->presence != Presence::kOnDemand || p == kRig) continue;
+    law.parameters.Fix(p, problem.parameters[p].theta);
+  }
   for (StartingPoint& start :
        FindStarts(law, options, std::numeric_limits<double>::infinity(), buffers.solver,
                   buffers.response, buffers.scratch, memory)) {
@@ -85,7 +86,9 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
   const Parameters& parameters = candidate.problem.parameters;
   std::pmr::vector<std::size_t> terms(memory);
   for (const std::size_t p : parameters.free()) {
-    if (parameters[p].term->presence == Presence::kOnDemand) terms.push_back(p);
+    // What a word of the command line asks for; its further coefficients stay with it.
+    const Term& term = *parameters[p].term;
+    if (term.presence == Presence::kOnDemand && !term.option.empty()) terms.push_back(p);
   }
   if (terms.empty()) return;
   Solution& solution = buffers.smaller[std::min(terms.size(), kMostNested) - 1];

@@ -329,7 +329,7 @@ bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
 
 /// Searches by ceres::Solve within the bounds, from u, which it moves.
 ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const SolverOptions& options,
-                                         std::span<double> u) {
+                                         int max_iterations, std::span<double> u) {
   // Where the gradient is its own rounding error nothing is gained by going on.
   constexpr double kNoGradient = 1e-300;
   CompressedCost cost(residual, u.size());
@@ -344,7 +344,7 @@ ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const Solv
   }
   ceres::Solver::Options search;
   search.linear_solver_type = ceres::DENSE_QR;
-  search.max_num_iterations = options.max_iterations;
+  search.max_num_iterations = max_iterations;
   search.function_tolerance = options.function_tolerance;
   search.parameter_tolerance = options.parameter_tolerance;
   search.gradient_tolerance = kNoGradient;
@@ -385,10 +385,11 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
   report.message = search.Message();
   bool is_evaluated = std::equal(u.begin(), u.end(), search.trial.begin());
   const bool is_predicted = is_evaluated && search.trial_is_predicted;
-  if (!options.is_rough && (!solution.converged || IsAtBound(residual_, u)) &&
+  const int left = options.max_iterations - report.iterations;
+  if (!options.is_rough && left > 0 && (!solution.converged || IsAtBound(residual_, u)) &&
       std::isfinite(cost)) {
     std::vector<double> within(u.begin(), u.end());
-    const ceres::Solver::Summary summary = SolveWithinBounds(residual_, options, within);
+    const ceres::Solver::Summary summary = SolveWithinBounds(residual_, options, left, within);
     report.solver = "solve";
     report.iterations += static_cast<int>(summary.iterations.size());
     report.termination = ceres::TerminationTypeToString(summary.termination_type);
