@@ -38,7 +38,7 @@ void AddLimitOptions(CLI::App& command, FitRequest& options) {
       ->group(group);
   command
       .add_option("--max-memory", options.max_memory,
-                  "refuse files of which a fit needs more memory, as 4GB or 500MB;\n"
+                  "refuse files of which a fit needs more memory [B], as 4GB or 500MB;\n"
                   "default what the machine has, or the process may have")
       ->check(WholeNumber(1, 1'000'000'000'000'000'000))
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
@@ -211,7 +211,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   command
       .add_option("--terms", options.term_choice,
                   "auto adds the terms that the record requires, one at a time by cycles held\n"
-                  "out of the fit; NAME,NAME,... fits these: " +
+                  "out of the fit; NAME,NAME,... fits these:\n" +
                       TermGroupNames())
       ->capture_default_str()
       ->type_name("auto|none|NAME,...")

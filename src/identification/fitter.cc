@@ -415,6 +415,9 @@ double DescribeStructures(const Problem& problem, std::span<const double> residu
   return widening;
 }
 
+/// Residuals of which the rms is below this are rounding errors [of the force unit].
+constexpr double kOnlyRounding = 10 * kRoundingRms;
+
 void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));
 }
@@ -424,6 +427,15 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
                         const DisplacementEffect& displacement, const Estimates& estimates,
                         const FitOptions& options, SearchBuffers& buffers, FitResult& result) {
   const Thresholds& thresholds = options.thresholds;
+  // Rounding errors are no noise: nothing is to be learnt from what they look like.
+  const double rms =
+      std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
+  if (rms < kOnlyRounding) {
+    result.adequacy.verdict = AdequacyVerdict::kAdequate;
+    result.adequacy.tried = 1;
+    GradeUse(thresholds, result);
+    return;
+  }
   AdequacyTest test =
       TestAdequacy(problem, solution, noise, displacement, estimates, thresholds, buffers.response);
   // A load that varies would have to be read as late.
@@ -502,7 +514,7 @@ void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution
   // Rounding errors are autocorrelated as they like: nothing is to be learnt from them.
   const double rms =
       std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
-  const bool only_rounding = rms < 10 * kRoundingRms;
+  const bool only_rounding = rms < kOnlyRounding;
   if (!only_rounding) {
     const std::vector<unsigned char> tells =
         SamplesOfForceNoise(*problem.data, noise, options.thresholds);

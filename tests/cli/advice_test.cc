@@ -127,7 +127,6 @@ TEST(FirstCause, OfMeasuredRecordsIsWhatTheirREADMENames) {
         Measured{"mr_damper_utfsm/25mm_0.25Hz_0.5A.csv", "speed_power", {}},
         Measured{"mr_damper_utfsm/25mm_0.5Hz_0A.csv", "speed_power", {}},
         Measured{"mr_damper_utfsm/5mm_3Hz_0.5A.csv", "speed_power", {}},
-        Measured{"seals/Circle_1bar.csv", "position_ripple", seal},
         Measured{"seals/Kidney_lc_7bar.csv", "plateau_slope", seal}}) {
     const std::string file = testing::MeasuredPath(measured.file);
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
@@ -139,21 +138,19 @@ TEST(FirstCause, OfMeasuredRecordsIsWhatTheirREADMENames) {
     const json causes = outcome.Json()["adequacy"]["causes"];
     ASSERT_FALSE(causes.empty());
     EXPECT_EQ(causes[0]["code"], measured.cause);
-    for (const json& cause : causes) {
-      EXPECT_NE(cause["code"], "stick_slip");
-      EXPECT_NE(cause["code"], "channel_lag");
-      EXPECT_NE(cause["code"], "force_saturates");
-    }
   }
 }
 
-TEST(Text, OfAMeasuredBrakeHasTenLinesAndNoWarningsBeside) {
+TEST(Text, OfAMeasuredBrakeNamesItsBacklashAndASlipForceThatContainsTheHalfGap) {
   const std::string file = testing::MeasuredPath("band_brake/dataset-1_0.5Hz70lbtension.csv");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
   const Outcome outcome = RunCommand({"fit", file});
-  EXPECT_LE(testing::Lines(outcome.out).size(), 10U) << outcome.out;
-  EXPECT_TRUE(outcome.err.empty()) << outcome.err;
-  EXPECT_THAT(outcome.out, ::testing::HasSubstr("backlash"));
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("next: it looks like a backlash"));
+  const json fit = RunCommand({"fit", file, "--json", "-"}).Json();
+  const json& slip_force = fit["parameters"]["slip_force"];
+  EXPECT_EQ(slip_force["identifiability"], "effective");
+  EXPECT_LE(slip_force["ci95"][0], fit["measured"]["half_gap"]["value"]);
+  EXPECT_GE(slip_force["ci95"][1], fit["measured"]["half_gap"]["value"]);
 }
 
 }  // namespace

@@ -131,8 +131,8 @@ TEST_F(FitTerms, RigidRigIsNoParameter) {
 TEST_F(FitTerms, ContactInARigIsNotCalledOneOfAnotherShape) {
   const json fit = Fit(InRig(Simulate({"--cycles", "3", "--noise-force", "0.1"}), 8e7));
   const json& mapping = fit["mapping"];
-  EXPECT_GT(mapping["likelihood_ratio"].get<double>(), 0.0);
-  EXPECT_LT(mapping["likelihood_ratio_p_value"].get<double>(), 0.05);
+  // Of an exponent that is not identifiable nothing is tested.
+  EXPECT_TRUE(mapping["likelihood_ratio_p_value"].is_null());
   // k shows in the curvature alone: a few per cent at a noise of 0.25 % of Tc.
   EXPECT_NEAR(mapping["tenable_with_rig_stiffness"].get<double>() / 8e7, 1, 0.15);
   EXPECT_TRUE(Warns(fit, "shape_or_rig"));
@@ -430,13 +430,13 @@ TEST_F(FitTerms, ForceOfPositionIsCalledSystematic) {
 }
 
 TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThatOnBothStreams) {
-  // rms 0.9/√2 = 64 % of Tc.
+  // rms 0.3/√2 = 21 % of Tc, beyond the 15 % of the half gap to which a fit is of use.
   const std::vector<Sample> loop =
-      Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.9 * kSlipForce);
-  EXPECT_TRUE(Warns(Fit(loop), "no_model_fits"));
+      Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.3 * kSlipForce);
+  EXPECT_EQ(Fit(loop)["adequacy"]["use"], "none");
   const Outcome outcome = RunCommand({"fit", Write(loop)});
-  EXPECT_THAT(outcome.err, HasSubstr("warning: no parameters of mindlin-dahl follow this record"));
-  EXPECT_THAT(outcome.out, HasSubstr("no parameters of mindlin-dahl follow this record"));
+  EXPECT_THAT(outcome.err, HasSubstr("leaves a repeatable residual"));
+  EXPECT_THAT(outcome.out, HasSubstr("no parameter is to be used"));
 }
 
 TEST_F(FitTerms, ModelAutoComparesAllWithAndWithoutARig) {

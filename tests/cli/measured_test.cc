@@ -78,7 +78,8 @@ TEST_F(MeasuredRecord, TribometerDoesNotTellTheShapeOfTheContactFromARigThatGive
   const json rigid = Fit(kFile, {"--time-window", "20:60"});
   EXPECT_TRUE(Warns(rigid, "shape_or_rig"));
   EXPECT_NEAR(rigid["mapping"]["tenable_with_rig_stiffness"].get<double>() / kRigStiffness, 1, 0.1);
-  EXPECT_LT(rigid["mapping"]["likelihood_ratio_p_value"].get<double>(), 0.05);
+  // Of an exponent that is not identifiable nothing is tested.
+  EXPECT_TRUE(rigid["mapping"]["likelihood_ratio_p_value"].is_null());
 
   const json sprung =
       Fit(kFile, {"--time-window", "20:60", "--model", "mindlin", "--rig-stiffness", "fit"});

@@ -58,6 +58,12 @@ FitOptions OptionsOf(const std::string& model, const std::string& term) {
   if (!term.empty()) options.terms = {term};
   // The exponent of a force of the speed needs its factor.
   if (term == "speed_exponent") options.terms.emplace_back("viscous");
+  if (term == "ripple_period") {
+    for (const char* factor :
+         {"ripple_cosine_up", "ripple_sine_up", "ripple_cosine_down", "ripple_sine_down"}) {
+      options.terms.emplace_back(factor);
+    }
+  }
   return options;
 }
 
@@ -74,7 +80,8 @@ std::vector<Case> LawsAndTerms() {
       const bool is_asked = term.presence == Presence::kOnDemand ||
                             (term.presence == Presence::kReported && term.needs_time) ||
                             term.name == "force_drift";
-      if (!is_asked || term.of_column) continue;
+      // A further coefficient of a term is fitted with it.
+      if (!is_asked || term.of_column || term.option.empty()) continue;
       // Dahl's own law has no asymmetry.
       if (std::string(model) == "dahl" && term.name == "asymmetry") continue;
       cases.push_back({model, std::string(term.name)});

@@ -92,7 +92,7 @@ TEST(Text, SaysWhyAnIntervalIsFarWiderThanItsErrorMakesIt) {
                 "change\n"));
   EXPECT_THAT(
       text_of(50, true),
-      HasSubstr("what the omitted terms could change,\n  and the measured half gap, 800 mN\n"));
+      HasSubstr("what the omitted terms could change, and the measured\n  half gap, 800 mN\n"));
   EXPECT_THAT(text_of(2, false), Not(HasSubstr("are widened")));
 }
 

@@ -429,7 +429,10 @@ void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
   const bool asks_slip_speed = HasTerm(options, "slip_speed_exponent");
   const bool asks_power = HasTerm(options, "speed_exponent") || asks_slip_speed;
   const bool asks_acceleration = HasTerm(options, "inertia");
-  const bool asks_direction = HasTerm(options, "ripple_period");
+  const auto is_ripple = [](std::string_view name) { return name.starts_with("ripple_"); };
+  const bool asks_direction =
+      std::ranges::any_of(options.terms, is_ripple) ||
+      std::ranges::any_of(options.fixed, [&](const auto& fixed) { return is_ripple(fixed.first); });
   const double unit = data.records.front().units.half_duration;
   for (ScaledRecord& record : data.records) {
     if (asks_power) record.units.speed_resolution = ResolutionOf(record.velocity);

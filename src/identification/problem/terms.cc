@@ -169,7 +169,7 @@ constexpr std::array kTerms = {
          .option = "--slip-position",
          .argument = "linear|quadratic",
          .help = "fit a slip force that depends on position, differently in the two\n"
-                 "directions: Tc(1 + b₁±ξ), or Tc(1 + b₁±ξ + b₂±ξ²)"},
+                 "directions: Tc(1 + b₁±ξ), or Tc(1 + b₁±ξ + b₂±ξ²), b [-]"},
     Term{.name = "slip_curvature",
          .unit = "-",
          .meaning = "m₂, likewise",
@@ -201,8 +201,9 @@ constexpr std::array kTerms = {
          .start = 0.5,
          .option = "--slip-speed",
          .argument = "M|fit",
-         .help = "fit a slip force Tc(1 + c((v/v₀)^M − 1)) that depends on the speed, Tc at\n"
-                 "its mean v₀ in the middle of the strokes; M from 0.2 to 1, or fit"},
+         .help = "fit a slip force Tc(1 + c((v/v₀)^M − 1)) that depends on the speed,\n"
+                 "Tc at its mean v₀ in the middle of the strokes; M [-] from 0.2\n"
+                 "to 1, or fit"},
     Term{
         .name = "plateau_curvature",
         .unit = "N/m²",
