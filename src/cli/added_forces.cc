@@ -50,7 +50,7 @@ void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
       "M");
   add("--inertia", forces.inertia, "mass of a force M·d²δ/dt² [kg]", "M");
   add("--slip-slope", forces.slip_slope,
-      "m1 of forces times 1 + m1·x + m2·x², x the position, ±1 at the ends [-]", "M1");
+      "m1 of forces times 1 + m1·x + m2·x², x the position from −1\nto 1 [-]", "M1");
   add("--slip-curvature", forces.slip_curvature, "m2, likewise [-]", "M2");
   add("--plateau-slope", forces.plateau_slope, "of a force slope·δ [N/m]", "K");
   add("--plateau-curvature", forces.plateau_curvature, "of a force curvature·δ² [N/m²]", "K");

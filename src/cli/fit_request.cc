@@ -142,7 +142,8 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
     command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
   };
   column("--displacement", columns.displacement,
-         "column by header name or 1-based number; default a recognised name, else column 1");
+         "column by header name or 1-based number; default a recognised name,\n"
+         "else column 1");
   column("--force", columns.force, "likewise, else column 2");
   column("--time", columns.time, "time column; optional");
   column("--normal-load-column", columns.normal_load, "normal load column; optional");
@@ -166,6 +167,15 @@ void RequireNoColumns(const io::RecordColumns& columns) {
   require(columns.force, "force");
   require(columns.time, "time");
   require(columns.normal_load, "normal-load");
+}
+
+/// Breaks a list of names after every few of them.
+std::string InLines(std::string names, int in_a_line) {
+  int seen = 0;
+  for (std::size_t at = names.find(", "); at != std::string::npos; at = names.find(", ", at + 2)) {
+    if (++seen % in_a_line == 0) names.replace(at, 2, ",\n");
+  }
+  return names;
 }
 
 void AddModelOptions(CLI::App& command, FitRequest& options) {
@@ -210,9 +220,9 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   AddTermOptions(command, options, group);
   command
       .add_option("--terms", options.term_choice,
-                  "auto adds the terms that the record requires, one at a time by cycles held\n"
-                  "out of the fit; NAME,NAME,... fits these:\n" +
-                      TermGroupNames())
+                  "auto adds the terms that the record requires, one at a time by\n"
+                  "cycles held out of the fit; NAME,NAME,... fits these:\n" +
+                      InLines(TermGroupNames(), 4))
       ->capture_default_str()
       ->type_name("auto|none|NAME,...")
       ->group(group);

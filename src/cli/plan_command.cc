@@ -523,7 +523,8 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   const std::string expected = "What is expected";
   command
       ->add_option("--record", options->record,
-                   "take contact and noise from a fit of this record; --alpha is used where\n"
+                   "take contact and noise from a fit of this record; --alpha is used\n"
+                   "where "
                    "the record does not determine it")
       ->type_name("FILE")
       ->group(expected);

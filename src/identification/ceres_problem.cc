@@ -19,6 +19,7 @@ ScaledRecords ScaleAsFit(loop::PreparedRecords& prepared, const FitOptions& opti
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   ScaledRecords data = Scale(prepared, options, memory);
   AddCovariates(options.covariates, /*with_others=*/false, prepared, options.offsets, data);
+  AddColumnsOfTerms(options, data);
   if (HasTerm(options, "lag")) SetClocks(data);
   return data;
 }

@@ -3,10 +3,10 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <vector>
 
+#include "identification/solve/ceres_options.h"
 #include "identification/solve/unprojected_record.h"
 
 namespace mindahl::identification {
@@ -56,15 +56,8 @@ void SolveRobustly(const Problem& problem, Loss loss, double scale, const Solver
     ceres_problem.SetParameterLowerBound(&theta[p], 0, parameter.lower);
     ceres_problem.SetParameterUpperBound(&theta[p], 0, parameter.upper);
   }
-  ceres::Solver::Options search;
-  search.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  search.max_num_iterations = options.max_iterations;
-  search.function_tolerance = options.function_tolerance;
-  search.parameter_tolerance = options.parameter_tolerance;
-  search.gradient_tolerance = std::numeric_limits<double>::min();
-  search.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(search, &ceres_problem, &summary);
+  ceres::Solve(CeresOptionsOf(options, ceres::DENSE_NORMAL_CHOLESKY), &ceres_problem, &summary);
   solution.converged = summary.termination_type == ceres::CONVERGENCE;
   solution.report.solver = "solve";
   solution.report.termination = ceres::TerminationTypeToString(summary.termination_type);

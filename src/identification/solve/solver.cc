@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "identification/solve/ceres_options.h"
 #include "identification/solve/compressed_residual.h"
 
 namespace mindahl::identification {
@@ -330,8 +331,6 @@ bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
 /// Searches by ceres::Solve within the bounds, from u, which it moves.
 ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const SolverOptions& options,
                                          int max_iterations, std::span<double> u) {
-  // Where the gradient is its own rounding error nothing is gained by going on.
-  constexpr double kNoGradient = 1e-300;
   CompressedCost cost(residual, u.size());
   ceres::Problem::Options of_problem;
   of_problem.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -342,13 +341,8 @@ ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const Solv
     problem.SetParameterLowerBound(u.data(), static_cast<int>(j), searched.lower);
     problem.SetParameterUpperBound(u.data(), static_cast<int>(j), searched.upper);
   }
-  ceres::Solver::Options search;
-  search.linear_solver_type = ceres::DENSE_QR;
+  ceres::Solver::Options search = CeresOptionsOf(options, ceres::DENSE_QR);
   search.max_num_iterations = max_iterations;
-  search.function_tolerance = options.function_tolerance;
-  search.parameter_tolerance = options.parameter_tolerance;
-  search.gradient_tolerance = kNoGradient;
-  search.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(search, &problem, &summary);
   return summary;

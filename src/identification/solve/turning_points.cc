@@ -6,9 +6,10 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <utility>
+
+#include "identification/solve/ceres_options.h"
 
 namespace mindahl::identification {
 namespace {
@@ -532,15 +533,8 @@ TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
     ceres_problem.SetParameterLowerBound(&residuals.overshoot[k], 0, 0.0);
     ceres_problem.SetParameterUpperBound(&residuals.overshoot[k], 0, longest[k]);
   }
-  ceres::Solver::Options search;
-  search.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  search.max_num_iterations = options.max_iterations;
-  search.function_tolerance = options.function_tolerance;
-  search.parameter_tolerance = options.parameter_tolerance;
-  search.gradient_tolerance = std::numeric_limits<double>::min();
-  search.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(search, &ceres_problem, &summary);
+  ceres::Solve(CeresOptionsOf(options, ceres::SPARSE_NORMAL_CHOLESKY), &ceres_problem, &summary);
 
   TurningPointFit fit{nullptr, start};
   residuals.PrepareForEvaluation(/*evaluate_jacobians=*/false, /*new_evaluation_point=*/true);
