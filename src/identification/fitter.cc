@@ -443,6 +443,7 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
     DenyLagBeyondKnee(problem, solution, buffers.response, test);
     std::vector<std::optional<loop::Backlash>> gaps;
+    gaps.reserve(result.records.size());
     for (const RecordFit& record : result.records) gaps.push_back(record.facts.backlash);
     TryBacklash(problem, solution, gaps, SolverOptionsOf(options), buffers, test);
   }

@@ -172,6 +172,7 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   }
   if (covered.empty()) return "";
   std::vector<std::string> names;
+  names.reserve(wide.size());
   for (const ParameterEstimate* estimate : wide) names.push_back(estimate->name);
   return fmt::format("intervals of {} are widened, to cover {}", fmt::join(names, ", "),
                      fmt::join(covered, ", and "));

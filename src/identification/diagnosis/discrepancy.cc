@@ -164,6 +164,7 @@ std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& 
   constexpr double kAll = kParts;
   const double quantile = StudentQuantile95(kAll - 1);
   std::vector<double> spread;
+  spread.reserve(static_cast<std::size_t>(count));
   for (Eigen::Index k = 0; k < count; ++k) {
     spread.push_back(quantile * std::sqrt((kAll - 1) / kAll) * steps.row(k).norm());
   }

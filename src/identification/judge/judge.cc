@@ -59,6 +59,7 @@ void DropNeedless(std::span<const ParameterEstimate> estimates, std::vector<Find
   };
   // All are asked before any goes: what is needless does not depend on their order.
   std::vector<bool> needless;
+  needless.reserve(findings.size());
   for (const Finding& finding : findings) needless.push_back(is_needless(finding));
   std::size_t k = 0;
   std::erase_if(findings, [&](const Finding&) { return needless[k++]; });
