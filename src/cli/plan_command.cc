@@ -524,8 +524,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   command
       ->add_option("--record", options->record,
                    "take contact and noise from a fit of this record; --alpha is used\n"
-                   "where "
-                   "the record does not determine it")
+                   "where the record does not determine it")
       ->type_name("FILE")
       ->group(expected);
   AddColumnOptions(*command, options->columns);

@@ -377,6 +377,8 @@ class TurnedResiduals final : public ceres::EvaluationCallback {
     return theta_;
   }
   [[nodiscard]] const ArrowSystem& system() const { return system_; }
+  /// The turned records of the last evaluation.
+  [[nodiscard]] const ScaledRecords& data() const { return *problem_.data; }
   [[nodiscard]] std::unique_ptr<TurnedRecords> TakeRecords() { return std::move(records_); }
 
   std::vector<double> free;       // Ceres' parameter blocks: θ of the free parameters, …
@@ -487,12 +489,7 @@ TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
   ceres::Problem::Options of_problem;
   of_problem.evaluation_callback = &residuals;
   ceres::Problem ceres_problem(of_problem);
-  const auto strokes_of = [&] {
-    const std::unique_ptr<TurnedRecords> turned =
-        PutInTurningPoints(*problem.data, residuals.overshoot);
-    return StrokesOf(turned->data);
-  };
-  const std::vector<Eigen::Index> strokes = strokes_of();
+  const std::vector<Eigen::Index> strokes = StrokesOf(residuals.data());
   // The overshoots of a stroke, by the samples that depend on them.
   std::vector<std::vector<Eigen::Index>> of_stroke(strokes.size() - 1);
   const SparseColumns& columns = residuals.system().overshoots;
