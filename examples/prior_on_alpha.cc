@@ -88,7 +88,7 @@ int main() {
       nullptr, &with_prior.Find("alpha").theta);
   agrees = Solve(informed) && agrees;
 
-  // Of two normal densities the product: their means by their precisions.
+  // The product of two normal densities has their means weighted by their precisions.
   const identification::ParameterEstimate& alpha = *fit.Find("alpha");
   const double of_fit = 1 / (*alpha.standard_error * *alpha.standard_error);
   const double of_prior = 1 / (kDeviation * kDeviation);

@@ -148,7 +148,7 @@ std::string CommandName(const CLI::App& app) {
   return running.empty() ? "mindahl" : "mindahl " + running.front()->get_name();
 }
 
-/// What the library calls a quantity, and the option that gives it where that has another name.
+/// Maps the library's name of a quantity to the option that gives it, where the two differ.
 struct NamedQuantity {
   std::string_view quantity;
   std::string_view option;

@@ -7,7 +7,7 @@
 
 namespace mindahl::cli {
 
-/// What `--strict` asks of a fit.
+/// Requirements of `--strict` on a fit.
 enum class Strictness {
   kNone,      ///< that it converged
   kDoubtful,  ///< also that the model is not inadequate and every free parameter known

@@ -17,8 +17,8 @@ struct Cycle {
   std::size_t number = 1;      ///< of the first, counted from 1
   std::size_t first_line = 0;  ///< of the file
   loop::Record record;
-  /// Of every sample and line number from the test's first up to the cycle's last: two tests that
-  /// differ anywhere before differ in it, but for a chance of 2⁻⁶⁴.
+  /// Covers every sample and line number from the test's first up to the cycle's last: two tests
+  /// that differ anywhere before differ in it, but for a chance of 2⁻⁶⁴.
   std::uint64_t checksum = 0;
 };
 

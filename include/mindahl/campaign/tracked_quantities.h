@@ -56,7 +56,7 @@ std::vector<std::string> ChangeStatements(const CourseDescription& course);
 std::vector<std::string> SmallTrendStatements(const CourseDescription& course,
                                               const ChangeThresholds& thresholds = {});
 
-/// What there is to say where ChangeStatements() has nothing of any quantity.
+/// The statement where ChangeStatements() has none of any quantity.
 inline constexpr std::string_view kNothingChanged = "nothing changed beyond chance by 1 % or more";
 
 }  // namespace mindahl::campaign

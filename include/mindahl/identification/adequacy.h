@@ -15,7 +15,7 @@ enum class AdequacyVerdict {
   kInadequate,  ///< parameters of this model mean nothing for this record
 };
 
-/// What the fitted parameters are good for, by the force that the model misses over the half gap
+/// Grades the use of the fitted parameters by the force that the model misses over the half gap
 /// measured without a model.
 enum class Use {
   kQuantitative,  ///< no more than 5 % of it

@@ -22,7 +22,7 @@ enum class Identifiability {
   kNotIdentifiable,  ///< none, or only in combination with others
 };
 
-/// What holds of every finding of one code.
+/// Describes every finding of one code.
 struct FindingRow {
   std::string_view code;  ///< stable, for scripts; docs/contract.md lists them
   /// Verdict that it calls for on the parameters that it names.

@@ -69,7 +69,7 @@ struct ParameterEstimate {
   ParameterStatus status = ParameterStatus::kFixed;
   bool includes_discrepancy = false;  ///< does the interval include what the model misses?
   Identifiability identifiability = Identifiability::kNotIdentifiable;
-  /// What the interval is the union of; empty where there is none.
+  /// The contributions of which the interval is the union; empty where there is none.
   std::vector<IntervalPart> interval = {};
 
   /// True if a contribution of this kind sets an end of the interval.
@@ -185,8 +185,8 @@ struct FitResult {
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;
   ResidualStatistics residuals;
-  /// Of Student's law of the errors: practically infinite where the noise is known, else that of
-  /// the residuals, which empty stands for.
+  /// Degrees of freedom of Student's distribution of the errors: practically infinite where the
+  /// noise is known; empty stands for those of the residuals.
   std::optional<double> error_degrees_of_freedom;
   Adequacy adequacy;  ///< from depth kIntervals on
   std::vector<StartReport> starts;

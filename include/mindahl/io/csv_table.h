@@ -20,7 +20,7 @@ struct NamedColumn {
 /// The name of standard input where a file is asked for; ./- is a file of that name.
 inline constexpr std::string_view kStandardInput = "-";
 
-/// What of a file that is read whole can be held. A file beyond it is refused as soon as that
+/// Limits the size of a file that is read whole. A file beyond it is refused as soon as that
 /// shows, not when it has been read.
 struct ReadLimits {
   std::uintmax_t rows = std::numeric_limits<std::uintmax_t>::max();

@@ -83,8 +83,8 @@ struct LoopFacts {
   std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
 };
 
-/// Does the loop slide, as far as it was measured: is its energy ratio above 0.75? Masing's loop of
-/// α ≤ 1 then reaches 0.999 of its slip force, and 0.95 for α = 2.
+/// True if the measured loop slides: if its energy ratio is above 0.75. Masing's loop of α ≤ 1 then
+/// reaches 0.999 of its slip force, and 0.95 for α = 2.
 bool Slides(const LoopFacts& facts);
 
 /// µ_W = W/(4·N·sliding amplitude) [-]; empty where the contact slides nowhere or N [N] is not > 0.

@@ -36,8 +36,8 @@ struct LoopDescription {
   double slip_force_share = 0.0;  ///< T*/Tc [-] of the law
   /// c/a [-] of a Mindlin contact under T*, 0 in gross slip; empty where the regime is.
   std::optional<double> stick_radius_ratio;
-  /// Of the measured strokes' travel, where the loop was seen to slide (loop::Slides); the regime
-  /// is then gross, whatever the fitted law says.
+  /// Fraction of the measured strokes' travel, given where the loop slides (loop::Slides); the
+  /// regime is then gross, whatever the fitted law says.
   std::optional<double> sliding_fraction;
   /// Empty where Tc has no value, nor a lower limit of which the fitted law stays short.
   std::optional<SlipRegime> regime;

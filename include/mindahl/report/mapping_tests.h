@@ -9,8 +9,8 @@
 
 namespace mindahl::report {
 
-/// Is the fitted exponent Mindlin's 1/3? What the interval of α says: 1/3 is rejected if and only
-/// if it lies outside. Not asked where α was held or is not identifiable.
+/// Tests the fitted exponent against Mindlin's 1/3, which is rejected if and only if it lies
+/// outside the interval of α. No test is made where α was held or is not identifiable.
 struct AlphaTest {
   std::optional<double> minus_third;  ///< α − 1/3; empty where α was held
   std::optional<bool> is_rejected;

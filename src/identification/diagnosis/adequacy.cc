@@ -65,7 +65,7 @@ bool IsEnough(const DepartureFit& simpler, const DepartureFit& fit, const Thresh
          1 - simpler.explains <= std::max(kLittle, kMore * (1 - fit.explains));
 }
 
-/// Of a cause and a simpler one that it contains: leaves the simpler where that explains nearly as
+/// Keeps, of a cause and a simpler one that it contains, the simpler where that explains nearly as
 /// much, else the other.
 void KeepOneOfNested(std::vector<DepartureFit>& causes, const Thresholds& thresholds) {
   std::vector<std::string_view> dropped;

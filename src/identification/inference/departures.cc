@@ -500,8 +500,8 @@ bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
   return true;
 }
 
-/// Is a column that nobody asked for the same channel as one that is fitted, or as a later one?
-/// What an acquisition reads comes before what is made of it.
+/// True if a column that nobody asked for is the same channel as one that is fitted, or as a later
+/// one: an acquisition's readings come before the columns that are computed from them.
 bool IsReadAgain(const ScaledRecords& data, std::size_t covariate, std::size_t fitted) {
   for (std::size_t other = 0; other < data.covariates.size(); ++other) {
     const bool stays = other < fitted || other > covariate;
