@@ -1,7 +1,6 @@
 #include "identification/solve/solver.h"
 
 #include <ceres/ceres.h>
-#include <ceres/tiny_solver.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +11,6 @@
 
 namespace mindahl::identification {
 namespace {
-
-/// ½ of its square is beyond any cost that is finite, and finite itself.
-constexpr double kRefused = 1e150;
 
 /// ceres::Solve sees the same compressed residual, with its Jacobian at every point.
 class CompressedCost final : public ceres::CostFunction {
@@ -34,7 +30,8 @@ class CompressedCost final : public ceres::CostFunction {
     rows.setZero();
     rows[0] = std::isfinite(cost) ? std::sqrt(cost) : kRefused;
     if (!with_jacobian || !std::isfinite(cost)) return std::isfinite(cost) || !with_jacobian;
-    const CompressedResidual compressed(residual_.normal(), residual_.gradient(), cost, {});
+    const CompressedResidual<Eigen::Dynamic> compressed(residual_.normal(), residual_.gradient(),
+                                                        cost, {});
     rows = compressed.residual();
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMajor>(jacobians[0], rows.size(), static_cast<Eigen::Index>(count)) =
@@ -47,258 +44,6 @@ class CompressedCost final : public ceres::CostFunction {
 };
 
 }  // namespace
-
-/// The cost functor of ceres::TinySolver, and what the searches of one start share.
-///
-/// TinySolver has neither bounds nor limits of a step, evaluates a trial without its Jacobian, and
-/// stops by the absolute change of the cost. The functor therefore
-/// - evaluates a coordinate beyond its bound at the bound, where its derivative is 0;
-/// - ends the search where a trial moves a coordinate further than one step may, and goes on with
-///   a trust region in which it does not;
-/// - linearises a trial at once, as an accepted one is linearised next;
-/// - reports a zero gradient, which ends the search, where no step can lower the cost by more than
-///   the function tolerance.
-struct Solver::Search {
-  struct Function {
-    using Scalar = double;
-    // Names that TinySolver asks for. NOLINTNEXTLINE(readability-identifier-naming)
-    enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = Eigen::Dynamic };
-
-    [[nodiscard]] int NumParameters() const { return static_cast<int>(search->count); }
-    [[nodiscard]] int NumResiduals() const { return static_cast<int>(search->count) + 1; }
-    bool operator()(const double* x, double* residuals, double* jacobian) const {
-      if (jacobian == nullptr) {
-        search->Try(x, residuals);
-      } else {
-        search->Accept(x, residuals, jacobian);
-      }
-      return true;
-    }
-
-    Search* search;
-  };
-  using TinySolver = ceres::TinySolver<Function>;
-
-  void Start(ProjectedResidual& of, const SolverOptions& with, double rounding);
-  void Run(std::span<double> u);
-  [[nodiscard]] const char* Message() const;
-  void Try(const double* x, double* residuals);
-  void Accept(const double* x, double* residuals, double* jacobian);
-
-  /// A residual that refuses a trial by less than the function tolerance, which ends the search.
-  [[nodiscard]] double EndOfSearch() const {
-    return std::sqrt(cost * (1 + options.function_tolerance / 2));
-  }
-  void Clamp(const double* x, std::vector<double>& to) const;
-  [[nodiscard]] bool IsTooLong(std::size_t j, double step) const;
-  [[nodiscard]] double RadiusOfFirstStep() const;
-
-  ProjectedResidual* residual = nullptr;
-  SolverOptions options;
-  std::size_t count = 0;
-  double floor = 0.0;  // of the cost: below it residuals are rounding errors
-  TinySolver tiny;
-  TinySolver::Parameters point;
-  std::vector<double> at;     // accepted coordinates, within their bounds
-  std::vector<double> raw;    // as TinySolver has them
-  std::vector<double> trial;  // the last evaluated ones
-  std::vector<unsigned char> clamped;
-  double cost = 0.0;  // there
-  double trial_cost = 0.0;
-  bool trial_is_linearised = false;
-  bool trial_is_predicted = false;
-  bool is_first = false;  // is the next accepted point that where a search begins?
-  bool is_last = false;   // is the next accepted step the last one?
-  bool goes_on = false;   // with another trust region, from where the search ended
-  bool is_slow = false;
-  int accepted = 0;  // steps
-  int iterations = 0;
-  double initial_cost = 0.0;
-  double cost_before = 0.0;  // kSlowSteps accepted steps ago
-  CompressedResidual compressed;
-};
-
-void Solver::Search::Start(ProjectedResidual& of, const SolverOptions& with, double rounding) {
-  residual = &of;
-  options = with;
-  count = of.searched().size();
-  floor = rounding;
-  trial_is_linearised = trial_is_predicted = false;
-  clamped.assign(count, 0);
-  at.resize(count);
-  raw.resize(count);
-  trial.resize(count);
-}
-
-void Solver::Search::Clamp(const double* x, std::vector<double>& to) const {
-  const std::span<const SearchedParameter> searched = residual->searched();
-  for (std::size_t j = 0; j < count; ++j) {
-    to[j] = std::clamp(x[j], searched[j].lower, searched[j].upper);
-  }
-}
-
-bool Solver::Search::IsTooLong(std::size_t j, double step) const {
-  const LawSensitivity& sensitivity = residual->searched()[j].sensitivity;
-  const double limit =
-      sensitivity.longest_step * (sensitivity.step_grows_with_theta ? std::max(1.0, raw[j]) : 1.0);
-  return std::abs(step) > limit;
-}
-
-/// Returns the largest radius, of those tried, with which TinySolver's first step is not too long.
-double Solver::Search::RadiusOfFirstStep() const {
-  constexpr double kLargestRadius = 1e3;
-  constexpr int kTries = 40;
-  // TinySolver scales the columns, and keeps the damping of those without effect from vanishing.
-  constexpr double kLeastDiagonal = 1e-6;
-  const Eigen::VectorXd scaling = 1 / (1 + compressed.jacobian().colwise().norm().array());
-  const Eigen::MatrixXd jacobian = compressed.jacobian() * scaling.asDiagonal();
-  const Eigen::MatrixXd normal = jacobian.transpose() * jacobian;
-  const Eigen::VectorXd gradient = jacobian.transpose() * compressed.residual();
-  double radius = kLargestRadius;
-  for (int tries = 0; tries < kTries; ++tries, radius /= 4) {
-    Eigen::MatrixXd damped = normal;
-    damped.diagonal() += normal.diagonal().cwiseMax(kLeastDiagonal) / radius;
-    const Eigen::VectorXd step = -scaling.cwiseProduct(damped.ldlt().solve(gradient));
-    bool is_short = true;
-    for (std::size_t j = 0; j < count; ++j) {
-      is_short = is_short && !IsTooLong(j, step[static_cast<Eigen::Index>(j)]);
-    }
-    if (is_short) break;
-  }
-  return radius;
-}
-
-void Solver::Search::Try(const double* x, double* residuals) {
-  Eigen::Map<Eigen::VectorXd> rows(residuals, static_cast<Eigen::Index>(count) + 1);
-  rows.setZero();
-  bool is_number = true;
-  for (std::size_t j = 0; j < count; ++j) {
-    is_number = is_number && std::isfinite(x[j]);
-    goes_on = goes_on || IsTooLong(j, x[j] - raw[j]);
-  }
-  if (!is_number || goes_on) {
-    rows[0] = goes_on ? EndOfSearch() : kRefused;
-    return;
-  }
-  Clamp(x, trial);
-  trial_is_linearised = !is_last;
-  trial_is_predicted = is_last && options.predicts_last;
-  if (trial_is_predicted) {
-    Eigen::VectorXd step(static_cast<Eigen::Index>(count));
-    for (std::size_t j = 0; j < count; ++j) {
-      step[static_cast<Eigen::Index>(j)] = trial[j] - at[j];
-    }
-    trial_cost = (compressed.residual() + compressed.jacobian() * step).squaredNorm();
-  } else {
-    trial_cost = is_last ? residual->Evaluate(trial) : residual->Linearise(trial);
-    // A last step that does not lower the cost could have gained next to nothing.
-    if (is_last && !(trial_cost < cost)) {
-      rows[0] = EndOfSearch();
-      return;
-    }
-  }
-  rows[0] = std::isfinite(trial_cost) ? std::sqrt(trial_cost) : kRefused;
-}
-
-void Solver::Search::Accept(const double* x, double* residuals, double* jacobian) {
-  constexpr double kSmallestGain = 1e-3;  // of twice the log-likelihood, ...
-  constexpr int kSlowSteps = 20;          // ... in as many steps
-  const auto size = static_cast<Eigen::Index>(count);
-  Eigen::Map<Eigen::VectorXd> rows(residuals, size + 1);
-  Eigen::Map<Eigen::MatrixXd> columns(jacobian, size + 1, size);
-  const std::span<const SearchedParameter> searched = residual->searched();
-  Clamp(x, at);
-  if (is_first && !(trial_is_linearised && trial == at)) {
-    trial = at;
-    trial_cost = residual->Linearise(trial);
-    trial_is_linearised = true;
-    trial_is_predicted = false;
-  }
-  raw.assign(x, x + count);
-  cost = trial_cost;
-  rows.setZero();
-  columns.setZero();
-  rows[size] = std::sqrt(cost);
-  tiny.options.function_tolerance = options.function_tolerance * cost;
-  if (!trial_is_linearised) return;  // that was the last step: a zero gradient ends the search
-  if (!is_first) ++accepted;
-  for (std::size_t j = 0; j < count; ++j) {
-    const double slope = residual->gradient()[static_cast<Eigen::Index>(j)];
-    const bool below = x[j] <= searched[j].lower && (x[j] < searched[j].lower || slope > 0);
-    const bool above = x[j] >= searched[j].upper && (x[j] > searched[j].upper || slope < 0);
-    clamped[j] = below || above ? 1 : 0;
-  }
-  compressed = CompressedResidual(residual->normal(), residual->gradient(), cost, clamped);
-  if (accepted == 0) cost_before = cost;
-  if (!is_first && accepted % kSlowSteps == 0) {
-    const auto samples = static_cast<double>(residual->problem().data->counted);
-    is_slow = samples * (cost_before - cost) < kSmallestGain * cost_before;
-    cost_before = cost;
-  }
-  const double left = compressed.Explained();
-  if (is_slow || left <= options.function_tolerance * cost) return;
-  is_last = left <= options.last_step * cost && cost > floor;
-  if (is_first) tiny.options.initial_trust_region_radius = RadiusOfFirstStep();
-  is_first = false;
-  rows = compressed.residual();
-  columns = compressed.jacobian();
-}
-
-void Solver::Search::Run(std::span<double> u) {
-  // TinySolver's gradients are zero or count: cost and gradient have no scale of their own.
-  constexpr double kOnlyZero = std::numeric_limits<double>::min();
-  // A search that ends with more than this fraction of the cost to gain was damped too much.
-  constexpr double kGainWorthGoingOn = 1e-6;
-  tiny.options.gradient_tolerance = kOnlyZero;
-  tiny.options.cost_threshold = 0.0;
-  tiny.options.parameter_tolerance = options.parameter_tolerance;
-  accepted = iterations = 0;
-  is_slow = false;
-  initial_cost = -1.0;
-  point = Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size()));
-  double last_cost = std::numeric_limits<double>::infinity();
-  do {
-    is_first = true;
-    is_last = goes_on = false;
-    tiny.options.max_num_iterations = options.max_iterations - iterations;
-    tiny.Solve(Function{this}, &point);
-    iterations += std::max(tiny.summary.iterations, 1);
-    if (initial_cost < 0) initial_cost = tiny.summary.initial_cost;
-    // A step that ends the search is not accepted by a call.
-    if (!std::equal(raw.begin(), raw.end(), point.data())) {
-      at = trial;
-      cost = trial_cost;
-    }
-    const bool was_damped = tiny.summary.status == TinySolver::COST_CHANGE_TOO_SMALL &&
-                            cost < last_cost && compressed.Explained() > kGainWorthGoingOn * cost;
-    goes_on = goes_on || was_damped;
-    last_cost = cost;
-  } while (goes_on && iterations < options.max_iterations);
-  std::ranges::copy(at, u.begin());
-}
-
-const char* Solver::Search::Message() const {
-  if (!std::isfinite(cost)) return "The residuals at the start are not finite.";
-  if (is_slow) return "Twenty steps together raised twice the log-likelihood by less than 1e-3.";
-  switch (tiny.summary.status) {
-    case TinySolver::GRADIENT_TOO_SMALL:
-      return "No step can lower the cost by more than the function tolerance.";
-    case TinySolver::RELATIVE_STEP_SIZE_TOO_SMALL:
-      return "No parameter moves by more than the parameter tolerance.";
-    case TinySolver::COST_TOO_SMALL:
-      return "The cost is zero.";
-    case TinySolver::COST_CHANGE_TOO_SMALL:
-      return "The last step changed the cost by less than the function tolerance.";
-    case TinySolver::HIT_MAX_ITERATIONS:
-      break;
-  }
-  return "The solver made its maximum number of iterations.";
-}
-
-Solver::Solver() : search_(std::make_unique<Search>()) {}
-Solver::Solver(Solver&&) noexcept = default;
-Solver& Solver::operator=(Solver&&) noexcept = default;
-Solver::~Solver() = default;
 
 namespace {
 
@@ -316,8 +61,9 @@ bool LeadsInward(const ProjectedResidual& residual, std::span<const double> u, d
     any = any || inward;
   }
   if (!any) return false;
-  return CompressedResidual(residual.normal(), residual.gradient(), 0.0, others).Explained() >
-         tolerance;
+  const CompressedResidual<Eigen::Dynamic> compressed(residual.normal(), residual.gradient(), 0.0,
+                                                      others);
+  return compressed.Explained() > tolerance;
 }
 
 bool IsAtBound(const ProjectedResidual& residual, std::span<const double> u) {
@@ -351,7 +97,9 @@ ceres::Solver::Summary SolveWithinBounds(ProjectedResidual& residual, const Solv
 }  // namespace
 
 void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution) {
-  Search& search = *search_;
+  std::unique_ptr<TinySearch>& own = searches_[std::min(u.size(), searches_.size()) - 1];
+  if (own == nullptr) own = TinySearch::Make(u.size());
+  TinySearch& search = *own;
   const double floor =
       static_cast<double>(residual_.problem().data->counted) * kRoundingRms * kRoundingRms;
   SolverReport& report = solution.report;
@@ -361,24 +109,22 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
   // Each pass lets go what lies at a bound and leads inward.
   for (std::size_t pass = 0; pass <= u.size(); ++pass) {
     search.Run(u);
-    report.iterations += search.iterations;
-    if (pass == 0) report.initial_cost = search.initial_cost;
-    const bool is_lower = search.cost < last_cost;
-    last_cost = search.cost;
+    report.iterations += search.iterations();
+    if (pass == 0) report.initial_cost = search.initial_cost();
+    const bool is_lower = search.cost() < last_cost;
+    last_cost = search.cost();
     if (!is_lower || !IsAtBound(residual_, u)) break;
-    search.trial.assign(u.begin(), u.end());
-    search.trial_cost = residual_.Linearise(u);
-    search.trial_is_linearised = true;
-    search.trial_is_predicted = false;
-    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost, search.clamped)) break;
+    search.KnowsLinearised(u, residual_.Linearise(u));
+    if (!LeadsInward(residual_, u, options.function_tolerance * search.cost(), search.marks())) {
+      break;
+    }
   }
-  double cost = search.cost;
-  const bool hit_maximum = search.tiny.summary.status == Search::TinySolver::HIT_MAX_ITERATIONS;
-  solution.converged = !hit_maximum && std::isfinite(cost);
+  double cost = search.cost();
+  solution.converged = !search.hit_maximum() && std::isfinite(cost);
   report.termination = solution.converged ? "CONVERGENCE" : "NO_CONVERGENCE";
   report.message = search.Message();
-  bool is_evaluated = std::equal(u.begin(), u.end(), search.trial.begin());
-  const bool is_predicted = is_evaluated && search.trial_is_predicted;
+  bool is_evaluated = search.IsEvaluatedAt(u);
+  const bool is_predicted = is_evaluated && search.is_predicted();
   const int left = options.max_iterations - report.iterations;
   if (!options.is_rough && left > 0 && (!solution.converged || IsAtBound(residual_, u)) &&
       std::isfinite(cost)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -7,23 +8,10 @@
 
 #include "identification/problem/problem.h"
 #include "identification/solve/projected_residual.h"
+#include "identification/solve/tiny_search.h"
 #include "mindahl/identification/solver_report.h"
 
 namespace mindahl::identification {
-
-struct SolverOptions {
-  /// The search stops when a step can lower the cost by function_tolerance · cost at the most, …
-  double function_tolerance = 1e-10;
-  /// … or |Δu| < parameter_tolerance · (|u| + parameter_tolerance), …
-  double parameter_tolerance = 1e-13;
-  int max_iterations = 500;
-  /// Where a full step can lower the cost by this fraction of it at the most, it is the last one.
-  double last_step = 1e-8;
-  /// Accepts the last step without evaluating the cost there.
-  bool predicts_last = false;
-  /// Leaves out the second opinion of ceres::Solve: the result is only a start.
-  bool is_rough = false;
-};
 
 struct Solution {
   std::vector<double> theta;     // of all parameters
@@ -42,11 +30,6 @@ struct Solution {
 /// Keeps its buffers.
 class Solver {
  public:
-  Solver();
-  Solver(Solver&&) noexcept;
-  Solver& operator=(Solver&&) noexcept;
-  ~Solver();
-
   /// @param problem   must outlive the solves; its weights may change between them
   /// @param response  bound to the problem here
   void Bind(const Problem& problem, Response& response) { residual_.Bind(problem, response); }
@@ -69,13 +52,12 @@ class Solver {
   void Solve(std::span<const double> start, const SolverOptions& options, Solution& solution);
 
  private:
-  struct Search;  // TinySolver and its cost functor
-
   void SearchFrom(std::span<double> u, const SolverOptions& options, Solution& solution);
   void MarkSides(std::span<const double> u, Solution& solution) const;
 
   ProjectedResidual residual_;
-  std::unique_ptr<Search> search_;
+  // In 1, 2, 3 and more coordinates, as they are needed.
+  std::array<std::unique_ptr<TinySearch>, 4> searches_;
   std::vector<double> u_;
 };
 
