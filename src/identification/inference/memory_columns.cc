@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "identification/inference/branch_places.h"
 #include "identification/inference/column_test.h"
@@ -38,6 +39,11 @@ struct BranchPlace {
   double reach = 1.0;
   double origin = 0.0;
   double origin_response = 0.0;
+  // Cosines of half turns, of which waves are Chebyshev polynomials: along the branch, and of what
+  // the law's shape depends on, here and where the branch starts.
+  double along = 1.0;
+  double here = 1.0;
+  double before = 1.0;
 };
 
 /// What places are measured by, of all records.
@@ -61,24 +67,46 @@ double HeightOf(const BranchPlace& at) {
   return at.virgin ? 0.0 : -at.direction * at.origin_response;
 }
 
-double Wave(std::size_t number, double share) {
-  return std::cos(static_cast<double>(number) * std::numbers::pi * std::min(share, 1.0));
+double CosineOfHalfTurns(double share) {
+  return std::cos(std::numbers::pi * std::clamp(share, 0.0, 1.0));
 }
 
-/// A change of the backbone, F + εB, added up along branches: s·m·B(way/m), m = 1 or 2. Densest
-/// where branches begin: B is a cosine of the root of the way.
-double ChangeOfBackbone(std::size_t number, const BranchPlace& at, const Extent& extent) {
-  return at.direction * MasingScaleOf(at) *
-         (Wave(number, std::sqrt(ShareOfStroke(at, extent))) - 1.0);
+/// Sets the cosines of a place that is put on its branch.
+void SetCosines(models::Memory memory, const Extent& extent, BranchPlace& at) {
+  const double share = ShareOfStroke(at, extent);
+  at.along = CosineOfHalfTurns(share);
+  if (memory == models::Memory::kReturnPoint) {
+    // Densest where branches begin.
+    at.here = CosineOfHalfTurns(std::sqrt(share));
+    return;
+  }
+  const auto cosine = [&](double response) {
+    return CosineOfHalfTurns((1 + at.direction * response / extent.force) / 2);
+  };
+  at.here = cosine(at.response);
+  at.before = cosine(at.origin_response);
+}
+
+/// cos(number·φ) of cos φ: Chebyshev's polynomial.
+double Wave(std::size_t number, double cosine) {
+  double before = 1.0;
+  double wave = number == 0 ? 1.0 : cosine;
+  for (std::size_t k = 1; k < number; ++k) {
+    before = std::exchange(wave, 2 * cosine * wave - before);
+  }
+  return wave;
+}
+
+/// A change of the backbone, F + εB, added up along branches: s·m·B(way/m), m = 1 or 2. B is a
+/// cosine of the root of the way.
+double ChangeOfBackbone(std::size_t number, const BranchPlace& at) {
+  return at.direction * MasingScaleOf(at) * (Wave(number, at.here) - 1.0);
 }
 
 /// A change of the curve dT/dδ = g(sT) by B(sT), of which a branch has what lies between its
 /// start and here; what it was at the start is carried on by the gain.
-double ChangeOfCurve(std::size_t number, const BranchPlace& at, const Extent& extent) {
-  const auto wave = [&](double response) {
-    return Wave(number, std::clamp((1 + at.direction * response / extent.force) / 2, 0.0, 1.0));
-  };
-  return at.direction * (wave(at.response) - at.gain * wave(at.origin_response));
+double ChangeOfCurve(std::size_t number, const BranchPlace& at) {
+  return at.direction * (Wave(number, at.here) - at.gain * Wave(number, at.before));
 }
 
 std::vector<BranchPlace> BranchPlacesOf(const ScaledRecord& record,
@@ -140,17 +168,12 @@ struct Spread {
 class DifferenceColumns {
  public:
   DifferenceColumns(const Samples& samples, MemoryColumns& result)
-      : samples_(samples), result_(result) {
-    result_.differences.resize(static_cast<Eigen::Index>(samples.places.size()), 0);
-  }
+      : samples_(samples), result_(result) {}
 
   template <typename Value>
   void Add(std::string_view code, const Value& value) {
-    auto& columns = result_.differences;
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
     for (std::size_t i = 0; i < samples_.places.size(); ++i) {
-      columns(static_cast<Eigen::Index>(i), columns.cols() - 1) =
-          value(samples_.places[i], samples_.way_since_return[i]);
+      values_.push_back(value(samples_.places[i], samples_.way_since_return[i]));
     }
     result_.of.push_back(code);
     if (result_.compared.empty() || result_.compared.back() != code) {
@@ -158,9 +181,16 @@ class DifferenceColumns {
     }
   }
 
+  void Finish() {
+    const auto rows = static_cast<Eigen::Index>(samples_.places.size());
+    result_.differences = Eigen::Map<const Eigen::MatrixXd>(
+        values_.data(), rows, static_cast<Eigen::Index>(result_.of.size()));
+  }
+
  private:
   const Samples& samples_;
   MemoryColumns& result_;
+  std::vector<double> values_;
 };
 
 /// @param rate  σ/Tc in units of the data
@@ -180,23 +210,20 @@ void AddDifferences(const Samples& samples, std::size_t waves, double rate, Memo
   if (has_virgin) {
     for (std::size_t k = 0; k < waves; ++k) {
       columns.Add(kVirginBranch, [&](const BranchPlace& at, double) {
-        return at.virgin ? at.direction * Wave(k, ShareOfStroke(at, extent)) : 0.0;
+        return at.virgin ? at.direction * Wave(k, at.along) : 0.0;
       });
     }
   }
   if (directions.range() > 0) {
     for (std::size_t k = 0; k < waves; ++k) {
-      columns.Add(kDirections, [&](const BranchPlace& at, double) {
-        return Wave(k, ShareOfStroke(at, extent));
-      });
+      columns.Add(kDirections, [&](const BranchPlace& at, double) { return Wave(k, at.along); });
     }
   }
   if (has_heights) {
     for (std::size_t k = 0; k < waves; ++k) {
       columns.Add(kAmplitudes, [&](const BranchPlace& at, double) {
         if (at.virgin) return 0.0;
-        return at.direction * (HeightOf(at) - after_reversal.mean()) *
-               Wave(k, ShareOfStroke(at, extent));
+        return at.direction * (HeightOf(at) - after_reversal.mean()) * Wave(k, at.along);
       });
     }
   }
@@ -213,6 +240,7 @@ void AddDifferences(const Samples& samples, std::size_t waves, double rate, Memo
       return way >= 0 ? at.direction * std::exp(-way / (kEarly * extent.stroke)) : 0.0;
     });
   }
+  columns.Finish();
 }
 
 double WidestStroke(const ScaledRecords& data) {
@@ -261,8 +289,8 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
 
   MemoryColumns result;
   result.shape.resize(rows, static_cast<Eigen::Index>(resolution.shapes));
-  const auto change =
-      problem.model->memory == models::Memory::kReturnPoint ? ChangeOfBackbone : ChangeOfCurve;
+  const models::Memory memory = problem.model->memory;
+  const auto change = memory == models::Memory::kReturnPoint ? ChangeOfBackbone : ChangeOfCurve;
   std::size_t begin = 0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const ScaledRecord& record = records[r];
@@ -271,13 +299,17 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
     std::vector<BranchPlace> places =
         BranchPlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity);
     const models::LoadingPath& path = response.PathOf(r, theta);
-    const BranchPlace extreme = problem.state == models::InitialState::kSteady
-                                    ? SteadyExtreme<BranchPlace>(problem, point, record)
-                                    : BranchPlace{};
-    const std::vector<BranchPlace> origins =
+    BranchPlace extreme;
+    if (problem.state == models::InitialState::kSteady) {
+      extreme = SteadyExtreme<BranchPlace>(problem, point, record);
+    }
+    std::vector<BranchPlace> origins =
         FollowBranches(*problem.model, path, sensitivity, std::span(places));
+    SetCosines(memory, extent, extreme);
+    for (BranchPlace& origin : origins) SetCosines(memory, extent, origin);
+    for (BranchPlace& place : places) SetCosines(memory, extent, place);
     for (std::size_t j = 0; j < resolution.shapes; ++j) {
-      const auto value = [&](const BranchPlace& at) { return change(j + 1, at, extent); };
+      const auto value = [&](const BranchPlace& at) { return change(j + 1, at); };
       FillAlongBranches(
           value, path, extreme, std::span<const BranchPlace>(places),
           std::span<const BranchPlace>(origins),
