@@ -81,8 +81,9 @@ void AddForces(const AddedForces& forces, std::span<const double> time,
     force[i] += forces.inertia * acceleration[i] +
                 from_middle * (forces.plateau_slope + forces.plateau_curvature * from_middle);
     if (forces.viscous != 0) {
-      force[i] += std::copysign(
-          forces.viscous * std::pow(std::abs(velocity[i]), forces.speed_exponent), velocity[i]);
+      force[i] +=
+          forces.viscous *
+          std::copysign(std::pow(std::abs(velocity[i]), forces.speed_exponent), velocity[i]);
     }
     if (forces.ripple) {
       const double phase = direction > 0 ? forces.ripple_phase_up : forces.ripple_phase_down;

@@ -201,6 +201,7 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   const auto descend = [&](Candidate& candidate, std::vector<Descent>* recorded) {
     AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
     Descend(candidate, options, attempt.buffers, recorded);
+    SearchBesideMinimum(candidate, options, attempt.buffers, recorded);
   };
   if (const std::optional<InitialState> given = GivenState(attempt)) {
     Candidate candidate = make(*given, first);
@@ -589,10 +590,11 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
 
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
 /// @param at     the problem by all its free parameters, at the solution
-/// @param rival  the other past of the contact, where the record hardly tells; else null
+/// @param rival     the other past of the contact, where the record hardly tells; else null
+/// @param descents  what other starts of this problem led to
 void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution,
            Linearization at, Noise& noise, const DisplacementErrors& displacement_errors,
-           const Candidate* rival, FitResult& result) {
+           const Candidate* rival, std::span<const Descent> descents, FitResult& result) {
   const FitOptions& options = attempt.options;
   SearchBuffers& buffers = attempt.buffers;
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
@@ -631,9 +633,17 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   }
   if (rival != nullptr) {
     Append(result.findings,
-           FoundUndecidedPast(CoverRivalPast(problem, rival->problem, *rival->solution, noise,
-                                             options.thresholds, result.PeakForce(),
-                                             buffers.response, result.parameters)));
+           FoundUndecidedPast(CoverRival(
+               problem, {rival->problem, *rival->solution, IntervalSource::kInitialState}, noise,
+               options.thresholds, result.PeakForce(), buffers.response, result.parameters)));
+  }
+  for (const Descent& descent : descents) {
+    if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
+    Append(result.findings,
+           FoundSeveralMinima(CoverRival(
+               problem, {problem, descent.solution, IntervalSource::kOtherMinimum}, noise,
+               options.thresholds, result.PeakForce(), buffers.response, result.parameters)));
+    break;  // one says it
   }
   ConsiderDepartures(problem, solution, noise, displacement, estimates, options, buffers, result);
   KeepAboveCarriedForce(result);
@@ -672,6 +682,7 @@ void ReportStarts(const Problem& problem, const std::vector<Descent>& descents, 
            std::sqrt(sum_of_squares / static_cast<double>(problem.data->counted));
   };
   for (const Descent& descent : descents) {
+    if (descent.is_rival) continue;
     result.starts.push_back({.drawn = descent.drawn,
                              .start = problem.parameters.LawAt(descent.start),
                              .initial_rms = rms(descent.start_cost),
@@ -940,7 +951,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   if (is_judged) {
     Infer(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
-          rival && !fits_turns ? &*rival : nullptr, result);
+          rival && !fits_turns ? &*rival : nullptr,
+          fits_turns || is_weighted ? std::span<const Descent>() : descents, result);
   } else if (depth == Depth::kErrors) {
     InferErrors(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
                 result);

@@ -52,6 +52,8 @@ std::string_view Name(identification::IntervalSource source) {
       return "profile";
     case kInitialState:
       return "initial_state";
+    case kOtherMinimum:
+      return "other_minimum";
     case kOmittedTerms:
       return "omitted_terms";
     case kPlateau:

@@ -272,6 +272,14 @@ std::string InitialStateUndecided(const Finding& finding, const FitResult& fit, 
       fmt::join(finding.parameters, ", "), virgin ? "an unloaded contact" : "a steady loop");
 }
 
+std::string SeveralMinima(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "{}: the sum of squares has another minimum that the noise cannot tell from this one, where "
+      "they lie elsewhere: the intervals cover both; record more samples about where slip begins, "
+      "or a larger amplitude",
+      fmt::join(finding.parameters, ", "));
+}
+
 std::string NameOfLaw(std::string_view model) {
   return model == "dahl" ? "Dahl's own law" : "Masing's law";
 }
@@ -482,6 +490,7 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"few_places", FewPlaces},
     {"unknown_past", UnknownPast},
     {"initial_state_undecided", InitialStateUndecided},
+    {"several_minima", SeveralMinima},
     {"shape_or_rig", ShapeOrRig},
     {"rig_not_tried", RigNotTried},
     {"law_undecided", LawUndecided},

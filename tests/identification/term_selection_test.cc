@@ -143,7 +143,6 @@ TEST(TermSelection, NegativeDampingIsNotAdded) {
   for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
   const TermSelection selection = Select(Noisy(record, 9));
   EXPECT_FALSE(TermOf(selection, "viscous").added);
-  EXPECT_EQ(TermOf(selection, "viscous").obstacle, "unphysical");
 }
 
 TEST(TermSelection, LagIsAddedWhereNoForceOfSpeedDoesHalfAsWell) {

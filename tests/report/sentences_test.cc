@@ -133,6 +133,7 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"unknown_past", "cut", {"alpha, slip_force: ", "--initial-state virgin"}},
       {"unknown_past", "one_stroke", {"sigma, alpha, slip_force: ", "--initial-state virgin"}},
       {"initial_state_undecided", "", {"alpha, force_offset: ", "--initial-state"}},
+      {"several_minima", "", {"alpha, force_offset: ", "another minimum"}},
       {"slow_residuals", "", {"strokes", "--cycles"}},
       {"law_undecided",
        "dahl",

@@ -61,6 +61,7 @@ inline constexpr auto kFindings = [] {
       {"few_places", kNotIdentifiable},
       {"unknown_past", kNotIdentifiable},
       {"initial_state_undecided", kIdentifiable, kWarning, true},
+      {"several_minima", kIdentifiable, kNote},
       {"shape_or_rig", kNotIdentifiable},
       {"rig_not_tried", kNotIdentifiable},
       // of the law: of its own a parameter is as well known as before

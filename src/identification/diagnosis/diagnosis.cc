@@ -102,6 +102,11 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart) {
   return Finding{.code = "initial_state_undecided", .parameters = std::move(apart)};
 }
 
+std::optional<Finding> FoundSeveralMinima(std::vector<std::string> apart) {
+  if (apart.empty()) return std::nullopt;
+  return Finding{.code = "several_minima", .parameters = std::move(apart)};
+}
+
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   struct Row {
     std::string_view name;

@@ -26,6 +26,9 @@ Finding FoundOpenStiffness();
 /// Parameters that the other past of the contact has elsewhere; nothing without any.
 std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
 
+/// Parameters that another minimum has outside their intervals; nothing without any.
+std::optional<Finding> FoundSeveralMinima(std::vector<std::string> apart);
+
 /// Closed intervals too wide to call a parameter known.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 

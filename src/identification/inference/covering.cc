@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "identification/inference/estimates.h"
@@ -9,30 +10,43 @@
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
-std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& rival,
-                                        const Solution& rival_solution, const Noise& noise,
-                                        const Thresholds& thresholds, double peak_force,
-                                        Response& response,
-                                        std::span<ParameterEstimate> estimates) {
-  const Estimates others(rival, rival_solution, noise, {}, thresholds, response);
+
+std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
+                                    const Thresholds& thresholds, double peak_force,
+                                    Response& response, std::span<ParameterEstimate> estimates) {
+  const Estimates others(rival.problem, rival.solution, noise, {}, thresholds, response);
   std::vector<std::string> apart;
   for (const std::size_t p : {kStiffness, kShape, kSlipForce}) {
     ParameterEstimate& estimate = estimates[p];
-    if (rival.parameters[p].fixed) continue;
+    const Parameter& parameter = rival.problem.parameters[p];
+    if (parameter.fixed) continue;
     ParameterEstimate other = estimate;
-    other.value = rival.parameters[p].ToValue(rival_solution.theta[p]);
+    other.value = parameter.ToValue(rival.solution.theta[p]);
     others.Fill(p, other);
     // What is open either way is said already.
     const bool is_apart = estimate.lower95 && estimate.upper95 && other.lower95 && other.upper95 &&
                           (other.value < *estimate.lower95 || other.value > *estimate.upper95);
     if (is_apart) apart.push_back(estimate.name);
     if (other.lower95 && p == kSlipForce) other.lower95 = std::max(*other.lower95, peak_force);
-    Include(
-        estimate,
-        {.source = IntervalSource::kInitialState, .lower = other.lower95, .upper = other.upper95});
+    Include(estimate, {.source = rival.source, .lower = other.lower95, .upper = other.upper95});
   }
   response.Bind(problem);
   return apart;
+}
+
+bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
+                      const Noise& noise, std::span<const ParameterEstimate> estimates) {
+  constexpr double kTold = 3.841;  // of χ² with one degree of freedom, at 5 %
+  if (!other.converged || !std::isfinite(other.sum_of_squares)) return false;
+  const double independent = noise.effective_samples() / static_cast<double>(noise.samples);
+  const double ratio = independent * (other.sum_of_squares - best.sum_of_squares) / noise.variance;
+  if (!(ratio < kTold)) return false;
+  return std::ranges::any_of(std::array{kStiffness, kShape, kSlipForce}, [&](std::size_t p) {
+    const ParameterEstimate& estimate = estimates[p];
+    if (problem.parameters[p].fixed || !estimate.lower95 || !estimate.upper95) return false;
+    const double value = problem.parameters[p].ToValue(other.theta[p]);
+    return value < *estimate.lower95 || value > *estimate.upper95;
+  });
 }
 
 void CoverPlateau(FitResult& result, const Thresholds& thresholds) {

@@ -13,14 +13,25 @@
 /// Intervals that cover what another reading of the record would have for the parameters.
 namespace mindahl::identification {
 
-/// Covers σ, α and Tc of a fit from the other past of the contact; an end that is open there is
+/// What another reading of a record is of, and why an interval reaches to it.
+struct Rival {
+  const Problem& problem;
+  const Solution& solution;
+  IntervalSource source;
+};
+
+/// Covers σ, α and Tc of a rival, as the other past of the contact; an end that is open there is
 /// open then. Leaves the response bound to `problem`.
 /// @param peak_force  largest |force| of the record [N]: no slip force lies below it
-/// @returns the names of those that the other past has outside the interval of this one
-std::vector<std::string> CoverRivalPast(const Problem& problem, const Problem& rival,
-                                        const Solution& rival_solution, const Noise& noise,
-                                        const Thresholds& thresholds, double peak_force,
-                                        Response& response, std::span<ParameterEstimate> estimates);
+/// @returns the names of those that the rival has outside the interval of this one
+std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
+                                    const Thresholds& thresholds, double peak_force,
+                                    Response& response, std::span<ParameterEstimate> estimates);
+
+/// True if a solution of the same problem lies outside an interval that is closed, of σ, α or Tc,
+/// and the noise does not exclude it: 2 ln Λ is below 3.84.
+bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
+                      const Noise& noise, std::span<const ParameterEstimate> estimates);
 
 /// Where the shape of a loop is doubtful, the plateau that anyone reads off it is as good a slip
 /// force as the law's: Tc covers half of the gap between the branches, where the record slips.

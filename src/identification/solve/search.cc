@@ -1,8 +1,10 @@
 #include "identification/solve/search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace mindahl::identification {
@@ -15,31 +17,6 @@ SolverOptions SolverOptionsOf(const FitOptions& options) {
           .max_iterations = options.max_iterations,
           .last_step = kLastStep * options.function_tolerance};
 }
-
-namespace {
-
-/// Adds the starts of the law alone, where terms that are not linear are searched with it: a model
-/// that is larger must not end higher than the law.
-void AddStartsOfLaw(const Problem& problem, const FitOptions& options, SearchBuffers& buffers,
-                    std::pmr::memory_resource* memory, std::pmr::vector<StartingPoint>& starts) {
-  const auto& free = problem.parameters.free();
-  if (std::ranges::none_of(free,
-                           [&](std::size_t p) { return problem.parameters[p].term->has_start; })) {
-    return;
-  }
-  Problem law = problem;
-  for (const std::size_t p : free) {
-    if (problem.parameters[p].term->presence != Presence::kOnDemand || p == kRig) continue;
-    law.parameters.Fix(p, problem.parameters[p].theta);
-  }
-  for (StartingPoint& start :
-       FindStarts(law, options, std::numeric_limits<double>::infinity(), buffers.solver,
-                  buffers.response, buffers.scratch, memory)) {
-    starts.push_back(std::move(start));
-  }
-}
-
-}  // namespace
 
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
                     double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory) {
@@ -64,7 +41,6 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
                         Parameters(candidate.problem.parameters, memory)};
   candidate.starts = FindStarts(problem, options, rival, buffers.solver, buffers.response,
                                 buffers.scratch, memory);
-  AddStartsOfLaw(problem, options, buffers, memory, candidate.starts);
   return candidate.starts.empty() ? std::numeric_limits<double>::infinity()
                                   : candidate.starts.front().cost;
 }
@@ -109,6 +85,89 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
   }
 }
 
+namespace {
+
+/// True if slip begins so sharply that the sum of squares has a minimum between any two samples.
+bool IsAmongKinks(const Parameters& parameters, const Solution& solution) {
+  constexpr double kSharp = 0.1;
+  return !parameters[kShape].fixed && solution.theta[kShape] < kSharp;
+}
+
+/// Searches of one problem, of which the lowest end is kept.
+class Rivals {
+ public:
+  Rivals(const FitOptions& options, SearchBuffers& buffers, Solution& best,
+         std::vector<Descent>* descents)
+      : options_(options), buffers_(buffers), best_(best), descents_(descents) {}
+
+  /// @param drawn  of a start; no value: from beside a minimum that was found before
+  void From(std::span<const double> theta, std::optional<bool> drawn = {}) {
+    Solution& scratch = buffers_.scratch;
+    buffers_.solver.Solve(theta, SolverOptionsOf(options_), scratch);
+    if (descents_ != nullptr) {
+      Descent& descent = descents_->emplace_back();
+      descent.start.assign(theta.begin(), theta.end());
+      std::vector<double> start = descent.start;
+      descent.start_cost = buffers_.solver.CostAt(start);
+      descent.drawn = drawn.value_or(false);
+      descent.is_rival = !drawn;
+      descent.solution = scratch;
+    }
+    if (scratch.sum_of_squares < best_.sum_of_squares) std::swap(best_, scratch);
+  }
+
+  [[nodiscard]] const Solution& best() const { return best_; }
+
+ private:
+  const FitOptions& options_;
+  SearchBuffers& buffers_;
+  Solution& best_;
+  std::vector<Descent>* descents_;
+};
+
+/// Searches from beside a minimum: with slip that begins sooner or later, and with a smoother law.
+void SearchAcrossKinks(const Problem& problem, Rivals& rivals) {
+  constexpr double kSmoother = 0.1;
+  const std::vector<double> from = rivals.best().theta;
+  std::vector<double> theta = from;
+  theta[kShape] += kSmoother;
+  rivals.From(theta);
+  for (const double log_stiffness : {-0.2, -0.1, -0.03, 0.03, 0.1, 0.2}) {
+    theta = from;
+    theta[kStiffness] += log_stiffness;
+    rivals.From(theta);
+  }
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    const std::size_t origin = problem.parameters.PositionOfOrigin(r);
+    if (problem.parameters[origin].fixed) continue;
+    for (const double step : {-0.05, 0.05}) {
+      theta = rivals.best().theta;
+      theta[origin] += step;
+      rivals.From(theta);
+    }
+  }
+}
+
+/// Searches with other parts of the compliance in the rig: a sharp knee behind a soft rig resembles
+/// a round one.
+void SearchOtherRigs(Rivals& rivals) {
+  const std::vector<double> from = rivals.best().theta;
+  const double compliance = std::exp(-from[kStiffness]) + std::exp(-from[kRig]);
+  for (const double share : {0.2, 0.5, 0.8}) {
+    for (const double shape : {0.02, 1.0 / 3}) {
+      std::vector<double> theta = from;
+      theta[kStiffness] = -std::log((1 - share) * compliance);
+      theta[kRig] = -std::log(share * compliance);
+      theta[kShape] = shape;
+      // A law that bends from the start has a slip force far beyond the largest force, of about 1.
+      theta[kSlipForce] = std::min(theta[kSlipForce], 0.0);
+      rivals.From(theta);
+    }
+  }
+}
+
+}  // namespace
+
 void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
              std::vector<Descent>* descents) {
   Solution& best = *candidate.solution;
@@ -118,18 +177,18 @@ void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buf
   best.report.message = "no starting point has the force's sense";
   if (candidate.starts.empty()) return;
   buffers.solver.Bind(candidate.problem, buffers.response);
-  for (const StartingPoint& start : candidate.starts) {
-    buffers.solver.Solve(start.theta, SolverOptionsOf(options), buffers.scratch);
-    if (descents != nullptr) {
-      Descent& descent = descents->emplace_back();
-      descent.start.assign(start.theta.begin(), start.theta.end());
-      std::vector<double> theta = descent.start;
-      descent.start_cost = buffers.solver.CostAt(theta);
-      descent.drawn = start.drawn;
-      descent.solution = buffers.scratch;
-    }
-    if (buffers.scratch.sum_of_squares < best.sum_of_squares) std::swap(best, buffers.scratch);
-  }
+  Rivals rivals(options, buffers, best, descents);
+  for (const StartingPoint& start : candidate.starts) rivals.From(start.theta, start.drawn);
+}
+
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
+                         std::vector<Descent>* descents) {
+  Solution& best = *candidate.solution;
+  if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
+  Rivals rivals(options, buffers, best, descents);
+  const Parameters& parameters = candidate.problem.parameters;
+  if (parameters.has_rig() && !parameters[kRig].fixed) SearchOtherRigs(rivals);
+  if (IsAmongKinks(parameters, best)) SearchAcrossKinks(candidate.problem, rivals);
 }
 
 }  // namespace mindahl::identification

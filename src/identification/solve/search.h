@@ -24,6 +24,7 @@ struct Descent {
   std::vector<double> start;  // θ
   double start_cost = 0.0;    // on all samples
   bool drawn = false;
+  bool is_rival = false;  // from beside a minimum that was found before
   Solution solution;
 };
 
@@ -67,5 +68,12 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
 /// @param descents  every start is recorded here, unless null
 void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
              std::vector<Descent>* descents);
+
+/// Solves once more from beside the best solution where there may be lower minima, and keeps the
+/// best: a law with a sharp knee has a minimum between any two samples, one with a rig another
+/// where the rig takes another part of the compliance. Where a start is given it is the only one.
+/// @param descents  likewise
+void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
+                         std::vector<Descent>* descents);
 
 }  // namespace mindahl::identification

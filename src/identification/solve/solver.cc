@@ -104,7 +104,10 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
       static_cast<double>(residual_.problem().data->counted) * kRoundingRms * kRoundingRms;
   SolverReport& report = solution.report;
   report.solver = "tiny_solver";
-  search.Start(residual_, options, floor);
+  // A third of the steps is left to the second opinion.
+  SolverOptions of_tiny = options;
+  if (!options.is_rough) of_tiny.max_iterations -= options.max_iterations / 3;
+  search.Start(residual_, of_tiny, floor);
   double last_cost = std::numeric_limits<double>::infinity();
   // Each pass lets go what lies at a bound and leads inward.
   for (std::size_t pass = 0; pass <= u.size(); ++pass) {
@@ -126,8 +129,8 @@ void Solver::SearchFrom(std::span<double> u, const SolverOptions& options, Solut
   bool is_evaluated = search.IsEvaluatedAt(u);
   const bool is_predicted = is_evaluated && search.is_predicted();
   const int left = options.max_iterations - report.iterations;
-  if (!options.is_rough && left > 0 && (!solution.converged || IsAtBound(residual_, u)) &&
-      std::isfinite(cost)) {
+  if (!options.is_rough && left > 0 && std::isfinite(cost) &&
+      (!solution.converged || search.is_slow() || IsAtBound(residual_, u))) {
     std::vector<double> within(u.begin(), u.end());
     const ceres::Solver::Summary summary = SolveWithinBounds(residual_, options, left, within);
     report.solver = "solve";

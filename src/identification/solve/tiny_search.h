@@ -55,6 +55,8 @@ class TinySearch {
   [[nodiscard]] double initial_cost() const { return initial_cost_; }  // half of it, as Ceres'
   [[nodiscard]] int iterations() const { return iterations_; }
   [[nodiscard]] virtual bool hit_maximum() const = 0;
+  /// True if twenty steps together gained next to nothing, and it was left at that.
+  [[nodiscard]] bool is_slow() const { return is_slow_; }
   [[nodiscard]] virtual const char* Message() const = 0;
   /// True if the residual was evaluated, or predicted, at u last.
   [[nodiscard]] bool IsEvaluatedAt(std::span<const double> u) const;
