@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 
@@ -97,8 +98,7 @@ struct Errors {
   bool undetermined = false;
   bool converged = false;
   std::string termination;
-  std::size_t intervals = 0;
-  std::size_t covering = 0;
+  std::array<IntervalCount, kValidatedParameters.size()> intervals;
 };
 
 /// What was fitted to a loop, and what it should have given.
@@ -151,25 +151,25 @@ void CompareContact(const Trial& trial, const models::BranchLaw& fitted, Errors&
   errors.slip_force = std::abs(found.slip_force / truth.slip_force - 1);
 }
 
-Errors Compare(const Trial& trial, const FitResult& fit) {
+Errors Compare(const Trial& trial, const FitResult& fit, double interval_factor) {
   Errors errors;
   const models::BranchLaw& truth = trial.truth;
   errors.converged = fit.converged;
   errors.termination = fit.solver.message;
   if (fit.parameters.empty()) return errors;
   CompareContact(trial, fit.law, errors);
-  const auto judge = [&](const char* name, double value) {
-    const ParameterEstimate& estimate = *fit.Find(name);
+  const std::array values = {truth.tangential_stiffness, truth.shape_exponent, truth.slip_force};
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const ParameterEstimate& estimate = *fit.Find(kValidatedParameters[k]);
     if (!estimate.is_known()) {
       errors.undetermined = true;
-      return;
+      continue;
     }
-    ++errors.intervals;
-    if (estimate.lower95 <= value && value <= estimate.upper95) ++errors.covering;
-  };
-  judge("sigma", truth.tangential_stiffness);
-  judge("alpha", truth.shape_exponent);
-  judge("slip_force", truth.slip_force);
+    const double off = (values[k] - estimate.value) / interval_factor;
+    const bool covers = (!estimate.lower95 || *estimate.lower95 - estimate.value <= off) &&
+                        (!estimate.upper95 || off <= *estimate.upper95 - estimate.value);
+    errors.intervals[k] = {.intervals = 1, .covering = covers ? 1U : 0U};
+  }
   return errors;
 }
 
@@ -200,8 +200,6 @@ struct RowBuilder {
   std::vector<double> sigma;
   std::vector<double> alpha;
   std::vector<double> slip_force;
-  std::size_t intervals = 0;
-  std::size_t covering = 0;
 
   /// @returns whether the case met the tolerance
   bool Add(const Errors& errors) {
@@ -211,8 +209,9 @@ struct RowBuilder {
     alpha.push_back(errors.alpha);
     slip_force.push_back(errors.slip_force);
     row.worst_standardized = std::max(row.worst_standardized, errors.standardized);
-    intervals += errors.intervals;
-    covering += errors.covering;
+    for (std::size_t k = 0; k < errors.intervals.size(); ++k) {
+      row.intervals[k].Add(errors.intervals[k]);
+    }
     const double worst = row.noise == 0 ? std::max({errors.sigma, errors.alpha, errors.slip_force})
                                         : errors.standardized;
     const bool met =
@@ -228,8 +227,9 @@ struct RowBuilder {
     row.worst_alpha_error = Largest(alpha);
     row.median_slip_force_error = Median(slip_force);
     row.worst_slip_force_error = Largest(slip_force);
-    row.coverage =
-        intervals == 0 ? 0.0 : static_cast<double>(covering) / static_cast<double>(intervals);
+    IntervalCount all;
+    for (const IntervalCount& count : row.intervals) all.Add(count);
+    row.coverage = all.fraction();
     return row;
   }
 };
@@ -241,6 +241,7 @@ void RequireValidation(const ValidationOptions& options) {
   }
   for (const double lambda : options.lambdas) RequirePositive("lambda [-]", lambda);
   for (const double noise : options.noise_levels) RequireNonNegative("noise level [-]", noise);
+  RequirePositive("interval factor [-]", options.interval_factor);
 }
 
 std::string Describe(const Case& drawn, std::size_t index, double noise, const Trial& trial,
@@ -256,7 +257,70 @@ std::string Describe(const Case& drawn, std::size_t index, double noise, const T
       errors.alpha, errors.slip_force, errors.standardized);
 }
 
+/// Loops slide beyond it, and their intervals are the parabola's.
+bool Slides(const ValidationRow& row) { return row.lambda > 1; }
+
+/// Judges the coverage of every parameter and law, row by row and over all rows with noise.
+void JudgeCoverage(ValidationReport& report) {
+  const auto has_noise = [](const ValidationRow& row) { return row.noise > 0; };
+  const auto noisy = static_cast<std::size_t>(std::ranges::count_if(report.rows, has_noise));
+  if (noisy == 0) return;
+  constexpr std::size_t kLaws = 2;
+  constexpr std::size_t kSides = 2;
+  const double least =
+      kCoverageFalseAlarm /
+      static_cast<double>(kLaws * kSides * kValidatedParameters.size() * (noisy + 1));
+  const auto chance_of = [](const IntervalCount& all, const IntervalCount& sliding) {
+    return std::min(all.ChanceOfSoFew(), sliding.ChanceOfSoMany());
+  };
+  const auto fail = [&](std::string_view parameter, bool by_dahl, const std::string& where,
+                        const IntervalCount& count, double chance) {
+    report.failed_coverages.push_back(fmt::format(
+        "coverage of {}{}{}: {} of {} intervals, {:.1f} %, of 95 % stated and {:g} to {:g} % "
+        "promised (p = {:.1e})",
+        parameter, by_dahl ? " by Dahl's own law" : "", where, count.covering, count.intervals,
+        100 * count.fraction(), 100 * kLowestCoverage, 100 * kHighestCoverage, chance));
+  };
+  for (const bool by_dahl : {false, true}) {
+    const std::vector<ValidationRow>& rows = by_dahl ? report.dahl_rows : report.rows;
+    for (std::size_t k = 0; k < kValidatedParameters.size(); ++k) {
+      CoverageVerdict verdict{.parameter = kValidatedParameters[k], .by_dahl = by_dahl};
+      for (const ValidationRow& row : rows) {
+        if (!has_noise(row)) continue;
+        const IntervalCount& count = row.intervals[k];
+        const IntervalCount sliding = Slides(row) ? count : IntervalCount();
+        verdict.all.Add(count);
+        verdict.sliding.Add(sliding);
+        const double chance = chance_of(count, sliding);
+        if (chance >= least) continue;
+        fail(verdict.parameter, by_dahl,
+             fmt::format(" at lambda {:g}, noise {:g}", row.lambda, row.noise), count, chance);
+      }
+      verdict.chance = chance_of(verdict.all, verdict.sliding);
+      verdict.passed = verdict.chance >= least;
+      if (!verdict.passed) {
+        const bool is_low = verdict.all.ChanceOfSoFew() <= verdict.sliding.ChanceOfSoMany();
+        fail(verdict.parameter, by_dahl, is_low ? "" : " at lambda > 1",
+             is_low ? verdict.all : verdict.sliding, verdict.chance);
+      }
+      report.coverage.push_back(verdict);
+    }
+  }
+}
+
 }  // namespace
+
+double IntervalCount::ChanceOfSoFew() const {
+  if (intervals == 0) return 1.0;
+  const boost::math::binomial law(static_cast<double>(intervals), kLowestCoverage);
+  return boost::math::cdf(law, static_cast<double>(covering));
+}
+
+double IntervalCount::ChanceOfSoMany() const {
+  if (intervals == 0 || covering == 0) return 1.0;
+  const boost::math::binomial law(static_cast<double>(intervals), kHighestCoverage);
+  return boost::math::cdf(boost::math::complement(law, static_cast<double>(covering - 1)));
+}
 
 double NoiseFreeTolerance(double lambda) {
   // Below λ = 1/2 the loop's departure from a straight line, which alone tells α from Tc, shrinks
@@ -293,7 +357,7 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
       const std::size_t place = level * options.lambdas.size() + index % options.lambdas.size();
       for (const Trial& trial : {ByMasing(noisy, drawn), ByDahl(steady, drawn)}) {
         const FitResult fit = Fit({&trial.record, 1}, trial.options);
-        Errors errors = Compare(trial, fit);
+        Errors errors = Compare(trial, fit, options.interval_factor);
         if (noise > 0 && errors.converged) errors.standardized = StandardizedDistance(trial, fit);
         ++report.fits;
         if (!(trial.IsDahl() ? dahl_rows : rows)[place].Add(errors)) {
@@ -306,6 +370,7 @@ ValidationReport ValidateMapping(const ValidationOptions& options,
   }
   for (RowBuilder& row : rows) report.rows.push_back(row.Finish());
   for (RowBuilder& row : dahl_rows) report.dahl_rows.push_back(row.Finish());
+  JudgeCoverage(report);
   return report;
 }
 

@@ -325,6 +325,12 @@ TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
     for (const json& row : report[rows]) fits += row["cases"].get<int>();
     EXPECT_EQ(fits, 14 * 4) << rows;
   }
+  ASSERT_EQ(report["coverage"].size(), 2U * 3U) << "two laws, three parameters";
+  for (const json& verdict : report["coverage"]) {
+    EXPECT_EQ(verdict["passed"], true) << verdict;
+    EXPECT_GT(verdict["intervals"], verdict["sliding_intervals"]) << verdict;
+  }
+  EXPECT_TRUE(report["failed_coverages"].empty());
 }
 
 TEST(Validate, SaysNothingOfAmplitudesThatNoCaseWasDrawnFor) {

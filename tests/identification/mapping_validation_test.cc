@@ -87,6 +87,43 @@ TEST(MappingValidation, NoiseMakesTheErrorsItShould) {
   EXPECT_GT(report.rows[0].worst_standardized, 0.0);
 }
 
+TEST(MappingValidation, CoverageOfHonestIntervalsPassesAndOfErrorsStatedTooSmallFails) {
+  // 1.96/1.5 standard errors cover 80.9 %: of 300 loops 243 ± 7, and fewer than 262 of them are
+  // beyond what 93 % would give once in 24 000, the false alarm over 24 tests.
+  ValidationOptions options;
+  options.cases = 300;
+  options.noise_levels = {0.01};
+  options.lambdas = {1.2, 2.0};
+  const ValidationReport honest = ValidateMapping(options);
+  EXPECT_TRUE(honest.passed()) << ::testing::PrintToString(honest.failed_coverages);
+  ASSERT_EQ(honest.coverage.size(), 2 * kValidatedParameters.size()) << "two laws";
+  for (const CoverageVerdict& verdict : honest.coverage) {
+    EXPECT_EQ(verdict.all.intervals, options.cases) << verdict.parameter;
+    EXPECT_EQ(verdict.sliding.intervals, options.cases) << verdict.parameter;
+  }
+  options.interval_factor = 1 / 1.5;
+  const ValidationReport wrong = ValidateMapping(options);
+  EXPECT_EQ(wrong.failures, 0U) << "six standard errors do not see it";
+  EXPECT_FALSE(wrong.passed());
+  for (const CoverageVerdict& verdict : wrong.coverage) {
+    EXPECT_FALSE(verdict.passed) << verdict.parameter;
+  }
+  EXPECT_THAT(wrong.failed_coverages, ::testing::Contains(::testing::HasSubstr("of 95 % stated")));
+}
+
+TEST(MappingValidation, ChancesOfACountAreThoseOfTheBinomialLaw) {
+  // Of three intervals: P(at most 1) = 0.07³ + 3·0.93·0.07², P(all) = 0.97³.
+  const IntervalCount one{.intervals = 3, .covering = 1};
+  EXPECT_NEAR(one.ChanceOfSoFew(), 0.07 * 0.07 * 0.07 + 3 * 0.93 * 0.07 * 0.07, 1e-15);
+  const IntervalCount all{.intervals = 3, .covering = 3};
+  EXPECT_NEAR(all.ChanceOfSoMany(), 0.97 * 0.97 * 0.97, 1e-15);
+  // Of 1000, intervals twice as wide as they should be, 99.99 %, are seen.
+  EXPECT_LT((IntervalCount{.intervals = 1000, .covering = 1000}).ChanceOfSoMany(), 1e-12);
+  EXPECT_EQ(IntervalCount().ChanceOfSoFew(), 1.0);
+  EXPECT_EQ(IntervalCount().ChanceOfSoMany(), 1.0);
+  EXPECT_EQ((IntervalCount{.intervals = 3, .covering = 0}).ChanceOfSoMany(), 1.0);
+}
+
 TEST(MappingValidation, OptionsOutOfRangeAreRefused) {
   const auto refuses = [](auto spoil) {
     ValidationOptions options;
@@ -99,6 +136,7 @@ TEST(MappingValidation, OptionsOutOfRangeAreRefused) {
   refuses([](ValidationOptions& o) { o.lambdas = {-1}; });
   refuses([](ValidationOptions& o) { o.noise_levels.clear(); });
   refuses([](ValidationOptions& o) { o.noise_levels = {-0.1}; });
+  refuses([](ValidationOptions& o) { o.interval_factor = 0; });
 }
 
 }  // namespace

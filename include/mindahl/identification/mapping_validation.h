@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace mindahl::identification {
@@ -17,6 +19,9 @@ struct ValidationOptions {
   std::vector<double> noise_levels = {0.0, 1e-3, 1e-2, 5e-2};
   /// Amplitudes X/δc, taken in turn.
   std::vector<double> lambdas = {0.3, 0.5, 0.8, 1.0, 1.2, 2.0, 3.0};
+  /// Half widths of the intervals are multiplied by this before they are compared with the truth:
+  /// what a program that states its errors wrongly would do. Other than 1 it tests the validation.
+  double interval_factor = 1.0;
 };
 
 /// Tolerance on the relative errors of σ and Tc and on the error of α of a noise-free loop.
@@ -26,6 +31,48 @@ double NoiseFreeTolerance(double lambda);
 /// the difference of log-likelihoods, χ² with three degrees of freedom squared; beyond it once in
 /// 10⁷.
 inline constexpr double kStandardErrorsTolerated = 6.0;
+
+/// Coverage of 95 % intervals that docs/coverage.md promises under white noise: at least, and,
+/// where the contact slips as a whole, at most. In partial slip intervals may be wider.
+inline constexpr double kLowestCoverage = 0.93;
+inline constexpr double kHighestCoverage = 0.97;
+
+/// Chance that a validation rejects coverages that are all within what is promised.
+inline constexpr double kCoverageFalseAlarm = 1e-3;
+
+/// The parameters whose intervals are counted.
+inline constexpr std::array<std::string_view, 3> kValidatedParameters = {"sigma", "alpha",
+                                                                         "slip_force"};
+
+/// Intervals of one parameter, of independent loops, and how many of them contain the truth.
+struct IntervalCount {
+  std::size_t intervals = 0;
+  std::size_t covering = 0;
+
+  void Add(const IntervalCount& other) {
+    intervals += other.intervals;
+    covering += other.covering;
+  }
+  /// Fraction that covers; 0 of none.
+  [[nodiscard]] double fraction() const {
+    return intervals == 0 ? 0.0 : static_cast<double>(covering) / static_cast<double>(intervals);
+  }
+  /// Probability of so few covering intervals where each covers with kLowestCoverage: the binomial
+  /// distribution. 1 of none.
+  [[nodiscard]] double ChanceOfSoFew() const;
+  /// Probability of so many where each covers with kHighestCoverage. 1 of none.
+  [[nodiscard]] double ChanceOfSoMany() const;
+};
+
+/// Coverage of the intervals of one parameter by one law, over all loops with noise.
+struct CoverageVerdict {
+  std::string_view parameter;
+  bool by_dahl = false;  ///< by Dahl's own law
+  IntervalCount all;
+  IntervalCount sliding;  ///< those of loops with λ > 1
+  double chance = 1.0;    ///< the smaller of all's of so few, and sliding's of so many
+  bool passed = true;     ///< not less than kCoverageFalseAlarm over the number of tests
+};
 
 /// All cases at one amplitude and noise level.
 struct ValidationRow {
@@ -42,8 +89,10 @@ struct ValidationRow {
   double median_slip_force_error = 0.0;  ///< |Tc/(μN) − 1|
   double worst_slip_force_error = 0.0;
   double worst_standardized =
-      0.0;                ///< with noise: largest distance of the truth in standard errors
-  double coverage = 0.0;  ///< with noise: share of the stated 95 % intervals that cover the truth
+      0.0;  ///< with noise: largest distance of the truth in standard errors
+  double coverage =
+      0.0;  ///< with noise: fraction of the stated 95 % intervals that cover the truth
+  std::array<IntervalCount, kValidatedParameters.size()> intervals;  ///< with noise: by parameter
 };
 
 struct ValidationReport {
@@ -55,12 +104,18 @@ struct ValidationReport {
   std::size_t fits = 0;
   std::size_t failures = 0;
   std::vector<std::string> failed_cases;  ///< what each failed case was and by how much it missed
+  std::vector<CoverageVerdict> coverage;  ///< by law, then parameter; empty without noise
+  /// Which coverages are incompatible with what is promised, of `coverage` and of single rows.
+  std::vector<std::string> failed_coverages;
+
+  [[nodiscard]] bool passed() const { return failures == 0 && failed_coverages.empty(); }
 };
 
 /// Draws contacts with N in 1e-6 … 1e5 N, a in 1e-8 … 3e-2 m, G* in 1e-12 … 1e-8 1/Pa (all
 /// log-uniform), μ in 0.05 … 1.2, one to four cycles, both starting directions, sine and triangle;
 /// their loops from the Mindlin equations in closed form (contact module, not the fitted models),
-/// fits them with free α by either law and compares.
+/// fits them with free α by either law and compares. Coverage is judged by binomial tests, one a
+/// parameter, law and row with noise, and over all rows, at kCoverageFalseAlarm over their number.
 /// @param progress  called with the number of contacts done, may be empty
 /// @throws InvalidArgument for options out of range
 ValidationReport ValidateMapping(const ValidationOptions& options,
