@@ -24,6 +24,10 @@ if(MINDAHL_SANITIZE)
   target_link_options(mindahl_build_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
+if(MINDAHL_FUZZ)
+  target_compile_options(mindahl_build_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+
 separate_arguments(cold_options UNIX_COMMAND "${MINDAHL_COLD_COMPILE_OPTIONS}")
 
 # mindahl_add_module(NAME [COLD] SOURCES ... [PUBLIC targets...] [PRIVATE targets...] [PRECOMPILE headers...])

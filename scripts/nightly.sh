@@ -17,6 +17,7 @@ part() {
 part ./scripts/test.sh ci
 part ./scripts/test.sh asan-full
 part ./scripts/tidy.sh --thorough
+part ./scripts/fuzz.sh --seconds 600
 part ./scripts/packages.sh
 part cmake --build build/ci --target coverage
 part cmake --build build/ci --target reliability

@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -52,7 +53,7 @@ class Tracker::Workers {
       batches_.push_back(std::move(batch));
     }
     if (threads_.size() < most_) {
-      threads_.emplace_back([this] { Work(); });
+      StartThread();
     } else {
       waiting_.notify_one();
     }
@@ -60,6 +61,18 @@ class Tracker::Workers {
   }
 
  private:
+  /// Does with the threads that there are where the system gives no other.
+  /// @throws std::system_error where there is none
+  void StartThread() {
+    try {
+      threads_.emplace_back([this] { Work(); });
+    } catch (const std::system_error&) {
+      if (threads_.empty()) throw;
+      most_ = threads_.size();
+      waiting_.notify_one();
+    }
+  }
+
   void Work() {
     for (;;) {
       std::unique_lock lock(mutex_);
@@ -95,7 +108,10 @@ Tracker::Tracker(TrackOptions options, Done done)
   workers_ = std::make_unique<Workers>(options_.threads);
 }
 
-Tracker::~Tracker() = default;
+Tracker::~Tracker() {
+  // Tasks that nobody begins are then nobody's: the end of one that somebody waits for allocates.
+  begun_.clear();
+}
 
 void Tracker::Add(const loop::RecordView& samples, std::span<const std::size_t> lines) {
   cycles_.clear();

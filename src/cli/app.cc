@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "cli/colours.h"
@@ -184,9 +185,7 @@ int Print(std::string_view results, const std::string& program, int status, std:
   return kBadInput;
 }
 
-}  // namespace
-
-int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+int RunAndExplain(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
   // Results go out in one piece at the end: of a run that fails nothing is printed, and what a full
   // disk does not take is noticed.
   std::ostringstream results;
@@ -255,9 +254,23 @@ int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err)
     err << fmt::format("{}: {}\n", CommandName(app),
                        OutOfMemoryText() + ": ask for less, or allow more");
     return kBadInput;
+  } catch (const std::system_error& error) {  // no thread or no directory for temporary files
+    err << fmt::format("{}: the system refuses: {}\n", CommandName(app), OneLine(error.what()));
+    return kBadInput;
   } catch (const std::exception& error) {
     err << fmt::format("{}: internal error: {}\n", CommandName(app), OneLine(error.what()));
     return kInternalError;
+  }
+}
+
+}  // namespace
+
+int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  try {
+    return RunAndExplain(argc, argv, out, err);
+  } catch (const std::bad_alloc&) {  // before there is a command, or of the message itself
+    err << "mindahl: memory ran out\n";
+    return kBadInput;
   }
 }
 

@@ -198,8 +198,9 @@ std::vector<FileFit> FitFiles(const BatchCommandOptions& options, const CLI::App
   std::vector<FileFit> fits;
   std::deque<std::future<FileFit>> at_work;
   PageNames names;
+  std::size_t threads = options.threads;
   for (std::size_t next = 0; fits.size() < files.size();) {
-    while (next < files.size() && at_work.size() < options.threads) {
+    while (next < files.size() && at_work.size() < threads) {
       const std::string& file = files[next];
       std::function<std::string(const report::Report&)> write_page;
       if (!options.report_directory.empty()) {
@@ -210,9 +211,15 @@ std::vector<FileFit> FitFiles(const BatchCommandOptions& options, const CLI::App
           return page;
         };
       }
-      at_work.push_back(std::async(std::launch::async, [&options, &file, write_page] {
+      const auto fit = [&options, &file, write_page] {
         return FitFile(options.request, file, options.strict, write_page);
-      }));
+      };
+      try {
+        at_work.push_back(std::async(std::launch::async, fit));
+      } catch (const std::system_error&) {  // no other thread: those that there are will do
+        threads = std::max<std::size_t>(1, at_work.size());
+        at_work.push_back(std::async(std::launch::deferred, fit));
+      }
       ++next;
     }
     fits.push_back(at_work.front().get());

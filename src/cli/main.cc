@@ -2,7 +2,12 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <csignal>
+#include <cstdlib>
+#include <exception>
 #include <iostream>
+#include <new>
+#include <string_view>
 
 #include "cli/app.h"
 #include "mindahl/io/atomic_file.h"
@@ -29,11 +34,33 @@ void KeepFreedMemory() {
 #endif
 }
 
+const std::terminate_handler default_end = std::get_terminate();
+
+/// Ends a program whose memory ran out where no exception may leave, as in the destructor of a JSON
+/// value, as it ends otherwise for want of memory; anything else as std::terminate() does.
+[[noreturn]] void EndForWantOfMemory() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view kMessage = "mindahl: memory ran out\n";
+    (void)!::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+    mindahl::io::RemoveTemporaryFiles();
+    ::_exit(mindahl::cli::kBadInput);
+  } catch (...) {  // NOLINT(bugprone-empty-catch): ends below
+  }
+  default_end();
+  std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   KeepFreedMemory();
   OccupyClosedStreams();
+  std::set_terminate(&EndForWantOfMemory);
   mindahl::io::RemoveTemporaryFilesOnSignals();
-  return mindahl::cli::Run(argc, argv, std::cout, std::cerr);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its write()
+  const int status = mindahl::cli::Run(argc, argv, std::cout, std::cerr);
+  mindahl::io::RaiseNotedSignal();
+  return status;
 }

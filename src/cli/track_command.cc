@@ -171,6 +171,7 @@ class TrackRun {
   void Begin(io::RecordStream& stream, const io::Samples& head);
   void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
   void SayReading() const;
+  void RequireNoSignal() const;
   void Take(std::span<const CycleFit> fits);
   [[noreturn]] void ThrowOther() const;
   void SayProgress();
@@ -199,6 +200,8 @@ class TrackRun {
   std::optional<KeptCycles> kept_;  // until its last batch was made again
   std::size_t resumed_ = 0;         // fits that were there
   std::optional<io::AppendedFile> output_;
+  bool has_write_failed_ = false;               // or is at work
+  std::optional<io::DeferredSignals> signals_;  // while rows are written
   std::optional<campaign::Tracker> tracker_;
   std::optional<Progress> progress_;
   std::uintmax_t bytes_ = 0;  // of all files
@@ -307,11 +310,13 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
     kept_.reset();
     return;
   }
+  has_write_failed_ = true;
   if (!output_) {
     output_.emplace(options_.output, 0);
     output_->Append(campaign::CycleTableHeader(is_torsional_));
   }
   output_->Append(rows);
+  has_write_failed_ = false;
   for (const CycleFit& fit : fits) totals_.Add(fit);
   SayProgress();
 }
@@ -335,11 +340,17 @@ void TrackRun::SayProgress() {
                              made / seconds, seconds * (1 - share) / std::max(share, 1e-3)));
 }
 
+/// @throws InputError where a signal asks the run to end
+void TrackRun::RequireNoSignal() const {
+  if (signals_->noted() != 0) throw InputError("stopped by a signal");
+}
+
 void TrackRun::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
   stream_ = &stream;
   while (piece.size() > 0) {
     reading_.samples += piece.size();
     tracker_->Add(campaign::ViewOf(piece), piece.lines);
+    RequireNoSignal();
     if (!stream.Next(piece)) break;
   }
   reading_.unused_samples += tracker_->NextFile();
@@ -361,6 +372,7 @@ void TrackRun::Go() {
   }
   const io::BrokenRows broken = BrokenRowsOf(options_);
   if (options_.alpha == kSharedAlpha) PoolAlpha();
+  signals_.emplace();
   try {
     for (const std::string& file : files) {
       io::RecordStream stream(file, options_.request.columns, broken);
@@ -381,16 +393,23 @@ void TrackRun::Go() {
     }
     tracker_->Finish();
     if (kept_) ThrowOther();  // a record that ends before them
+    if (output_) output_->Finish();
+    RequireNoSignal();
   } catch (const InputError& error) {
     // What is done is kept; unless the fault is that it is another's, or nothing was done.
-    if (!tracker_ || kept_) throw;
+    const bool is_stopped = signals_->noted() != 0;
+    if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
+    if (!tracker_ || (kept_ && !is_stopped)) throw;
     try {
-      tracker_->Finish();
+      if (!has_write_failed_) tracker_->Finish();
+      if (output_) output_->Finish();
     } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
     }
-    throw InputError(fmt::format("{}; {} rows are kept in {}: mend the fault and add --resume",
-                                 error.what(), totals_.fits, options_.output));
+    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume",
+                                 is_stopped ? "stopped by a signal" : error.what(), totals_.fits,
+                                 options_.output, is_stopped ? "" : "mend the fault and "));
   }
+  signals_.reset();
   progress_.reset();
   reading_.cycles = tracker_->cycles();
   campaign::RequireCycles(reading_.cycles, options_.average, reading_.of_head,

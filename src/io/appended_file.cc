@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "io/to_disk.h"
 #include "io/write_fault.h"
 
 namespace mindahl::io {
@@ -22,7 +23,9 @@ AppendedFile::AppendedFile(std::filesystem::path path, std::uintmax_t kept)
   }
 }
 
-AppendedFile::~AppendedFile() { ::close(descriptor_); }
+AppendedFile::~AppendedFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
 
 void AppendedFile::Append(std::string_view block) {
   std::string_view rest = block;
@@ -38,6 +41,12 @@ void AppendedFile::Append(std::string_view block) {
     rest.remove_prefix(static_cast<std::size_t>(written));
   }
   size_ += block.size();
+}
+
+void AppendedFile::Finish() {
+  WriteToDisk(descriptor_, path_);
+  if (::close(std::exchange(descriptor_, -1)) != 0) ThrowCannotWrite(path_, errno);
+  WriteNameToDisk(path_, path_);
 }
 
 }  // namespace mindahl::io

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "io/temporary_names.h"
+#include "io/to_disk.h"
 #include "io/write_fault.h"
 
 namespace mindahl::io {
@@ -42,6 +43,9 @@ class OutputFile {
       content.remove_prefix(static_cast<std::size_t>(written));
     }
   }
+
+  /// What is written is on the disk then.
+  void Synchronise() { WriteToDisk(descriptor_, path_); }
 
   /// A full disk may show only here.
   void Close() {
@@ -76,9 +80,11 @@ void ReplaceFile(const std::filesystem::path& target, const std::optional<struct
   OutputFile file(name, O_CREAT | O_EXCL, path);
   if (old) file.SetPermissions(old->st_mode);
   file.Write(content);
+  file.Synchronise();
   file.Close();
   if (::rename(name.c_str(), target.c_str()) != 0) ThrowCannotWrite(path, errno);
   temporary.Keep();
+  WriteNameToDisk(target, path);
 }
 
 }  // namespace

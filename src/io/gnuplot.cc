@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -33,6 +34,7 @@ std::string MakeScratchDirectory() {
 
 std::string Content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
@@ -49,15 +51,24 @@ int SpawnAndWait(std::string script, const std::string& output, const std::strin
   std::string default_settings = "-d";
   const std::array<char*, 4> arguments = {program.data(), default_settings.data(), script.data(),
                                           nullptr};
+  // Ends gnuplot where its file may not grow: it does not look at what its own writing returns.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  sigaddset(&defaults, SIGXFSZ);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   pid_t child = 0;
   const int error =
-      ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+      ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error == ENOENT) {
     throw InputError("plots need gnuplot, which is not on PATH: install it (Debian: gnuplot-nox)");
   }
   if (error != 0) {
-    throw std::runtime_error(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
+    throw InputError(fmt::format("cannot start gnuplot: {}", std::strerror(error)));
   }
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {

@@ -425,25 +425,38 @@ class Script {
   std::string text_;
 };
 
-std::string_view Terminal(const std::filesystem::path& path) {
+/// A format that gnuplot writes.
+struct Format {
+  std::string_view terminal;
+  std::string_view end;  ///< of every whole file of this format, but for line feeds
+};
+
+Format FormatOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char character) {
     return static_cast<char>(std::tolower(character));
   });
-  if (extension == ".svg") return "svg font 'sans-serif,14'";
-  if (extension == ".png") return "pngcairo font 'sans,11'";
+  if (extension == ".svg") return {"svg font 'sans-serif,14'", "</svg>"};
+  if (extension == ".png") return {"pngcairo font 'sans,11'", "IEND\xAE\x42\x60\x82"};
   throw InputError(
       fmt::format("cannot draw '{}': its name must end in .svg or .png", path.string()));
 }
 
 }  // namespace
 
-void RequirePlotName(const std::filesystem::path& path) { Terminal(path); }
+void RequirePlotName(const std::filesystem::path& path) { FormatOf(path); }
 
 void WritePlot(const Plot& plot, const std::filesystem::path& path) {
   Validate(plot);
-  const std::string_view terminal = Terminal(path);
-  WriteFileAtomically(path, RunGnuplot(Script(plot, terminal).Text()));
+  const Format format = FormatOf(path);
+  const std::string drawn = RunGnuplot(Script(plot, format.terminal).Text());
+  // A disk that is full ends what gnuplot writes, and not gnuplot.
+  const std::size_t size = drawn.find_last_not_of('\n') + 1;
+  if (!std::string_view(drawn).substr(0, size).ends_with(format.end)) {
+    throw InputError(fmt::format(
+        "cannot draw '{}': gnuplot wrote only a part of it; is the disk full?", path.string()));
+  }
+  WriteFileAtomically(path, drawn);
 }
 
 }  // namespace mindahl::io

@@ -328,7 +328,8 @@ class ColumnReader {
                                       chosen, role));
       }
       throw InputError(fmt::format("{}: the {} unit '{}' is not known: must be one of {}",
-                                   table_.file(), role.name, chosen, role.unit_symbols()));
+                                   table_.file(), role.name, ForMessage(chosen),
+                                   role.unit_symbols()));
     }
     const std::string stated = finder_.HeaderUnit(column, role.unit_option);
     if (stated.empty()) {
@@ -346,8 +347,8 @@ class ColumnReader {
     throw InputError(
         fmt::format("{}:{}: the unit '{}' of {} is not known for the {}: must be one "
                     "of {}, or choose the unit with {}",
-                    finder_.Header(), column + 1, stated, finder_.Label(column), role.name,
-                    role.unit_symbols(), role.unit_option));
+                    finder_.Header(), column + 1, ForMessage(stated), finder_.Label(column),
+                    role.name, role.unit_symbols(), role.unit_option));
   }
 
   /// Whether the two are an angle and a torque: by their units, and by name where there is none.

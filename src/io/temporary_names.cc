@@ -24,15 +24,39 @@ void ReplaceName(const char* old_name, const char* new_name) {
   }
 }
 
+// At most one object of DeferredSignals is of use at a time.
+std::atomic<bool> is_deferred = false;
+std::atomic<int> noted_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+void RemoveAndRaise(int signal);
+
+/// Handles the signal once, without restarting what waits for input.
+void Handle(int signal) {
+  struct sigaction action {};
+  action.sa_handler = &RemoveAndRaise;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  ::sigaction(signal, &action, nullptr);
+}
+
+/// Interrupts every second what waits for input, and began to just after a signal was noted.
+void Interrupt(int /*signal*/) {
+  if (noted_signal != 0) ::alarm(1);
+}
+
 /// Only what POSIX allows in a handler. The signal is at its default again (SA_RESETHAND) and ends
 /// the program as soon as it is no longer blocked, on return.
 void RemoveAndRaise(int signal) {
-  for (const std::atomic<const char*>& slot : registered_names) {
-    if (const char* const name = slot.load()) ::unlink(name);
+  if (is_deferred.exchange(false)) {
+    noted_signal = signal;
+    Handle(signal);
+    struct sigaction action {};
+    action.sa_handler = &Interrupt;
+    ::sigaction(SIGALRM, &action, nullptr);
+    ::alarm(1);
+    return;
   }
-  for (const std::atomic<const char*>& slot : registered_names) {
-    if (const char* const name = slot.load()) ::rmdir(name);
-  }
+  RemoveTemporaryFiles();
   ::raise(signal);
 }
 
@@ -53,16 +77,34 @@ void TemporaryName::Keep() {
   ReplaceName(name_.c_str(), nullptr);
 }
 
+void RemoveTemporaryFiles() {
+  for (const std::atomic<const char*>& slot : registered_names) {
+    if (const char* const name = slot.load()) ::unlink(name);
+  }
+  for (const std::atomic<const char*>& slot : registered_names) {
+    if (const char* const name = slot.load()) ::rmdir(name);
+  }
+}
+
 void RemoveTemporaryFilesOnSignals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
     // Who started the program may have told it to ignore the signal, as nohup does.
     if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
-    action = {};
-    action.sa_handler = &RemoveAndRaise;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    ::sigaction(signal, &action, nullptr);
+    Handle(signal);
   }
+}
+
+DeferredSignals::DeferredSignals() { is_deferred = true; }
+DeferredSignals::~DeferredSignals() { is_deferred = false; }
+
+int DeferredSignals::noted() const { return noted_signal; }
+
+void RaiseNotedSignal() {
+  const int signal = noted_signal.exchange(0);
+  if (signal == 0) return;
+  std::signal(signal, SIG_DFL);
+  ::raise(signal);
 }
 
 }  // namespace mindahl::io

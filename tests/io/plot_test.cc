@@ -319,6 +319,19 @@ TEST(Plot, QuotesGnuplotWhenItFails) {
   EXPECT_EQ(directory.FileCount(), 1u);
 }
 
+TEST(Plot, RefusesAPartOfADrawing) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path program =
+      directory.Write("gnuplot", "#!/bin/sh\necho '<svg><path'\n");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const ScopedVariable path("PATH", directory.path().string());
+  const std::string name = (directory.path() / "loop.svg").string();
+  const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
+  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, name); }),
+            "cannot draw '" + name + "': gnuplot wrote only a part of it; is the disk full?");
+  EXPECT_FALSE(std::filesystem::exists(name));
+}
+
 TEST(Plot, LeavesNoScratchFilesBehind) {
   REQUIRE_GNUPLOT();
   const TemporaryDirectory directory;

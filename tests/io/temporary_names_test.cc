@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <csignal>
 
 #include "mindahl/io/atomic_file.h"
@@ -55,6 +56,45 @@ TEST(TemporaryName, GoesWithTheProgramThatASignalEnds) {
     EXPECT_FALSE(std::filesystem::exists(directory.path() / "scratch"));
     EXPECT_TRUE(std::filesystem::exists(directory.path() / "kept"));
   }
+}
+
+TEST(DeferredSignals, NotesTheFirstAndEndsTheProgramAfterwards) {
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    RemoveTemporaryFilesOnSignals();
+    RaiseNotedSignal();  // of none
+    {
+      const DeferredSignals deferred;
+      if (deferred.noted() != 0) ::_exit(1);
+      ::raise(SIGTERM);
+      if (deferred.noted() != SIGTERM) ::_exit(2);
+    }
+    RaiseNotedSignal();
+    ::_exit(3);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) << status;
+}
+
+TEST(DeferredSignals, InterruptWhatWaitsForInput) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    RemoveTemporaryFilesOnSignals();
+    const DeferredSignals deferred;
+    ::raise(SIGINT);  // before the wait begins
+    char byte = 0;
+    ::_exit(::read(pipe[0], &byte, 1) == -1 && errno == EINTR ? 7 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
 }
 
 TEST(TemporaryName, LeavesASignalThatIsIgnoredAlone) {

@@ -20,6 +20,12 @@ class AppendedFile {
   /// @throws InputError likewise, as where the disk is full
   void Append(std::string_view block);
 
+  /// Closes the file once all of it is on the disk. What was appended before that survives the end
+  /// of the program, and of the machine only what the system has written by then, within half a
+  /// minute as a rule.
+  /// @throws InputError likewise
+  void Finish();
+
  private:
   std::filesystem::path path_;
   int descriptor_;

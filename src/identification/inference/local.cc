@@ -71,6 +71,7 @@ Eigen::MatrixXd HalfOfPseudoInverse(const Eigen::MatrixXd& triangle, const Eigen
 
 /// Returns a root L of a symmetric matrix, LLᵀ = M, without what rounding leaves below zero.
 Eigen::MatrixXd RootOf(const Eigen::MatrixXd& matrix) {
+  if (matrix.size() == 0) return matrix;  // which Eigen's solver does not take
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen((matrix + matrix.transpose()) / 2);
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }

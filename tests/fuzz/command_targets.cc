@@ -1,0 +1,216 @@
+#include "fuzz/command_targets.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/app.h"
+#include "fuzz/bytes.h"
+#include "fuzz/memory_file.h"
+#include "mindahl/loop/reversals.h"
+#include "mindahl/models/response.h"
+
+namespace mindahl::fuzz {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const std::vector<Words> kOptionsOfBoth = {{},
+                                           {"--model", "mindlin"},
+                                           {"--model", "dahl"},
+                                           {"--model", "jenkins"},
+                                           {"--offsets", "off"},
+                                           {"--drift"},
+                                           {"--rig-stiffness", "1e9"},
+                                           {"--viscous", "fit"},
+                                           {"--lag", "fit"},
+                                           {"--loss", "huber"},
+                                           {"--loss", "tukey"},
+                                           {"--plateau-slope"},
+                                           {"--initial-state", "virgin"},
+                                           {"--force-sign", "same"},
+                                           {"--force-sign", "opposite"},
+                                           {"--reversal-gate", "0"},
+                                           {"--fix", "alpha=0.5"},
+                                           {"--terms", "auto"},
+                                           {"--force-noise", "0.1"}};
+const std::vector<Words> kOptionsOfFit = {{"--model", "auto"},
+                                          {"--rig-stiffness", "fit"},
+                                          {"--asymmetry", "fit"},
+                                          {"--trim", "auto"},
+                                          {"--noise-in", "displacement"},
+                                          {"--initial-state", "steady"},
+                                          {"--normal-load", "20"},
+                                          {"--slip-position", "quadratic"},
+                                          {"--slip-speed", "fit"},
+                                          {"--ripple", "fit"},
+                                          {"--inertia", "fit"},
+                                          {"--viscous", "fit", "--speed-exponent", "fit"},
+                                          {"--covariate", "3=fit"},
+                                          {"--skip-cycles", "1"}};
+const std::vector<Words> kOptionsOfTrack = {
+    {"--average", "2"}, {"--every", "3"}, {"--alpha", "shared"}, {"--broken-rows", "skip"}};
+
+/// Appends the options that a byte stands for.
+void AddOptions(Words& words, const std::vector<Words>& more, Bytes& bytes) {
+  const std::size_t chosen = bytes.Byte() % (kOptionsOfBoth.size() + more.size());
+  const Words& options = chosen < kOptionsOfBoth.size() ? kOptionsOfBoth[chosen]
+                                                        : more[chosen - kOptionsOfBoth.size()];
+  words.insert(words.end(), options.begin(), options.end());
+}
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string messages;
+};
+
+/// Runs a command and requires what holds of every input.
+Outcome Run(const Words& words) {
+  std::vector<const char*> argv = {"mindahl"};
+  for (const std::string& word : words) argv.push_back(word.c_str());
+  std::ostringstream out;
+  std::ostringstream err;
+  Outcome outcome;
+  outcome.status = cli::Run(static_cast<int>(argv.size()), argv.data(), out, err);
+  outcome.out = out.str();
+  outcome.messages = err.str();
+  if (outcome.status == cli::kInternalError) std::fputs(outcome.messages.c_str(), stderr);
+  Require(outcome.status != cli::kInternalError, "no input is an internal error");
+  Require(outcome.status != cli::kBadInput || outcome.out.empty(), "a refused run prints nothing");
+  Require(outcome.status != cli::kBadInput || !outcome.messages.empty(), "a refusal is explained");
+  return outcome;
+}
+
+void RequireNumbers(const std::string& json) {
+  const nlohmann::json parsed = nlohmann::json::parse(json, nullptr, /*allow_exceptions=*/false);
+  Require(!parsed.is_discarded(), "what is written as JSON is JSON");
+  Require(parsed.contains("schema"), "a JSON names its schema");
+}
+
+void RequireFiniteCells(const std::string& table) {
+  for (const std::string_view word : {",nan", ",-nan", ",inf", ",-inf"}) {
+    Require(table.find(word) == std::string::npos, "a cell is finite or empty");
+  }
+}
+
+/// Returns the text of a contact's record in m and N, ten samples a cycle, with a noise of 0.05 N.
+std::string RecordOfCycles(int cycles) {
+  constexpr int kSamples = 10;
+  std::vector<double> displacement;
+  for (int i = 0; i < kSamples * cycles; ++i) {
+    displacement.push_back(2e-6 * std::sin(2 * std::numbers::pi * i / kSamples + 0.1));
+  }
+  std::vector<double> force(displacement.size());
+  const models::FrictionModel& model = *models::FindFrictionModel("mindlin");
+  const auto reversals = loop::FindReversals(displacement, 0.0);
+  models::EvaluateForce(
+      model, {.tangential_stiffness = 5e7, .shape_exponent = 1.0 / 3.0, .slip_force = 60},
+      models::MakeLoadingPath(displacement, reversals, model.memory, {}), displacement, force);
+  std::string text = "displacement [m],force [N]\n";
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    text += fmt::format("{},{}\n", displacement[i],
+                        force[i] + 0.01 * (static_cast<double>(7 * i % 11) - 5));
+  }
+  return text;
+}
+
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+struct TrackedTest {
+  MemoryFile record{RecordOfCycles(140)};
+  std::string table;
+
+  TrackedTest() {
+    const MemoryFile output("");
+    Require(
+        Run({"track", record.name(), "--output", output.name(), "--threads", "1", "--overwrite"})
+                .status == cli::kDone,
+        "the test of resuming can be tracked");
+    table = output.Content();
+  }
+};
+
+}  // namespace
+
+void FitRecords(Input input) {
+  Bytes bytes(input);
+  Words words = {"fit", "", "--json", "-"};
+  AddOptions(words, kOptionsOfFit, bytes);
+  AddOptions(words, kOptionsOfFit, bytes);
+  const MemoryFile record(bytes.Text());
+  words[1] = record.name();
+  const Outcome outcome = Run(words);
+  if (outcome.status == cli::kBadInput) return;
+  RequireNumbers(outcome.out);
+}
+
+void TrackRecords(Input input) {
+  Bytes bytes(input);
+  const MemoryFile output("");
+  Words words = {"track", "",       "--output", output.name(), "--overwrite", "--threads",
+                 "1",     "--json", "-"};
+  AddOptions(words, kOptionsOfTrack, bytes);
+  AddOptions(words, kOptionsOfTrack, bytes);
+  const MemoryFile record(bytes.Text());
+  words[1] = record.name();
+  const Outcome outcome = Run(words);
+  RequireFiniteCells(output.Content());
+  if (outcome.status == cli::kBadInput) return;
+  RequireNumbers(outcome.out);
+}
+
+void ResumeTables(Input input) {
+  static const TrackedTest test;
+  Bytes bytes(input);
+  std::string table = test.table;
+  if (bytes.Byte() % 8 == 0) {
+    table = bytes.Text();
+  } else {
+    while (!bytes.empty() && !table.empty()) {
+      const std::size_t place = bytes.Number(3) % table.size();
+      switch (bytes.Byte() % 4) {
+        case 0:
+          table[place] = static_cast<char>(bytes.Byte());
+          break;
+        case 1:
+          table.erase(place, 1U + bytes.Byte());
+          break;
+        case 2:
+          table.insert(place, 1, static_cast<char>(bytes.Byte()));
+          break;
+        default:
+          table.resize(place);
+      }
+    }
+  }
+  const MemoryFile output(table);
+  const Outcome outcome =
+      Run({"track", test.record.name(), "--output", output.name(), "--threads", "1", "--resume"});
+  if (outcome.status == cli::kBadInput) {
+    Require(output.Content() == table, "a table that is refused is left alone");
+  } else {
+    // A value that somebody changed above the last batch is kept as it is.
+    const std::vector<std::string> lines = LinesOf(output.Content());
+    const std::vector<std::string> before = LinesOf(table);
+    const std::vector<std::string> undisturbed = LinesOf(test.table);
+    Require(lines.size() == undisturbed.size(), "a table that is gone on with becomes as long");
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      Require(lines[i] == undisturbed[i] || (i < before.size() && lines[i] == before[i]),
+              "a table that is gone on with becomes the undisturbed");
+    }
+  }
+}
+
+}  // namespace mindahl::fuzz

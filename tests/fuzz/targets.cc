@@ -1,0 +1,28 @@
+#include <algorithm>
+#include <array>
+
+#include "fuzz/command_targets.h"
+#include "fuzz/model_targets.h"
+#include "fuzz/target.h"
+#include "fuzz/text_targets.h"
+
+namespace mindahl::fuzz {
+namespace {
+
+constexpr std::array kTargets = {
+    Target{"csv", &ReadRecords, 4096},         Target{"units", &LookUpUnits, 64},
+    Target{"toml", &ReadConfigurations, 4096}, Target{"reversals", &FindTurns, 1024},
+    Target{"models", &EvaluateModels, 1024},   Target{"contact_state", &MoveContacts, 1024},
+    Target{"fit", &FitRecords, 4096},          Target{"track", &TrackRecords, 4096},
+    Target{"resume", &ResumeTables, 256}};
+
+}  // namespace
+
+std::span<const Target> Targets() { return kTargets; }
+
+const Target* FindTarget(std::string_view name) {
+  const auto found = std::ranges::find(kTargets, name, &Target::name);
+  return found == kTargets.end() ? nullptr : found;
+}
+
+}  // namespace mindahl::fuzz

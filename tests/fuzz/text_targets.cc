@@ -1,0 +1,99 @@
+#include "fuzz/text_targets.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/toml.h"
+#include "fuzz/bytes.h"
+#include "fuzz/memory_file.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/units.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/io/record_stream.h"
+
+namespace mindahl::fuzz {
+namespace {
+
+std::optional<io::RecordFile> ReadWhole(const std::string& path) {
+  try {
+    return io::ReadRecord(path);
+  } catch (const InputError& error) {
+    Require(std::string_view(error.what()).find('\n') == std::string_view::npos,
+            "a message has one line");
+    return std::nullopt;
+  }
+}
+
+std::optional<io::Samples> ReadStreamed(const std::string& path) {
+  try {
+    io::RecordStream stream(path, {}, io::BrokenRows::kRefuse);
+    io::Samples all;
+    io::Samples piece;
+    while (stream.Next(piece)) {
+      const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
+        to.insert(to.end(), from.begin(), from.end());
+      };
+      Require(piece.displacement.size() == piece.lines.size(), "a sample has a line");
+      add(all.displacement, piece.displacement);
+      add(all.force, piece.force);
+      add(all.time, piece.time);
+      add(all.normal_load, piece.normal_load);
+    }
+    return all;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+void ReadRecords(Input input) {
+  const MemoryFile file({reinterpret_cast<const char*>(input.data()), input.size()});
+  const std::optional<io::RecordFile> whole = ReadWhole(file.name());
+  const std::optional<io::Samples> streamed = ReadStreamed(file.name());
+  if (whole) {
+    Require(whole->lines.size() == whole->record.size(), "a sample of a record has a line");
+    for (const double value : whole->record.displacement) {
+      Require(std::isfinite(value), "a displacement that is read is finite");
+    }
+    for (const double value : whole->record.force) {
+      Require(std::isfinite(value), "a force that is read is finite");
+    }
+  }
+  if (!whole || !streamed || streamed->displacement.empty()) return;
+  Require(whole->record.displacement == streamed->displacement &&
+              whole->record.force == streamed->force && whole->record.time == streamed->time &&
+              whole->record.normal_load == streamed->normal_load,
+          "a record is the same read whole and as a stream");
+}
+
+void LookUpUnits(Input input) {
+  const std::string symbol = Bytes(input).Text();
+  for (const auto unit_of : {&LengthUnit, &AngleUnit, &ForceUnit, &TorqueUnit, &TimeUnit}) {
+    const std::optional<Unit> unit = unit_of(symbol);
+    if (!unit) continue;
+    Require(std::isfinite(unit->ToSi(1)) && unit->ToSi(1) > 0, "a unit is positive");
+    const std::optional<Unit> again = unit_of(unit->symbol);
+    Require(again && again->ToSi(1) == unit->ToSi(1), "a unit is found by its own symbol");
+  }
+  IsPressureUnit(symbol);
+}
+
+void ReadConfigurations(Input input) {
+  const std::string text = Bytes(input).Text();
+  try {
+    std::size_t line = 0;
+    for (const cli::TomlItem& item : cli::ReadToml(text, "fuzz")) {
+      Require(item.line > line || item.line == line, "items are in order");
+      Require(!item.key.empty(), "an item has a key");
+      line = item.line;
+    }
+  } catch (const InputError& error) {
+    Require(std::string_view(error.what()).starts_with("fuzz:"), "a message names file and line");
+  }
+}
+
+}  // namespace mindahl::fuzz
