@@ -42,7 +42,8 @@ const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
   const auto why = [](const Item&) { return std::string("open there"); };
   static const std::vector<Field<Item>> fields = {
       {"source", "",
-       "why ci95 reaches as far: parabola, profile, initial_state, other_minimum, omitted_terms, plateau, "
+       "why ci95 reaches as far: parabola, profile, initial_state, other_minimum, omitted_terms, "
+       "plateau, "
        "small_alpha, discrepancy or carried_force",
        [](const Item& item) { return Text(Name(item.source)); }},
       {"ci95[0]", "of the parameter", "lower end of the contribution",
