@@ -68,10 +68,10 @@ struct IntervalCount {
 struct CoverageVerdict {
   std::string_view parameter;
   bool by_dahl = false;  ///< by Dahl's own law
-  IntervalCount all;
-  IntervalCount sliding;  ///< those of loops with λ > 1
-  double chance = 1.0;    ///< the smaller of all's of so few, and sliding's of so many
-  bool passed = true;     ///< not less than kCoverageFalseAlarm over the number of tests
+  IntervalCount all = {};
+  IntervalCount sliding = {};  ///< those of loops with λ > 1
+  double chance = 1.0;         ///< the smaller of all's of so few, and sliding's of so many
+  bool passed = true;          ///< not less than kCoverageFalseAlarm over the number of tests
 };
 
 /// All cases at one amplitude and noise level.
