@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 from . import _mindahl
-from ._arguments import (Uncertain, assignments, bounds, count, known_contact, names_of,
+from ._arguments import (Uncertain, assignments, bounds, count, known_contact, names_of, number,
                          number_text, on_off, optional_number, pair, uncertain)
 from ._records import Column, RecordArguments, records_of
 from ._result import FitResult, FitWarning
@@ -28,6 +28,7 @@ def request_of(
     terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
     starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
     noise_in: str = "force", term_choice: Union[str, Sequence[str]] = "none",
+    confidence: float = 0.95,
 ) -> _mindahl.FitRequest:
     request = _mindahl.FitRequest()
     request.model = model
@@ -43,6 +44,7 @@ def request_of(
     request.loss = loss
     request.starts = count("starts", starts, 1)
     request.seed = count("seed", seed, 0)
+    request.confidence = number("confidence", confidence)
     request.force_noise = optional_number("force_noise", force_noise)
     request.displacement_noise = optional_number("displacement_noise", displacement_noise)
     request.reversal_gate = optional_number("reversal_gate", reversal_gate)
@@ -75,7 +77,8 @@ def fit(
     bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
     samples: Optional[tuple[int, int]] = None, skip_cycles: int = 0,
     trim: str = "off", time_window: Optional[Range] = None, load_window: Optional[Range] = None, loss: str = "none",
-    starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
+    starts: int = 1, seed: int = 1, confidence: float = 0.95,
+    force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
     youngs_modulus_1: Optional[Uncertain] = None, poisson_1: Optional[Uncertain] = None,
     radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
@@ -122,6 +125,7 @@ def fit(
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.
+        confidence: of every interval.
         starts: starting points refined. seed: of those drawn at random.
 
     What is known of the contact, each a number or (number, standard uncertainty)
@@ -143,7 +147,8 @@ def fit(
                "slip_position": slip_position, "slip_speed": slip_speed, "ripple": ripple},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
-        reversal_gate=reversal_gate, term_choice=terms)
+        reversal_gate=reversal_gate, term_choice=terms,
+        confidence=confidence)
     request.cycles = "" if cycles is None else pair("cycles", cycles)
     request.samples = "" if samples is None else pair("samples", samples)
     request.skip_cycles = count("skip_cycles", skip_cycles, 0)

@@ -87,6 +87,7 @@ class FitRequest:
     fix: list[str]
     start: list[str]
     bound: list[str]
+    confidence: float
     force_noise: Optional[float]
     displacement_noise: Optional[float]
     reversal_gate: Optional[float]

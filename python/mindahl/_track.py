@@ -83,7 +83,8 @@ def track(
     slip_speed: Optional[Asked] = None, ripple: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
     fix: Optional[Mapping[str, float]] = None,
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
-    loss: str = "none", starts: int = 1, seed: int = 1, force_noise: Optional[float] = None,
+    loss: str = "none", starts: int = 1, seed: int = 1, confidence: float = 0.95,
+    force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
     average: int = 1, every: int = 1, alpha: str = "cycle", broken_rows: str = "refuse", threads: Optional[int] = None,
 ) -> CycleTable:
@@ -113,7 +114,8 @@ def track(
                "slip_position": slip_position, "slip_speed": slip_speed, "ripple": ripple},
         covariate=None, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
-        reversal_gate=reversal_gate, term_choice=terms)
+        reversal_gate=reversal_gate, term_choice=terms,
+        confidence=confidence)
     request.normal_load = optional_number("normal_load", normal_load)
     request.average = count("average", average, 1)
     request.every = count("every", every, 1)

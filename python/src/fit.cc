@@ -115,6 +115,7 @@ void AddFit(py::module_& module) {
       .def_readwrite("fix", &FitRequest::fix)
       .def_readwrite("start", &FitRequest::start)
       .def_readwrite("bound", &FitRequest::bound)
+      .def_readwrite("confidence", &FitRequest::confidence)
       .def_readwrite("force_noise", &FitRequest::force_noise)
       .def_readwrite("displacement_noise", &FitRequest::displacement_noise)
       .def_readwrite("reversal_gate", &FitRequest::reversal_gate)

@@ -61,7 +61,7 @@ Cell ParameterCell(const std::vector<ParameterEstimate>& parameters, std::string
 /// A parameter of every file that identifies it, with its interval, over the file's place.
 std::optional<io::PlotPanel> QuantityPanel(std::span<const FileResult> files,
                                            std::string_view name) {
-  io::PlotSeries series{"95 % interval", {}, {}, io::PlotStyle::kIntervals};
+  io::PlotSeries series{"interval", {}, {}, io::PlotStyle::kIntervals};
   series.shade = 0.3;
   std::string_view unit;
   double largest = 0.0;

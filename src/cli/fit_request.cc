@@ -245,6 +245,10 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   command.add_option("--bound", options.bound, "keep a parameter between two values")
       ->type_name("NAME=LO:HI")
       ->group(group);
+  command.add_option("--confidence", options.confidence, "confidence of every interval [-]")
+      ->type_name("C")
+      ->capture_default_str()
+      ->group(group);
   AddOptional(command, "--force-noise", options.force_noise,
               "known standard deviation of the force [N]; default from the residuals", "N")
       ->group(group);

@@ -362,13 +362,13 @@ Eigen::MatrixXd Draw(const BackboneSeries& series, const Smoothest& smoothest,
 
 /// Draws are cut where weights would turn negative, on either side: the wider one holds for both.
 /// @param off  of a quantity, from its value
-BandValue BandOf(double value, Eigen::VectorXd off, double unit) {
+BandValue BandOf(double value, Eigen::VectorXd off, double unit, double confidence) {
   std::ranges::sort(off);
   const auto at = [&](double share) {
     return std::abs(
         off[static_cast<Eigen::Index>(std::lround(share * static_cast<double>(off.size() - 1)))]);
   };
-  const double half = std::max(at(0.025), at(0.975));
+  const double half = std::max(at((1 - confidence) / 2), at((1 + confidence) / 2));
   return {unit * value, unit * std::max(0.0, value - half), unit * (value + half)};
 }
 
@@ -417,7 +417,8 @@ BackboneEstimate EstimateBackbone(std::span<const loop::RecordView> records,
   estimate.effective_samples = noise.effective_samples;
   estimate.rms = force_unit * std::sqrt(series.SumOfSquares(smoothest.w) / series.samples);
   const auto band = [&](const Eigen::VectorXd& of_stiffnesses, double unit) {
-    return BandOf(of_stiffnesses.dot(smoothest.w), drawn.transpose() * of_stiffnesses, unit);
+    return BandOf(of_stiffnesses.dot(smoothest.w), drawn.transpose() * of_stiffnesses, unit,
+                  options.confidence);
   };
   Eigen::VectorXd forces(smoothest.w.size());
   const auto force_at = [&](double displacement) -> Eigen::VectorXd {

@@ -23,12 +23,13 @@ double WayTo(const ParameterEstimate& estimate, const std::optional<double>& end
 
 /// Returns the error that an interval's half width stands for; the standard error itself where the
 /// interval is that of the parabola, but for rounding.
-double ErrorOfWay(const ParameterEstimate& estimate, double way, double degrees_of_freedom) {
+double ErrorOfWay(const ParameterEstimate& estimate, double way, double degrees_of_freedom,
+                  double confidence) {
   if (estimate.status == ParameterStatus::kFixed) return 0.0;
   const bool has_error = estimate.standard_error || estimate.includes_discrepancy;
   if (!has_error || !std::isfinite(way)) return kOpen;
   constexpr double kRounding = 1e-9;
-  const double error = way / StudentQuantile95(degrees_of_freedom);
+  const double error = way / StudentQuantile(degrees_of_freedom, confidence);
   const double standard = estimate.standard_error.value_or(0.0);
   return error > standard * (1 + kRounding) ? error : standard;
 }
@@ -75,12 +76,12 @@ double FitResult::PeakForce() const {
 
 double FitResult::ErrorOf(const ParameterEstimate& estimate) const {
   const double way = std::max(WayTo(estimate, estimate.lower95), WayTo(estimate, estimate.upper95));
-  return ErrorOfWay(estimate, way, ErrorDegreesOfFreedom());
+  return ErrorOfWay(estimate, way, ErrorDegreesOfFreedom(), confidence);
 }
 
 double FitResult::ErrorTowards(const ParameterEstimate& estimate, double value) const {
   const std::optional<double>& end = value < estimate.value ? estimate.lower95 : estimate.upper95;
-  return ErrorOfWay(estimate, WayTo(estimate, end), ErrorDegreesOfFreedom());
+  return ErrorOfWay(estimate, WayTo(estimate, end), ErrorDegreesOfFreedom(), confidence);
 }
 
 }  // namespace mindahl::identification

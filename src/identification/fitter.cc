@@ -92,6 +92,9 @@ void RequireOptions(const FitOptions& options) {
     throw InvalidArgument("the model cannot be fitted: it must be told the amplitude");
   }
   if (options.force_noise) RequirePositive("force noise [N]", *options.force_noise);
+  if (!(options.confidence > 0 && options.confidence < 1)) {
+    ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1");
+  }
   RequireTermsOfResponse(options);
   if (options.model->memory == models::Memory::kNone && HasTerm(options, "asymmetry")) {
     throw InvalidArgument(fmt::format(
@@ -468,7 +471,8 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   GradeUse(thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   const std::vector<ParameterEstimate> plain = result.parameters;
-  WidenByDepartures(problem, solution, causes, StudentQuantile95(test.degrees_of_freedom),
+  WidenByDepartures(problem, solution, causes,
+                    StudentQuantile(test.degrees_of_freedom, options.confidence),
                     result.parameters);
   CoverPlateau(result, thresholds);
   CoverDiscrepancy(problem, solution, estimates, plain, thresholds, result);
@@ -832,6 +836,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   RequireRigStifferThanLoop(given, prepared);
   RequireNoise(given, data);
   result.force_sense = prepared.force_sense;
+  result.confidence = given.confidence;
   FillRecords(attempt, depth, result);
   if (!data.mean_load.empty()) result.normal_load = data.reference_load;
 

@@ -9,6 +9,7 @@
 
 #include "mindahl/io/csv_writer.h"
 #include "mindahl/report/quantity.h"
+#include "report/names.h"
 
 namespace mindahl::report {
 
@@ -75,12 +76,12 @@ std::string BackboneText(const BackboneEstimate& backbone, const identification:
                          const Units& units) {
   const BackbonePoint& last = backbone.points.back();
   std::string text = fmt::format(
-      "\nbackbone without a law (95 % band):\n"
+      "\nbackbone without a law ({} band):\n"
       "  stiffness over the first hundredth {}\n"
       "  force at {}: {}\n"
       "  what does not slip there: {}\n"
       "  {} beside it: {}\n",
-      WithBand(backbone.first_stiffness, units.stiffness),
+      ConfidenceWords(fit), WithBand(backbone.first_stiffness, units.stiffness),
       Quantity(last.displacement, units.displacement, 4), WithBand(last.force, units.force),
       WithBand(backbone.elastic, units.stiffness), fit.model->name, FittedLawText(fit, units));
   const auto left = std::ranges::count_if(backbone.points, LeavesBand);

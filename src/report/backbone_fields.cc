@@ -16,9 +16,9 @@ const std::vector<Field<BackbonePoint>>& PointFields() {
        [](const Item& item) { return Number(item.displacement); }},
       {"force", "N", "there, without a law",
        [](const Item& item) { return Number(item.force.value); }},
-      {"ci95[0]", "N", "lower end of its 95 % band",
+      {"ci95[0]", "N", "lower end of its band",
        [](const Item& item) { return Number(item.force.lower95); }},
-      {"ci95[1]", "N", "upper end of its 95 % band",
+      {"ci95[1]", "N", "upper end of its band",
        [](const Item& item) { return Number(item.force.upper95); }},
       {"law", "N", "of the fitted law", [](const Item& item) { return Number(item.law); }},
   };
@@ -37,9 +37,9 @@ void AddBand(FieldTable& table, const std::string& path, const char* label,
   table.Add(
       {BackboneRow(path + ".value", "N/m", label,
                    [band](const BackboneEstimate& item) { return Number((item.*band).value); }),
-       BackboneRow(path + ".ci95[0]", "N/m", "lower end of the 95 % interval",
+       BackboneRow(path + ".ci95[0]", "N/m", "lower end of the interval",
                    [band](const BackboneEstimate& item) { return Number((item.*band).lower95); }),
-       BackboneRow(path + ".ci95[1]", "N/m", "upper end of the 95 % interval",
+       BackboneRow(path + ".ci95[1]", "N/m", "upper end of the interval",
                    [band](const BackboneEstimate& item) { return Number((item.*band).upper95); })});
 }
 

@@ -11,6 +11,7 @@
 #include "mindahl/report/contact.h"
 #include "mindahl/report/quantity.h"
 #include "report/fields.h"
+#include "report/names.h"
 #include "report/statements.h"
 #include "report/wrapped.h"
 
@@ -69,9 +70,9 @@ std::string LoadLawText(const Report& report) {
     text += Wrapped("  " + LawHeading(law), 4);
     for (const QuantityUnderLaw& quantity : law.quantities) {
       if (quantity.key == "contact_radius") continue;  // at every load above
-      text += fmt::format("    {:<21} {:<25} 95 % {:<26} {}\n", quantity.label,
-                          ValueAndError(quantity.value, quantity.unit), IntervalWords(quantity),
-                          quantity.formula);
+      text += fmt::format("    {:<21} {:<25} {} {:<26} {}\n", quantity.label,
+                          ValueAndError(quantity.value, quantity.unit), ConfidenceWords(report.fit),
+                          IntervalWords(quantity), quantity.formula);
       if (quantity.predicted) {
         text += fmt::format("    {:<21} {}\n", "  of the two radii",
                             Quantity(*quantity.predicted, quantity.unit));

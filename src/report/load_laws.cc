@@ -44,7 +44,8 @@ struct Estimate {
   std::array<Component, kCount> components;
   /// 0 where an error is open, at a bound: what rests on it is not tested, and so no law.
   std::array<std::array<double, kCount>, kCount> covariance{};
-  double quantile = 0.0;  ///< of Student's t, two-sided 95 %
+  double quantile = 0.0;         ///< of Student's t, two-sided
+  double normal_quantile = 0.0;  ///< likewise
 };
 
 /// How far an interval reaches beyond quantile·error on either side.
@@ -64,9 +65,9 @@ double StandardErrorOf(const ParameterEstimate& estimate) {
 
 Estimate EstimateOf(const FitResult& fit) {
   Estimate estimate;
-  constexpr double kUpperEnd = 0.975;
-  estimate.quantile =
-      boost::math::quantile(boost::math::students_t(fit.ErrorDegreesOfFreedom()), kUpperEnd);
+  estimate.quantile = boost::math::quantile(boost::math::students_t(fit.ErrorDegreesOfFreedom()),
+                                            (1 + fit.confidence) / 2);
+  estimate.normal_quantile = NormalQuantile(fit.confidence);
   constexpr std::array<std::string_view, Estimate::kCount> kNames = {"sigma", "load_exponent",
                                                                      "alpha"};
   for (std::size_t i = 0; i < Estimate::kCount; ++i) {
@@ -133,11 +134,12 @@ Held Hold(const Estimate& estimate, const Constraint& constraint, std::size_t wh
 }
 
 /// Of a power of σ and of inputs: in proportion, to either side.
-std::optional<Interval> IntervalOf(const PropagatedValue& value, const Held& log_stiffness) {
+std::optional<Interval> IntervalOf(const PropagatedValue& value, const Held& log_stiffness,
+                                   double normal_quantile) {
   if (!std::isfinite(value.standard_error)) return std::nullopt;
   const double power =
       log_stiffness.error > 0 ? value.fit_error / value.value / log_stiffness.error : 0.0;
-  const double of_inputs = kNormalQuantile95 * value.input_error / value.value;
+  const double of_inputs = normal_quantile * value.input_error / value.value;
   const double half_width = std::hypot(power * log_stiffness.half_width, of_inputs);
   if (!(half_width > 0)) return std::nullopt;  // all that it follows from is held
   return Interval{value.value * std::exp(-half_width), value.value * std::exp(half_width)};
@@ -146,10 +148,11 @@ std::optional<Interval> IntervalOf(const PropagatedValue& value, const Held& log
 /// E follows from σ in no proportion: the nearer to a rigid body, the more. What else is known of
 /// the contact moves σ's ends as it would have to move σ.
 std::optional<Interval> IntervalOfModulus(const PropagatedValue& value, const Held& log_stiffness,
-                                          double stiffness, const KnownContact& known) {
+                                          double stiffness, const KnownContact& known,
+                                          double normal_quantile) {
   if (!(log_stiffness.error > 0) || !(value.fit_error > 0)) return std::nullopt;
   const double of_inputs =
-      kNormalQuantile95 * value.input_error * log_stiffness.error / value.fit_error;
+      normal_quantile * value.input_error * log_stiffness.error / value.fit_error;
   const double half_width = std::hypot(log_stiffness.half_width, of_inputs);
   const auto modulus_at = [&](double log_change) {
     const ShapeUnderLoad shape = contact::IdentifyShape(
@@ -170,7 +173,8 @@ KnownContact AtMeanLoad(const FitResult& fit, const KnownContact& known) {
 }
 
 std::vector<QuantityUnderLaw> QuantitiesOf(const ShapeUnderLoad& shape, const Held& log_stiffness,
-                                           double stiffness, const KnownContact& known) {
+                                           double stiffness, const KnownContact& known,
+                                           double normal_quantile) {
   std::vector<QuantityUnderLaw> quantities;
   const auto add = [&](std::string_view key, std::string_view unit, std::string label,
                        std::string_view formula, const std::optional<PropagatedValue>& value) {
@@ -180,7 +184,7 @@ std::vector<QuantityUnderLaw> QuantitiesOf(const ShapeUnderLoad& shape, const He
                           .label = std::move(label),
                           .formula = formula,
                           .value = *value,
-                          .interval95 = IntervalOf(*value, log_stiffness),
+                          .interval95 = IntervalOf(*value, log_stiffness, normal_quantile),
                           .predicted = {}});
   };
   add("contact_radius", "m", "contact radius", "a = σG*/8 at the mean load", shape.contact_radius);
@@ -196,7 +200,7 @@ std::vector<QuantityUnderLaw> QuantitiesOf(const ShapeUnderLoad& shape, const He
       "of E*, ν and the other body", shape.youngs_modulus);
   if (shape.youngs_modulus) {
     quantities.back().interval95 =
-        IntervalOfModulus(*shape.youngs_modulus, log_stiffness, stiffness, known);
+        IntervalOfModulus(*shape.youngs_modulus, log_stiffness, stiffness, known, normal_quantile);
   }
   add("slope", "-", "slope of the cone", "tan θ = 2N/(πE*a²)", shape.slope);
   add("load_over_stiffness", "m", "load over stiffness", "N/σ", shape.load_over_stiffness);
@@ -254,7 +258,8 @@ LoadLaw LawOf(const FitResult& fit, const LoadHypothesis& hypothesis, const Esti
   }
   if (shape) {
     const ShapeUnderLoad contact = contact::IdentifyShape(*shape, law.stiffness, known);
-    law.quantities = QuantitiesOf(contact, log_stiffness, stiffness, known);
+    law.quantities =
+        QuantitiesOf(contact, log_stiffness, stiffness, known, estimate.normal_quantile);
     law.unidentified = contact.unidentified;
     return law;
   }

@@ -40,12 +40,12 @@ const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
                         return item.alone ? Number(((*item.alone).*member).value) : Missing();
                       },
                       WhyNotAlone});
-      rows.push_back({"alone." + name + ".ci95[0]", unit, "lower end of the 95 % interval",
+      rows.push_back({"alone." + name + ".ci95[0]", unit, "lower end of the interval",
                       [member](const Item& item) {
                         return item.alone ? Number(((*item.alone).*member).lower95) : Missing();
                       },
                       WhyNotAlone});
-      rows.push_back({"alone." + name + ".ci95[1]", unit, "upper end of the 95 % interval",
+      rows.push_back({"alone." + name + ".ci95[1]", unit, "upper end of the interval",
                       [member](const Item& item) {
                         return item.alone ? Number(((*item.alone).*member).upper95) : Missing();
                       },
@@ -98,12 +98,12 @@ std::string WhyNoInterval(const QuantityUnderLaw& item) {
 const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
   using Item = QuantityUnderLaw;
   static const std::vector<Field<Item>> fields = {
-      {"ci95[0]", "of the quantity", "lower end of the 95 % interval",
+      {"ci95[0]", "of the quantity", "lower end of the interval",
        [](const Item& item) {
          return item.interval95 ? Number(item.interval95->lower) : Missing();
        },
        WhyNoInterval},
-      {"ci95[1]", "of the quantity", "upper end of the 95 % interval",
+      {"ci95[1]", "of the quantity", "upper end of the interval",
        [](const Item& item) {
          const bool is_closed = item.interval95 && std::isfinite(item.interval95->upper);
          return is_closed ? Number(item.interval95->upper) : Missing();
@@ -136,12 +136,12 @@ const std::vector<Field<LoadLaw>>& LoadLawFields() {
        [](const Item& item) { return Number(item.stiffness.value); }},
       {"sigma.standard_error", "N/m", "standard error",
        [](const Item& item) { return Number(item.stiffness.standard_error); }},
-      {"sigma.ci95[0]", "N/m", "lower end of the 95 % interval",
+      {"sigma.ci95[0]", "N/m", "lower end of the interval",
        [](const Item& item) {
          return item.stiffness95 ? Number(item.stiffness95->lower) : Missing();
        },
        why_exact},
-      {"sigma.ci95[1]", "N/m", "upper end of the 95 % interval",
+      {"sigma.ci95[1]", "N/m", "upper end of the interval",
        [](const Item& item) {
          return item.stiffness95 ? Number(item.stiffness95->upper) : Missing();
        },

@@ -40,10 +40,8 @@ const std::vector<Field<StiffnessTest>>& StiffnessFields() {
     };
   };
   static const std::vector<Field<Item>> fields = {
-      {"ci95[0]", "-", "lower end of the 95 % interval", end(&Interval::lower),
-       WhyStiffnessNotTested},
-      {"ci95[1]", "-", "upper end of the 95 % interval", end(&Interval::upper),
-       WhyStiffnessNotTested},
+      {"ci95[0]", "-", "lower end of the interval", end(&Interval::lower), WhyStiffnessNotTested},
+      {"ci95[1]", "-", "upper end of the interval", end(&Interval::upper), WhyStiffnessNotTested},
       {"z", "-", "(ratio − 1)/SE", [](const Item& item) { return Number(item.z); },
        WhyStiffnessNotTested},
       {"p_value", "-", "two-sided", [](const Item& item) { return Number(item.p_value); },

@@ -34,16 +34,17 @@ AlphaTest TestAlpha(const identification::FitResult& fit) {
 }
 
 StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
-                            double degrees_of_freedom) {
+                            double degrees_of_freedom, double confidence) {
   StiffnessTest test;
+  test.confidence = confidence;
   test.radius = radius;
   test.ratio = ratio;
   if (!(ratio.standard_error > 0) || std::isinf(ratio.standard_error)) return test;
   const double share = ratio.FitShare();
   const boost::math::students_t distribution(share > 0 ? degrees_of_freedom / (share * share)
                                                        : std::numeric_limits<double>::infinity());
-  constexpr double kUpperEnd = 0.975;
-  const double half_width = boost::math::quantile(distribution, kUpperEnd) * ratio.standard_error;
+  const double half_width =
+      boost::math::quantile(distribution, (1 + confidence) / 2) * ratio.standard_error;
   test.interval95 = {ratio.value - half_width, ratio.value + half_width};
   test.z = (ratio.value - 1) / ratio.standard_error;
   test.p_value = TwoSided(distribution, *test.z);
@@ -55,8 +56,9 @@ std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
   std::vector<StiffnessTest> tests;
   const bool is_known = fit.Find("sigma")->is_known();
   const auto add = [&](std::string_view radius, const contact::PropagatedValue& ratio) {
-    tests.push_back(is_known ? TestStiffness(radius, ratio, fit.ErrorDegreesOfFreedom())
-                             : StiffnessTest{.radius = radius, .ratio = ratio});
+    tests.push_back(is_known
+                        ? TestStiffness(radius, ratio, fit.ErrorDegreesOfFreedom(), fit.confidence)
+                        : StiffnessTest{.radius = radius, .ratio = ratio});
   };
   if (contact.hertz) add("hertz", contact.hertz->sigma_over_hertz_mindlin);
   if (contact.sigma_over_mindlin) add("given", *contact.sigma_over_mindlin);

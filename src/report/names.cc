@@ -1,5 +1,7 @@
 #include "report/names.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace mindahl::report {
@@ -116,6 +118,10 @@ std::string_view Name(identification::MemoryVerdict verdict) {
       return "undecided";
   }
   return "";
+}
+
+std::string ConfidenceWords(const identification::FitResult& fit) {
+  return fmt::format("{:g} %", 100 * fit.confidence);
 }
 
 }  // namespace mindahl::report

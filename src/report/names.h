@@ -21,4 +21,7 @@ std::string_view Name(identification::AdequacyVerdict verdict);
 std::string_view Name(identification::Use use);
 std::string_view Name(identification::MemoryVerdict verdict);
 
+/// Returns the confidence of a fit's intervals for people: "95 %".
+std::string ConfidenceWords(const identification::FitResult& fit);
+
 }  // namespace mindahl::report

@@ -85,8 +85,9 @@ std::string VerdictSection(const Report& report) {
 // --- parameters
 
 std::string ParameterSection(const Report& report) {
-  Table table("fitted and given, with one standard error and the 95 % interval",
-              {"parameter", "value", "unit", "95 % interval", "verdict"});
+  const std::string heading = ConfidenceWords(report.fit) + " interval";
+  Table table("fitted and given, with one standard error and the " + heading,
+              {"parameter", "value", "unit", heading, "verdict"});
   for (const ParameterEstimate& estimate : report.fit.parameters) {
     const Shown shown = WhatIsShown(estimate);
     const double magnitude =
@@ -446,8 +447,8 @@ std::string LoadSection(const Report& report) {
   std::string laws;
   for (const LoadLaw& law : LawsToShow(series)) {
     Table table_of_law("what follows of the contact",
-                       {"quantity", "value", "95 % interval", "from", "of the bodies",
-                        "what its error is made of"});
+                       {"quantity", "value", ConfidenceWords(report.fit) + " interval", "from",
+                        "of the bodies", "what its error is made of"});
     for (const QuantityUnderLaw& quantity : law.quantities) {
       table_of_law.Row(quantity.label,
                        {ValueCell(quantity.value, quantity.unit), Number(IntervalWords(quantity)),

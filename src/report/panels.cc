@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/normal_quantile.h"
+#include "report/names.h"
 
 namespace mindahl::report {
 
@@ -185,7 +186,7 @@ PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
   double least = report.load_series->contacts.front().normal_load;
   double greatest = least;
   PlotSeries alone;
-  alone.label = "each file alone, 95 %";
+  alone.label = "each file alone, " + ConfidenceWords(report.fit);
   alone.style = PlotStyle::kIntervals;
   for (const ContactUnderLoad& contact : report.load_series->contacts) {
     least = std::min(least, contact.normal_load);
@@ -471,7 +472,7 @@ std::optional<PlotPanel> SlipForceLikelihood(const Report& report) {
     curve.x.push_back(point.law.slip_force / unit.factor);
     curve.y.push_back(std::min(point.statistic, ceiling));
   }
-  PlotSeries critical{"above it outside the 95 % interval",
+  PlotSeries critical{"above it outside the interval",
                       {curve.x.front(), curve.x.back()},
                       {profile->critical, profile->critical},
                       PlotStyle::kLine};
@@ -498,7 +499,7 @@ std::vector<PlotPanel> LoadPanels(const Report& report, const PanelUnits& units)
 
 std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units) {
   if (!report.backbone || report.backbone->points.empty()) return std::nullopt;
-  PlotSeries band{"without a law, 95 %", {}, {}, PlotStyle::kBand};
+  PlotSeries band{"without a law, " + ConfidenceWords(report.fit), {}, {}, PlotStyle::kBand};
   band.shade = kDataShade;
   PlotSeries law{"the fitted law", {}, {}, PlotStyle::kLine};
   for (const identification::BackbonePoint& point : report.backbone->points) {

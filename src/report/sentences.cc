@@ -133,10 +133,10 @@ bool SeesSlip(const FitResult& fit) {
 std::string TooWide(const char* parameter, const Finding& finding, const FitResult& fit,
                     std::string_view unit) {
   return fmt::format(
-      "{}: the 95 % interval {} … {} is too wide to call it known; record {} (mindahl plan "
+      "{}: the {} interval {} … {} is too wide to call it known; record {} (mindahl plan "
       "--record "
       "says which)",
-      parameter, Quantity(Needed(finding, "lower"), unit, 3),
+      parameter, ConfidenceWords(fit), Quantity(Needed(finding, "lower"), unit, 3),
       Quantity(Needed(finding, "upper"), unit, 3),
       SeesSlip(fit) ? "more samples, or less noise"
                     : "more samples, less noise or a larger amplitude");

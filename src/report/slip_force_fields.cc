@@ -31,10 +31,10 @@ std::vector<Field<Report>> RowsOf(const std::string& sense, const char* label,
       SlipForceRow(
           path + ".standard_error", "standard error",
           [member](const SlipForces& forces) { return Number((forces.*member).standard_error); }),
-      SlipForceRow(path + ".ci95[0]", "lower end of the 95 % interval",
+      SlipForceRow(path + ".ci95[0]", "lower end of the interval",
                    [member](const SlipForces& forces) { return Number((forces.*member).lower95); }),
       SlipForceRow(
-          path + ".ci95[1]", "upper end of the 95 % interval",
+          path + ".ci95[1]", "upper end of the interval",
           [member](const SlipForces& forces) { return Number((forces.*member).upper95); })};
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/normal_quantile.h"
 #include "mindahl/identification/trend.h"
 #include "mindahl/report/quantity.h"
 #include "report/adequacy.h"
@@ -145,14 +146,14 @@ std::string SlipStatement(const LoopDescription& loop, const Units& units) {
 
 std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   if (fit.adequacy.verdict != identification::AdequacyVerdict::kDoubtful) return "";
-  constexpr double kNormalQuantile = 1.96;
+  const double quantile = NormalQuantile(fit.confidence);
   constexpr double kFar = 3.0;  // as wide as of an error that is taken three times too small
   std::vector<const ParameterEstimate*> wide;
   for (const ParameterEstimate& estimate : fit.parameters) {
     const double error = estimate.standard_error.value_or(0.0);
     const bool has_both = estimate.lower95 && estimate.upper95;
     if (WhatIsShown(estimate) != Shown::kValue || !has_both || !(error > 0)) continue;
-    const double ratio = (*estimate.upper95 - *estimate.lower95) / (2 * kNormalQuantile * error);
+    const double ratio = (*estimate.upper95 - *estimate.lower95) / (2 * quantile * error);
     if (!(ratio > kFar)) continue;
     wide.push_back(&estimate);
   }
@@ -332,10 +333,11 @@ std::vector<std::string> StiffnessStatements(const StiffnessTest& test) {
       fmt::format("σ/(8a/G*) = {}: 1 where Hertz and Mindlin hold",
                   QuantityWithError(test.ratio.value, test.ratio.standard_error, "-"))};
   if (test.z) {
-    statements.push_back(fmt::format(
-        "with the a {}: 95 % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: {}",
-        test.radius == "hertz" ? "of Hertz" : "given", test.interval95->lower,
-        test.interval95->upper, *test.z, ChanceText(*test.p_value), TestVerdict(*test.p_value)));
+    statements.push_back(
+        fmt::format("with the a {}: {:g} % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: {}",
+                    test.radius == "hertz" ? "of Hertz" : "given", 100 * test.confidence,
+                    test.interval95->lower, test.interval95->upper, *test.z,
+                    ChanceText(*test.p_value), TestVerdict(*test.p_value)));
   }
   return statements;
 }

@@ -56,9 +56,10 @@ ParameterWords ParameterInWords(const ParameterEstimate& estimate) {
 }
 
 std::string ParameterTable(const FitResult& fit, const Style& style) {
-  std::string text = style.Strong(fmt::format("{:<22} {:<27} {:<24} {}", "parameter",
-                                              "value ± std error", "95 % interval", "verdict")) +
-                     "\n";
+  std::string text =
+      style.Strong(fmt::format("{:<22} {:<27} {:<24} {}", "parameter", "value ± std error",
+                               ConfidenceWords(fit) + " interval", "verdict")) +
+      "\n";
   std::vector<std::string> held;
   std::vector<std::string> open;
   for (const ParameterEstimate& estimate : fit.parameters) {

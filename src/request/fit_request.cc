@@ -350,6 +350,10 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   preparation.displacement_noise = options.displacement_noise;
   if (options.force_noise) RequirePositive("--force-noise [N]", *options.force_noise);
   fit.force_noise = options.force_noise;
+  if (!(options.confidence > 0 && options.confidence < 1)) {
+    ThrowInvalid("--confidence [-]", options.confidence, "must be between 0 and 1, as 0.95");
+  }
+  fit.confidence = options.confidence;
   if (options.reversal_gate) RequireNonNegative("--reversal-gate [m]", *options.reversal_gate);
   preparation.reversal_gate = options.reversal_gate;
   fit.fixed = ParseAssignments(options.fix, "--fix");

@@ -101,7 +101,7 @@ TEST(Estimates, OfWhiteNoiseAreThoseOfTheNormalEquations) {
     ASSERT_TRUE(estimate.standard_error && estimate.lower95 && estimate.upper95);
     EXPECT_NEAR(*estimate.standard_error / (unit * error), 1.0, kDifferences);
     // Symmetric in θ: in the logarithm of what is positive.
-    const double half = StudentQuantile95(degrees) * error;
+    const double half = StudentQuantile(degrees, 0.95) * error;
     EXPECT_NEAR((parameter.ToTheta(*estimate.upper95) - theta[free[j]]) /
                     std::copysign(half, parameter.scale),
                 1.0, kDifferences);
@@ -150,10 +150,11 @@ TEST(Estimates, OfCorrelatedNoiseAreWiderAndItsAbsorbedShareIsGivenBack) {
           sandwich.covariance(place, place);
       EXPECT_NEAR(estimates.WhiteShare(free[j]) / white, 1.0, kDifferences);
     }
-    EXPECT_NEAR(estimates.quantile(),
-                StudentQuantile95(
-                    is_known ? 1e6 : count / ((1 + kRho * kRho) / (1 - kRho * kRho)) - parameters),
-                1e-6);
+    EXPECT_NEAR(
+        estimates.quantile(),
+        StudentQuantile(
+            is_known ? 1e6 : count / ((1 + kRho * kRho) / (1 - kRho * kRho)) - parameters, 0.95),
+        1e-6);
   }
 }
 

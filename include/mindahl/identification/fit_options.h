@@ -53,6 +53,9 @@ struct FitOptions {
   /// that is imposed, which is taken as exact.
   std::optional<double> force_noise;
 
+  /// Of every interval, in (0, 1): what a fraction of such intervals contains.
+  double confidence = 0.95;
+
   /// Its scale comes from the residuals, or is the known noise.
   Loss loss = Loss::kNone;
 

@@ -154,6 +154,7 @@ struct RecordFit {
 /// give is empty.
 struct FitResult {
   Depth depth = Depth::kFull;
+  double confidence = 0.95;  ///< of every interval
   bool converged = false;
   SolverReport solver;  ///< how the search ended, and where it began
   const models::FrictionModel* model = nullptr;

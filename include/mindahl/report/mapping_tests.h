@@ -27,6 +27,7 @@ struct StiffnessTest {
   contact::PropagatedValue ratio;  ///< σ/(8a/G*): 1 where Hertz and Mindlin hold
   std::optional<identification::Interval> interval95 =
       {};                              ///< empty, as the rest, where the ratio's error is 0 or open
+  double confidence = 0.95;            ///< of the interval
   std::optional<double> z = {};        ///< (ratio − 1)/SE
   std::optional<double> p_value = {};  ///< two-sided
 };
@@ -42,7 +43,7 @@ AlphaTest TestAlpha(const identification::FitResult& fit);
 /// (GUM G.4.1): the uncertainties of inputs are taken as known for certain.
 /// @param degrees_of_freedom  ν_fit of the fit, > 0
 StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
-                            double degrees_of_freedom);
+                            double degrees_of_freedom, double confidence = 0.95);
 
 /// One for each radius that is known besides the fit, where G* is known too; with the ratio alone
 /// where σ is not identifiable.

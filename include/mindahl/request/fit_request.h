@@ -63,6 +63,7 @@ struct FitRequest {
   std::vector<std::string> fix;
   std::vector<std::string> start;
   std::vector<std::string> bound;
+  double confidence = 0.95;
   std::optional<double> force_noise;
   std::optional<double> displacement_noise;
   std::optional<double> reversal_gate;

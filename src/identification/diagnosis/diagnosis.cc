@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/normal_quantile.h"
 #include "identification/diagnosis/grade.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -116,6 +117,8 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
                                  Row{"alpha", "alpha_not_identifiable"},
                                  Row{"slip_force", "slip_force_not_identifiable"}};
   std::vector<Finding> findings;
+  // What is known does not depend on the confidence that is asked for.
+  const double to_95 = kNormalQuantile95 / NormalQuantile(result.confidence);
   for (const auto& [name, code] : kCodes) {
     const ParameterEstimate& estimate = *result.Find(name);
     if (estimate.status == ParameterStatus::kFixed || !estimate.lower95 || !estimate.upper95) {
@@ -123,9 +126,10 @@ std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds
     }
     const double lower = *estimate.lower95;
     const double upper = *estimate.upper95;
-    const bool wide = name == "alpha"
-                          ? upper - lower > thresholds.widest_shape * std::max(1.0, estimate.value)
-                          : upper > thresholds.widest_ratio * lower;
+    const bool wide =
+        name == "alpha"
+            ? to_95 * (upper - lower) > thresholds.widest_shape * std::max(1.0, estimate.value)
+            : !(lower > 0) || std::pow(upper / lower, to_95) > thresholds.widest_ratio;
     if (!wide) continue;
     findings.push_back({.code = code,
                         .parameters = {std::string(name)},

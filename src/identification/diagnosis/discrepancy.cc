@@ -94,22 +94,22 @@ struct GrowingRange {
 
 /// Half the width of the interval in which a further cycle of the same loop has its half gap:
 /// Student's for so few cycles.
-double ScatterOfCycles(const loop::LoopFacts& facts) {
+double ScatterOfCycles(const loop::LoopFacts& facts, double confidence) {
   const auto cycles = static_cast<double>(facts.steady_cycles);
   if (!facts.half_gap_standard_deviation || cycles < 3) return 0.0;
-  return StudentQuantile95(cycles - 1) * *facts.half_gap_standard_deviation *
+  return StudentQuantile(cycles - 1, confidence) * *facts.half_gap_standard_deviation *
          std::sqrt(1 + 1 / cycles);
 }
 
 /// Half the width of the interval in which a further part of the strokes has its step: Student's
 /// for so few parts.
-double SpreadOf(std::span<const double> steps) {
+double SpreadOf(std::span<const double> steps, double confidence) {
   const auto count = static_cast<double>(steps.size());
   if (count < 2) return 0.0;
   const double mean = std::accumulate(steps.begin(), steps.end(), 0.0) / count;
   double squares = 0.0;
   for (const double step : steps) squares += (step - mean) * (step - mean);
-  return StudentQuantile95(count - 1) * std::sqrt(squares / (count - 1));
+  return StudentQuantile(count - 1, confidence) * std::sqrt(squares / (count - 1));
 }
 
 }  // namespace
@@ -162,7 +162,7 @@ std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& 
   }
   steps.colwise() -= steps.rowwise().mean().eval();
   constexpr double kAll = kParts;
-  const double quantile = StudentQuantile95(kAll - 1);
+  const double quantile = StudentQuantile(kAll - 1, estimates.confidence());
   std::vector<double> spread;
   spread.reserve(static_cast<std::size_t>(count));
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -289,13 +289,13 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
   // The gap is a mean over parts of the strokes in each of which the model misses so much.
   const double error =
       result.adequacy.misfit / std::sqrt(std::max(1.0, static_cast<double>(steps.size())));
-  const double margin = std::hypot(ScatterOfCycles(facts) / load_ratio, error);
+  const double margin = std::hypot(ScatterOfCycles(facts, result.confidence) / load_ratio, error);
   GrowingRange range{slip_force.value, slip_force.value};
   range.Include(*half_gap - margin);
   range.Include(*half_gap + margin);
   const double carried = std::max(*half_gap, facts.peak_force / load_ratio) + margin;
   const auto limited = [&](double end) { return std::clamp(end, *half_gap - margin, carried); };
-  const double spread = SpreadOf(steps);
+  const double spread = SpreadOf(steps, result.confidence);
   range.Include(limited(slip_force.lower95.value_or(0.0)));
   range.Include(limited(slip_force.upper95.value_or(carried)));
   range.Include(limited(slip_force.value * std::exp(-spread)));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/normal_quantile.h"
 #include "identification/inference/estimates.h"
 #include "identification/intervals.h"
 #include "mindahl/identification/terms.h"
@@ -36,11 +37,11 @@ std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, 
 
 bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
                       const Noise& noise, std::span<const ParameterEstimate> estimates) {
-  constexpr double kTold = 3.841;  // of χ² with one degree of freedom, at 5 %
+  const double quantile = NormalQuantile(noise.confidence);
   if (!other.converged || !std::isfinite(other.sum_of_squares)) return false;
   const double independent = noise.effective_samples() / static_cast<double>(noise.samples);
   const double ratio = independent * (other.sum_of_squares - best.sum_of_squares) / noise.variance;
-  if (!(ratio < kTold)) return false;
+  if (!(ratio < quantile * quantile)) return false;
   return std::ranges::any_of(std::array{kStiffness, kShape, kSlipForce}, [&](std::size_t p) {
     const ParameterEstimate& estimate = estimates[p];
     if (problem.parameters[p].fixed || !estimate.lower95 || !estimate.upper95) return false;

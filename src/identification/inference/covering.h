@@ -29,7 +29,7 @@ std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, 
                                     Response& response, std::span<ParameterEstimate> estimates);
 
 /// True if a solution of the same problem lies outside an interval that is closed, of σ, α or Tc,
-/// and the noise does not exclude it: 2 ln Λ is below 3.84.
+/// and the noise does not exclude it: 2 ln Λ is below the quantile of χ² of the confidence.
 bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
                       const Noise& noise, std::span<const ParameterEstimate> estimates);
 

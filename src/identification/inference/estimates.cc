@@ -30,7 +30,9 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
                      Linearization at)
     : problem_(problem),
       solution_(solution),
-      quantile_(StudentQuantile95(noise.degrees_of_freedom(problem.parameters.free().size()))),
+      confidence_(noise.confidence),
+      quantile_(StudentQuantile(noise.degrees_of_freedom(problem.parameters.free().size()),
+                                noise.confidence)),
       white_variance_(noise.variance),
       variance_(noise.variance * noise.repeating),
       at_(std::move(at)) {
@@ -98,7 +100,7 @@ void Estimates::Fill(std::size_t p, ParameterEstimate& estimate) const {
     // Half the normal law lies beyond the bound: the interval is one-sided, from the bound. Where
     // that is the program's own, nothing is known of what lies beyond it.
     const double inwards = side == BoundSide::kLower ? 1 : -1;
-    const double end = parameter.ToValue(theta + inwards * kNormalQuantile95 * error);
+    const double end = parameter.ToValue(theta + inwards * NormalQuantile(confidence_) * error);
     const std::optional<double> bound =
         IsSearchLimit(parameter, side) ? std::nullopt : std::optional(estimate.value);
     const bool is_upwards = end > estimate.value;

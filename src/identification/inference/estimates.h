@@ -45,6 +45,7 @@ class Estimates {
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
   /// Half width of a 95 % interval in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
+  [[nodiscard]] double confidence() const { return confidence_; }
   /// The Jacobian by all free parameters at the solution, and the weighted residuals.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return at_.jacobian; }
   [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
@@ -58,6 +59,7 @@ class Estimates {
 
   const Problem& problem_;
   const Solution& solution_;
+  double confidence_ = 0.95;  // of intervals
   double quantile_;
   double white_variance_;
   double variance_;

@@ -57,17 +57,18 @@ double ChiSquaredQuantile(double degrees_of_freedom, double chance) {
   return boost::math::quantile(boost::math::complement(distribution, chance));
 }
 
-double StudentQuantile95(double degrees_of_freedom) {
+double StudentQuantile(double degrees_of_freedom, double confidence) {
   struct Asked {
     double degrees_of_freedom = 0.0;
+    double confidence = 0.0;
     double quantile = 0.0;
   };
   // Cycle after cycle of a campaign asks for the same.
   thread_local Asked last;
-  if (last.degrees_of_freedom != degrees_of_freedom) {
-    last = {degrees_of_freedom,
-            boost::math::quantile(
-                boost::math::students_t_distribution<double, InDouble>(degrees_of_freedom), 0.975)};
+  if (last.degrees_of_freedom != degrees_of_freedom || last.confidence != confidence) {
+    const boost::math::students_t_distribution<double, InDouble> distribution(degrees_of_freedom);
+    last = {degrees_of_freedom, confidence,
+            boost::math::quantile(distribution, (1 + confidence) / 2)};
   }
   return last.quantile;
 }

@@ -47,7 +47,7 @@ double PValueOfChiSquared(double x, double degrees_of_freedom);
 /// P(χ²(k) > x) = chance at x
 double ChiSquaredQuantile(double degrees_of_freedom, double chance);
 
-/// Half width of a two-sided 95 % interval in standard errors, by Student.
-double StudentQuantile95(double degrees_of_freedom);
+/// Half width of a two-sided interval of this confidence in standard errors, by Student.
+double StudentQuantile(double degrees_of_freedom, double confidence);
 
 }  // namespace mindahl::identification

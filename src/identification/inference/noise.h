@@ -47,6 +47,7 @@ struct Noise {
   std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
   std::size_t outliers = 0;         // samples at less than half their weight
   std::size_t samples = 0;          // that count
+  double confidence = 0.95;         // of the intervals that follow from it
 
   /// As many independent residuals as say the same, at least 1: autocorrelated ones tell a variance
   /// as n/(1 + 2Σρ²) do, and what comes back in every stroke is told once.
