@@ -143,7 +143,7 @@ def main():
         text = (ROOT / name).read_text()
         if name in sources:
             for number, sentence in docstrings(text.split("\n")):
-                first = re.match(r"\W*(\w+)", sentence)
+                first = re.match(r"(?:\[[^]]*\])?\W*(\w+)", sentence)  # behind a unit in brackets
                 opener = first[1].lower() if first else ""
                 if opener in VERBLESS:
                     hits["docstring without a verb"].append((name, number, first[1]))

@@ -19,8 +19,8 @@ struct FittedLaw {
   Eigen::VectorXd residual;
 };
 
-/// True if branches may be copies of each other: the displacement is imposed, and there is no varying
-/// load, no lag and no load series.
+/// True if branches may be copies of each other: an imposed displacement, a constant load, no lag
+/// and no load series.
 bool CanCompareBranches(const Problem& problem);
 
 /// Branches against each other, beside each law with a shape that is let free: the differences that

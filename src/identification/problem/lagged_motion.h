@@ -31,10 +31,10 @@ double LongestLag(double samples_a_cycle);
 ///   others not, or one never goes on
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
 
-/// Computes where, and on which branch, the contact was when each force of a record acted. The motion
-/// runs straight from sample to sample of the displacement and turns at its reversals, whatever the
-/// lag: these are put in between the moved samples, and so are both ends of the record, beyond which
-/// the displacement is held.
+/// Locates the contact, and its branch, at the time of each force of a record. The motion runs
+/// straight from sample to sample of the displacement and turns at its reversals, whatever the lag:
+/// these are put in between the moved samples, and so are both ends of the record, beyond which the
+/// displacement is constant.
 class LaggedMotion {
  public:
   /// @param record  with a clock; must not have moved since the last call that bound it
