@@ -343,7 +343,7 @@ class Describer {
       : bins_(bins), thresholds_(thresholds), lines_(bins), curves_(CurvesThrough(bins)) {}
 
   CourseDescription Describe() {
-    // What rounding leaves of the squares tells nothing.
+    // The rounding of the squares is no information.
     constexpr double kRounding = 1e-24;
     floor_ = kRounding * lines_.total_squares() + std::numeric_limits<double>::min();
     Cut best = BestCut(kFewChanges);
@@ -504,7 +504,7 @@ class Describer {
     return change;
   }
 
-  /// Of a bin within which a step is: its mean says how many of its cycles come after it.
+  /// Returns the first cycle after a step within a bin: the bin's mean determines it.
   static std::size_t FirstAfter(const Course::Bin& bin, const Change& change) {
     const double step = change.after - change.before;
     const double share = step == 0 ? 0.0 : std::clamp((bin.value - change.before) / step, 0.0, 1.0);
@@ -518,7 +518,7 @@ class Describer {
            time_constant * std::log(thresholds_.settled);
   }
 
-  /// Where a curve has settled before its stretch ends, that is a change.
+  /// Divides the first segment where its curve has settled before its end: that is a change.
   void DivideWhereItHasSettled(const Cut& cut, const Settling& curve,
                                CourseDescription& description) const {
     const std::size_t end = cut.parts.front().end;

@@ -34,7 +34,7 @@ FitOptions OfSteadyCycles(FitOptions options) {
   return options;
 }
 
-/// Where the ends are too far from each other to be seen as turning points, they are known to be.
+/// Measures the facts, with the ends as turning points where the gate has not found them.
 loop::LoopFacts FactsOf(const loop::Record& record, const FitResult& result) {
   const identification::RecordFit& fitted = result.records.front();
   if (fitted.facts.closed) return fitted.facts;

@@ -70,7 +70,7 @@ void TrackedCourses::Add(const CycleFit& fit) {
     const TrackedQuantity& quantity = kQuantities[k];
     const std::optional<double> value = quantity.of(fit);
     if (!value || fit.HasFlag("not_converged") || fit.HasFlag(quantity.open_flag)) continue;
-    // What has no error is exact, held or without noise: then all are alike.
+    // A value without an error is exact, held or without noise: then all have one weight.
     const std::optional<double> error = quantity.error(fit);
     const bool has_error = error && *error > 0;
     courses_[k].Add(fit.number, *value, has_error ? WeightOf(*error) : 1.0);

@@ -34,7 +34,7 @@ class Tracker::Workers {
   explicit Workers(std::size_t most) : most_(most) {}
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
-  /// What nobody has begun to fit is left.
+  /// Abandons the batches that no thread has begun to fit.
   ~Workers() {
     {
       const std::lock_guard lock(mutex_);
@@ -61,7 +61,7 @@ class Tracker::Workers {
   }
 
  private:
-  /// Does with the threads that there are where the system gives no other.
+  /// Starts a thread, or makes do with the running ones where the system gives no other.
   /// @throws std::system_error where there is none
   void StartThread() {
     try {

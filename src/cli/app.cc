@@ -56,7 +56,7 @@ std::vector<std::string> KeyNames(const CLI::App& command) {
   return names;
 }
 
-/// Of the command that runs, then those that it shares with every other, with their dashes.
+/// Returns the options of the command that runs, then those of every command, with their dashes.
 std::vector<std::string> OptionNames(const CLI::App& app) {
   std::vector<const CLI::App*> owners;
   for (const CLI::App* command : app.get_subcommands()) owners.push_back(command);

@@ -6,7 +6,7 @@
 
 namespace mindahl::cli {
 
-/// What every command is given, and where it leaves its exit status.
+/// Holds the streams that every command writes to, and its exit status.
 struct Console {
   std::ostream& out;  // results
   std::ostream& err;  // messages and progress

@@ -59,7 +59,7 @@ struct BatchCommandOptions {
   bool overwrite = false;
 };
 
-/// What became of a file.
+/// Holds the result of a file, or the fault for which it has none.
 struct FileFit {
   bool done = false;     // fitted, and established as fit's exit status says it
   Json fit;              // of `fit --json`; null where there is none
@@ -134,8 +134,8 @@ Json ValueOf(const Json& fit, std::string_view column) {
   return found == kColumns.end() ? Json(nullptr) : ValueAt(fit, found->pointer);
 }
 
-/// Where the page of a file goes: its name without the directory and what a path may not have, and
-/// a number where two files would have one page.
+/// Names the page of each file: its name without the directory and characters that a path may not
+/// have, and a number where two files would have one page.
 class PageNames {
  public:
   std::string Next(const std::string& file) {

@@ -12,7 +12,7 @@
 
 namespace mindahl::cli {
 
-/// What drives a contact, on the command line: a waveform, or a file.
+/// Holds the options for the motion of a contact: a waveform, or a file.
 struct DriveOptions {
   std::string waveform = "sine";
   std::optional<double> lambda;
@@ -20,7 +20,7 @@ struct DriveOptions {
   models::ExcitationOptions excitation{.cycles = 1.0};
   std::string path;
   std::string path_unit;
-  std::string load_column;  ///< of that file; "" = the load is constant
+  std::string load_column;  ///< column of that file; "" = the load is constant
   std::string load_unit;
   std::string force_path;  ///< a file that imposes the force instead
   std::string force_path_unit;

@@ -9,7 +9,7 @@ namespace mindahl::cli {
 
 /// Requirements of `--strict` on a fit.
 enum class Strictness {
-  kNone,      ///< that it converged
+  kNone,      ///< the fit converged
   kDoubtful,  ///< also that the model is not inadequate and every free parameter known
   kAdequate,  ///< also that the model is adequate and every free parameter identifiable
 };

@@ -42,7 +42,7 @@ struct FitCommandOptions {
   std::string report_path;
 };
 
-/// What the records carry whatever the law.
+/// Estimates the backbone of the records without any law's shape.
 identification::BackboneEstimate BackboneOf(const FitRequest& request,
                                             const report::Report& report) {
   if (!identification::HasBackbone(report.fit)) {

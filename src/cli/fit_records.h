@@ -8,7 +8,7 @@
 
 namespace mindahl::cli {
 
-/// Where a command tells what it assumes and what to mind.
+/// Receives the notes on assumptions and the warnings of a command.
 struct Messages {
   std::ostream& stream;
   std::string_view command;  ///< "fit"

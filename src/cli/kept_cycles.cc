@@ -27,7 +27,7 @@ KeptCycles ReadKeptCycles(const std::string& path, std::string_view header,
   KeptCycles kept;
   kept.bytes = header.size();
   std::vector<std::string> batch;
-  // What was being written when a run was killed is no row: it has no line feed.
+  // A line without a line feed was being written when a run was killed, and is no row.
   while (std::getline(file, line) && !file.eof()) {
     batch.push_back(line);
     if (batch.size() < campaign::kBatch) continue;

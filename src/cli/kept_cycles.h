@@ -10,10 +10,10 @@
 
 namespace mindahl::cli {
 
-/// What a table of cycles on disk holds of a run that is to go on: its whole batches.
+/// Counts what a resumed run keeps of the table of cycles on disk: its whole batches.
 struct KeptCycles {
   std::size_t fits = 0;
-  std::uintmax_t bytes = 0;  ///< of the header and these
+  std::uintmax_t bytes = 0;  ///< size of the header and these
   std::string last_batch;    ///< its rows, to compare with
 };
 

@@ -7,11 +7,11 @@
 
 namespace mindahl::cli {
 
-/// Where an option writes; an empty path is an output that was not asked for.
+/// Names the output of an option; an empty path is an output that was not requested.
 struct OutputPath {
   std::string_view option;
   const std::string& path;
-  bool dash_is_stdout = false;  ///< "-" is standard output and no file
+  bool dash_is_stdout = false;  ///< true if "-" means standard output
 };
 
 /// Refuses before the work what could not be written after it: a run with several outputs leaves

@@ -75,8 +75,8 @@ struct Column {
 constexpr double kLeastOfSlip = 0.1;
 constexpr double kMost = 10.0;
 
-/// What λ counts: the displacement at gross slip behind the rig, or three elastic limits where slip
-/// is only approached.
+/// Returns the displacement [m] of λ = 1: gross slip behind the rig, or three elastic limits where
+/// slip is only approached.
 double SlipReach(const Expectation& expected) {
   const double slip = models::GrossSlipDisplacement(expected.law, expected.rig);
   return std::isfinite(slip) ? slip
@@ -118,7 +118,7 @@ WantedPrecision ParseWanted(const std::vector<std::string>& texts) {
   return wanted;
 }
 
-/// What a fit may have beside the law that is known before there is a record.
+/// Lists the terms that may be fitted in addition to the law before there is a record.
 constexpr std::array<std::string_view, 4> kTerms = {"rig_stiffness", "plateau_slope", "viscous",
                                                     "force_drift"};
 
@@ -224,7 +224,7 @@ std::vector<double> AmplitudesOf(const PlanOptions& options, double slip) {
   return amplitudes;
 }
 
-/// What the table and the picture show of a fit.
+/// Names a parameter that the table and the figure show.
 struct Shown {
   std::string_view parameter;
   std::string_view name;
@@ -248,7 +248,7 @@ std::vector<Shown> ShownOf(const ExpectedFit& fit) {
   return shown;
 }
 
-/// As it is shown; beyond 1 the bound says only that little is known.
+/// Returns the error as it is shown; empty beyond 1, where the bound determines little.
 std::optional<double> ErrorOf(const ExpectedFit& fit, const Shown& shown) {
   const ParameterEstimate& estimate = *fit.Find(shown.parameter);
   if (!estimate.standard_error) return std::nullopt;
@@ -407,7 +407,7 @@ Protocol ProtocolOf(const PlanOptions& options, InitialState state) {
           .loads = options.load_ratios};
 }
 
-/// What is fitted, against the amplitude, a panel each past.
+/// Plots the expected standard errors against the amplitude, one panel per initial state.
 io::Plot ErrorPlot(const Expectation& expected, const PlanOptions& options, double slip) {
   constexpr int kPoints = 60;
   io::Plot plot{.title = "Standard errors that a loop of amplitude X would give", .panels = {}};

@@ -15,7 +15,7 @@ std::string PrecisionTableHead(bool is_timed);
 /// @param floor  the arithmetic floor [ns/sample] that modelled costs are compared with
 std::string PrecisionTableRow(const tradeoff::WorkPrecision& point, double floor);
 
-/// Of a refitted model, what it needs of its own: "sigma 3.6e+08, Tc 32.7".
+/// Names the parameters of a refitted model that are its own: "sigma 3.6e+08, Tc 32.7".
 std::string RefittedParameters(const tradeoff::Approximation& approximation);
 
 /// {"model", "method", "steps", "tolerance", "cost_ns_per_sample", "max_force_error", …}

@@ -10,7 +10,7 @@
 namespace mindahl::cli {
 namespace {
 
-/// What a terminal does not take is no fault: the result is elsewhere.
+/// Writes to the terminal; a failure is no fault, since the result is elsewhere.
 void WriteToTerminal(std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());

@@ -23,7 +23,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// What it is about from now on.
+  /// Replaces the text about the present work.
   void Say(std::string what);
 
  private:

@@ -127,7 +127,7 @@ std::string LibraryCall(const Approximation& approximation, const BranchLaw& con
       approximation.method, resolution);
 }
 
-/// What the choice says of the scene.
+/// Returns the verdict on the scene in one line.
 std::string RecommendationVerdict(const Recommendation& recommendation) {
   if (!recommendation.choice) return "nothing meets what is asked";
   const std::size_t choice = *recommendation.choice;

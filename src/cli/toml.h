@@ -9,7 +9,7 @@ namespace mindahl::cli {
 
 /// One `key = value` of a TOML text.
 struct TomlItem {
-  std::string section;              ///< as in [section]; "" above the first
+  std::string section;              ///< name in [section]; "" above the first
   std::string key;                  ///< without quotation marks
   std::vector<std::string> values;  ///< one, or those of an array, as the command line takes them
   std::size_t line = 0;             ///< 1-based, of the key

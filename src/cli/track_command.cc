@@ -74,7 +74,7 @@ struct TrackCommandOptions {
   bool overwrite = false;
 };
 
-/// What a run adds up while cycles go by.
+/// Holds the sums over all cycles of a run.
 struct Totals {
   std::size_t fits = 0;
   std::size_t flagged = 0;
@@ -89,7 +89,7 @@ struct Totals {
   }
 };
 
-/// What was read.
+/// Counts the rows and cycles that were read.
 struct WhatWasRead {
   std::size_t samples = 0;
   std::size_t cycles = 0;
@@ -396,7 +396,7 @@ void TrackRun::Go() {
     if (output_) output_->Finish();
     RequireNoSignal();
   } catch (const InputError& error) {
-    // What is done is kept; unless the fault is that it is another's, or nothing was done.
+    // Finished rows are kept, unless they are another run's, or there are none.
     const bool is_stopped = signals_->noted() != 0;
     if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
     if (!tracker_ || (kept_ && !is_stopped)) throw;

@@ -97,7 +97,7 @@ BranchLaw PaperContact() {
   return ResolveContact(contact).law;
 }
 
-/// What λ counts: the gross-slip displacement, or three elastic limits where slip is only
+/// Returns the displacement [m] of λ = 1: gross slip, or three elastic limits where slip is only
 /// approached.
 double SlipReachOfLaw(const BranchLaw& law) {
   const double gross_slip = GrossSlipDisplacement(law);

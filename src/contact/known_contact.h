@@ -9,7 +9,7 @@
 #include "contact/propagation.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 
-// What is known of a contact besides a fit: its rules, what follows from it alone, what is missing.
+// Checks the known properties of a contact, derives what follows without a fit, lists the missing.
 namespace mindahl::contact {
 
 /// @throws InvalidArgument naming the quantity, its value and the rule
@@ -18,12 +18,12 @@ void RequireKnown(std::string_view quantity, const std::optional<UncertainValue>
 /// @throws InvalidArgument likewise, for any member
 void RequireKnown(const KnownContact& known);
 
-/// What a fit gives: its standard error may be infinite, where it leaves the parameter open.
+/// Checks a fitted value: its standard error is infinite where the fit does not determine it.
 /// @throws InvalidArgument likewise
 void RequireFitted(std::string_view quantity, std::string_view unit,
                    const UncertainValue& estimate);
 
-/// What the caller has found to be known.
+/// Returns a quantity that the caller has found to be known.
 template <typename Value>
 const Value& Present(const std::optional<Value>& quantity) {
   if (!quantity) throw std::logic_error("a quantity of the contact that is needed is not known");
@@ -42,7 +42,7 @@ Quantity TangentialComplianceOf(const KnownContact& known);
 /// 1/ρ = 1/R₁ + 1/R₂; a plane changes nothing.
 Quantity EquivalentRadiusOf(const UncertainValue& radius_1, const UncertainValue& radius_2);
 
-// What is not known, in words: "the radius of body 1".
+// Names the missing elastic constants, in words: "the radius of body 1".
 std::vector<std::string> MissingElasticConstants(const KnownContact& known);
 std::vector<std::string> MissingRadii(const KnownContact& known);
 

@@ -45,7 +45,7 @@ std::string Needs(std::string_view quantity, const std::vector<std::string>& inp
   return fmt::format("{} needs {}", quantity, fmt::join(inputs, ", "));
 }
 
-/// What can be had from the knowledge alone, before the fit is used.
+/// Holds the quantities that follow from the known properties alone, without the fit.
 struct Derived {
   std::optional<Quantity> normal_load;
   std::optional<Quantity> effective_modulus;
@@ -104,7 +104,7 @@ HertzPrediction Predict(const Quantity& stiffness, const Quantity& slip_force,
               Total({measured_gross_slip.value / gross_slip.value, inverse.change}, correlation)};
 }
 
-/// What gives the contact radius from the loop, where it is missing.
+/// Names the missing inputs from which the contact radius would follow with the loop.
 std::string RadiusInputs(const KnownContact& known) {
   return fmt::format("the tangential compliance (or what gives it: {})",
                      fmt::join(MissingElasticConstants(known), ", "));

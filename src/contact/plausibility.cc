@@ -27,7 +27,7 @@ bool IsComplete(const KnownBody& body) {
   return body.youngs_modulus && body.poisson_ratio && body.radius;
 }
 
-/// Of Hertz, where materials, radii and load are known.
+/// Returns Hertz's contact radius [m] where materials, radii and load are known.
 std::optional<double> HertzRadius(const KnownContact& known) {
   if (!known.normal_load || !IsComplete(known.body_1) || !IsComplete(known.body_2)) {
     return std::nullopt;

@@ -10,7 +10,7 @@
 // is known besides it.
 namespace mindahl::contact {
 
-/// What may be uncertain: the fit's two, then the inputs.
+/// Names the sources of uncertainty: the fit's two, then the inputs.
 enum Source : std::size_t {
   kStiffness,
   kSlipForce,

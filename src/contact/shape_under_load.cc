@@ -43,7 +43,7 @@ Quantity ContactRadiusOf(const Quantity& stiffness, const Quantity& compliance) 
   return Product(0.125 * stiffness.value * compliance.value, {{stiffness}, {compliance}});
 }
 
-/// Of the bodies whose E is not known one, of which the rest is: 1 or 2, else 0.
+/// Returns 1 or 2, the body whose E is unknown while all else is known; else 0.
 int BodyOfUnknownModulus(const KnownContact& known) {
   if (!known.body_1.poisson_ratio || !known.body_2.poisson_ratio) return 0;
   if (known.body_1.youngs_modulus.has_value() == known.body_2.youngs_modulus.has_value()) return 0;

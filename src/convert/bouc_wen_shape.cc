@@ -39,13 +39,13 @@ BoucWenShape::Row BoucWenShape::SlopesAt(double q) const {
   const double back = 1 - back_ * power;  // β > 0: it never vanishes
   const double loading = per_q / left;
   const double unloading = per_q / back;
-  // Of the difference of the two, what cancels is left out: (1 − c)tⁿ/((1 − tⁿ)(1 − c·tⁿ)).
+  // Cancelling parts of the difference are left out: (1 − c)tⁿ/((1 − tⁿ)(1 − c·tⁿ)).
   return {loading, unloading, loading + unloading,
           loading * ForceAt(q) * power * (1 - back_) / back};
 }
 
-/// By Gauss and Legendre at five places: exact to the ninth power of q, where Simpson's rule loses
-/// the small loops, whose energy grows as q⁶ from zero.
+/// Integrates by Gauss and Legendre at five places: exact to the ninth power of q, where Simpson's
+/// rule loses the small loops, whose energy grows as q⁶ from zero.
 BoucWenShape::Row BoucWenShape::Integrate(double from, double to) const {
   constexpr std::array kPlaces = {0.0, 0.5384693101056831, 0.9061798459386640};
   constexpr std::array kWeights = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
@@ -117,7 +117,7 @@ double BoucWenShape::Energy(double y) const {
   const auto interval = std::min(static_cast<std::size_t>(q / kStep), kTableIntervals - 1);
   const Node& node = nodes_[interval];
   const double lost = node.integral[kLost] + Integrate(node.q, q)[kLost];
-  // What is beyond the table slides at the limit, either way.
+  // Motion beyond the table slides at the limit, in either direction.
   const double sliding = std::max(2 * y - nodes_.back().integral[kWay], 0.0);
   return 2 * (lost + sliding);
 }

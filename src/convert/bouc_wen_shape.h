@@ -22,7 +22,7 @@ class BoucWenShape {
     double peak = 0.0;  ///< t*
     double back = 0.0;  ///< way from −t* to 0
   };
-  /// Of the loop between ±y.
+  /// Returns the loop between ±y.
   [[nodiscard]] Loop LoopOf(double y) const;
   /// t at a distance from the branch's start, in 0 … 2y.
   [[nodiscard]] double Rising(const Loop& loop, double distance) const;

@@ -86,7 +86,7 @@ SteadyLaw LawOf(const ModelLaw& contact, Target target, const ConversionOptions&
   throw InvalidArgument("no such target");
 }
 
-/// Where the error passes the tolerance on the way from X by a factor that grows or falls.
+/// Finds where the error passes the tolerance, from X on in steps of a factor that grows or falls.
 template <typename IsWithin>
 double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
   constexpr int kSteps = 160;

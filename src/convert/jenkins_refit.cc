@@ -99,7 +99,7 @@ struct Point {
   double share;  // of the segment behind it
 };
 
-/// What is known of the contact's loops, at the middles of cells that are fine beside the corners.
+/// Holds the contact's loops at the middles of cells, which are finer near the corners.
 class Loops {
  public:
   Loops(const ModelLaw& contact, const BranchLaw& masing, const Curve& curve,
@@ -128,8 +128,8 @@ class Loops {
     for (const double amplitude : amplitudes) Add(contact, amplitude);
   }
 
-  /// Where the corners of the nearest polygon are to leading order, the last given: with a density
-  /// that goes as (W·f''²)^{1/5}, W the weight of the loops that come so far.
+  /// Places the corners of the nearest polygon to leading order, the last given: with a density
+  /// proportional to (W·f''²)^{1/5}, W the weight of the loops that come so far.
   [[nodiscard]] std::vector<double> GoodCorners(double last, std::size_t count) const {
     std::vector<double> corners;
     std::vector<double> reached = {0.0};

@@ -129,8 +129,8 @@ struct Corners {
   }
 };
 
-/// Where two branches are compared: densest after the reversal, at every corner, and in the middle
-/// between any two of these.
+/// Returns the distances at which two branches are compared: densest after the reversal, at every
+/// corner, and in the middle between any two of these.
 std::vector<double> PlacesToCompare(const SteadyLaw& law, const SteadyLaw& reference,
                                     double amplitude) {
   constexpr int kIntervals = 64;

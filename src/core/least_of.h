@@ -6,8 +6,8 @@
 
 namespace mindahl {
 
-/// Where a function is least on an interval: the best of some places, and the minimum beside it, to
-/// half of a double's bits, as far as a minimum tells its place.
+/// Minimises a function on an interval: the best of some places, then the minimum next to it, to
+/// half of a double's bits, which is as precise as a minimum's place can be.
 template <typename Function>
 double LeastOf(const Function& function, double low, double high, int places) {
   constexpr int kBits = 26;

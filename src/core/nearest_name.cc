@@ -50,7 +50,7 @@ std::optional<std::string> NearestName(std::string_view word, std::span<const st
   std::size_t least = MostEdits(word.size()) + 1;
   for (const std::string& name : names) {
     const std::size_t edits = EditDistance(lower, LowerCase(name));
-    // Of a name that shares no letter with the word nothing was misspelt.
+    // A name that shares no letter with the word is no remedy for it.
     if (edits < least && edits < std::max(word.size(), name.size())) {
       least = edits;
       nearest = name;

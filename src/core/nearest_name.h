@@ -16,8 +16,8 @@ namespace mindahl {
 /// Costs the product of the lengths for each name.
 std::optional<std::string> NearestName(std::string_view word, std::span<const std::string> names);
 
-/// What follows an unknown word in a message, before its remedy: ": did you mean 'NAME'?", or ":"
-/// where no name is near.
+/// Returns the end of a message about an unknown word, before its remedy: ": did you mean 'NAME'?",
+/// or ":" where no name is near.
 std::string DidYouMean(std::string_view word, std::span<const std::string> names);
 
 /// "'mindin' is unknown: did you mean 'mindlin'? must be one of dahl, mindlin": of a word that is

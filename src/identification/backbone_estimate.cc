@@ -123,7 +123,7 @@ double LargestDisplacement(const Followed& record) {
   return largest;
 }
 
-/// Of every sample that counts a row: the force of each bin along the record's branches.
+/// Returns a row per sample that counts: the force of each bin along the record's branches.
 Eigen::MatrixXd ColumnsOf(const Followed& record, const Grid& grid) {
   const auto count = static_cast<Eigen::Index>(grid.size());
   std::vector<double> forces(grid.size());
@@ -229,7 +229,7 @@ Autocorrelation BackboneAutocorrelation(const BackboneSeries& series,
   return EstimateAutocorrelation(spans, counts);
 }
 
-/// By how much what comes back in every stroke widens a variance: more strokes tell no more of it.
+/// Returns the variance inflation by the residuals that repeat in every stroke.
 double Widening(const BackboneSeries& series, std::span<const Followed> records,
                 const Eigen::VectorXd& w, const Thresholds& thresholds) {
   double widening = 1.0;

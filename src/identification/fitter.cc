@@ -53,8 +53,8 @@ namespace {
 using loop::RecordView;
 using models::InitialState;
 
-/// What is beside a contact's force has no place in a fit of its displacement, and the other way
-/// round.
+/// Refuses terms of the force in a fit of the displacement, and terms of the displacement in a fit
+/// of the force.
 void RequireTermsOfResponse(const FitOptions& options) {
   const bool fits_force = options.response() == loop::Channel::kForce;
   const auto refuse = [&](std::string_view what) {
@@ -153,7 +153,7 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
                   problem.data->counted, free, WhatIsLeftOut(prepared, options)));
 }
 
-/// Where the contact had slipped before, an asymmetry is an offset of the force and nothing else.
+/// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
 void RequireToldAsymmetry(const Problem& problem) {
   if (!problem.parameters.asymmetry_is_confounded()) return;
   throw InvalidArgument(
@@ -163,7 +163,7 @@ void RequireToldAsymmetry(const Problem& problem) {
       "with --initial-state virgin");
 }
 
-/// What is known of a fit while it is made.
+/// Holds the inputs and buffers of a fit while it is made.
 struct Attempt {
   const FitOptions& options;
   const loop::PreparedRecords& prepared;
@@ -391,7 +391,7 @@ void DescribeFit(const Attempt& attempt, const Problem& problem, const Noise& no
   result.error_degrees_of_freedom = noise.degrees_of_freedom(free);
 }
 
-/// What comes back in every stroke, and by how much it widens a variance.
+/// Averages the residuals over strokes; returns the variance inflation by what repeats.
 double DescribeStructures(const Problem& problem, std::span<const double> residual,
                           const Thresholds& thresholds, FitResult& result) {
   const bool is_described = result.depth >= Depth::kIntervals;
@@ -512,7 +512,7 @@ MemoryTest CompareBranches(const Problem& problem, const Solution& solution,
   return test;
 }
 
-/// What the residuals say of the noise, and of themselves.
+/// Estimates the noise and the statistics of the residuals.
 /// @param residual  weighted, of every sample
 void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
                   std::span<const double> residual, Noise& noise, FitResult& result) {
@@ -543,7 +543,7 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
   Append(result.findings, FindUndetermined(problem, estimates.local()));
 }
 
-/// Where the parabola may be wrong about Tc, or about σ above, the likelihood itself.
+/// Replaces intervals of Tc and σ by those of the likelihood where the parabola may fail.
 void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solution& solution,
                      const Noise& noise, const Estimates& estimates, FitResult& result) {
   const FitOptions& options = attempt.options;
@@ -569,7 +569,7 @@ void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solut
   }
 }
 
-/// What there is at Depth::kErrors.
+/// Fills the results of Depth::kErrors.
 /// @param at  the problem by all its free parameters, at the solution
 void InferErrors(const Attempt& attempt, const Problem& problem, const Solution& solution,
                  Linearization at, Noise& noise, const DisplacementErrors& displacement_errors,
@@ -696,7 +696,7 @@ void ReportStarts(const Problem& problem, const std::vector<Descent>& descents, 
   }
 }
 
-/// Of one record of a load series: what all share is held where the series has it.
+/// Returns options to fit one record of a load series, all shared parameters held.
 FitOptions OptionsAlone(const FitOptions& options, const FitResult& series, std::size_t r) {
   FitOptions alone = options;
   alone.normal_loads = {*series.records[r].normal_load};
@@ -732,7 +732,7 @@ FitOptions OptionsAlone(const FitOptions& options, const FitResult& series, std:
   return alone;
 }
 
-/// What each record of a load series says by itself.
+/// Fits each record of a load series by itself.
 void FitRecordsAlone(std::span<const RecordView> records, const FitOptions& options,
                      FitResult& series) {
   for (std::size_t r = 0; r < records.size(); ++r) {
@@ -771,8 +771,8 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
   return within;
 }
 
-/// Does a record tell the law, as far as the depth says? Where it does not, the likelihood is a
-/// valley with more minima than one.
+/// True if the record determines the law, as far as the depth shows. Where it does not, the
+/// likelihood is a valley with several minima.
 bool TellsTheLaw(const FitResult& result) {
   if (result.depth < Depth::kErrors) return true;
   return std::ranges::all_of(result.parameters, [](const ParameterEstimate& estimate) {
@@ -931,7 +931,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     at = LinearizeAt(best->problem, solution.theta, buffers.response,
                      best->problem.parameters.free());
   }
-  // Of samples that all count the same the solution has them.
+  // If all samples count the same, the solution has their residuals.
   if (!is_weighted && !turned && data.counted == data.samples() && !solution.residual.empty()) {
     FillFitted(attempt, best->problem, solution.residual, result);
   } else {
@@ -965,7 +965,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   if (depth >= Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
 }
 
-/// Is the last fit's end a start? Not of a likelihood with several minima, nor at a bound.
+/// True if the next fit may start at the last one's end: a single minimum, not at a bound.
 bool Fitter::State::MayContinue() const {
   return result.converged && options.starts == 1 && TellsTheLaw(result) &&
          std::ranges::none_of(result.parameters, [](const ParameterEstimate& estimate) {

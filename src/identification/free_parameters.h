@@ -7,7 +7,7 @@
 
 namespace mindahl::identification {
 
-/// What a fit found, for criteria that count it: parameters that were not held, and turning points.
+/// Counts the fitted parameters, for criteria: those not held, and turning points.
 inline std::size_t CountFreeParameters(const FitResult& fit) {
   auto count = static_cast<std::size_t>(
       std::ranges::count_if(fit.parameters, [](const ParameterEstimate& parameter) {

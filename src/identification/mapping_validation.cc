@@ -101,7 +101,7 @@ struct Errors {
   std::array<IntervalCount, kValidatedParameters.size()> intervals;
 };
 
-/// What was fitted to a loop, and what it should have given.
+/// Holds a loop, the fit to it, and the expected result.
 struct Trial {
   const Record& record;
   FitOptions options;

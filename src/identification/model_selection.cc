@@ -128,7 +128,7 @@ void WeighCandidates(std::vector<ModelScore>& scores) {
   }
 }
 
-/// Does `other` predict worse than `best`, by a standard error of the difference or more?
+/// True if `other` predicts worse than `best` by a standard error of the difference or more.
 bool PredictsWorse(std::span<const double> other, std::span<const double> best,
                    std::span<const Part> cycles, std::size_t folds, double rounding) {
   if (other.empty() || best.empty()) return false;
@@ -153,7 +153,7 @@ double CorrelationOf(const FitResult& fit, std::string_view first, std::string_v
   return fit.correlation[row * fit.parameters.size() + column];
 }
 
-/// What the fit alone has to say.
+/// Adds the comments that follow from the fit alone.
 void RemarkOnFit(ModelScore& score, const FitResult& fit, const Thresholds& thresholds) {
   if (!fit.converged) AddRemark(score, "not converged: " + fit.solver.message);
   for (const ParameterEstimate& estimate : fit.parameters) {

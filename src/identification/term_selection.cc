@@ -146,7 +146,7 @@ std::vector<TermCandidate> ListTermCandidates(std::span<const RecordView> record
   return candidates;
 }
 
-/// Where the search for a term that is not linear begins.
+/// Returns the initial value for the search of a term that is not linear.
 /// @param law  the fit without it
 std::optional<double> FirstGuess(std::string_view term, const FitResult& law) {
   constexpr double kHardlyCompliant = 10.0;  // times the contact's stiffness
@@ -370,7 +370,7 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
   }
   std::ranges::stable_sort(trials, {}, &TermTrial::rank);
   const double chance = selection_.chance / static_cast<double>(std::max<std::size_t>(tried, 1));
-  // Of terms that another candidate has among others, where these hardly gain more.
+  // True if a candidate with only some of these terms explains nearly as much.
   const auto simpler_does = [&](const TermTrial& trial) {
     const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
     return std::ranges::any_of(trials, [&](const TermTrial& other) {

@@ -44,7 +44,7 @@ class OutputFile {
     }
   }
 
-  /// What is written is on the disk then.
+  /// Forces all written bytes to the disk.
   void Synchronise() { WriteToDisk(descriptor_, path_); }
 
   /// A full disk may show only here.

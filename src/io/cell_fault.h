@@ -8,8 +8,8 @@
 
 namespace mindahl::io {
 
-/// What is wrong with a cell that should hold a number, and what to do: "'1.2.3' is not a number:
-/// write it …".
+/// Describes the fault of a cell that should hold a number, and the remedy: "'1.2.3' is not a
+/// number: write it …".
 /// @param row      of a table of `columns` columns
 /// @param column   from 0; the row may end before it
 std::string DescribeCellFault(const CsvRow& row, std::size_t column, std::size_t columns,
@@ -18,7 +18,7 @@ std::string DescribeCellFault(const CsvRow& row, std::size_t column, std::size_t
 /// The first cell beyond the table's columns that holds something, described; "" where none does.
 std::string DescribeExtraCell(const CsvRow& row, std::size_t columns, std::size_t& column);
 
-/// That a file uses two decimal marks.
+/// States that a file uses two decimal marks.
 std::string DescribeSecondMark(std::string_view cell, char mark, std::size_t first_line,
                                char first_mark);
 

@@ -8,7 +8,7 @@ namespace mindahl::io {
 /// A header cell taken apart: "Time [s]" is the name "Time" with the unit "s".
 struct ColumnName {
   std::string name;
-  std::string unit;  ///< as written; empty when the header names none
+  std::string unit;  ///< unit as written; empty when the header names none
 };
 
 /// Takes the unit off a header cell:

@@ -54,9 +54,9 @@ struct SampledRow {
 struct Reading {
   Delimiter delimiter = Delimiter::kComma;
   std::vector<SampledRow> rows;
-  std::size_t columns = 0;  ///< of most rows with data; 0 when there are none
+  std::size_t columns = 0;  ///< number in most rows with data; 0 when there are none
   long score = 0;           ///< numbers less broken numbers in the rows with so many columns
-  std::size_t open_quote_line = 0;  ///< of a quote that is never closed; 0 when there is none
+  std::size_t open_quote_line = 0;  ///< line of a quote that is never closed; 0 when there is none
 
   /// Number of cells of the last row.
   [[nodiscard]] std::size_t Width() const { return rows.back().Columns(); }

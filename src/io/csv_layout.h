@@ -9,7 +9,7 @@
 
 namespace mindahl::io {
 
-/// What some programs begin a file in UTF-8 with.
+/// Byte order mark with which some programs begin a file in UTF-8.
 inline constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
 
 /// How a text is to be read as a table; csv_table.h states the rules by which it is found.
@@ -17,10 +17,10 @@ struct CsvLayout {
   Delimiter delimiter = Delimiter::kComma;
   std::size_t columns = 0;
   std::vector<std::string> names;  ///< one a column, or none
-  std::vector<std::string> units;  ///< of the units row, one a column, or none
-  std::size_t header_line = 0;     ///< of the names row, else of the units row; 0 without either
+  std::vector<std::string> units;  ///< cells of the units row, one a column, or none
+  std::size_t header_line = 0;     ///< line of the names, else of the units row; 0 without either
   std::size_t preamble_rows = 0;   ///< rows above the header
-  std::size_t data_offset = 0;     ///< of the first data row [bytes]
+  std::size_t data_offset = 0;     ///< start of the first data row [bytes]
   std::size_t data_line = 0;       ///< its physical line
 };
 

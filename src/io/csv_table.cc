@@ -98,7 +98,7 @@ class DecimalMarkCheck {
 
  private:
   char mark_ = '\0';
-  std::size_t line_ = 0;  ///< where it was first seen
+  std::size_t line_ = 0;  ///< line on which it was first seen
 };
 
 void RequireNoExtraCells(const CsvRow& row, std::size_t columns, const std::string& file) {

@@ -9,7 +9,7 @@
 
 namespace mindahl::io {
 
-/// What separates the cells of a row; kBlanks is any run of spaces and tabs.
+/// Separates the cells of a row; kBlanks is any run of spaces and tabs.
 enum class Delimiter : char { kTab = '\t', kSemicolon = ';', kComma = ',', kBlanks = ' ' };
 
 /// The cells of one row and where it begins. Reused from row to row, so that nothing is allocated.
@@ -24,7 +24,7 @@ class CsvRow {
   [[nodiscard]] std::size_t FilledSize() const;
 
   std::size_t line = 0;    ///< 1-based physical line on which the row begins
-  std::size_t offset = 0;  ///< of that line in the text [bytes]
+  std::size_t offset = 0;  ///< start of that line in the text [bytes]
 
  private:
   friend class CsvTokenizer;

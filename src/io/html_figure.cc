@@ -161,7 +161,7 @@ std::string Axis::Label(double tic) const {
   return label;
 }
 
-/// Where a panel is drawn.
+/// Holds the axes of a panel and its place on the page.
 struct Frame {
   Axis x;
   Axis y;
@@ -237,7 +237,7 @@ class Drawing {
     return colours;
   }
 
-  /// What stands for a series in the legend.
+  /// Draws the symbol of a series in the legend.
   static std::string Key(PlotStyle style, std::string_view colour) {
     std::string drawn;
     switch (style) {

@@ -15,7 +15,7 @@ bool EqualsIgnoringCase(std::string_view text, std::string_view lower_case) {
   });
 }
 
-// What spreadsheets write for a number that they could not compute.
+// Lists the texts that spreadsheets write for a number that they could not compute.
 constexpr std::array<std::string_view, 7> kErrorValues = {"#n/a",   "#value!", "#div/0!", "#ref!",
                                                           "#name?", "#num!",   "#null!"};
 

@@ -5,7 +5,7 @@
 
 namespace mindahl::io {
 
-/// What the text of one cell is, read as a number.
+/// Holds the text of one cell, classified and read as a number.
 struct NumberCell {
   enum class Kind {
     kNumber,
@@ -30,7 +30,7 @@ NumberCell ReadNumber(std::string_view cell, bool decimal_comma);
 /// "#DIV/0!". That is a broken number, where another '#' begins a remark.
 bool BeginsWithErrorValue(std::string_view text);
 
-/// Of the ten of ASCII.
+/// True for the ten digits of ASCII.
 constexpr bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
 /// `text` without the blanks and tabs around it.

@@ -30,7 +30,7 @@ class NumberRowReader {
   /// @param values  written, in the order of `wanted`; of a row of numbers only
   Row Read(std::string_view line, std::size_t number, std::span<double> values);
 
-  /// Of the last broken row: what is wrong, and the cell, from 0.
+  /// Describes the fault of the last broken row, and its cell, from 0.
   [[nodiscard]] const std::string& fault() const { return fault_; }
   [[nodiscard]] std::size_t fault_column() const { return fault_column_; }
 

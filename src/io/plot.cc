@@ -23,11 +23,11 @@ namespace {
 
 constexpr std::size_t kMostPoints = 20'000;
 
-// Of unlike lightness, so that they are told apart in grey and by colour-blind readers too.
+// Colours of different lightness, distinct in grey and for colour-blind readers too.
 constexpr std::array<std::string_view, 6> kColours = {"#4878a8", "#d1495b", "#3a9d6e",
                                                       "#8d6bb1", "#e09f3e", "#5f6b76"};
 
-// Of series that follow each other: from early, dark, to late.
+// Shades for a sequence of series: from early, dark, to late.
 constexpr std::array<std::string_view, 8> kShades = {"#440154", "#46327e", "#365c8d", "#277f8e",
                                                      "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
 
@@ -180,7 +180,7 @@ Legend LegendOf(const PlotPanel& panel) {
   return legend;
 }
 
-/// Where the axes of a panel are, from the top left of the page [px].
+/// Holds the place of a panel's axes, from the top left of the page [px].
 struct PanelFrame {
   double left;
   double right;
@@ -391,7 +391,7 @@ class Script {
     constexpr double kMarginY = 0.05;
     AddAxis(panel, 'x', panel.log_x, &PlotSeries::x, kMarginX);
     AddAxis(panel, 'y', panel.log_y, &PlotSeries::y, kMarginY);
-    // Of a linear axis gnuplot adds the margin itself.
+    // On a linear axis gnuplot adds the margin itself.
     const double x = panel.log_x ? 0.0 : kMarginX;
     const double y = panel.log_y ? 0.0 : kMarginY;
     Add("set offsets graph {0}, graph {0}, graph {1}, graph {1}\n", x, y);
@@ -428,7 +428,7 @@ class Script {
 /// A format that gnuplot writes.
 struct Format {
   std::string_view terminal;
-  std::string_view end;  ///< of every whole file of this format, but for line feeds
+  std::string_view end;  ///< last bytes of every whole file of this format, but for line feeds
 };
 
 Format FormatOf(const std::filesystem::path& path) {

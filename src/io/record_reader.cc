@@ -101,7 +101,7 @@ struct Role {
   std::optional<Unit> (*find_unit)(std::string_view);
   std::string (*unit_symbols)();
   std::string_view si_unit;
-  std::string_view option;       ///< of the command line that names the column
+  std::string_view option;       ///< command-line option that names the column
   std::string_view unit_option;  ///< likewise its unit
 };
 
@@ -217,7 +217,7 @@ class ColumnFinder {
     return of_name.empty() ? of_row : of_name;
   }
 
-  /// Does it not state two?
+  /// True unless header and units row state two different units.
   [[nodiscard]] bool StatesOneUnit(std::size_t column) const {
     const std::string of_name = UnitOfName(column);
     const std::string of_row = UnitOfRow(column);
@@ -249,7 +249,7 @@ class ColumnFinder {
     return fmt::format("'{}' (column {})", ForMessage(table_.names()[column]), column + 1);
   }
 
-  /// As a message shows them, without their units.
+  /// Returns the names as a message shows them, without their units.
   [[nodiscard]] std::vector<std::string> Names() const {
     std::vector<std::string> names;
     names.reserve(split_.size());
@@ -304,7 +304,7 @@ class ColumnFinder {
   std::vector<ColumnName> split_;
 };
 
-/// That a column in a unit of pressure cannot have a role.
+/// States that a column in a unit of pressure cannot have a role.
 std::string PressureText(std::string_view column, std::string_view unit, const Role& role) {
   return fmt::format(
       "{} is a pressure, in {}, and no {}: choose another column; a pressure times the area that "
@@ -500,7 +500,7 @@ class RoleAssigner {
     return column;
   }
 
-  /// What nobody called the displacement may be something else.
+  /// Refuses a column taken for the displacement that is a velocity or looks like a time.
   void RequireDisplacement(std::size_t column) const {
     const std::string where = fmt::format("{}:{}:{}: {}", table_.file(), table_.lines().front(),
                                           column + 1, finder_.Label(column));

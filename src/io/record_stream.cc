@@ -24,7 +24,7 @@
 namespace mindahl::io {
 namespace {
 
-/// Of the first rows: what columns hold is judged from these.
+/// Size [bytes] of the first rows, by which the content of the columns is judged.
 constexpr std::size_t kJudged = LinePieces::kPiece / 8;
 
 /// Takes the first line off a text, without its end.

@@ -12,7 +12,7 @@
 namespace mindahl::io {
 namespace {
 
-// What a signal handler may look at. More than these at once are not removed by it.
+// Holds the names that a signal handler may read. It does not remove more than these at once.
 constexpr std::size_t kMostNames = 32;
 std::array<std::atomic<const char*>, kMostNames> registered_names{};
 static_assert(std::atomic<const char*>::is_always_lock_free);

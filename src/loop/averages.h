@@ -9,7 +9,7 @@
 
 namespace mindahl::loop {
 
-/// Of values, at least one. In four sums side by side, as one would wait for itself.
+/// Returns the mean of at least one value, in four parallel sums that do not wait for each other.
 inline double Mean(std::span<const double> values) {
   constexpr std::size_t kSideBySide = 4;
   std::array<double, kSideBySide> sums{};

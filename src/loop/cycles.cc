@@ -132,8 +132,8 @@ double MeanOf(std::span<const Swing> swings, double Swing::*member) {
   return sum / static_cast<double>(swings.size());
 }
 
-/// What swings of one direction usually reach, for the direction that reaches further as `compare`
-/// has it. Medians: a spike in one swing must not make the peak force.
+/// Returns the typical extreme of the swings of one direction, the larger by `compare` of the two
+/// directions. Medians: a spike in one swing must not make the peak force.
 template <typename Compare>
 double UsualExtreme(std::span<const Swing> swings, double Swing::*member, Compare compare,
                     std::pmr::memory_resource* scratch) {
@@ -197,7 +197,7 @@ std::pmr::vector<double> CycleEnergies(const RecordView& record,
   return energies;
 }
 
-/// Of the cycles of the widest amplitude: those of others lose more or less.
+/// Returns the mean energy [J] of the cycles of the widest amplitude: others lose more or less.
 double EnergyOfTheWidest(std::span<const double> displacement, std::span<const std::size_t> points,
                          std::span<const double> energies) {
   double widest = 0.0;

@@ -23,7 +23,7 @@ std::pmr::vector<std::size_t> LocalExtremes(std::span<const double> displacement
 
 std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
                                            std::pmr::memory_resource* scratch) {
-  // What is still open is kept in front of what has not been looked at.
+  // Points that are still open are kept in front of those not yet visited.
   std::pmr::vector<std::size_t> points = LocalExtremes(displacement, scratch);
   std::pmr::vector<Excursion> excursions(scratch);
   excursions.reserve(points.size());

@@ -25,7 +25,7 @@ struct Excursion {
 std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
                                            std::pmr::memory_resource* scratch);
 
-/// As many as FindReversals finds under the gate [m].
+/// Returns the number of reversals that FindReversals finds under the gate [m].
 std::size_t CountReversals(std::span<const Excursion> excursions, double gate);
 
 }  // namespace mindahl::loop

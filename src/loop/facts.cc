@@ -241,7 +241,7 @@ std::optional<Passage> PassageOf(const Stroke& stroke, double centre, double hal
   return passage;
 }
 
-/// Where the force of a direction stands still.
+/// Locates the segment where the force of a direction stands still.
 struct Flat {
   std::size_t level = 0;  // at which it begins
   double width = 0.0;     // [m]
@@ -268,7 +268,7 @@ std::optional<Flat> FlatOf(std::span<const Passage> passages) {
   std::optional<Flat> flat;
   double before = 0.0;
   double after = 0.0;
-  // Of three levels before and after it, a level apart.
+  // Slopes over three levels before and after it, a level apart.
   for (std::size_t k = 4; k + 6 < kLevels; ++k) {
     const double one = (typical[k - 1] - typical[k - 4]) / 3;
     const double other = (typical[k + 6] - typical[k + 3]) / 3;
@@ -419,7 +419,7 @@ Series SeriesOf(const LoopFacts& facts, Fact fact) {
   return series;
 }
 
-/// What is a mean or a trend of the cycles' own facts.
+/// Computes the means and trends of the cycles' own facts.
 void Summarise(LoopFacts& facts) {
   const auto mean_of = [&](double CycleFacts::*member) {
     return Mean(SeriesOf(facts, [&](const CycleFacts& cycle) {
@@ -443,8 +443,8 @@ void Summarise(LoopFacts& facts) {
   facts.energy_trend = TrendOf(energies.numbers, energies.values);
 }
 
-/// Of its width: a cycle that ends so near to where it began loses what a closed one does, but for
-/// twice that share.
+/// Fraction of its width within which a cycle must end where it began: then it loses what a closed
+/// one does, but for twice that fraction.
 constexpr double kReturn = 0.05;
 
 /// Forces in the displacement's sense.

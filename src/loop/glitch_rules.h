@@ -4,7 +4,7 @@
 
 namespace mindahl::loop {
 
-/// What makes a sample a glitch.
+/// Sets the limits beyond which a sample is a glitch.
 struct GlitchRules {
   /// [steps about it and of the record] Least height of a spike over both neighbours. Noise of
   /// standard deviation s has steps of 2.2 s at the third of 24 and would have to stand out by 6.6.
@@ -23,7 +23,7 @@ struct GlitchRules {
   /// [steps about it and of the record] Least jump from a held value to the next, and there and
   /// back of a dropout of one channel.
   double held_jump = 3.0;
-  /// [of the samples] What is more common is no glitch but the record.
+  /// [of the samples] Largest fraction that may be glitches; more of them are the record.
   double most = 0.25;
 };
 

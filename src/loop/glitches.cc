@@ -55,7 +55,7 @@ class MendedChannel {
   [[nodiscard]] Readings values() const { return mended_.empty() ? values_ : Readings(mended_); }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
-  /// Of the column as it is when this is first asked for.
+  /// Returns the usual step of the column as it is when this is first called.
   double usual_step() {
     if (!usual_step_) usual_step_ = UsualStep(values(), memory_);
     return *usual_step_;
@@ -173,7 +173,7 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules, MendedChan
     return outside(x) > rules.dropout * step_of_x ||
            outside(record.force) > rules.dropout * step_of_force;
   };
-  // Where one inside the record is a dropout the others are, wherever the loop just was.
+  // If one run inside the record is a dropout, so are the others, wherever the loop was.
   const bool any = std::ranges::any_of(
       runs, [&](const Run& run) { return run.IsInside(record.size()) && lies_off(run); });
   for (const Run& run : runs) {
@@ -267,7 +267,7 @@ bool Moves(const MendedChannel& channel, std::size_t begin, std::size_t end) {
   return 2 * moves >= end - begin;
 }
 
-/// Does the column jump where the run [begin, end) of equal values is over?
+/// True if the column jumps at the end of the run [begin, end) of equal values.
 bool JumpsAtTheEnd(const MendedChannel& channel, std::size_t begin, std::size_t end,
                    const GlitchRules& rules) {
   const std::size_t length = end - begin;
@@ -276,7 +276,7 @@ bool JumpsAtTheEnd(const MendedChannel& channel, std::size_t begin, std::size_t 
   return channel.Step(end) > rules.held_jump * about;
 }
 
-/// Does the column go on in the direction that it had in the last samples of [begin, end)?
+/// True if the column continues in the direction of the last samples of [begin, end).
 bool GoesOn(Readings values, std::size_t begin, std::size_t end) {
   const std::size_t reach = std::min((end - begin) / 2, values.size() - end);
   return (values[end - 1 + reach] - values[end - 1]) * (values[end - 1] - values[end - 1 - reach]) >

@@ -34,7 +34,7 @@ double ReachOfNoise(std::span<const double> displacement, double full_range,
          std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
 }
 
-/// Is much of the excursion made in one step? Of long ones, which no jump makes, none is.
+/// True if one step makes much of the excursion; false for long ones, which no jump makes.
 bool Jumps(std::span<const double> displacement, const Excursion& excursion, double share) {
   constexpr std::size_t kLongest = 64;  // [samples]
   if (excursion.duration() > kLongest) return false;
@@ -45,7 +45,7 @@ bool Jumps(std::span<const double> displacement, const Excursion& excursion, dou
   return largest >= share * excursion.range;
 }
 
-/// What an excursion looks like by itself.
+/// Classifies an excursion by itself.
 enum class Look : unsigned char {
   kNoise,
   kUnclear,  // noise that takes its time, or a record cut just after it turned
@@ -139,7 +139,7 @@ void ForEachPlateau(Excursions excursions, std::span<const Look> looks, Visit vi
   }
 }
 
-/// Of the plateaus that are nearly as good as the best the widest, then the next.
+/// Returns the widest, and the next widest, of the plateaus nearly as good as the best.
 std::pair<Plateau, Plateau> WidestPlateaus(Excursions excursions, std::span<const Look> looks,
                                            const ReversalRules& rules) {
   const auto noise = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise));

@@ -112,7 +112,7 @@ class Trimming {
     cut_cycles_ = cycle;
   }
 
-  /// Does the amplitude grow over these cycles, or fall, by no step back?
+  /// True if the amplitude grows (sense 1) or falls (−1) over these cycles without a step back.
   [[nodiscard]] bool IsMonotone(std::size_t first, std::size_t last, double widest,
                                 double sense) const {
     for (std::size_t k = first; k + 1 < last; ++k) {
@@ -201,7 +201,7 @@ class Trimming {
   std::vector<CycleFacts> cycles_;  // from every other point to the next but one
   std::pair<std::size_t, std::size_t> steady_{0, 0};
   bool is_of_one_amplitude_ = false;
-  // What is left, as far as it is known: samples [first_, last_), without cut_cycles_.
+  // The remaining samples [first_, last_), as far as they are known, without cut_cycles_.
   std::size_t first_ = 0;
   std::size_t last_ = 0;
   std::size_t cut_cycles_ = 0;

@@ -16,7 +16,7 @@ OperationCount CountOperations(const Method& method, const models::FrictionModel
                                const models::BranchLaw& law, const Resolution& resolution,
                                const Drive& drive) {
   OperationCount count;
-  // As Prepare() checks it.
+  // Prepare() checks the arguments.
   const Evaluator evaluate = Prepare(method, model, law, resolution);
   method.count(model, law, resolution, drive, count);
   count.Add(Operation::kSample, static_cast<double>(drive.displacement.size()));

@@ -20,13 +20,13 @@ using Column = std::array<double, kBlock>;
 
 constexpr std::int64_t kExponentBias = std::int64_t{1023} << 52;
 
-/// By bits, not by a condition: compilers follow each way of one to its end, in vectors both.
+/// Selects by bits, not by a condition: compilers compute both branches in vectors anyway.
 MINDAHL_INLINE double Choose(std::uint64_t all_ones, double one, double other) {
   return std::bit_cast<double>((std::bit_cast<std::uint64_t>(one) & all_ones) |
                                (std::bit_cast<std::uint64_t>(other) & ~all_ones));
 }
 
-/// Of z: log z = k·ln 2 + 2·atanh(s), |s| <= 0.1716. Where k = 0, z = 1 − w is taken from w.
+/// Reduces z: log z = k·ln 2 + 2·atanh(s), |s| <= 0.1716. Where k = 0, z = 1 − w is taken from w.
 struct Reduction {
   double k;
   double s;
@@ -92,7 +92,7 @@ MINDAHL_INLINE Exponential Exponentiate(double x) {
   return {std::bit_cast<double>(scale), r + r * r * Polynomial(kFactorials, r)};
 }
 
-/// What all samples of a run share.
+/// Holds the constants of all samples of a run.
 struct RunConstants {
   double origin;
   double rate;

@@ -46,7 +46,7 @@ std::vector<double> RandomExtremes(std::size_t count, std::uint64_t seed) {
   return extremes;
 }
 
-/// As of RandomExtremes.
+/// Returns nested extremes, in the form of RandomExtremes.
 std::vector<double> NestedExtremes(std::size_t count) {
   const auto innermost = std::floor(static_cast<double>(count) / 2);
   const auto size = [&](std::size_t k) {

@@ -42,7 +42,7 @@ Real SlipLoadZones(const LoadStep<Real>& step, double stretch, const Share& shar
   const Real intercept = displacement - s * limit;
   while (!zones.empty()) {
     const LoadZone<Real>& stuck = zones.back();
-    // What the rim exceeds its slip limit by, and how fast that falls inward.
+    // Excess of the rim over its slip limit, and how fast that falls inward.
     Real excess = s * (displacement - stuck.RestAt(limit));
     if (!(ValueOf(excess) > 0)) excess = Real(0.0);
     const Real rate = Real(1.0) - s * stuck.slope;
@@ -73,7 +73,7 @@ Real TakeLoadStep(const LoadStep<Real>& step, const Share& share, Zones& zones) 
   const double widening = limit - ValueOf(step.from.slip_displacement);
   Real force = step.force;
   if (widening < 0) {
-    // What a falling load lifts off is forgotten.
+    // The zones that a falling load lifts off lose their history.
     while (ValueOf(zones.back().inner) >= limit) zones.pop_back();
     const double rest = ValueOf(zones.back().RestAt(step.to.slip_displacement));
     force = SlipLoadZones(step, step.displacement - rest, share, zones);

@@ -139,7 +139,7 @@ void MakeMonotone(std::span<double> values, bool grows, std::vector<double>& mea
   std::size_t i = 0;
   for (std::size_t k = 0; k < means.size(); ++k) {
     const auto end = i + static_cast<std::size_t>(counts[k]);
-    // What stands alone keeps its last digit.
+    // A single value keeps its last digit.
     for (; i < end; ++i) {
       if (counts[k] > 1) values[i] = means[k];
     }

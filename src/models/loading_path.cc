@@ -112,7 +112,7 @@ class OpenBranches {
   [[nodiscard]] std::int32_t Present() const { return open_.back(); }
 
  private:
-  /// That of the present direction, of the two that differ: the first branches of the path.
+  /// Selects the virgin curve of the present direction, of the first two branches of the path.
   void TakeVirginCurve() { open_.front() = path_.branches.front().direction == direction_ ? 0 : 1; }
 
   struct OriginOf {

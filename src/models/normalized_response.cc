@@ -83,7 +83,7 @@ void DifferentiateByAsymmetry(const Shape& shape, const LoadingPath& path,
     const ScaledBranch<double>& branch = branches[b];
     const double e = x - branch.origin;
     const auto series = ShapeOn(shape, branch).Differentiate(branch.Normalize(e));
-    // Where the two curves are one it is the way on either side, else that of its own sense.
+    // Where the two curves are one the sign is that of e, else the branch's direction decides.
     const double sense =
         path.asymmetry == 0 ? 1.0 : std::copysign(1.0, e) * path.branches[b].direction;
     return sense * series.share * (series.contact.force - series.contact.elastic);

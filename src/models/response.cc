@@ -35,7 +35,7 @@ void RequireSizes(const LoadingPath& path, std::span<const Real> displacement,
                   path.runs.empty() ? 0 : path.runs.back().end);
 }
 
-/// What Validate does not ask for: that the type of the samples holds the law too.
+/// Validates a law also for the type of the samples, which Validate does not know.
 template <typename Real>
 void RequireRange(const BranchLaw& law) {
   Validate(law);

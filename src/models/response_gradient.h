@@ -14,8 +14,8 @@
 
 namespace mindahl::models {
 
-/// What forces over Tc depend on: ln(σ/Tc), α, δ₀ and, with a spring, ln c, c = Tc/k_r its travel
-/// at slip.
+/// Numbers the parameters on which forces over Tc depend: ln(σ/Tc), α, δ₀ and, with a spring, ln c,
+/// c = Tc/k_r its travel at slip.
 inline constexpr std::size_t kRate = 0;
 inline constexpr std::size_t kShape = 1;
 inline constexpr std::size_t kUnloaded = 2;

@@ -10,7 +10,7 @@
 
 namespace mindahl::models {
 
-/// Where a contact under a load slips.
+/// Holds displacement and force at which a contact under a load slips.
 struct SlipAtLoad {
   double displacement = 0.0;  // δc(N) [m]
   double force = 0.0;         // Tc(N) [N]

@@ -60,7 +60,7 @@ struct Tangent {
   }
 };
 
-/// What decides between cases is the number alone.
+/// Returns the number without its derivatives, which alone decides between cases.
 inline double ValueOf(double x) { return x; }
 template <std::size_t kDirections>
 double ValueOf(const Tangent<kDirections>& x) {

@@ -24,7 +24,7 @@ void RequireSamples(const LoadDependentLaw& law, std::span<const double> displac
     if (!models::IsWithinReach(displacement[i])) {
       models::RequireWithinReach(fmt::format("displacement [m] of sample {}", i), displacement[i]);
     }
-    // What a load is refused for but its sign grows with it.
+    // All reasons to refuse a load but its sign grow with it.
     if (normal_load[i] >= 0 && normal_load[i] <= largest_load) continue;
     const models::SlipAtLoad slip = models::SlipUnder(law, reference, normal_load[i]);
     if (!slip.IsInRange() || !(normal_load[i] >= 0)) {

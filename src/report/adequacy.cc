@@ -126,7 +126,7 @@ std::string SizeText(const Cause& cause, double size) {
   return Quantity(size, cause.unit, 3);
 }
 
-/// What the residuals look like.
+/// Describes the look of the residuals in words.
 std::string Looks(const Cause& cause) {
   const CauseRow& row = RowOf(cause);
   if (cause.unit.empty() && row.unsized != nullptr) return row.unsized;

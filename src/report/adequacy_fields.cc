@@ -34,7 +34,7 @@ const std::vector<Field<Cause>>& CauseFields() {
   return fields;
 }
 
-/// Of the adequacy, where there is a verdict.
+/// Makes a field of the adequacy, null where there is no verdict.
 template <typename Get>
 Field<Report> AdequacyRow(const char* path, const char* unit, const char* label, Get get) {
   return {path, unit, label,

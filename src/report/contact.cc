@@ -14,13 +14,13 @@ using identification::FitResult;
 
 namespace {
 
-/// As the contact module takes it: infinite where the fit leaves a parameter open.
+/// Returns a parameter for the contact module: its error is infinite if the fit leaves it open.
 contact::UncertainValue Uncertain(const FitResult& fit, std::string_view name) {
   const identification::ParameterEstimate& estimate = *fit.Find(name);
   return {estimate.value, fit.ErrorOf(estimate)};
 }
 
-/// What rests on Hertz's law, of a series that denies it.
+/// Removes the quantities that rest on Hertz's law where a load series denies it.
 void WithholdSphere(const FitResult& fit, contact::IdentifiedContact& contact) {
   if (!DeniesHertz(fit)) return;
   contact.equivalent_radius.reset();

@@ -32,7 +32,7 @@ std::string SharesText(const PropagatedValue& value) {
   return statement.empty() ? "" : fmt::format("{:<23}{}\n", "", statement);
 }
 
-/// What would have to be known for more of the contact.
+/// Names the inputs that more knowledge of the contact needs.
 std::string MissingText(const Report& report) {
   const std::vector<std::string> inputs =
       contact::MissingInputs(report.known, contact::ContactQuantity::kEquivalentRadius);
@@ -51,7 +51,7 @@ std::string MissingText(const Report& report) {
   for (const ContactField& field : ContactFields()) {
     const bool is_friction = field.key == "friction_coefficient";
     if (is_friction && report.known.normal_load) continue;  // withheld, as said
-    // Of radius and compliance each gives the other.
+    // Radius and compliance follow from each other.
     if (field.key == "compliance" && !report.known.contact_radius) continue;
     const bool is_of_sphere = field.key == "equivalent_radius" || field.key == "maximum_pressure";
     if (is_of_sphere && DeniesHertz(report.fit)) continue;
@@ -63,7 +63,7 @@ std::string MissingText(const Report& report) {
                         2);
 }
 
-/// What the laws that a series does not reject make of the contact.
+/// Lists the quantities of the contact under the laws that a load series does not reject.
 std::string LoadLawText(const Report& report) {
   std::string text;
   for (const LoadLaw& law : LawsToShow(*report.load_series)) {

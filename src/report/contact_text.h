@@ -6,9 +6,9 @@
 
 namespace mindahl::report {
 
-// What a fit says of the contact, in words; each of whole lines.
+// Describes the contact that a fit identifies, in words; each text is of whole lines.
 
-/// What is identified of it, with the formula, and what would have to be known for the rest.
+/// Lists the identified quantities with their formulas, and the inputs that the rest needs.
 std::string ContactText(const Report& report);
 
 /// Besides: what Hertz and Mindlin predict; empty where load, materials or radii are not known.
@@ -18,7 +18,7 @@ std::string HertzText(const Report& report);
 /// without a series.
 std::string LoadSeriesText(const Report& report);
 
-/// Is it Mindlin's contact? α against 1/3 and σ against 8a/G*.
+/// Tests whether it is Mindlin's contact: α against 1/3 and σ against 8a/G*.
 std::string MappingText(const Report& report);
 
 }  // namespace mindahl::report

@@ -26,8 +26,8 @@ struct Field {
         why_null(std::move(reason)) {}
 
   std::string path;   ///< from the item: "loop.amplitude", "ci95[0]"
-  std::string unit;   ///< "" where it has none, "-" for a ratio
-  std::string label;  ///< what it is
+  std::string unit;   ///< "" for a text, "-" for a ratio
+  std::string label;  ///< description in words
   Get get;
   WhyNull why_null;  ///< asked where `get` gives a null
 };

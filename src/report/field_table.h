@@ -13,7 +13,7 @@ namespace mindahl::report {
 /// Every row of the report, and of the items that it lists.
 struct FieldTable {
   std::vector<Field<Report>> rows;
-  std::vector<FieldDescription> items;  ///< of what the rows list
+  std::vector<FieldDescription> items;  ///< fields of the items that the rows list
 
   void Add(std::vector<Field<Report>> more) {
     for (Field<Report>& row : more) rows.push_back(std::move(row));

@@ -37,7 +37,7 @@ std::function<Value(const Report&)> OneARecord(Get get) {
   };
 }
 
-/// Of the gate of the widest record.
+/// Makes a getter of the reversal gate of the widest record.
 template <typename Get>
 std::function<Value(const Report&)> OfGate(Get get) {
   return [get](const Report& report) { return get(report.fit.WidestRecord().gate); };
@@ -192,7 +192,7 @@ FieldTable MakeTable() {
   AddMappingFields(table);
   AddLoadSeriesFields(table);
   AddBackboneFields(table);
-  // What a fit that failed has not is null for that reason.
+  // In a fit that failed, every missing value is null for that reason.
   for (Field<Report>& row : table.rows) {
     const bool is_of_contact = row.path.starts_with("contact.") || row.path.starts_with("mapping.");
     row.why_null = [why = std::move(row.why_null), is_of_contact](const Report& report) {

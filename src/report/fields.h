@@ -23,7 +23,7 @@ struct ContactField {
 /// In the order of the reports.
 const std::vector<ContactField>& ContactFields();
 
-/// What the documentation says of a field.
+/// Describes a field for the documentation.
 struct FieldDescription {
   std::string path;  ///< NAME and QUANTITY stand for what they are, [] for every place of a list
   std::string unit;
@@ -39,8 +39,8 @@ struct DescribedValue {
   Value value;
 };
 
-/// What a report has of one subject, without its lists: every field whose path begins with
-/// `prefix`, such as "measured.", with its unit as the report has it.
+/// Returns the fields of one subject, without its lists: those whose path begins with `prefix`,
+/// such as "measured.", with their units in the report.
 std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix);
 
 /// The whole report as keys and values.

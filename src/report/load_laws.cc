@@ -34,7 +34,7 @@ namespace {
 struct Component {
   double value = 0.0;
   double error = 0.0;
-  /// By how much its interval is wider than Student's of its error, to the wider side.
+  /// Ratio of its interval to Student's of its error, on the wider side.
   double widened = 0.0;
 };
 
@@ -44,7 +44,7 @@ struct Estimate {
   std::array<Component, kCount> components;
   /// 0 where an error is open, at a bound: what rests on it is not tested, and so no law.
   std::array<std::array<double, kCount>, kCount> covariance{};
-  double quantile = 0.0;         ///< of Student's t, two-sided
+  double quantile = 0.0;         ///< Student's t, two-sided
   double normal_quantile = 0.0;  ///< likewise
 };
 
@@ -57,7 +57,7 @@ double Widened(double value, double error, double quantile, std::optional<double
   return widened;
 }
 
-/// Of the parabola: 0 of a parameter that was held, infinite of one without an error.
+/// Returns the error by the parabola: 0 for a parameter that was held, infinite without one.
 double StandardErrorOf(const ParameterEstimate& estimate) {
   const bool is_held = estimate.status == ParameterStatus::kFixed;
   return estimate.standard_error.value_or(is_held ? 0.0 : std::numeric_limits<double>::infinity());
@@ -133,7 +133,7 @@ Held Hold(const Estimate& estimate, const Constraint& constraint, std::size_t wh
   return held;
 }
 
-/// Of a power of σ and of inputs: in proportion, to either side.
+/// Returns the interval of a power of σ and of inputs: in proportion, to either side.
 std::optional<Interval> IntervalOf(const PropagatedValue& value, const Held& log_stiffness,
                                    double normal_quantile) {
   if (!std::isfinite(value.standard_error)) return std::nullopt;

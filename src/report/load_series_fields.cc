@@ -94,7 +94,7 @@ std::string WhyNoInterval(const QuantityUnderLaw& item) {
                                        : "all that it follows from is held";
 }
 
-/// What a quantity has beside the members of every quantity of the contact.
+/// Returns the fields of a quantity in addition to those of every quantity of the contact.
 const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
   using Item = QuantityUnderLaw;
   static const std::vector<Field<Item>> fields = {

@@ -20,7 +20,7 @@ std::string WhyNoSlip(const Report& report) {
 constexpr const char* kWhyNoRegime =
     "slip_force is not identifiable, or has a lower limit that the loop reaches";
 
-/// Of the loop's description, where there is one.
+/// Makes a getter of the loop's description, null where there is none.
 template <typename Get>
 std::function<Value(const Report&)> OfLoop(Get get) {
   return [get](const Report& report) { return report.loop ? get(*report.loop) : Missing(); };

@@ -124,7 +124,7 @@ std::string ParameterSection(const Report& report) {
 
 // --- what to do
 
-/// What a finding asks to be run, beside what was run.
+/// Pairs a finding with an option that it asks to be added to the command.
 struct NextCommand {
   identification::FindingCode finding;
   std::string_view option;
@@ -137,7 +137,7 @@ constexpr std::array kNextCommands = {
     NextCommand{"shape_or_rig", "--rig-stiffness fit", "Asks whether the rig gives way:"},
 };
 
-/// What to run next, each a command after what it is for.
+/// Lists the commands to run next, each after its purpose.
 std::string NextSection(const Report& report, const Provenance& provenance) {
   const std::string command =
       provenance.command.empty() ? std::string("mindahl fit FILE") : provenance.command;

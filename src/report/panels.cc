@@ -134,7 +134,7 @@ PlotSeries Range(const Group& group, const std::vector<double>& x, double per_x,
   return series;
 }
 
-/// Of the fitted loop: that which was fitted, or which was measured under the fitted force.
+/// Returns the fitted displacements, or the measured ones where the force was fitted.
 const std::vector<double>& FittedDisplacement(const Report& report, std::size_t r) {
   const std::vector<double>& fitted = report.fit.records[r].fitted_displacement;
   return fitted.empty() ? report.records[r].record.displacement : fitted;
@@ -328,7 +328,7 @@ PlotPanel ResidualAlongStroke(const Report& report, const PanelUnits& units, Loo
     PlotSeries shown{"", {}, {}, PlotStyle::kPoints};
     shown.shade = group.shade;
     for (std::size_t i = group.begin; i < group.end; ++i) {
-      // What the load window leaves out would squeeze the rest together.
+      // Samples outside the load window would squeeze the rest together.
       if (!IsUnderLoad(report, record, i)) continue;
       shown.x.push_back(Per(units.displacement) * record.displacement[i]);
       shown.y.push_back(Per(units.residual) * fit.residual[i]);

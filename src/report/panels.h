@@ -36,7 +36,7 @@ io::PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColou
 io::PlotPanel ResidualAlongStroke(const Report& report, const PanelUnits& units,
                                   LoopColours colours);
 
-// Of the samples that count.
+// Plots the residuals of the samples that count.
 io::PlotPanel ResidualInTime(const Report& report, const PanelUnits& units);
 /// How often a residual is how large, in bins of 2·IQR·n^(−1/3) (Freedman & Diaconis 1981), 10 to
 /// 60 of them, out to five standard deviations; and the normal distribution of the same standard

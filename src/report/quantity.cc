@@ -50,7 +50,7 @@ constexpr std::array<std::string_view, 18> kPrefixed = {
     "N/sample", "N m/sample", "m/s",   "m/sample", "rad/s", "rad/sample"};
 
 const Prefix& Suiting(std::span<const Prefix> prefixes, double magnitude) {
-  // What rounds to 1000 at four digits is read as 1 of the next.
+  // A value that rounds to 1000 at four digits is shown as 1 of the next prefix.
   constexpr double kRoundsUp = 1 - 5e-5;
   const Prefix* suiting = &prefixes.front();
   for (const Prefix& prefix : prefixes) {
@@ -141,7 +141,7 @@ std::string QuantityWithError(double value, std::optional<double> error, std::st
 }
 
 std::string IntervalText(std::optional<double> lower, std::optional<double> upper, double factor) {
-  // As of an error a tenth of the width, of which RoundedTo() leaves two digits.
+  // RoundedTo() leaves two digits of an error, here a tenth of the width.
   constexpr double kOfWidth = 0.1;
   const double error = lower && upper ? kOfWidth * (*upper - *lower) / factor : 0.0;
   const auto end = [&](const std::optional<double>& value) {

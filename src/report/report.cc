@@ -45,7 +45,7 @@ void SayFindings(Report& report) {
   }
 }
 
-/// Of files that were split where their load steps.
+/// Notes which files were split where their load steps.
 void SayLoadPieces(Report& report) {
   std::vector<std::string> pieces;
   std::size_t left_out = 0;
@@ -64,7 +64,7 @@ void SayLoadPieces(Report& report) {
            fmt::join(pieces, ", "), left_out)});
 }
 
-/// What was given and contradicts, or could not be used.
+/// Returns warnings about given values that contradict each other, or could not be used.
 std::vector<Warning> ContactWarnings(const Report& report) {
   std::vector<Warning> warnings;
   if (const auto why = WhyFrictionIsWithheld(report.fit, report.known)) {

@@ -9,7 +9,7 @@
 #include "mindahl/report/report.h"
 #include "report/fields.h"
 
-// What the text and the page both say of a fit, in words and without an end of line.
+// Makes the statements that text and page share, in words and without an end of line.
 namespace mindahl::report {
 
 /// Several files by the name of the first, without its directory: "loop.csv and 2 more".
@@ -27,7 +27,7 @@ enum class Judgement { kGood, kPoor, kBad };
 Judgement JudgementOf(std::string_view verdict);
 Judgement JudgementOf(const identification::ParameterEstimate& estimate);
 
-/// What may be said of a parameter: no number of what the record does not give.
+/// Says how much of a parameter is shown: no number that the record does not determine.
 enum class Shown {
   kValue,       ///< the estimate, with its error and interval
   kHeld,        ///< the value that it was given
@@ -47,8 +47,8 @@ std::string ChanceText(double p_value, int digits = 3);
 bool IsIdentified(const Report& report, const ContactField& field,
                   const contact::PropagatedValue& value);
 
-/// What to measure better: the shares of a variance. Empty where the inputs are exact and the fit
-/// alone is uncertain.
+/// Names what to measure better, by fractions of a variance. Empty where the inputs are exact and
+/// the fit alone is uncertain.
 std::string VarianceStatement(const contact::PropagatedValue& value);
 
 /// Whether the contact slips as a whole, and from where on.
@@ -60,25 +60,25 @@ std::string WideIntervalStatement(const identification::FitResult& fit, const Un
 /// The slip forces in either sense of the motion; "" where they are one, or not known.
 std::string SlipForcesStatement(const Report& report);
 
-/// What changes over the cycles, where it is worth saying.
+/// Describes the significant trends over the cycles.
 std::vector<std::string> TrendStatements(const loop::LoopFacts& facts);
 
 /// Which of the two laws σ and Tc are of, and what the other would make of the contact. Empty where
 /// they are not compared.
 std::string LawStatement(const Report& report);
 
-/// Of which memory the record is, whatever the shape of its branches. Empty where that is not
+/// States which memory the record has, whatever the shape of its branches. Empty where that is not
 /// tested.
 std::string MemoryStatement(const Report& report);
 
-/// Is the exponent Mindlin's: the tests of α = 1/3. Empty where α was held.
+/// Tests whether the exponent is Mindlin's, α = 1/3. Empty where α was held.
 std::vector<std::string> ExponentStatements(const Report& report);
 
-/// Is the stiffness 8a/G*: the ratio, then its test where there is one.
+/// Tests whether the stiffness is 8a/G*: the ratio, then its test where there is one.
 std::vector<std::string> StiffnessStatements(const StiffnessTest& test);
 
-/// Of a load series, what of the contact no law gives and why. Empty where the report has no
-/// series.
+/// Names the quantities of the contact that no law of a load series gives, and why. Empty where the
+/// report has no series.
 std::vector<std::string> LoadLawStatements(const Report& report);
 
 /// The laws of a series that say something of the contact: elements in parallel only where Hertz's

@@ -34,7 +34,7 @@ struct ParameterWords {
   std::string interval;
 };
 
-/// Of one that is fitted.
+/// Formats value, error and interval of a fitted parameter.
 ParameterWords ParameterInWords(const ParameterEstimate& estimate) {
   switch (WhatIsShown(estimate)) {
     case Shown::kNothing:  // has no row
@@ -135,7 +135,7 @@ std::string OfAmplitude(const Report& report) {
                      Quantity(report.loop->measured.amplitude, report.units.displacement, 4));
 }
 
-/// What needs no model.
+/// Describes what was measured without a model.
 std::string MeasuredText(const Report& report) {
   const RecordFit& widest = report.fit.WidestRecord();
   const loop::LoopFacts& facts = widest.facts;
@@ -248,7 +248,7 @@ std::string SamplesText(const Report& report) {
       Quantity(gate.gate, report.units.excitation, 3), totals.cycles);
 }
 
-/// What was fitted to what.
+/// Describes what was fitted: model, initial state and samples.
 std::string FitText(const Report& report) {
   const FitResult& fit = report.fit;
   std::string text = Wrapped(
@@ -340,7 +340,7 @@ std::string ToText(const Report& report, const TextOptions& options) {
   std::string rest = OtherCausesText(report);
   if (report.selection) rest += "\n" + SelectionText(*report.selection, report.units);
   rest += "\n" + FitText(report) + MeasuredText(report) + MemoryText(report) + ResidualText(report);
-  // Of an inadequate model no curve is shown, and nothing that follows from it.
+  // For an inadequate model no curve is shown, and nothing that follows from it.
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
     return text + rest + NotesText(report);
   }

@@ -32,7 +32,7 @@ std::string TrimmedPartInWords(const TrimmedPart& part) {
   return fmt::format("{} of running in", CyclesText(part.cycles));
 }
 
-/// Of cycles that do not say that the contact has run in, why.
+/// Returns the reason why cycles do not show that the contact has run in.
 std::string_view WhyNotSettled(Settling settling) {
   switch (settling) {
     case Settling::kFewCycles:

@@ -52,7 +52,7 @@ double RequireHalfRange(const std::string& file, const RecordFile& input,
                   what, half_range, unit));
 }
 
-/// Where a whole file is at fault, it is named too, with a line and a column to look at.
+/// Refuses a record that cannot be fitted, naming its file with a line and a column.
 void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inputs) {
   bool is_loaded = false;
   std::size_t samples = 0;
@@ -161,7 +161,7 @@ std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<Record
   return records;
 }
 
-/// What is no part of the test in each record; empty where that is not asked for.
+/// Finds the parts of each record that are not of the test; empty where not requested.
 std::vector<loop::Trim> FindTrims(const FitRequest& request, const FitOptions& options,
                                   std::span<const Record> records) {
   std::vector<loop::Trim> trims;
@@ -172,8 +172,8 @@ std::vector<loop::Trim> FindTrims(const FitRequest& request, const FitOptions& o
   return trims;
 }
 
-/// What needs a load column must have one, and a window some samples, before the fit says so in its
-/// own words.
+/// Refuses a load window without a load column, or without samples, before the fit refuses it with
+/// a message of its own.
 void RequireLoads(const FitRequest& request, const std::optional<Interval>& window,
                   const std::vector<RecordFile>& inputs) {
   if (!window) return;
@@ -276,7 +276,7 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
                                 FitOptions& options) {
   if (request.term_choice != kAutomatic) return "";
   FitOptions of_head = options;
-  // As its cycles are fitted: an asymmetry is then an offset of each.
+  // The head is fitted like its cycles: an asymmetry is then an offset of each.
   of_head.initial_state = models::InitialState::kSteady;
   const identification::TermSelection selection =
       identification::SelectTerms(std::span(&head, 1), of_head);

@@ -105,7 +105,7 @@ void ApplySlipPosition(std::string_view text, FitOptions& fit) {
   ApplyCompanions(text == kForms[0] ? "slip_position" : "slip_position_quadratic", "", fit);
 }
 
-/// What was asked of a term: to be fitted, or a value that is known.
+/// Applies the request for a term: to be fitted, or held at a given value.
 void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
   const std::string name(term.name);
   if (text == kFitIt) {
@@ -208,7 +208,7 @@ loop::CountRange ParseCountRange(std::string_view text, std::string_view option)
       fmt::format("{}: '{}' is empty: the first number must not be the larger", option, text));
 }
 
-/// What has no place in a fit of the displacement, by the names of options.
+/// Refuses the options that do not apply to a fit of the displacement, by name.
 void RequireOptionsOfDisplacement(const FitRequest& request) {
   const auto refuse = [](std::string_view option, std::string_view why) {
     throw InputError(
@@ -263,7 +263,7 @@ void RequireFitted(std::string_view option, const std::string& name, bool is_aut
   refuse(fmt::format("add {}{}", term->option, term->argument.empty() ? "" : " fit"));
 }
 
-/// What is held must lie where it is bounded to lie.
+/// Refuses a held value outside its bounds.
 void RequireWithinBounds(const FitOptions& fit) {
   for (const auto& [name, interval] : fit.bounds) {
     const auto fixed = fit.fixed.find(name);
@@ -292,7 +292,7 @@ void RequireKnownChoices(const FitRequest& request) {
   RequireOneOf("--trim", request.trim, kTrims);
 }
 
-/// What counts is said once.
+/// Refuses options that choose samples in addition to --trim auto.
 void RequireTrimAlone(const FitRequest& request) {
   if (request.trim != kAutomatic) return;
   const auto refuse = [](std::string_view option, std::string_view why) {

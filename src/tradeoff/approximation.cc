@@ -48,7 +48,7 @@ std::vector<Resolution> Resolutions(const Method& method) {
   return resolutions;
 }
 
-/// What `count` steps are called; the noun of a method's plural is its first word, as "elements".
+/// Returns the noun for `count` steps; the plural is the first word of `steps`, as "elements".
 std::string CountedNoun(const Method& method, std::size_t count) {
   std::string noun(method.steps);
   if (count == 1) noun.erase(std::min(noun.find(' '), noun.size()) - 1, 1);

@@ -11,7 +11,7 @@
 namespace mindahl::tradeoff {
 namespace {
 
-/// Of a cycle, in counting whole ones.
+/// Fraction of a cycle below which a number of cycles is whole.
 constexpr double kRounding = 1e-9;
 
 void RequireRecommendOptions(const RecommendOptions& options) {

@@ -18,7 +18,7 @@ class Course {
     double cycle = 0.0;  ///< mean number
     double value = 0.0;  ///< mean, weighted
     double weight = 0.0;
-    double least = 0.0;     ///< of its values
+    double least = 0.0;     ///< smallest of its values
     double greatest = 0.0;  ///< likewise
     std::size_t count = 0;
   };
@@ -37,15 +37,15 @@ class Course {
   std::size_t width_ = 1;  // values to a bin
 };
 
-/// What counts as a change.
+/// Sets which changes and trends of a time history are reported.
 struct ChangeThresholds {
   /// Chance [-] of a change, or of a trend, where there is none: one test in a hundred.
   double chance = 0.01;
-  /// [-] of a stretch's mean: less over a whole stretch is no trend that matters.
+  /// Smallest trend that is reported: change over a segment [-] of the segment's mean.
   double trend = 0.01;
-  /// [-] of the mean before: a smaller step is a bend of the course, not a transition.
+  /// Smallest step [-] of the mean before it that is a transition; a smaller one is a bend.
   double step = 0.02;
-  /// [-] of the first stretch's slope: where it has fallen to that, the running-in is over.
+  /// Fraction [-] of the first segment's initial slope at which the running-in has ended.
   double settled = 0.2;
 };
 
@@ -56,7 +56,7 @@ struct Stretch {
   double at_start = 0.0;  ///< the line there, within what values there were
   double at_end = 0.0;
   double slope = 0.0;          ///< a cycle; of the line through what settles
-  double slope_p_value = 1.0;  ///< of no slope
+  double slope_p_value = 1.0;  ///< probability of such a slope under the hypothesis of none
   bool trends = false;         ///< beyond chance and large enough to matter
   /// τ [cycles] of a + b·exp(−n/τ) in place of a line.
   std::optional<double> time_constant = std::nullopt;
@@ -66,7 +66,7 @@ struct Stretch {
 };
 
 enum class ChangeKind {
-  kEndOfRunningIn,  ///< what went on from the beginning settles
+  kEndOfRunningIn,  ///< the initial exponential settling has ended
   kTransition,      ///< a step
   kBend,            ///< the rate changes
 };
@@ -77,11 +77,11 @@ std::string_view NameOf(ChangeKind kind);
 struct Change {
   ChangeKind kind = ChangeKind::kBend;
   std::size_t cycle = 0;    ///< the first after it
-  std::size_t lower95 = 0;  ///< of that cycle
+  std::size_t lower95 = 0;  ///< 95 % interval of `cycle`
   std::size_t upper95 = 0;
   double before = 0.0;   ///< the quantity there, on the line before, within what values there were
   double after = 0.0;    ///< and on the line after
-  double p_value = 1.0;  ///< of no change there, over all places where it might have been
+  double p_value = 1.0;  ///< probability under no change, corrected for the choice of the place
 };
 
 /// A course in stretches, one more than changes.

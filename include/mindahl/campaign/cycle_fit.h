@@ -20,8 +20,8 @@ struct FittedValue {
   std::optional<double> standard_error;
 };
 
-/// What one cycle, or several fitted together, says. In the units of loop::LoopFacts and
-/// identification::FitResult; facts are the means of the cycles fitted together.
+/// Holds the results of one cycle, or of several fitted together, in the units of loop::LoopFacts
+/// and identification::FitResult; facts are the means of the cycles fitted together.
 struct CycleFit {
   std::size_t number = 1;
   std::size_t first_line = 0;
@@ -46,8 +46,8 @@ struct CycleFit {
   /// Tc/N, where the load is known and Tc identifiable.
   std::optional<double> friction_coefficient;
   std::optional<bool> slips_grossly;  ///< the fitted law at the cycle's amplitude
-  std::uint64_t checksum = 0;         ///< of all samples up to the cycle's last, as Cycle has it
-  /// What to mind, each one of CycleFlags().
+  std::uint64_t checksum = 0;         ///< like Cycle::checksum, up to the cycle's last sample
+  /// Holds the warnings about this cycle, each one of CycleFlags().
   std::vector<std::string> flags;
 
   [[nodiscard]] bool HasFlag(std::string_view flag) const {
@@ -55,7 +55,7 @@ struct CycleFit {
   }
 };
 
-/// What a flag of a cycle says.
+/// Names a flag of a cycle and explains it in a sentence.
 struct CycleFlag {
   std::string_view name;
   std::string_view meaning;

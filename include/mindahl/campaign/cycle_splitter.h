@@ -14,8 +14,8 @@ namespace mindahl::campaign {
 /// One cycle of a longer record, or several in a row: from a turning point to the next but one,
 /// both samples included.
 struct Cycle {
-  std::size_t number = 1;      ///< of the first, counted from 1
-  std::size_t first_line = 0;  ///< of the file
+  std::size_t number = 1;      ///< number of the first of them, counted from 1
+  std::size_t first_line = 0;  ///< line of the file, counted from 1
   loop::Record record;
   /// Covers every sample and line number from the test's first up to the cycle's last: two tests
   /// that differ anywhere before differ in it, but for a chance of 2⁻⁶⁴.

@@ -12,7 +12,7 @@ namespace mindahl::campaign {
 /// A column of numbers of the table, and where a fit has them.
 struct CycleNumber {
   std::string_view name;
-  std::string_view unit;  ///< of a record of forces; "" of a pure number
+  std::string_view unit;  ///< in a record of forces; "" for a pure number
   std::optional<double>& (*of)(CycleFit&) = nullptr;
 };
 
@@ -28,7 +28,7 @@ std::string CycleTableHeader(bool is_torsional);
 /// @param accumulated_energy  [J] dissipated up to the end of the cycle
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy);
 
-/// What a line of the table says that goes on with it: the reverse of CycleTableRow().
+/// Holds what is read back from a line of the table: the inverse of CycleTableRow().
 struct CycleTableEntry {
   CycleFit fit;  ///< with numbers and flags, as far as the table has them
   double accumulated_energy = 0.0;

@@ -8,7 +8,7 @@
 
 namespace mindahl::campaign {
 
-/// Of how many fits a sum of energies has what.
+/// Counts the fits in a sum of energies by how the energy of each was obtained.
 struct EnergyCounts {
   std::size_t measured = 0;  ///< their own, those with glitches as mended
   std::size_t replaced = 0;  ///< by what the measured before them dissipate in as many samples

@@ -11,8 +11,8 @@ namespace mindahl::campaign {
 
 /// The course of a quantity over a test.
 struct Evolution {
-  std::string name;  ///< as the table of cycles calls it
-  std::string unit;  ///< "-" of a pure number
+  std::string name;  ///< column of the table of cycles
+  std::string unit;  ///< "-" for a pure number
   /// Weights of the course are 1/error², so that a bin has the standard error of a cycle.
   bool has_errors = false;
   Course course = {};

@@ -22,7 +22,7 @@ struct FlagCount {
   std::size_t cycles = 0;
 };
 
-/// What there is to say of a test of many cycles.
+/// Holds everything that the page of a test of many cycles shows.
 struct TestSummary {
   std::vector<std::string> files;
   std::size_t cycles = 0;
@@ -30,7 +30,7 @@ struct TestSummary {
   std::size_t fits = 0;
   std::size_t unused_samples = 0;
   double dissipated = 0.0;          ///< [J] in all
-  EnergyCounts energy_counts = {};  ///< of how many fits that has what
+  EnergyCounts energy_counts = {};  ///< how the energy of each fit was obtained
   /// Exponent of all cycles; empty where each has its own.
   std::optional<PooledValue> shared_alpha = {};
   std::vector<FlagCount> flags = {};  ///< those that a cycle has
@@ -45,7 +45,7 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
 struct FileResult {
   std::string file;
   std::string page;     ///< address of its page, relative to the index; "" where there is none
-  std::string verdict;  ///< of the fit, in a word; "" where there is none
+  std::string verdict;  ///< one word for the fit's adequacy; "" where there is none
   std::string fault;    ///< why it is not done; "" where it is
   std::vector<identification::ParameterEstimate> parameters;  ///< empty where the fit failed
 };

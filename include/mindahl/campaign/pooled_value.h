@@ -17,11 +17,11 @@ class PooledValue {
   void Add(double value, double standard_error);
 
   [[nodiscard]] std::size_t count() const { return count_; }
-  // Of one value or more:
+  // Require at least one value:
   [[nodiscard]] double mean() const;
   [[nodiscard]] double scatter() const;         ///< τ
-  [[nodiscard]] double standard_error() const;  ///< of the mean, with the scatter
-  /// Of Q by χ² of n − 1: that the errors alone make such a scatter.
+  [[nodiscard]] double standard_error() const;  ///< standard error of the mean, scatter included
+  /// Returns P(χ²(n − 1) ≥ Q): the chance of such a scatter from the stated errors alone.
   [[nodiscard]] double p_value() const;
 
  private:

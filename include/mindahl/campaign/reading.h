@@ -16,7 +16,7 @@ namespace mindahl::campaign {
 struct Reading {
   loop::ReversalGate gate;  ///< `certain` where it was given
   bool gate_is_given = false;
-  std::size_t samples = 0;  ///< that were looked at
+  std::size_t samples = 0;  ///< number of samples examined
 };
 
 /// Samples as every stage takes them, valid as long as they.

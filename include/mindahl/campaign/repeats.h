@@ -14,10 +14,10 @@ struct Repeats {
   double standard_deviation = 0.0;  ///< between them
   /// Root of the mean square of their standard errors; empty where they state none.
   std::optional<double> stated_error = {};
-  /// Of Σ((x − x̄)/e)² by χ², x̄ weighted: that the stated errors make such a scatter.
+  /// P(χ²(n − 1) ≥ Σ((x − x̄)/e)²), x̄ weighted: chance of such a scatter from the stated errors.
   std::optional<double> p_value = {};
 
-  /// Is the scatter more than the stated errors make, at a chance of one in a hundred?
+  /// True if the stated errors make such a scatter with a chance below one in a hundred.
   [[nodiscard]] bool exceed_errors() const { return p_value && *p_value < 0.01; }
   /// Returns "as the errors say, p 0.43", or "no error is stated".
   [[nodiscard]] std::string InWords() const;

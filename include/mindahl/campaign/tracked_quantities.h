@@ -13,9 +13,9 @@ namespace mindahl::campaign {
 
 /// A quantity whose course over the test is described.
 struct TrackedQuantity {
-  std::string_view name;       ///< as the table of cycles calls it
-  std::string_view unit;       ///< of a record of forces; "-" of a pure number
-  std::string_view open_flag;  ///< of a cycle that leaves it open; "" where none does
+  std::string_view name;       ///< column of the table of cycles
+  std::string_view unit;       ///< in a record of forces; "-" for a pure number
+  std::string_view open_flag;  ///< flag of cycles that do not determine it; "" if none
   std::optional<double> (*of)(const CycleFit&) = nullptr;
   std::optional<double> (*error)(const CycleFit&) = nullptr;  ///< in proportion to its standard one
   bool is_drawn = false;
@@ -48,8 +48,8 @@ class TrackedCourses {
   std::vector<bool> have_errors_;
 };
 
-/// What happened over a course, in order, a sentence each without the quantity's name; a
-/// running-in, which bends as it goes, is one. Numbers in SI.
+/// Returns a sentence for each change, in order, without the quantity's name; a running-in, which
+/// bends gradually, is one change. Numbers in SI.
 std::vector<std::string> ChangeStatements(const CourseDescription& course);
 
 /// Returns the trends that are beyond chance but too small to matter, likewise.

@@ -17,13 +17,13 @@
 namespace mindahl::campaign {
 
 struct TrackOptions {
-  /// Of each fit. The reversal gate splits the record; without one it is 0.
+  /// Options of each fit. The reversal gate splits the record; without one it is 0.
   identification::FitOptions fit;
   std::size_t together = 1;  ///< cycles in a row that are one fit, >= 1
   std::size_t every = 1;     ///< one fit of so many that there could be, >= 1
-  std::size_t threads = 1;   ///< that fit, beside the one that calls, >= 1
+  std::size_t threads = 1;   ///< worker threads that fit, in addition to the calling one, >= 1
   std::size_t skipped = 0;   ///< fits at the beginning that are not made: a multiple of kBatch
-  std::uint64_t seed = 0;    ///< what the checksums begin with, as CycleSplitter takes it
+  std::uint64_t seed = 0;    ///< initial value of the checksums, as CycleSplitter takes it
 };
 
 /// Fits of a batch begin one where the last one ended, the first anew: whatever the number of
@@ -45,7 +45,7 @@ class Tracker {
   /// Waits where two batches a thread are at work or on their way.
   void Add(const loop::RecordView& samples, std::span<const std::size_t> lines);
 
-  /// What follows is another file.
+  /// Declares that the samples that follow are from another file.
   /// @returns samples at the end of the last that are part of no cycle
   std::size_t NextFile() { return splitter_.Restart(); }
 

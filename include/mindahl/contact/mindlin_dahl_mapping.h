@@ -38,7 +38,7 @@ struct UncertainValue {
   double standard_error = 0.0;
 };
 
-/// What is known of one body; any member may be missing.
+/// Holds the known properties of one body; any member may be missing.
 struct KnownBody {
   std::optional<UncertainValue> youngs_modulus = std::nullopt;  ///< E [Pa], finite, > 0
   std::optional<UncertainValue> poisson_ratio = std::nullopt;   ///< ν [-], in (−1, 0.5]
@@ -46,8 +46,8 @@ struct KnownBody {
   std::optional<UncertainValue> radius = std::nullopt;
 };
 
-/// What is known of the contact besides the fit. The uncertainties are independent of each other
-/// and of the fit's.
+/// Holds the known properties of the contact, in addition to the fit. The uncertainties are
+/// independent of each other and of the fit's.
 struct KnownContact {
   std::optional<UncertainValue> normal_load = std::nullopt;  ///< N [N], finite, > 0
   KnownBody body_1{};
@@ -73,7 +73,7 @@ struct PropagatedValue : UncertainValue {
   [[nodiscard]] double InputShare() const;
 };
 
-/// What materials and radii, or contact radius and compliance, predict under a load.
+/// Holds what materials and radii, or contact radius and compliance, predict under a load.
 struct PredictedContact {
   std::optional<PropagatedValue> effective_modulus;  ///< E* [Pa]; of materials
   std::optional<PropagatedValue> equivalent_radius;  ///< ρ [m]; of two radii
@@ -95,7 +95,7 @@ struct PredictedContact {
 PredictedContact PredictContact(const KnownContact& known,
                                 const UncertainValue& friction_coefficient);
 
-/// What Hertz and Mindlin predict when materials, radii and load are all known.
+/// Holds the predictions of Hertz and Mindlin when materials, radii and load are all known.
 struct HertzPrediction {
   PropagatedValue effective_modulus;     ///< E* [Pa]
   PropagatedValue equivalent_radius;     ///< ρ [m] of the two radii
@@ -112,7 +112,7 @@ struct HertzPrediction {
   PropagatedValue gross_slip_displacement_ratio;
 };
 
-/// What the fit and the knowledge of the contact identify together; empty what they do not.
+/// Holds what fit and knowledge of the contact identify together; empty where they do not.
 struct IdentifiedContact {
   std::optional<PropagatedValue> friction_coefficient;  ///< μ = Tc/N [-]; needs N
   std::optional<PropagatedValue> contact_radius;        ///< a = σG*/8 [m]; needs G*
@@ -134,7 +134,7 @@ struct IdentifiedContact {
   std::vector<std::string> redundant;
 };
 
-/// What a fit and what is known besides it may identify.
+/// Names the quantities that a fit together with known properties may identify.
 enum class ContactQuantity {
   kFrictionCoefficient,
   kContactRadius,
@@ -143,8 +143,8 @@ enum class ContactQuantity {
   kMaximumPressure,
 };
 
-/// What would have to be known for IdentifyContact() to give a quantity and is not, in words: "the
-/// normal load". Empty where nothing is missing.
+/// Returns, in words ("the normal load"), the inputs that IdentifyContact() still needs for a
+/// quantity; empty where nothing is missing.
 std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity);
 
 /// The inverse mapping: from a fitted stiffness and slip force to the contact.

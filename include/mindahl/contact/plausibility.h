@@ -8,8 +8,8 @@
 
 namespace mindahl::contact {
 
-/// What is possible of a contact and hardly meant, a sentence each with what to look at: most often
-/// a unit. Each limit lies beyond what is measured of dry solids:
+/// Returns a sentence for each value that is possible but implausible, with what to check: most
+/// often a unit. Each limit lies beyond what is measured of dry solids:
 ///   G* > 1 1/Pa    a body softer than foam; many texts write G* for its inverse
 ///   E < 1 MPa      softer than rubber
 ///   a > R/3        of the smaller radius: Hertz's parabola is no sphere any more (Johnson §4.1)

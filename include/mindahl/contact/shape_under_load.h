@@ -7,8 +7,8 @@
 
 namespace mindahl::contact {
 
-// What a contact of a known kind of shape is, when its stiffness follows the load as that shape
-// says: a ∝ N^p and so σ = 8a/G* ∝ N^p. One stiffness stands for all loads.
+// Identifies a contact whose stiffness follows the load as a known kind of shape predicts: a ∝ N^p,
+// so σ = 8a/G* ∝ N^p. One stiffness stands for all loads.
 
 /// Shapes whose contact radius is a power of the load.
 enum class ContactShape {
@@ -21,7 +21,7 @@ enum class ContactShape {
 /// p [-] of a ∝ N^p.
 double LoadExponentOf(ContactShape shape);
 
-/// What follows of a shape; empty what does not.
+/// Holds the quantities that follow from a shape; empty where they do not.
 struct ShapeUnderLoad {
   std::optional<PropagatedValue> contact_radius;     ///< a [m] at the load; not of rough surfaces
   std::optional<PropagatedValue> equivalent_radius;  ///< ρ [m] of a sphere
@@ -31,10 +31,10 @@ struct ShapeUnderLoad {
   /// E [Pa] of the one body whose E was not known, 1 or 2; of a sphere
   std::optional<PropagatedValue> youngs_modulus;
   int body = 0;
-  std::optional<PropagatedValue> slope;  ///< [-] of a cone's side against the other surface
+  std::optional<PropagatedValue> slope;  ///< slope [-] of a cone's side against the other surface
   /// N/σ [m] of rough surfaces, the same under every load
   std::optional<PropagatedValue> load_over_stiffness;
-  /// What would have to be known for more, in a sentence; empty where nothing is missing.
+  /// Names, in a sentence, the inputs that more would need; empty where nothing is missing.
   std::string unidentified;
 };
 

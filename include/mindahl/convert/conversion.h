@@ -10,7 +10,7 @@
 
 namespace mindahl::convert {
 
-/// What a contact is to be written as.
+/// Names the law or program for which a contact is written.
 enum class Target {
   kMasing,  ///< σ, α, Tc of Masing's law (Mindlin's, Full-Dahl)
   kDahl,    ///< σ, α, Tc of Dahl's own law
@@ -39,9 +39,9 @@ struct ConversionOptions {
   double amplitude = 0.0;  ///< X [m] of the steady loop that is to be reproduced, > 0
   /// Amplitudes over which what cannot be exact is fitted; empty: X alone.
   std::optional<AmplitudeRange> range = std::nullopt;
-  double tolerance = 0.01;   ///< of force and energy, in (0, 1)
-  std::size_t elements = 8;  ///< of Iwan's model, >= 1
-  double beta = 0.5;         ///< of Bouc's and Wen's law, in (0, 1]
+  double tolerance = 0.01;   ///< relative error allowed in force and energy, in (0, 1)
+  std::size_t elements = 8;  ///< number of elements of Iwan's model, >= 1
+  double beta = 0.5;         ///< β of the Bouc–Wen law, in (0, 1]
 };
 
 struct Conversion {

@@ -16,7 +16,7 @@ struct Parameter {
   std::string meaning;
 };
 
-/// What else LAMMPS wants to know of a contact.
+/// Holds the properties of a contact that LAMMPS needs in addition to a law.
 struct LammpsContact {
   std::optional<double> normal_load = {};     ///< N [N], > 0: its friction coefficient is Tc/N
   std::optional<double> contact_radius = {};  ///< a [m], > 0: its Mindlin stiffness is kt·a

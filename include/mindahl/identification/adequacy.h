@@ -8,7 +8,7 @@
 
 namespace mindahl::identification {
 
-/// Does the model describe the record?
+/// Says whether the model describes the record.
 enum class AdequacyVerdict {
   kAdequate,    ///< residuals look like noise, as far as this record tells
   kDoubtful,    ///< they do not; intervals cover what the causes that explain it would change
@@ -26,12 +26,12 @@ enum class Use {
 /// Something beside the model that the residuals look like.
 struct Cause {
   std::string_view code;    ///< stable, for scripts; docs/contract.md lists them
-  double delta_aicc = 0.0;  ///< of the fit with it less that without: negative where it helps
+  double delta_aicc = 0.0;  ///< change of AICc with the term: negative where it helps
   double explains = 0.0;    ///< share of the residuals' variance [–]
-  double size = 0.0;        ///< of it, in `unit`; of several numbers the first
+  double size = 0.0;        ///< its value in `unit`; of several numbers the first
   std::string_view unit;    ///< "s", "samples", "N s/m" …
-  std::string option;       ///< that takes it into account; empty where there is none yet
-  /// By how much it would move σ, α and Tc, in halves of their 95 % intervals: the largest.
+  std::string option;       ///< command-line option that fits it; empty where there is none yet
+  /// Largest shift that it would cause in σ, α or Tc [half width of their 95 % intervals].
   double moves = 0.0;
   bool is_measured = false;  ///< seen in the record without the model, and named first
 };
@@ -43,7 +43,7 @@ struct Adequacy {
   /// the noise
   double misfit_over_noise = 0.0;
   double misfit = 0.0;        ///< rms of what the model misses [N or m]
-  double p_value = 1.0;       ///< that noise alone looks like that
+  double p_value = 1.0;       ///< probability of such residuals from noise alone
   std::vector<Cause> causes;  ///< those that help, the best first
   /// rms of what the model misses over the measured half gap; empty where no gap was measured.
   std::optional<double> misfit_over_half_gap;

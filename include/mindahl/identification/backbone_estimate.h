@@ -38,14 +38,14 @@ struct BackboneEstimate {
   std::vector<SlipShare> elements;
   BandValue first_stiffness;  ///< [N/m] secant over the first hundredth of the displacement
   BandValue elastic;          ///< [N/m] of what does not slip within the record
-  double smoothing = 0.0;     ///< [–] of the distribution, over the weight of the data
+  double smoothing = 0.0;     ///< regularisation over the weight of the data [–]
   double effective_samples = 0.0;
   double rms = 0.0;  ///< [N] that the backbone leaves
-  /// What does not slip is surely less than a fiftieth of the first stiffness.
+  /// True if the stiffness that never slips is surely below a fiftieth of the first stiffness.
   bool reaches_plateau = false;
 };
 
-/// Does a fit have a backbone: of forces, under one load, no lag, a law of Masing's memory?
+/// True if the backbone is defined: a fit of forces, one load, no lag, Masing's memory.
 bool HasBackbone(const FitResult& fit);
 
 /// The backbone F(x) = Σ wₖ·pₖ(x) + w∞·x, wₖ ≥ 0, of which the records' forces are

@@ -21,7 +21,7 @@ namespace mindahl::identification {
 /// A parameter of the problem and its parameter block, θ: non-dimensional and of order one.
 ///   value = scale·exp(θ) where it is positive,  else  value = reference + scale·θ
 struct CeresParameter {
-  std::string name;  ///< as in FitResult::parameters
+  std::string name;  ///< name in FitResult::parameters
   std::string unit;
   double theta = 0.0;  ///< the parameter block, of size one
   double lower = 0.0;  ///< bounds of θ

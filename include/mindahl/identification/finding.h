@@ -16,7 +16,7 @@ struct Finding {
   FindingCode code;
   Severity severity = code.row().severity;
   std::vector<std::string> parameters = {};  ///< those that it is about; may be empty
-  /// What was found, by name, in SI.
+  /// Holds the measured numbers by name, in SI.
   std::vector<std::pair<std::string_view, double>> numbers = {};
   std::string_view kind = {};  ///< which of several forms it takes; empty where there is one only
 

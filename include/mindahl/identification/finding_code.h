@@ -37,7 +37,7 @@ inline constexpr auto kFindings = [] {
   using enum Identifiability;
   using enum Severity;
   return std::to_array<FindingRow>({
-      // of the record
+      // about the record
       {.code = "reversals_uncertain"},
       {.code = "glitches_left_out", .severity = kNote},
       {.code = "path_too_long"},
@@ -46,7 +46,7 @@ inline constexpr auto kFindings = [] {
       {.code = "load_not_followed"},
       {.code = "noise_in_displacement", .severity = kNote},
       {"turning_points_between_samples", kIdentifiable, kNote, true},
-      // of what the record determines
+      // about the identifiability of the parameters
       {"undetermined_parameter", kNotIdentifiable},
       {"undetermined_combination", kNotIdentifiable},
       {"sigma_not_identifiable", kNotIdentifiable},
@@ -64,18 +64,18 @@ inline constexpr auto kFindings = [] {
       {"several_minima", kIdentifiable, kNote},
       {"shape_or_rig", kNotIdentifiable},
       {"rig_not_tried", kNotIdentifiable},
-      // of the law: of its own a parameter is as well known as before
+      // about the law: under its own law a parameter is as well known as before
       {"law_undecided", kIdentifiable, kNote},
       {"other_law_fits_better", kIdentifiable, kWarning, true},
       {.code = "memory_contradicts_law"},
-      // of what the model misses
+      // about the model discrepancy
       {"systematic_residual", kIdentifiable, kWarning, true},
       {.code = "slow_residuals"},
       {"energy_contradiction", kNotIdentifiable, kWarning, true},
       {"loop_not_seen", kNotIdentifiable, kWarning, true},
       {"no_model_fits", kNotIdentifiable, kWarning, true},
       {"model_inadequate", kNotIdentifiable, kWarning, true},
-      // of the search
+      // about the search
       {.code = "weights_not_settled"},
       {.code = "fit_failed", .severity = kFailure},
   });

@@ -16,10 +16,10 @@ namespace mindahl::identification {
 
 using loop::Interval;
 
-/// What large residuals count: as they are, or less (reweighting.h has the constants).
+/// Sets the weight of large residuals: full, or less (reweighting.h has the constants).
 enum class Loss { kNone, kHuber, kCauchy, kTukey };
 
-/// What to fit and how. Parameters are called as Terms() calls them; with several records those of
+/// Sets what is fitted and how. Parameters have the names of Terms(); with several records those of
 /// a record are numbered from 1: force_offset_2.
 struct FitOptions {
   /// One of FrictionModels() that is not scaled_by_peak.
@@ -74,7 +74,7 @@ struct FitOptions {
   /// Starting points refined on all samples, best first: up to four of a look at the plane of σ/Tc
   /// and α, and beyond them drawn at random.
   std::size_t starts = 1;
-  std::uint64_t seed = 1;  ///< of those
+  std::uint64_t seed = 1;  ///< seed of the random starts
 
   Thresholds thresholds;
 

@@ -49,7 +49,7 @@ enum class IntervalSource {
   kOmittedTerms,  ///< terms that the model lacks and the residuals look like
   kPlateau,       ///< half gap of the loop, measured without a model
   kSmallShape,    ///< an α above the bound 0, where the search stopped
-  kDiscrepancy,   ///< what the model misses, of the size that the record has it
+  kDiscrepancy,   ///< a model discrepancy of the size that the record has
   kCarriedForce,  ///< not below the force that was measured to be carried
 };
 
@@ -68,7 +68,7 @@ struct ParameterEstimate {
   std::optional<double> lower95;         ///< ends of the 95 % interval; empty where it is open
   std::optional<double> upper95;
   ParameterStatus status = ParameterStatus::kFixed;
-  bool includes_discrepancy = false;  ///< does the interval include what the model misses?
+  bool includes_discrepancy = false;  ///< true if the interval allows for the model discrepancy
   Identifiability identifiability = Identifiability::kNotIdentifiable;
   /// The contributions of which the interval is the union; empty where there is none.
   std::vector<IntervalPart> interval = {};
@@ -94,7 +94,7 @@ struct BranchShape {
 /// α = 1/3 against the fitted α, the other parameters fitted again.
 struct MindlinTest {
   double likelihood_ratio = 0.0;  ///< 2 ln Λ, for autocorrelated residuals
-  double p_value = 1.0;           ///< of F(1, degrees of freedom)
+  double p_value = 1.0;           ///< by F(1, degrees of freedom)
   /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
   /// ΔAICc: then the record does not tell a contact of another shape from Mindlin's in a rig that
   /// gives way. Looked for where α = 1/3 is rejected, α is smaller and no rig is fitted.
@@ -111,8 +111,8 @@ struct StartReport {
   bool converged = false;
 };
 
-/// What a record of a load series says by itself, of Tc and σ at its load: the shape and whatever
-/// else all records share is held where the whole series has it.
+/// Holds Tc and σ as one record of a load series determines them at its load; the shape and all
+/// other parameters that the records share are held at the values of the whole series.
 struct RecordAlone {
   ParameterEstimate stiffness;   ///< σ [N/m]
   ParameterEstimate slip_force;  ///< Tc [N]
@@ -121,7 +121,7 @@ struct RecordAlone {
 /// One record as the fit sees it.
 struct RecordFit {
   loop::ReversalGate gate;             ///< `certain` where it was given
-  loop::GlitchCount glitches;          ///< that are left out
+  loop::GlitchCount glitches;          ///< glitches left out, by kind
   std::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
   /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
   /// record is sampled so coarsely that it had to be fitted.
@@ -132,18 +132,18 @@ struct RecordFit {
   /// [m], in a fit of the displacement: where the law has the contact under the force that was
   /// measured, offsets included; else empty.
   std::vector<double> fitted_displacement;
-  std::vector<unsigned char> counts;  ///< of each sample, 1 where it counts, else 0
+  std::vector<unsigned char> counts;  ///< one per sample: 1 where it counts, else 0
   std::size_t left_out = 0;           ///< samples that do not count
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
-  double load_ratio = 1.0;            ///< of that to the mean of all, in a load series; else 1
+  double load_ratio = 1.0;            ///< to the mean load of all records of a load series; else 1
   bool load_varies = false;           ///< within the record, as the law was told
-  /// Of a load series, from Depth::kFull on; empty where the record by itself is no fit.
+  /// Holds this record's own values, from Depth::kFull on; empty where it cannot be fitted alone.
   std::optional<RecordAlone> alone;
   /// Energy [J] that the fitted law loses in each cycle of `facts`, between ± their amplitude;
   /// empty where every cycle loses what the steady loop does. Of a virgin contact whose slip forces
   /// differ.
   std::vector<double> law_energy;
-  /// Of the residuals, in the displacement's sense; from depth kIntervals on.
+  /// Averages residuals by place in the stroke, sign as the displacement; from kIntervals on.
   ResidualStructure structure;
   /// [N], in the file's sense, offsets included; in a fit of the displacement as measured.
   std::vector<double> fitted_force;

@@ -16,8 +16,8 @@ struct ProfilePoint {
 
 /// The likelihood along Tc, where a fit looked at it (docs/theory.md §10).
 struct LikelihoodProfile {
-  double critical = 0.0;             ///< of F(1, ν): points above it are outside the 95 % interval
-  std::vector<ProfilePoint> points;  ///< by slip force
+  double critical = 0.0;             ///< F(1, ν) beyond which points are outside the 95 % interval
+  std::vector<ProfilePoint> points;  ///< in order of slip force
 };
 
 }  // namespace mindahl::identification

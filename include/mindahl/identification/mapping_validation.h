@@ -67,7 +67,7 @@ struct IntervalCount {
 /// Coverage of the intervals of one parameter by one law, over all loops with noise.
 struct CoverageVerdict {
   std::string_view parameter;
-  bool by_dahl = false;  ///< by Dahl's own law
+  bool by_dahl = false;  ///< true if fitted with Dahl's own law
   IntervalCount all = {};
   IntervalCount sliding = {};  ///< those of loops with λ > 1
   double chance = 1.0;         ///< the smaller of all's of so few, and sliding's of so many
@@ -96,15 +96,15 @@ struct ValidationRow {
 };
 
 struct ValidationReport {
-  std::vector<ValidationRow> rows;  ///< by noise level, then amplitude
+  std::vector<ValidationRow> rows;  ///< in order of noise level, then amplitude
   /// Likewise of Dahl's own law, fitted to each loop from its first extreme on. σ, α and Tc are
   /// then those of the Masing law with the same steady loop (models/equivalent_law.h), standard
   /// errors and intervals those of Dahl's law itself.
   std::vector<ValidationRow> dahl_rows;
   std::size_t fits = 0;
   std::size_t failures = 0;
-  std::vector<std::string> failed_cases;  ///< what each failed case was and by how much it missed
-  std::vector<CoverageVerdict> coverage;  ///< by law, then parameter; empty without noise
+  std::vector<std::string> failed_cases;  ///< description of each failed case with its error
+  std::vector<CoverageVerdict> coverage;  ///< in order of law, then parameter; empty without noise
   /// Which coverages are incompatible with what is promised, of `coverage` and of single rows.
   std::vector<std::string> failed_coverages;
 

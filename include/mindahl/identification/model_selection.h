@@ -35,14 +35,14 @@ struct ModelScore {
   bool at_bound = false;
   /// The same as a simpler candidate: its rig gives nothing way, or its α is 0.
   bool redundant = false;
-  std::string remark;  ///< what else is to be known of this fit; may be empty
+  std::string remark;  ///< anything else to know about this fit; may be empty
 };
 
 struct ModelSelection {
   /// Each model without, then with a rig, in the order of FrictionModels()
   std::vector<ModelScore> scores;
-  std::size_t chosen = 0;  ///< of `scores`
-  /// Of `scores`, simplest first: those that the records do not tell from the chosen one, and it
+  std::size_t chosen = 0;  ///< index into `scores`
+  /// Indices into `scores`, simplest first: the chosen model and all indistinguishable from it.
   std::vector<std::size_t> indistinguishable;
   double effective_samples = 0.0;   ///< n_eff of the criterion
   std::size_t held_out_cycles = 0;  ///< each was predicted once; 0 where there are too few

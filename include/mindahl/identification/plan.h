@@ -13,17 +13,17 @@
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
 
-/// What should be measured: the errors that a fit of a loop would have, before there is one.
+/// Predicts the errors that a fit of a loop would have, before it is measured.
 namespace mindahl::identification {
 
-/// What the contact and the channels are taken to be.
+/// Holds the assumed properties of the contact and the noise of the channels.
 struct Expectation {
   models::BranchLaw law;            ///< of Masing's rules
   models::SeriesSpring rig;         ///< in series; its stiffness known unless it is fitted
   double load_exponent = 1.0 / 3;   ///< p of σ ∝ N^p between loads; finite; 1/3 is Hertz's
   double force_noise = 0.0;         ///< standard deviation [N], finite, > 0
   double displacement_noise = 0.0;  ///< standard deviation [m], white, finite, >= 0
-  double autocorrelation = 0.0;     ///< of the force noise from one sample to the next, 0 <= ρ < 1
+  double autocorrelation = 0.0;     ///< correlation of successive force readings, 0 <= ρ < 1
 };
 
 /// Loops that may be measured: a sine of one amplitude, at one load or at several.
@@ -38,7 +38,7 @@ struct Protocol {
   std::vector<double> loads = {};
 };
 
-/// What a fit of it would say.
+/// Holds the expected result of a fit of the planned loop.
 struct ExpectedFit {
   Protocol protocol;
   double peak_force = 0.0;  ///< T* [N], at the largest load
@@ -71,11 +71,11 @@ struct Precision {
   bool is_relative = false;
 };
 
-/// By parameter: "sigma", "alpha", "slip_force", or a term that is fitted.
+/// Maps a parameter ("sigma", "alpha", "slip_force", or a fitted term) to its wanted precision.
 using WantedPrecision = std::map<std::string, Precision>;
 
-/// As many times as many cycles as the protocol has would reach what is wanted, errors falling with
-/// the root of the number of cycles: <= 1 where it is reached; infinite where the loop does not
+/// Returns the factor on the protocol's number of cycles that reaches the wanted precision, errors
+/// falling with the root of the number: <= 1 where it is reached; infinite where the loop does not
 /// determine a parameter.
 /// @throws InvalidArgument for a name that the fit does not have, or a precision that is not > 0
 double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted);

@@ -11,8 +11,8 @@ struct ResidualStatistics {
   double normalized_rms = 0.0;  ///< [–] rms over Tc
   double r_squared = 0.0;       ///< [–] 1 − Σr²/Σ(T − mean)²
   double durbin_watson = 0.0;  ///< [–] Σ(rᵢ − rᵢ₋₁)²/Σr²: 2 when white, → 0 when correlated
-  /// As many independent residuals as say the same: n/(1 + 2Σρ²), ρ the correlations of an
-  /// autoregressive process (Bartlett 1946), over the strokes in which a share of them repeats
+  /// Number of independent residuals of equal information: n/(1 + 2Σρ²), ρ the correlations of an
+  /// autoregressive process (Bartlett 1946), over the strokes in which a fraction of them repeats
   double effective_samples = 0.0;
   double degrees_of_freedom = 0.0;  ///< effective samples less the free parameters, at least 1
   std::size_t samples = 0;

@@ -17,30 +17,30 @@ struct StrokeBin {
 /// The strokes of one direction.
 struct StrokeResiduals {
   int direction = 1;        ///< +1 where the displacement grows
-  std::size_t strokes = 0;  ///< that count and are long enough
+  std::size_t strokes = 0;  ///< number that count and are long enough
   double mean = 0.0;        ///< [N]
   double rms = 0.0;         ///< [N]
   std::vector<StrokeBin> bins;
 };
 
-/// What a model misses, stroke for stroke.
+/// Holds the mean residual by place in the stroke, in either direction.
 struct ResidualStructure {
   std::array<StrokeResiduals, 2> directions;  ///< growing, then falling displacement
   /// Share of the residuals' variance that comes back at the same place of every stroke: 0 for
   /// noise, 1 for what the model cannot follow. 0 where an F test finds nothing, or a
   /// direction has one stroke only.
   double repeatable_share = 0.0;
-  std::size_t strokes = 0;  ///< of the direction that has more
+  std::size_t strokes = 0;  ///< number in the direction that has more
 
-  /// By how much the variance of estimates exceeds what the noise makes: what comes back in every
-  /// stroke is not averaged away by more of them.
+  /// Returns the factor by which the variance of estimates exceeds that from noise: a residual that
+  /// repeats in every stroke is not averaged away by more of them.
   [[nodiscard]] double Widening() const {
     return strokes > 1 ? 1 + repeatable_share * static_cast<double>(strokes - 1) : 1.0;
   }
 };
 
 struct ResidualStructureOptions {
-  double main_stroke = 0.75;    ///< of the longest: shorter ones are not looked at
+  double main_stroke = 0.75;    ///< fraction of the longest; shorter strokes are left out
   double repeat_chance = 1e-3;  ///< at which white noise passes for repeatable
 };
 

@@ -15,9 +15,9 @@ namespace mindahl::identification {
 /// A law fitted to a record, and what the record says of it beside the best one. Pessimistic by
 /// default.
 struct LawScore {
-  std::string model;             ///< of FrictionModels() or LimitLaws()
+  std::string model;             ///< name in FrictionModels() or LimitLaws()
   bool exponent_is_one = false;  ///< Dahl's law with α held at 1
-  models::BranchLaw law;         ///< as fitted; of a spring σ means something, of Coulomb's law Tc
+  models::BranchLaw law;         ///< as fitted; a spring determines only σ, Coulomb's law only Tc
   std::size_t free_parameters = 0;
   bool converged = false;
   double rms = 0.0;               ///< [N] of the residuals; 0 where there is no fit
@@ -26,17 +26,17 @@ struct LawScore {
   double likelihood_ratio = 0.0;  ///< 2 ln Λ of the best against it, at least 0
   /// P(χ²(k) > 2 ln Λ), k the parameters that the best has more; empty where it has none
   std::optional<double> p_value;
-  /// Does the record tell it from the best: ΔAICc of Thresholds::indistinguishable or more?
+  /// True if the record distinguishes it from the best: ΔAICc >= Thresholds::indistinguishable.
   bool told_apart = true;
 };
 
 struct SimplerLaws {
   std::vector<LawScore> scores;    ///< simplest first
   std::size_t best = 0;            ///< with the least AICc
-  std::size_t samples = 0;         ///< that count
+  std::size_t samples = 0;         ///< number that count
   double effective_samples = 0.0;  ///< n_eff of the fit with the least rms
   double peak_force = 0.0;         ///< [N] largest of the loop
-  /// Is that fit not inadequate? Otherwise residuals are misfit, of which noise is the least.
+  /// True if the best fit is not inadequate; otherwise residuals are mostly discrepancy, not noise.
   bool describes_record = false;
 };
 

@@ -13,7 +13,7 @@ struct SolverReport {
   /// Ceres' termination type: CONVERGENCE, NO_CONVERGENCE, FAILURE; "not run".
   std::string_view termination = "not run";
   std::string message = "not run";  ///< Ceres' reason
-  int iterations = 0;               ///< of all searches from this start
+  int iterations = 0;               ///< sum over all searches from this start
   double initial_cost = 0.0;        ///< ½ Σ of the squared weighted residuals [N² or m²]
   double final_cost = 0.0;          ///< likewise
 };

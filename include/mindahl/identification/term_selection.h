@@ -23,13 +23,13 @@ struct TermSelectionOptions {
   /// Least fraction by which the error of prediction falls with a term that is added, unless the
   /// model is adequate with it.
   double smallest_gain = 0.05;
-  std::size_t most_terms = 5;  ///< that are added
+  std::size_t most_terms = 5;  ///< largest number added
 };
 
 /// A term, or a few that are one, that a record may require.
 struct TermGroup {
   std::string_view name;
-  std::vector<std::string_view> terms;  ///< what FitOptions::terms calls them
+  std::vector<std::string_view> terms;  ///< names in FitOptions::terms
 };
 
 /// Returns what can be added, besides covariates; `--terms` takes these names.
@@ -40,11 +40,11 @@ const TermGroup* FindTermGroup(std::string_view name);
 
 /// A candidate and what it gained in the last round in which it was tried.
 struct ConsideredTerm {
-  std::string name;  ///< of the group, or NameOfCovariate()
+  std::string name;  ///< name of the group, or NameOfCovariate()
   /// Fraction by which the rms error of predicted cycles falls, of fitted samples where
   /// `is_predicted` is false [–].
   double gain = 0.0;
-  double p_value = 1.0;  ///< that the gain is chance
+  double p_value = 1.0;  ///< probability that the gain is chance
   bool is_predicted = false;
   bool added = false;
   /// Why it was not added though it gains: "" or "confounded", "rate_dependent", "unphysical".

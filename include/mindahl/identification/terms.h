@@ -15,16 +15,16 @@ enum class Scope { kContact, kRecord };
 /// How a parameter enters the response, the channel that is fitted.
 enum class Entry {
   kLaw,     ///< through the law or the path: the response is not linear in it
-  kLinear,  ///< as the factor of a column that the record gives
+  kLinear,  ///< a factor of a column that the record gives
 };
 
 /// When a parameter is fitted.
 enum class Presence {
   kAlways,      ///< unless it is fixed
   kOffsets,     ///< with FitOptions::offsets; held at 0 otherwise, and reported
-  kReported,    ///< where asked for; held at 0 otherwise, and reported
-  kOnDemand,    ///< where asked for or fixed; otherwise not there
-  kLoadSeries,  ///< where the records are under loads that differ; otherwise not there
+  kReported,    ///< where requested; held at 0 otherwise, and reported
+  kOnDemand,    ///< where requested or fixed; otherwise absent
+  kLoadSeries,  ///< where the records are under loads that differ; otherwise absent
   kNever,       ///< it is of fits of the other channel
 };
 
@@ -39,11 +39,11 @@ struct TermUnits {
   double force_reference = 0.0;         ///< [N], what was taken off the record's force
   double displacement_reference = 0.0;  ///< [m], likewise
   double speed = 1.0;                   ///< [m/s] of a scaled velocity of one
-  double speed_resolution = 0.0;        ///< of the velocity, scaled; 0 where it is exact
+  double speed_resolution = 0.0;        ///< resolution of the velocity, scaled; 0 where it is exact
   double reference_speed = 1.0;         ///< scaled: its mean in the middle third of the strokes
 };
 
-/// What a linear parameter is the factor of, sample by sample in those units.
+/// Names the column of which a linear parameter is the factor, sample by sample in those units.
 enum class Regressor {
   kNone,          ///< it is not linear, or a factor of the model's own response
   kOne,           ///< an offset
@@ -84,8 +84,8 @@ struct Term {
   std::string_view shapes = {};
   /// One parameter for each column that FitOptions::covariates names, called after it.
   bool of_column = false;
-  std::string_view unit_by_sample = {};  ///< where records have no time; empty: the same
-  std::string_view option = {};          ///< of the command line that asks for it; empty: none
+  std::string_view unit_by_sample = {};  ///< unit in records without time; empty: the same
+  std::string_view option = {};          ///< command-line option that adds it; empty: none
   std::string_view argument = {};        ///< its argument; empty: a flag
   std::string_view help = {};
 };

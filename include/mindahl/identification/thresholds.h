@@ -5,9 +5,9 @@
 
 namespace mindahl::identification {
 
-/// Where a fit changes what it says: every number on which a verdict, a finding or the choice of a
-/// method rests. ThresholdTable() has the unit and the reason of each, and a test that notices when
-/// one is moved by a factor of two. What only bounds the work of a solver is not here.
+/// Holds every number on which a verdict, a finding or the choice of a method depends.
+/// ThresholdTable() has the unit and the reason of each, and a test that notices when one is
+/// changed by a factor of two. Limits on the work of a solver are not here.
 struct Thresholds {
   double significance = 0.05;
   double shape_effect = 0.05;

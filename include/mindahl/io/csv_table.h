@@ -13,7 +13,7 @@ namespace mindahl::io {
 
 /// A column that is in memory already.
 struct NamedColumn {
-  std::string name;            ///< as a header cell would have it, with its unit: "x [um]"
+  std::string name;            ///< header cell with its unit: "x [um]"
   std::vector<double> values;  ///< NaN where there is no number
 };
 
@@ -27,8 +27,8 @@ struct ReadLimits {
   /// [bytes] of the table and of a fit of it: kMemoryOfRow a row and kMemoryOfText a byte.
   std::uintmax_t memory = std::numeric_limits<std::uintmax_t>::max();
 
-  /// What a fit takes for a row, and reading it for a byte of text, measured for records of three
-  /// columns: 1.14 kB a row of 59 bytes.
+  /// Memory [bytes] of a fit per row, and of reading it per byte of text, measured for records of
+  /// three columns: 1.14 kB a row of 59 bytes.
   static constexpr std::uintmax_t kMemoryOfRow = 1000;
   static constexpr std::uintmax_t kMemoryOfText = 3;
 
@@ -83,7 +83,7 @@ class CsvTable {
   friend CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source);
   [[noreturn]] void ThrowNotANumber(std::size_t row, std::size_t column) const;
   void RequireNoThousands(std::size_t column) const;
-  /// As written, without blanks around them.
+  /// Returns the cells as written, without blanks around them.
   [[nodiscard]] std::vector<std::string> Cells(std::size_t column) const;
 
   std::string file_;
@@ -93,9 +93,9 @@ class CsvTable {
   std::vector<std::string> units_;
   std::size_t header_line_ = 0;
   std::size_t preamble_rows_ = 0;
-  std::vector<std::vector<double>> values_;  ///< by column; NaN where the cell is not a number
+  std::vector<std::vector<double>> values_;  ///< columns; NaN where the cell is not a number
   std::vector<std::size_t> lines_;
-  std::vector<std::size_t> offsets_;  ///< of each data row in text_ [bytes]
+  std::vector<std::size_t> offsets_;  ///< start of each data row in text_ [bytes]
 };
 
 /// Reads a delimited text as a table.

@@ -11,7 +11,7 @@ namespace mindahl::io {
 /// is not UTF-8, and control characters but for the line feed, become U+FFFD.
 std::string HtmlText(std::string_view text);
 
-/// What says in words what a figure shows, to those who do not see it too.
+/// Describes a figure in words, also for readers who do not see it.
 struct FigureText {
   std::string id;           ///< of the element; unique in its page, letters, digits and '-'
   std::string title;        ///< above the figure

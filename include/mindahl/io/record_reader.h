@@ -22,7 +22,7 @@ struct RecordColumns {
   ColumnChoice force;
   ColumnChoice time;
   ColumnChoice normal_load;
-  std::vector<std::string> covariates = {};  ///< by header name or 1-based number
+  std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
 };
 
 /// A column as it was read.
@@ -32,13 +32,13 @@ struct ChosenColumn {
   std::string unit;        ///< symbol the numbers were taken to be in
 };
 
-/// What a record is of a file that holds several constant loads.
+/// Locates a record within a file that holds several constant loads.
 struct LoadPiece {
   double normal_load = 0.0;    ///< [N], the median
   std::size_t first_line = 0;  ///< of the file, 1-based
   std::size_t last_line = 0;   ///< likewise
   std::size_t left_out = 0;    ///< samples of the file in none of its pieces; with the last piece
-  /// Of one constant load, to and from which the file's load ramps.
+  /// True if its load is constant and the file's load ramps to and from it.
   bool is_between_ramps = false;
 };
 
@@ -47,14 +47,14 @@ struct RecordFile {
   loop::Record record;
   /// A torque [N m] against an angle [rad]: they are in the record's force and displacement.
   bool is_torsional = false;
-  std::vector<std::size_t> lines;  ///< of the file, 1-based, one a sample
+  std::vector<std::size_t> lines;  ///< line in the file of each sample, 1-based
   ChosenColumn displacement;
   ChosenColumn force;
   std::optional<ChosenColumn> time;
   std::optional<ChosenColumn> normal_load;
-  /// Of the record's covariates, in their order: first those chosen, called as they were chosen.
+  /// Columns of the record's covariates, in their order: first those chosen, under those names.
   std::vector<ChosenColumn> covariates;
-  std::vector<std::string> notes;                 ///< what was assumed, one sentence each
+  std::vector<std::string> notes;                 ///< assumptions of the reader, one sentence each
   std::optional<LoadPiece> piece = std::nullopt;  ///< empty for all of a file
 };
 
@@ -126,7 +126,7 @@ LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice&
 /// Forces to impose, one for each row, in order.
 struct ForcePath {
   std::vector<double> force;       ///< [N]; with the unit N the very doubles of the file
-  std::vector<std::size_t> lines;  ///< of the file, 1-based, one a force
+  std::vector<std::size_t> lines;  ///< line in the file of each force, 1-based
 };
 
 /// @param force  column, by default the first, or, where that is a time, the one of a recognised

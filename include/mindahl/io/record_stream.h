@@ -17,13 +17,13 @@ struct Samples {
   std::vector<double> force;
   std::vector<double> time;         ///< empty where the file has none
   std::vector<double> normal_load;  ///< likewise
-  std::vector<std::size_t> lines;   ///< of the file, 1-based
+  std::vector<std::size_t> lines;   ///< lines in the file, 1-based
 
   [[nodiscard]] std::size_t size() const { return lines.size(); }
 };
 
-/// What becomes of a row in which a cell that is needed is missing or no finite number, that has a
-/// cell too many, or whose time is before that of the row above.
+/// Says whether to refuse or to skip a row in which a needed cell is missing or no finite number,
+/// that has a cell too many, or whose time is before that of the row above.
 enum class BrokenRows { kRefuse, kSkip };
 
 /// A record read piece by piece, in memory that does not depend on its length.

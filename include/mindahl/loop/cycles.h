@@ -9,7 +9,7 @@
 
 namespace mindahl::loop {
 
-/// What a record shows before any model is fitted.
+/// Holds what is measured on a record before any model is fitted.
 struct LoopMeasures {
   /// Complete cycles: half the swings between reversals, rounded down; the ways from the record's
   /// start and to its end count by their length, 0.02 cycles short of one is one.

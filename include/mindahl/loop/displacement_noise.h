@@ -17,7 +17,7 @@ double EstimateDisplacementNoise(std::span<const double> displacement);
 /// not at all. 0 where it was not.
 double EncoderStep(std::span<const double> displacement);
 
-/// What lies under a noisy displacement, as far as the motion is smooth.
+/// Estimates the displacement under its noise, where the motion is smooth.
 ///
 /// Each sample becomes the value there of the parabola in the sample number through the 2h + 1
 /// samples about it (Savitzky & Golay 1964), h as large as the motion allows: of growing windows

@@ -18,7 +18,7 @@ struct CycleFacts {
   double peak_force = 0.0;    ///< T* [N]: half the range of the force, as in LoopMeasures
   double energy = 0.0;        ///< W [J] = ∮ T dδ, closed by a chord
   double energy_ratio = 0.0;  ///< W/(4XT*) [-]: 1 of a rectangle, 0 of a line
-  bool steady = false;        ///< as wide as the record's widest, to 5 %
+  bool steady = false;        ///< true if its amplitude is within 5 % of the record's widest
   bool returns = false;       ///< ends where it began, to 5 % of its width
   /// [N]: half the force between the strokes, in the middle third of the stroke: the median of the
   /// means over five parts of it. Of a loop that slips it is the slip force, whatever the
@@ -34,7 +34,7 @@ struct CycleFacts {
 struct Trend {
   double slope = 0.0;           ///< [unit of the fact a cycle]
   double standard_error = 0.0;  ///< likewise
-  double p_value = 1.0;         ///< of no trend, two-sided, by Student's t
+  double p_value = 1.0;         ///< under no trend, two-sided, by Student's t
 };
 
 /// A gap that the motion takes up after each reversal, where the force stands still.
@@ -43,21 +43,21 @@ struct Backlash {
   double force = 0.0;  ///< [N]: at which it is taken up, mean over the directions
 };
 
-/// What a record says before any model is asked.
+/// Holds what a record shows without any model.
 ///
 /// Means are those of the widest steady cycles, whose amplitude is at least 0.95 of the widest
 /// cycle's: never of cycles of different amplitude.
 struct LoopFacts {
   bool closed = false;  ///< false: the record closes no cycle, and there are no facts
   std::vector<CycleFacts> cycles;
-  std::size_t steady_cycles = 0;            ///< of the widest amplitude
+  std::size_t steady_cycles = 0;            ///< number of cycles of the widest amplitude
   double amplitude = 0.0;                   ///< X [m]
   double peak_force = 0.0;                  ///< T* [N]
   double energy_per_cycle = 0.0;            ///< W [J]
   double energy_ratio = 0.0;                ///< W/(4XT*) [-] of the means
   std::optional<double> sliding_amplitude;  ///< [m]
-  /// [-]: of the strokes' travel, what is left once the force has come to nine tenths of the half
-  /// gap beyond the loop's centre: the median over the strokes.
+  /// Fraction [-] of a stroke's travel that is left once the force has reached nine tenths of the
+  /// half gap beyond the loop's centre: the median over the strokes.
   std::optional<double> sliding_fraction;
   std::optional<double> half_gap;                     ///< [N]
   std::optional<double> half_gap_standard_deviation;  ///< [N] between cycles; of two or more
@@ -75,9 +75,9 @@ struct LoopFacts {
   double path_ratio = 0.0;
   /// µ_W = W/(4·N·sliding amplitude) [-], N the mean load; empty where that is not known.
   std::optional<double> energy_friction_coefficient;
-  /// Where the force rises at less than half the slope that it has before and after, between −0.4
-  /// and 0.4 half gaps, in both directions and by the same travel in all strokes to a quarter, of 3
-  /// % of the amplitude or more. No contact's branch does: it only softens.
+  /// Gap where the force rises at less than half the slope before and after it, between −0.4 and
+  /// 0.4 half gaps, in both directions and by the same travel in all strokes to a quarter, of 3 %
+  /// of the amplitude or more. No contact's branch does so: it only softens.
   std::optional<Backlash> backlash;
   std::optional<Trend> half_gap_trend;  ///< [N a cycle]: of three or more steady cycles
   std::optional<Trend> energy_trend;    ///< [J a cycle]: likewise
@@ -101,7 +101,7 @@ std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double n
 LoopFacts MeasureFacts(const RecordView& record, std::span<const std::size_t> reversals,
                        int force_sense);
 
-/// Of what is left of a record without glitches, smoothed where it is noisy.
+/// Measures the facts of a record without its glitches, smoothed where it is noisy.
 LoopFacts MeasureFacts(const PreparedRecord& prepared, int force_sense);
 
 }  // namespace mindahl::loop

@@ -10,7 +10,7 @@
 
 namespace mindahl::loop {
 
-/// What is wrong with a sample, where something is.
+/// Names the fault of a sample, where it has one.
 enum class Glitch : std::uint8_t {
   kNone,
   kSpike,    ///< one channel is far off its neighbours, for one to three samples

@@ -81,8 +81,8 @@ struct PreparedRecord {
         counts(memory),
         smoothed(memory) {}
 
-  RecordView record;                             ///< as measured; must outlive this
-  GlitchCount glitches;                          ///< that are left out
+  RecordView record;                             ///< measured record; must outlive this
+  GlitchCount glitches;                          ///< glitches left out, by kind
   std::pmr::vector<double> mended_displacement;  ///< [m]; empty where it has no glitch
   std::pmr::vector<double> mended_force;         ///< [N]; likewise
   double reversal_gate = 0.0;                    ///< [unit of the excitation]
@@ -91,13 +91,13 @@ struct PreparedRecord {
   LoopMeasures measures;                    ///< with the force in the displacement's sense
   double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
   double displacement_noise = 0.0;          ///< [m]; 0 where readings are not smoothed
-  std::pmr::vector<unsigned char> counts;   ///< of each sample, 1 where it counts, else 0
+  std::pmr::vector<unsigned char> counts;   ///< one per sample: 1 where it counts, else 0
   std::size_t left_out = 0;                 ///< samples that do not count
   std::pmr::vector<double> smoothed;        ///< [m]; empty where readings count as exact
   /// Windows of the smoothing, for readings that are drawn again; empty likewise.
   std::optional<DisplacementSmoother> smoother;
 
-  /// What the contact is taken to have followed [m].
+  /// Returns the displacement [m] that the contact is taken to have followed.
   [[nodiscard]] std::span<const double> displacement() const {
     return smoothed.empty() ? readings().displacement : std::span<const double>(smoothed);
   }

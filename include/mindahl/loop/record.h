@@ -9,8 +9,8 @@ namespace mindahl::loop {
 
 /// Another quantity that was recorded, in a unit of its own.
 struct Covariate {
-  std::string name;            ///< of its column, or the column's number
-  std::string unit;            ///< as the file has it; empty where it says none
+  std::string name;            ///< header of its column, or the column's number
+  std::string unit;            ///< unit in the file; empty where it has none
   std::vector<double> values;  ///< one a sample
 };
 
@@ -34,7 +34,7 @@ struct RecordView {
   std::span<const Covariate> covariates;
 
   RecordView() = default;
-  /// Of arrays of one size each; empty where not recorded.
+  /// Views arrays of one size each; empty where not recorded.
   RecordView(std::span<const double> displacement_column, std::span<const double> force_column,
              std::span<const double> time_column = {},
              std::span<const double> normal_load_column = {})
@@ -42,7 +42,7 @@ struct RecordView {
         force(force_column),
         time(time_column),
         normal_load(normal_load_column) {}
-  /// Of a record, which must outlive the view.
+  /// Views a record, which must outlive the view.
   RecordView(const Record& record)  // NOLINT(google-explicit-constructor): every Record is one
       : RecordView(record.displacement, record.force, record.time, record.normal_load) {
     covariates = record.covariates;

@@ -25,7 +25,7 @@ struct TrimmedPart {
   std::size_t first = 0;
   std::size_t last = 0;
   std::size_t cycles = 0;  ///< closed ones within it
-  bool at_start = false;   ///< of the record, not at its end
+  bool at_start = false;   ///< true at the beginning of the record, false at its end
   /// The first loading is in it, from where the motion begins to its first turn, which alone is of
   /// a contact that may be unloaded. A record that begins at a turn has none.
   bool has_first_loading = false;
@@ -40,13 +40,13 @@ enum class Settling {
   kUnsettled,  ///< half gap or energy still change in the last half of them, or for longer
 };
 
-/// What of a record is not of its test.
+/// Locates the samples at the ends of a record that are not part of its test.
 struct Trim {
   std::size_t samples = 0;         ///< of the record
   std::vector<TrimmedPart> parts;  ///< at the beginning, then at the end, in order of time
   Settling settling = Settling::kFewCycles;
 
-  /// Is motion among them that came before what is left? Of that the contact was cycled before.
+  /// True if motion at the beginning was left out, so that the contact was cycled before.
   [[nodiscard]] bool begins_later() const;
   [[nodiscard]] bool has_first_loading() const;
 };

@@ -16,7 +16,7 @@ struct IwanElements {
   [[nodiscard]] std::size_t size() const { return stiffness.size(); }
 };
 
-/// Where the elements of a branch law slip.
+/// Names how the slip displacements of the elements of a branch law are placed.
 enum class IwanSpacing {
   kEqualForce,  ///< each element has the slip force Tc/n
   kOptimal,     ///< √u falls evenly: as good as n elements allow, but for the last

@@ -28,7 +28,7 @@ models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Driv
 struct Resolution {
   /// Substeps a sample, elements or nodes: what the method says. >= 1
   std::size_t steps = 1;
-  /// Of an adaptive method: largest local error of T/Tc a step. >= kLeastTolerance
+  /// Largest local error of T/Tc in a step of an adaptive method, >= kLeastTolerance.
   double tolerance = 1e-6;
 };
 
@@ -53,7 +53,7 @@ class OperationCount;  // operations.h
 struct Method {
   std::string_view name;   ///< on the command line
   std::string_view title;  ///< in reports
-  /// What Resolution::steps counts, a plural in -s first, as "substeps a sample"; "" when nothing.
+  /// Unit of Resolution::steps, a plural in -s first, as "substeps a sample"; "" if unused.
   std::string_view steps = {};
   std::size_t default_steps = 1;
   bool adaptive = false;     ///< uses Resolution::tolerance

@@ -10,8 +10,8 @@
 
 namespace mindahl::methods {
 
-/// What a way to compute a force along a drive is made of. The counts are properties of the drive
-/// and of the method, whatever machine runs them and however busy it is.
+/// Names the operations of which a method for the force along a drive is made. The counts are
+/// properties of the drive and of the method, whatever machine runs them and however busy it is.
 enum class Operation : std::size_t {
   kSample,       ///< a displacement read and a force written
   kPlace,        ///< the branch found that a sample lies on
@@ -28,8 +28,8 @@ enum class Operation : std::size_t {
   kTrial,        ///< a step whose error is controlled, taken or not
   kCubicRoot,    ///< u^α of a differential equation, α = 1/3
   kRatePower,    ///< u^α, any other α but 0 and 1
-  kExponential,  ///< of an exponential step
-  kIteration,    ///< of Newton's rule in an implicit step
+  kExponential,  ///< exponential of an exponential step
+  kIteration,    ///< iteration of Newton's rule in an implicit step
 };
 
 inline constexpr std::size_t kOperations = static_cast<std::size_t>(Operation::kIteration) + 1;
@@ -51,7 +51,7 @@ class OperationCount {
   std::array<double, kOperations> count_{};
 };
 
-/// What an evaluation along a drive takes, found by doing it where that depends on the drive.
+/// Counts the operations of an evaluation along a drive, by running it where they depend on it.
 /// @throws InvalidArgument as Prepare()
 /// Cost: that of one evaluation at most.
 OperationCount CountOperations(const Method& method, const models::FrictionModel& model,

@@ -80,7 +80,7 @@ struct SmallSeries {
   }
 };
 
-/// What the branch law is at a displacement short of slip.
+/// Holds the values of the branch law at a displacement short of slip.
 template <typename Real>
 struct Shares {
   Real log_remaining;  ///< log u

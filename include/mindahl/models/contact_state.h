@@ -61,8 +61,8 @@ class ContactState {
     return Force();
   }
 
-  /// What Move(δ) would return or throw, without moving. Cost: as of Move, but what closes n loops
-  /// looks at each of them every time that it is tried.
+  /// Returns or throws what Move(δ) would, without moving. Costs as much as Move; but each Peek
+  /// that would close n loops examines all n again.
   [[nodiscard]] double Peek(double displacement) const {
     return course_.HoldsTo(displacement) ? Force(course_.ForceOverSlip(shape_, displacement))
                                          : PeekAcrossBranches(displacement);
@@ -82,7 +82,7 @@ class ContactState {
   /// would make. Cost: as of Move.
   [[nodiscard]] double TangentStiffness() const;
 
-  /// What TangentStiffness() would be after Move(δ), without moving.
+  /// Returns the TangentStiffness() after Move(δ), without moving.
   /// @throws InvalidArgument as Move
   [[nodiscard]] double PeekTangentStiffness(double displacement) const;
 

@@ -23,8 +23,8 @@ struct ExcitationOptions {
   double cycles = 1.0;     ///< finite, > 0, multiples of 1/samples_per_cycle
   std::size_t samples_per_cycle = 200;  ///< 4 to 1e9; a multiple of 4 puts samples on the extremes
   double frequency = 1.0;               ///< [Hz], finite, > 0
-  double growth = 10.0;    ///< of a growing sine: last over first envelope, finite, >= 1
-  std::uint64_t seed = 1;  ///< of a random waveform
+  double growth = 10.0;    ///< last over first envelope of a growing sine, finite, >= 1
+  std::uint64_t seed = 1;  ///< seed of a random waveform
 };
 
 /// Imposed displacement, from 0 at time 0; Peyret et al. (2017) eq. 22 and fig. 7.

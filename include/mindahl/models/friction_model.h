@@ -7,7 +7,7 @@
 
 namespace mindahl::models {
 
-/// What of the past a branch depends on.
+/// Names the part of the history on which a branch depends.
 enum class Memory {
   kReturnPoint,  ///< every surviving extremum (Masing with Madelung's rules)
   kNone,         ///< the force at the last reversal only

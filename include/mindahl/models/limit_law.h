@@ -7,9 +7,9 @@
 
 namespace mindahl::models {
 
-/// What the branch law tends to at either end of the amplitude: models without a history, for
-/// scenes that need no more. They cannot be fitted (each lacks a parameter) and dissipate nothing
-/// or without presliding.
+/// Describes a limit of the branch law at either end of the amplitude: a model without a history,
+/// for scenes that need no more. It cannot be fitted (each lacks a parameter) and dissipates
+/// nothing or has no presliding.
 struct LimitLaw {
   std::string_view name;   ///< on the command line
   std::string_view title;  ///< in reports

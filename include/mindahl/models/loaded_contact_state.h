@@ -41,7 +41,7 @@ class LoadedContactState {
   /// slip or a falling load covers it.
   double Move(double displacement, double normal_load);
 
-  /// What Move(δ, N) would return or throw, without moving.
+  /// Returns or throws what Move(δ, N) would, without moving.
   [[nodiscard]] double Peek(double displacement, double normal_load) const;
 
   /// T [N] after the last step.

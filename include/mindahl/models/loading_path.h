@@ -9,13 +9,13 @@
 
 namespace mindahl::models {
 
-/// What happened before the first sample.
+/// Names the assumed history of the contact before the first sample.
 enum class InitialState {
   kVirgin,  ///< nothing: the contact was unloaded at a known displacement
   kSteady,  ///< it had settled on the loop between the record's extremes
 };
 
-/// Where a branch of the response begins.
+/// Names the point at which a branch of the response begins.
 enum class BranchStart : std::uint8_t {
   kUnloaded,      ///< T = 0 at the displacement where the contact is unloaded
   kSteadyCentre,  ///< T = 0 at the centre of the steady loop: the virgin curve of its first loading
@@ -23,7 +23,7 @@ enum class BranchStart : std::uint8_t {
   kReversal,       ///< the force that the parent branch has there
 };
 
-/// Does the branch start at T = 0 on the virgin curve?
+/// True if the branch starts at T = 0 on the virgin curve.
 [[nodiscard]] constexpr bool IsVirgin(BranchStart start) {
   return start == BranchStart::kUnloaded || start == BranchStart::kSteadyCentre;
 }
@@ -56,7 +56,7 @@ struct LoadingPath {
   std::vector<Branch> branches;
   std::vector<BranchRun> runs;     ///< contiguous, covering all samples in order
   std::vector<std::int32_t> open;  ///< branches still open after the last sample, oldest first
-  double asymmetry = 0.0;          ///< of the slip forces in the two senses, InitialContact's
+  double asymmetry = 0.0;          ///< asymmetry of the slip forces, as InitialContact's
 };
 
 /// Largest force in the sense of a branch [Tc]: that of the slip forces where it is the virgin
@@ -65,8 +65,8 @@ struct LoadingPath {
   return branch.start == BranchStart::kUnloaded ? 1 + branch.direction * path.asymmetry : 1.0;
 }
 
-/// Where the contact is unloaded, in the unit of what the path is of: where a virgin one begins, or
-/// the middle of a steady loop.
+/// Returns the displacement of zero force, in the unit of the path: where a virgin contact begins,
+/// or the middle of a steady loop.
 [[nodiscard]] inline double UnloadedAt(const LoadingPath& path) {
   const Branch& first = path.branches.front();
   if (first.start != BranchStart::kSteadyExtreme) return first.origin;

@@ -8,8 +8,8 @@
 
 namespace mindahl::models {
 
-/// What a displacement over Tc/σ depends on along a path of forces: the displacement itself is
-/// linear in the compliance 1/σ.
+/// Holds the parameters on which a displacement over Tc/σ depends along a path of forces: the
+/// displacement itself is linear in the compliance 1/σ.
 struct ForcedLaw {
   double slip_force = 0.0;            ///< Tc [N], finite, > 0
   double shape_exponent = 1.0 / 3.0;  ///< α [–], finite, >= 0

@@ -9,7 +9,7 @@
 
 namespace mindahl::models {
 
-/// What a response over its slip force depends on: the force itself is linear in Tc.
+/// Holds the parameters on which T/Tc depends: the force itself is linear in Tc.
 struct NormalizedLaw {
   double rate = 0.0;                  ///< κ = σ/Tc [1/m], finite, > 0
   double shape_exponent = 1.0 / 3.0;  ///< α [–], finite, >= 0
@@ -28,11 +28,11 @@ struct NormalizedGradient {
 /// How forces over Tc follow the places where branches start, for those who move them.
 struct OriginSensitivity {
   std::vector<double> origin_force;  ///< t at each branch's origin
-  // Of each branch, at its origin and on the branch that it starts from; 0 where there is none:
+  // Per branch, at its origin and on the branch that it starts from; 0 where there is none:
   std::vector<double> slope;          ///< ∂t/∂δ [1/m]
   std::vector<double> gain;           ///< by t at that branch's own origin
   std::vector<double> per_amplitude;  ///< ∂t/∂X [1/m] of a branch that starts at a steady extreme
-  // Of each sample:
+  // Per sample:
   std::vector<double> sample_slope;  ///< ∂t/∂δ [1/m]
   std::vector<double> sample_gain;   ///< by t at the origin of its branch
 };

@@ -13,7 +13,7 @@ namespace mindahl::report {
 /// A theory of how the stiffness follows the load, against the fitted exponent p.
 struct LoadHypothesis {
   std::string_view name;                  ///< "sphere", "elements", "cone", "flat_punch" or "rough"
-  double exponent = 0.0;                  ///< that it has; of elements in parallel the fitted α
+  double exponent = 0.0;                  ///< predicted p; for elements in parallel the fitted α
   std::optional<double> difference = {};  ///< p less that; empty where p was held
   std::optional<double> z = {};        ///< over its standard error; empty unless p is identifiable
   std::optional<double> p_value = {};  ///< two-sided, of Student's t
@@ -26,10 +26,10 @@ struct ContactUnderLoad {
   contact::UncertainValue slip_force;                          ///< Tc [N] = μN
   std::optional<contact::UncertainValue> contact_radius = {};  ///< a [m] = σG*/8; needs G*
   std::optional<double> hertz_radius = {};  ///< Hertz's a [m]; needs materials and radii
-  std::optional<identification::RecordAlone> alone = {};  ///< what the record says by itself
+  std::optional<identification::RecordAlone> alone = {};  ///< values from this record alone
 };
 
-/// What a law of the load makes of the contact: ρ [m], G* [1/Pa], …
+/// Holds a quantity of the contact that follows from a law of the load: ρ [m], G* [1/Pa], …
 struct QuantityUnderLaw {
   std::string_view key;      ///< "equivalent_radius"
   std::string_view unit;     ///< "m"
@@ -40,25 +40,25 @@ struct QuantityUnderLaw {
   /// error is open, or all that it follows from is held. Of E without an upper end, infinite, where
   /// a rigid body would do as well.
   std::optional<identification::Interval> interval95;
-  /// What is known besides the fit says; empty where that is not enough.
+  /// Value predicted from known properties without the fit; empty where they do not suffice.
   std::optional<double> predicted;
 };
 
 /// A theory that the series does not reject, held over all its loads.
 struct LoadLaw {
-  std::string_view name;                                ///< of its hypothesis
+  std::string_view name;                                ///< name of its hypothesis
   double exponent = 0.0;                                ///< p that is held
   contact::UncertainValue stiffness;                    ///< σ [N/m] at the mean load, with p held
   std::optional<identification::Interval> stiffness95;  ///< empty where it was held
   std::vector<QuantityUnderLaw> quantities;
-  std::string unidentified;  ///< what would have to be known for more; may be empty
+  std::string unidentified;  ///< inputs that more would need, in a sentence; may be empty
 };
 
 struct LoadSeries {
   std::vector<ContactUnderLoad> contacts;  ///< one a record, in their order
   std::vector<LoadHypothesis> hypotheses;  ///< in the order of the table of docs/theory.md §9
-  /// Of the hypotheses those that are not rejected at kSignificance, in their order; where p was
-  /// held those whose exponent that is, to three digits. Empty where σ or p is not identifiable.
+  /// Hypotheses that are not rejected at kSignificance, in their order; where p was held, those
+  /// with that exponent, to three digits. Empty where σ or p is not identifiable.
   std::vector<LoadLaw> laws;
 };
 
@@ -66,8 +66,8 @@ struct LoadSeries {
 /// Then no ρ and no pressure follow from a contact radius.
 bool DeniesHertz(const identification::FitResult& fit);
 
-/// What a fit of records under several loads says of the contact at each; empty where the fit is of
-/// one load.
+/// Describes the contact at each load of a fit of records under several loads; empty where the fit
+/// is of one load.
 ///   ln σ(N) = ln σ + p·ln(N/N₀): its error is that of both, with their correlation
 /// @param fit    one that did not fail
 /// @param known  of the contact; its normal load is not looked at

@@ -10,7 +10,7 @@ namespace mindahl::report {
 
 enum class SlipRegime { kPartial, kGross };
 
-/// What a record shows of its loop.
+/// Holds the measured amplitude, force and energy of a record's loop.
 struct MeasuredLoop {
   double amplitude = 0.0;        ///< X [m]
   double peak_force = 0.0;       ///< T* [N]
@@ -47,11 +47,11 @@ struct LoopDescription {
 /// does: no record tells 1 % of the force.
 inline constexpr double kAsGoodAsSlip = 0.99;
 
-/// Does a law's steady loop of that amplitude X [m] of the contact slip as a whole?
+/// True if a law's steady loop of amplitude X [m] of the contact reaches gross slip.
 bool SlipsGrossly(const models::FrictionModel& model, const models::BranchLaw& law,
                   double contact_amplitude);
 
-/// Of the widest steady cycles; where none is closed, of the main swings.
+/// Measures the widest steady cycles; where none is closed, the main swings.
 MeasuredLoop MeasuredLoopOf(const identification::RecordFit& record);
 
 /// @param fit  one that did not fail

@@ -21,7 +21,7 @@ struct AlphaTest {
   std::optional<identification::MindlinTest> likelihood;
 };
 
-/// Is the fitted stiffness 8a/G*?
+/// Tests whether the fitted stiffness is 8a/G*.
 struct StiffnessTest {
   std::string_view radius;         ///< whence a: "hertz", or "given"
   contact::PropagatedValue ratio;  ///< σ/(8a/G*): 1 where Hertz and Mindlin hold

@@ -11,11 +11,11 @@ namespace mindahl::report {
 
 /// Bytes that a result was made from.
 struct InputFile {
-  std::string name;                   ///< as it was given
+  std::string name;                   ///< name given by the user
   std::optional<std::string> sha256;  ///< io::Sha256OfFile(); empty where it is no regular file
 };
 
-/// What it takes to make a result again.
+/// Holds what is needed to make a result again.
 struct Provenance {
   std::string command;            ///< as a shell takes it; "" where there was none
   std::vector<InputFile> inputs;  ///< files that were read

@@ -20,19 +20,19 @@
 
 namespace mindahl::report {
 
-/// What a report is made from.
+/// Holds the inputs of a report.
 struct ReportInput {
   std::vector<std::string> files;       ///< name of each record, as it is to be printed
   std::vector<io::RecordFile> records;  ///< as they were read, those that were fitted
   identification::FitResult fit;
-  contact::KnownContact known = {};  ///< of the contact, besides the fit
+  contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
   /// Normal loads [N] of the samples that counted, as the fit was told.
   std::optional<identification::Interval> load_window = {};
-  /// What was left out of each record as no part of its test; empty where that was not asked for.
+  /// Holds the parts left out of each record as not of its test; empty where not requested.
   std::vector<loop::Trim> trims = {};
-  std::optional<identification::ModelSelection> selection = {};   ///< where the model was chosen
-  std::optional<identification::TermSelection> terms = {};        ///< where terms were chosen
-  std::optional<identification::BackboneEstimate> backbone = {};  ///< where it was asked for
+  std::optional<identification::ModelSelection> selection = {};   ///< if a model was chosen
+  std::optional<identification::TermSelection> terms = {};        ///< if terms were chosen
+  std::optional<identification::BackboneEstimate> backbone = {};  ///< if it was requested
 };
 
 /// Everything that is said of a fit: what was given, and what follows from it. ToJson(), ToText(),
@@ -40,18 +40,18 @@ struct ReportInput {
 struct Report : ReportInput {
   std::optional<LoopDescription> loop;  ///< empty where the fit failed
   contact::IdentifiedContact contact;   ///< empty where the fit failed
-  /// By Masing's law where Dahl's own was fitted, and the other way round; empty where the two are
-  /// not compared.
+  /// Holds the contact by Masing's law where Dahl's own was fitted, and the other way round; empty
+  /// where the two are not compared.
   contact::IdentifiedContact contact_by_other_law;
   std::optional<SlipForces> slip_forces;  ///< empty unless the fit knows that the two differ
   std::optional<LoadSeries> load_series;  ///< empty where the records have one load
   AlphaTest alpha;
   std::vector<StiffnessTest> stiffness;   ///< one for each radius that is known besides the fit
-  std::vector<Warning> fit_warnings;      ///< what the fit found, and a person should act on
-  std::vector<Warning> contact_warnings;  ///< what the translation into the contact found
-  std::vector<Warning> notes;             ///< what the fit found, and is only worth knowing
+  std::vector<Warning> fit_warnings;      ///< findings of the fit on which a person should act
+  std::vector<Warning> contact_warnings;  ///< findings of the translation into the contact
+  std::vector<Warning> notes;             ///< findings of the fit that are only worth knowing
 
-  Units units;  ///< of all that is said
+  Units units;  ///< units of all numbers in words
 
   /// A torque against an angle has no Hertz-Mindlin contact and no mapping: theirs are of a force.
   [[nodiscard]] bool is_torsional() const { return records.front().is_torsional; }

@@ -4,7 +4,7 @@
 
 namespace mindahl::report {
 
-/// What a report's numbers are in: those of a force along the contact, or of a torque about it.
+/// Holds the units of a report: those of a force along the contact, or of a torque about it.
 struct Units {
   std::string_view force = "N";
   std::string_view displacement = "m";

@@ -12,10 +12,10 @@ namespace mindahl::request {
 inline constexpr const char* kComplianceDefinition = "G* = (2-nu1)/G1 + (2-nu2)/G2";
 inline constexpr const char* kComplianceUnit = "1/Pa";
 
-/// What the user knows of the contact.
+/// Holds the properties of the contact that the user gave.
 struct ContactOptions {
   contact::KnownContact known;
-  /// As given, one or one a file; known.normal_load is their mean.
+  /// Loads as given, one or one a file; known.normal_load is their mean.
   std::vector<contact::UncertainValue> normal_loads;
   std::optional<contact::UncertainValue> friction_coefficient;
 };

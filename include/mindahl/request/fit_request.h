@@ -13,9 +13,9 @@
 #include "mindahl/io/record_reader.h"
 #include "mindahl/request/contact_request.h"
 
-/// What a user asks of records in words and numbers, and the report that answers: the same rules
-/// and the same messages for the command line and for Python. Messages name the command line's
-/// options.
+/// Turns a user's request for a fit, in words and numbers, into the report that answers it: the
+/// same rules and the same messages for the command line and for Python. Messages name the command
+/// line's options.
 namespace mindahl::request {
 
 /// --model auto, --terms auto
@@ -25,7 +25,7 @@ inline constexpr std::string_view kNoTerms = "none";
 /// --rig-stiffness fit
 inline constexpr std::string_view kFitIt = "fit";
 
-// What these options may say, the default first.
+// Lists the values that these options accept, the default first.
 inline constexpr std::array<std::string_view, 3> kInitialStates = {"auto", "virgin", "steady"};
 inline constexpr std::array<std::string_view, 3> kForceSigns = {"auto", "same", "opposite"};
 inline constexpr std::array<std::string_view, 2> kNoiseIn = {"force", "displacement"};
@@ -36,8 +36,8 @@ inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "ca
 /// Models that can be fitted, and kAutomatic.
 std::vector<std::string_view> ModelNames();
 
-/// What the options of `fit` say of records, model and contact, as it was typed; docs/contract.md
-/// says what each may be.
+/// Holds the options of `fit` on records, model and contact, as typed; docs/contract.md says what
+/// each may be.
 struct FitRequest {
   std::vector<std::string> files;
   io::RecordColumns columns;
@@ -74,7 +74,7 @@ struct FitRequest {
 /// contradict each other
 identification::FitOptions MakeFitOptions(const FitRequest& request);
 
-/// Of fits of one cycle after the other, for which no model is chosen and no covariate is read.
+/// Returns the options for fits of one cycle after the other: no choice of model, no covariates.
 /// @throws InvalidArgument or InputError likewise
 identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
 

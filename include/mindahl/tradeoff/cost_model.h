@@ -12,7 +12,7 @@
 
 namespace mindahl::tradeoff {
 
-/// What an approximation takes along a drive (methods/operations.h); of a limit law, its samples.
+/// Counts an approximation's operations along a drive; of a limit law, the samples.
 /// @throws InvalidArgument as Prepare()
 methods::OperationCount CountOperations(const Approximation& approximation,
                                         const models::BranchLaw& law, const methods::Drive& drive);

@@ -14,12 +14,12 @@ struct LambdaRange {
   double to = 0.0;    ///< the greatest studied where it goes on above
 };
 
-/// Where one model is good enough in one cycle of a steady drive.
+/// Holds the range in which one model is good enough in one cycle of a steady drive.
 struct ModelRegion {
   std::string model;
   std::size_t cycle = 1;                       ///< from 1, the virgin loading being the first
   Criterion criterion = Criterion::kMaxForce;  ///< or kEnergy, that lost in the cycle
-  double tolerance = 0.0;                      ///< [–], of T* or of the energy
+  double tolerance = 0.0;                      ///< relative to T* or to the energy [–]
   std::vector<LambdaRange> ranges;             ///< ascending, none where it is nowhere
 };
 

@@ -38,8 +38,8 @@ struct Recommendation {
   /// once its transient is over. Looked for under a tolerance only.
   std::optional<std::size_t> after_transient;
   CostFloor floor;
-  double peak_force = 0.0;  ///< [N], of the exact response
-  double cycles = 0.0;      ///< of the drive
+  double peak_force = 0.0;  ///< largest |T| of the exact response [N]
+  double cycles = 0.0;      ///< number of cycles of the drive
 };
 
 /// The cheapest model and method that meet a tolerance along this drive, found by running every

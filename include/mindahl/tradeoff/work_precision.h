@@ -12,9 +12,9 @@
 
 namespace mindahl::tradeoff {
 
-/// What a contact does along a drive, by another road than the library's kernels: at every sample
-/// the sum over the surviving extrema, T = sgn(e₀)f(|e₀|) + Σ 2·sgn(eₖ₊₁−eₖ)f(|eₖ₊₁−eₖ|/2), kept by
-/// their displacements, in long double (docs/theory.md §5).
+/// Holds a contact's response along a drive, computed without the library's kernels: at every
+/// sample the sum over the surviving extrema, T = sgn(e₀)f(|e₀|) + Σ 2·sgn(eₖ₊₁−eₖ)f(|eₖ₊₁−eₖ|/2),
+/// kept by their displacements, in long double (docs/theory.md §5).
 struct ReferenceResponse {
   std::vector<double> force;  ///< [N]
   double peak_force = 0.0;    ///< largest |T| [N]
@@ -36,7 +36,7 @@ struct Precision {
 Precision Compare(const ReferenceResponse& reference, const methods::Drive& drive,
                   std::span<const double> force, std::size_t first = 0);
 
-/// What errors are judged by.
+/// Names the norm of the error by which an approximation is judged.
 enum class Criterion { kMaxForce, kRmsForce, kEnergy };
 
 /// The error that a criterion looks at; infinite where it is not known.
@@ -47,7 +47,7 @@ struct WorkPrecision {
   Approximation approximation = {};
   Precision precision = {};
   double cost = 0.0;  ///< [ns/sample], from displacement to force, of the cost model
-  methods::OperationCount operations = {};  ///< that it is the sum of, over the whole drive
+  methods::OperationCount operations = {};  ///< operations in that sum, over the whole drive
   /// [ns/sample], the least of several runs; empty where nothing was timed
   std::optional<double> measured_cost = std::nullopt;
 };
@@ -67,7 +67,7 @@ struct CostFloor {
 };
 /// Measured as the others are.
 CostFloor MeasureCostFloor(const methods::Drive& drive);
-/// By the cost model.
+/// Returns the floor of the cost model.
 CostFloor ModelledCostFloor();
 
 /// Cost [ns/sample] of an evaluation, the least of several runs.

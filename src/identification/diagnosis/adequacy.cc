@@ -15,7 +15,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// That noise alone makes what all departures explain, or what the best of them does.
+/// Returns the chance that noise alone makes what all omitted terms, or the best, explain.
 double ChanceOfNoise(const AdequacyTest& test) {
   double best = 1.0;
   for (const DepartureFit& fit : test.fits) best = std::min(best, fit.p_value);
@@ -23,11 +23,11 @@ double ChanceOfNoise(const AdequacyTest& test) {
   return std::min({1.0, 2 * test.p_value, 2 * static_cast<double>(test.fits.size()) * best});
 }
 
-/// What to type: a covariate's has its name, quoted where it has blanks.
+/// Returns the option to type: with the name of a covariate, quoted where it has blanks.
 std::string OptionOf(const Problem& problem, const FitOptions& options, const DepartureFit& fit) {
   const Departure& departure = Departures()[fit.departure];
   if (!fit.covariate) {
-    // Of a displacement that is fitted a drift is its own.
+    // In a fit of the displacement a drift is the displacement's.
     const bool is_of_force = departure.term == "force_drift";
     if (problem.data->is_forced() && is_of_force) return "";
     // No mass and no gap is negative, nor a spring unless too much of one was taken off.
@@ -154,9 +154,9 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
 
 namespace {
 
-/// What is named first: what was measured without the model; then what another column of the file
-/// has, then what can be tried, of few numbers before of many; a lag, which much else looks like,
-/// and what no option takes into account come last.
+/// Ranks the causes to name: first a measurement without the model; then another column of the
+/// file, then what an option fits, few numbers before many; a lag, which many others resemble, and
+/// what no option fits come last.
 int RankOf(const Cause& cause) {
   if (cause.is_measured) return 0;
   if (cause.code == "covariate") return 1;

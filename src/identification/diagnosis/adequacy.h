@@ -14,15 +14,15 @@
 
 namespace mindahl::identification {
 
-/// Does noise hardly look like what all departures, or the best of them, explain?
+/// True if noise hardly makes what all omitted terms, or the best of them, explain.
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);
 
 /// The departures that noise alone does not make, the best first, without those that another beats
 /// clearly.
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
 
-/// Is the size of a cause, which is that of the first of its columns, told from none? Where the
-/// others make the cause it is as near zero as noise has it.
+/// True if the size of a cause, that of its first column, differs from zero beyond noise. Where its
+/// other columns make the cause, the size is zero within the noise.
 bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
 
 /// @param estimates  of the reported parameters, with the intervals that the model itself gives
@@ -36,7 +36,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
 void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
                        const FitOptions& options, Adequacy& adequacy);
 
-/// Does the record hardly tell whether the contact was virgin or in a steady loop?
+/// True if the record hardly determines whether the contact was virgin or in a steady loop.
 /// @param delta_aicc  of the two
 bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds);
 

@@ -50,7 +50,7 @@ bool TellsAsymmetry(const Problem& problem) {
 bool IsAccepted(const Problem& problem, std::string_view option) {
   const ScaledRecords& data = *problem.data;
   if (option == "--loss") return true;
-  // What is beside a force has no place in a fit of the displacement.
+  // In a fit of the displacement the terms of the force do not exist.
   if (data.is_forced()) return option == "--drift";
   const Term* const term = TermOf(option, loop::Channel::kForce);
   if (term == nullptr) return false;
@@ -72,7 +72,7 @@ std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
     const bool is_named = term != nullptr && !term->of_column;
     const std::string name(is_named ? term->name : "");
     if (is_named && options.fixed.contains(name)) return "";  // two values of one option
-    // What is fitted already need not be said again.
+    // A term that is fitted already is not advised.
     if (is_named && std::ranges::find(options.terms, name) != options.terms.end()) continue;
     has_asymmetry = has_asymmetry || name == "asymmetry";
     accepted += accepted.empty() ? "" : " ";

@@ -71,7 +71,7 @@ std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncer
   for (std::size_t k = 0; k < local.columns.size(); ++k) {
     if (!local.determined[k]) names.push_back(problem.parameters.NameOf(local.columns[k]));
   }
-  // As many directions as names: each of them is one of its own.
+  // With as many directions as names, each parameter is undetermined by itself.
   const bool are_alone = local.null.size() >= names.size();
   return Finding{.code = are_alone ? FindingCode("undetermined_parameter")
                                    : FindingCode("undetermined_combination"),
@@ -312,7 +312,7 @@ std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& t
 
 std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds) {
   const double r_squared = result.residuals.r_squared;
-  // Where a robust loss has weighed readings down, the variance is mostly theirs.
+  // If a robust loss reduced the weight of readings, the variance is mostly theirs.
   if (result.outliers > 0 || r_squared >= thresholds.seen_loop) return std::nullopt;
   return Finding{.code = "loop_not_seen",
                  .parameters = {"sigma", "alpha", "slip_force"},

@@ -11,7 +11,7 @@
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 
-/// What is to be said of a fit, as data: pure functions of what the stages before found. None of
+/// Derives the findings on a fit, as data: pure functions of the results of earlier stages. None of
 /// them decides on a verdict.
 namespace mindahl::identification {
 

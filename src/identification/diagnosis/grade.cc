@@ -47,7 +47,7 @@ double ScaleOfMisfit(const FitResult& result, const Thresholds& thresholds) {
 
 double MissedForce(const FitResult& result) {
   const double explained = result.adequacy.misfit;
-  // What a robust loss weighs down is in the rms all the same.
+  // The rms includes the readings that a robust loss weighs down.
   const bool is_noise = result.adequacy.verdict == AdequacyVerdict::kAdequate;
   if (is_noise || result.outliers > 0) return explained;
   const double not_white = result.rms * result.rms - WhiteVariance(result);

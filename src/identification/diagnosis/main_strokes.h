@@ -17,7 +17,7 @@ struct MainStroke {
 std::vector<MainStroke> MainStrokes(std::span<const double> displacement,
                                     std::span<const std::size_t> reversals, double main_stroke);
 
-/// Is there a second one in either direction, in which what is repeatable would come back?
+/// True if either direction has a second stroke, in which a repeatable residual would recur.
 bool AnyComesBack(std::span<const MainStroke> strokes);
 
 }  // namespace mindahl::identification

@@ -38,8 +38,8 @@ Finding GlitchesLeftOut(const loop::GlitchCount& glitches) {
   return finding;
 }
 
-/// Does a cycle of two strokes end elsewhere than it began? It is no loop of its amplitude then.
-/// One of a long stroke and a short one is no such cycle: its reversals are doubtful.
+/// True if a cycle of two strokes ends elsewhere than it began and so is no loop of its amplitude.
+/// A long stroke with a short one is no such cycle: its reversals are doubtful.
 /// @param widest  amplitude of the record's widest swings [m]
 bool RunsOn(const loop::CycleFacts& cycle, double widest) {
   constexpr double kTwoStrokes = 0.6;  // half of it is one stroke's
@@ -85,7 +85,7 @@ std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thr
       findings.push_back(std::move(finding));
     };
     if (!record.gate.certain) append(UncertainReversals(record));
-    // Of a displacement that answers the noise is no part of the path.
+    // Noise of a displacement that responds is no part of the path.
     const bool is_driven = excitation == loop::Channel::kDisplacement;
     if (is_driven && record.facts.closed && record.facts.path_ratio > 1 + thresholds.path_excess) {
       append({.code = "path_too_long", .numbers = {{"path_ratio", record.facts.path_ratio}}});
@@ -123,7 +123,7 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
 std::optional<Finding> FindEnergyContradiction(const FitResult& result,
                                                const Thresholds& thresholds) {
   const RecordFit& record = result.WidestRecord();
-  // What a robust loss weighs down is in the measured energy all the same.
+  // The measured energy includes the readings that a robust loss weighs down.
   if (result.outliers > 0) return std::nullopt;
   // Whose energy is that of the load's course too.
   if (record.load_varies) return std::nullopt;
@@ -166,7 +166,7 @@ std::optional<Finding> FindNoisierDisplacement(const loop::PreparedRecords& reco
                                                const FitResult& result,
                                                const Thresholds& thresholds) {
   if (result.response != loop::Channel::kForce || result.is_load_series()) return std::nullopt;
-  // Of the loop that just comes to slip, docs/theory.md §8.
+  // Energy ratio of the loop that just reaches slip, docs/theory.md §8.
   const double alpha = result.law.shape_exponent;
   const double ratio_at_slip = alpha < 1 ? alpha / (2 - alpha) : 1.0;
   const bool stays_below_slip = std::ranges::all_of(result.records, [&](const RecordFit& record) {

@@ -10,8 +10,8 @@
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/loop/preparation.h"
 
-/// What is to be said of the records themselves, and of a model that they contradict, as data: pure
-/// functions of a result.
+/// Derives the findings on the records themselves, and on a model that they contradict, as data:
+/// pure functions of a result.
 namespace mindahl::identification {
 
 /// Reversals that are not certain, glitches that are left out, a way that is longer than the
@@ -20,7 +20,7 @@ namespace mindahl::identification {
 std::vector<Finding> FindInRecords(std::span<const RecordFit> records, const Thresholds& thresholds,
                                    loop::Channel excitation = loop::Channel::kDisplacement);
 
-/// Is the noise in the displacement, by the shares that the channels' noise has of X and of T*?
+/// True if the noise is in the displacement, by the channels' noise over X and over T*.
 bool NoiseIsInDisplacement(double share_of_displacement, double share_of_force,
                            const Thresholds& thresholds);
 

@@ -10,8 +10,8 @@
 
 namespace mindahl::identification {
 
-/// What a fit would be with one departure in it, by one linear step; of one that noise may well
-/// have made, p-value alone.
+/// Predicts the fit with one omitted term added, by one linear step; only the p-value of a term
+/// that noise may well have made.
 struct DepartureFit {
   std::size_t departure = 0;                  // its place in Departures()
   std::optional<std::size_t> covariate = {};  // which, among those of ScaledRecords
@@ -44,7 +44,7 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
                           const DisplacementEffect& displacement, const Estimates& estimates,
                           const Thresholds& thresholds, Response& response);
 
-/// By how much a departure moves a parameter, in halves of its 95 % interval; 0 where that is open.
+/// Returns the shift of a parameter by a term, in halves of its 95 % interval; 0 where it is open.
 double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
               std::size_t parameter, const ParameterEstimate& estimate);
 

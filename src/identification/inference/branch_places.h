@@ -107,7 +107,7 @@ Place SteadyExtreme(const Problem& problem, const LawPoint& point, const ScaledR
   return at;
 }
 
-/// What a column is where branches start, from what it is on the first of them.
+/// Returns a column's values where branches start, from its value on the first of them.
 /// @param value  what is added on a branch up to a place
 template <OnBranch Place, typename Value>
 std::vector<double> StartsOf(const Value& value, const models::LoadingPath& path,

@@ -111,7 +111,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
                 : CorrelatedProducts(*problem.data, noise, autocorrelation_, displacement, columns);
   if (!is_white_) free_correlated_ = FreedOfLaw(correlated_);
 
-  // Of correlated noise a fit takes up more than its parameters' number.
+  // A fit absorbs more of correlated noise than the number of its parameters.
   const double by_law = (inverse_of_law_ * correlated_.topLeftCorner(law_, law_)).trace();
   const double by_others = CorrelationOf(all_).trace();
   const double absorbed = std::min(by_law + by_others, samples_ / 2);
@@ -125,7 +125,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
       1.0, effective_samples_ - static_cast<double>(law_) - static_cast<double>(all_.cols()));
 }
 
-/// Of the others, each less what the law has of it.
+/// Returns the products of the other columns, orthogonalised to those of the law.
 /// @param products  of A
 Eigen::MatrixXd ColumnTest::FreedOfLaw(const Eigen::MatrixXd& products) const {
   const Eigen::Index count = products.cols() - law_;
@@ -178,7 +178,7 @@ ColumnTest::Part ColumnTest::AskBasis(const Eigen::MatrixXd& basis) const {
                        : WaldF(explained, correlated, variance_);
   const double of_noise = variance_ * correlated.trace();
   part.rms = std::sqrt(std::max(0.0, explained.squaredNorm() - of_noise) / samples_);
-  // Where nothing is explained, by rounding less, noise alone makes it.
+  // If nothing is explained, or less by rounding, noise alone makes it.
   part.p_value = f > 0 ? PValueOfF(f, static_cast<double>(part.columns), degrees_of_freedom_) : 1.0;
   return part;
 }

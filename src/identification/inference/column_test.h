@@ -39,12 +39,12 @@ class ColumnTest {
 
   /// Has any column something of its own, and is there noise to hold it against?
   [[nodiscard]] bool can_tell() const { return all_.cols() > 0 && variance_ > 0; }
-  /// Of a weighted residual.
+  /// Returns the variance of a weighted residual.
   [[nodiscard]] double variance() const { return variance_; }
   [[nodiscard]] double degrees_of_freedom() const { return degrees_of_freedom_; }
-  /// That tell of the noise.
+  /// Returns the number of independent samples of the noise.
   [[nodiscard]] double effective_samples() const { return effective_samples_; }
-  /// That noise alone makes what all columns explain.
+  /// Returns the probability that noise alone makes what all columns explain.
   [[nodiscard]] double p_value() const;
   /// rms of what all columns explain, less what they would of noise, over that of the noise.
   [[nodiscard]] double misfit_over_noise() const;

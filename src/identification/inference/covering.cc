@@ -24,7 +24,7 @@ std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, 
     ParameterEstimate other = estimate;
     other.value = parameter.ToValue(rival.solution.theta[p]);
     others.Fill(p, other);
-    // What is open either way is said already.
+    // An end that is open in either fit is reported elsewhere.
     const bool is_apart = estimate.lower95 && estimate.upper95 && other.lower95 && other.upper95 &&
                           (other.value < *estimate.lower95 || other.value > *estimate.upper95);
     if (is_apart) apart.push_back(estimate.name);

@@ -13,7 +13,7 @@
 /// Intervals that cover what another reading of the record would have for the parameters.
 namespace mindahl::identification {
 
-/// What another reading of a record is of, and why an interval reaches to it.
+/// Holds a competing solution for a record, and the reason why intervals extend to it.
 struct Rival {
   const Problem& problem;
   const Solution& solution;
@@ -33,8 +33,8 @@ std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, 
 bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
                       const Noise& noise, std::span<const ParameterEstimate> estimates);
 
-/// Where the shape of a loop is doubtful, the plateau that anyone reads off it is as good a slip
-/// force as the law's: Tc covers half of the gap between the branches, where the record slips.
+/// Extends the interval of Tc to half of the measured gap between the branches, where the shape of
+/// the loop is doubtful and the record slips.
 void CoverPlateau(FitResult& result, const Thresholds& thresholds);
 
 /// Raises the lower end of Tc to the half gap that was measured between the strokes, less two of

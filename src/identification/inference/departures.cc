@@ -213,7 +213,7 @@ double Bulge(const ForcePlace& at) {
   return at.direction * at.reach * std::sin(kHalfWaves * std::numbers::pi * Mobilised(at));
 }
 
-/// Of slip forces that differ; nothing but an offset of the force of a contact that had slipped.
+/// Column of unequal slip forces; of a contact that had slipped only an offset of the force.
 double ByAsymmetry(const ForcePlace& at) { return at.asymmetry; }
 
 constexpr std::array<ForceColumn, 32> kForceColumns = {{
@@ -358,8 +358,8 @@ std::vector<double> StrokeAmplitudes(const ScaledRecord& record) {
   return amplitudes;
 }
 
-/// Of all samples, on a scale from −½, the narrowest stroke, to ½, the widest; empty where strokes
-/// are as good as equal.
+/// Returns the amplitude of every sample's stroke, from −½, the narrowest, to ½, the widest; empty
+/// where strokes are nearly equal.
 std::vector<std::vector<double>> AmplitudeScale(const ScaledRecords& data) {
   constexpr double kEqual = 0.95;  // of the widest: the same as of steady cycles
   std::vector<std::vector<double>> scale;
@@ -428,7 +428,7 @@ void FillColumn(const ForceColumn& column, const models::LoadingPath& path,
   for (std::size_t i = 0; i < places.size(); ++i) values[i] *= record.LoadAt(i);
 }
 
-/// What a factor of one is, forces being in units of the data and the contact's over Tc.
+/// Returns the unit of a factor of one: forces are in units of the data, the contact's over Tc.
 /// @param clock  its unit
 double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock,
                   double slip_force) {
@@ -472,8 +472,8 @@ std::size_t FittedCovariates(const Problem& problem) {
       problem.parameters, [](const Parameter& parameter) { return parameter.term->of_column; }));
 }
 
-/// Is a column, but for a twentieth of its deviation, a linear function of time, displacement,
-/// force and load? Such a one says nothing new, or is the force itself in another unit.
+/// True if a column is, within a twentieth of its deviation, a linear function of time,
+/// displacement, force and load: it adds nothing, or is the force in another unit.
 bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
   constexpr double kOwnPart = 0.05;
   for (const ScaledRecord& record : data.records) {

@@ -23,8 +23,8 @@ struct Departure {
   std::string_view unit_by_sample = {};  // where records have no time; empty where it is the same
   /// The column is in proportion to the square of the size.
   bool is_square = false;
-  /// Where parts of a record have a contact of their own: by how much its force differs from the
-  /// mean in them, over the size.
+  /// Difference of the force from the mean in parts of a record with a contact of their own, over
+  /// the size.
   double apart = 0.0;
   /// Codes of causes whose columns this one has too, or nearly: of two that explain the same the
   /// simpler is named.

@@ -24,7 +24,7 @@ struct DisplacementPlace {
 
 using DisplacementDeparture = double (*)(const DisplacementPlace&);
 
-/// What a factor of one is, in units of the data.
+/// Names the unit of a factor of one, in units of the data.
 enum class Size { kOne, kTime, kCompliance, kLength, kRate };
 
 struct DisplacementColumn {

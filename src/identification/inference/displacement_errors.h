@@ -11,9 +11,9 @@
 
 namespace mindahl::identification {
 
-/// What errors of the displacement do to the force of a model: readings of the smoothed record are
-/// drawn, with the noise or the encoder's phase that it was read with, smoothed and settled as the
-/// record was.
+/// Simulates the effect of errors of the displacement on a model's force: readings of the smoothed
+/// record are drawn, with its noise or its encoder's phase, and smoothed and settled as the record
+/// was.
 ///
 /// An error of a turning point goes along with the whole branch that starts there, one of an
 /// encoder with all turning points at that count, and smoothing ties neighbours together: no
@@ -23,7 +23,7 @@ class DisplacementErrors {
   /// @param data  the prepared records, scaled; must outlive this
   DisplacementErrors(const loop::PreparedRecords& records, const ScaledRecords& data);
 
-  /// Is any record's displacement inexact?
+  /// True if the displacement of a record is inexact.
   [[nodiscard]] bool any() const { return !draws_.empty(); }
 
   /// T(drawn) − T(as smoothed) of the problem's model at θ, in units of the data: one row a sample,
@@ -42,7 +42,7 @@ class DisplacementErrors {
   std::vector<std::vector<Drawn>> draws_;  // of all records each
 };
 
-/// What these errors do to the weighted residuals of a solution; nothing where readings are exact.
+/// Returns the effect of these errors on a solution's weighted residuals; empty if exact.
 DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
                             const Solution& solution, const Noise& noise);
 

@@ -49,8 +49,8 @@ Estimates::Estimates(const Problem& problem, const Solution& solution, const Noi
   if (inside.size() < free.size()) {
     held_ = AnalyseJacobian(problem, inside, at_.jacobian(Eigen::all, places), noise, displacement);
   }
-  // Of correlated residuals a fit takes up more than its parameters' number, and leaves less than
-  // the noise's variance; where it takes up most, that is all that can be said.
+  // A fit absorbs more of correlated residuals than the number of its parameters, and leaves less
+  // than the noise's variance; beyond most_absorbed no more is corrected.
   if (noise.is_known || displacement.residuals.size() > 0) return;
   const auto count = static_cast<double>(noise.samples);
   const auto parameters = static_cast<double>(free.size());

@@ -36,7 +36,7 @@ class Estimates {
   /// Standard error of θ; infinite where it is not determined, 0 where fixed.
   [[nodiscard]] double ErrorOfTheta(std::size_t parameter) const;
 
-  /// Of all free parameters.
+  /// Returns the uncertainty of all free parameters together.
   [[nodiscard]] const LocalUncertainty& local() const { return full_; }
   /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
   /// this share a likelihood ratio counts. 1 where it is not determined.
@@ -49,12 +49,12 @@ class Estimates {
   /// The Jacobian by all free parameters at the solution, and the weighted residuals.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return at_.jacobian; }
   [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
-  /// Of a residual, as errors are made from it.
+  /// Returns the variance of a weighted residual from which errors are computed.
   [[nodiscard]] double variance() const { return variance_; }
 
  private:
   [[nodiscard]] const LocalUncertainty& LocalOf(std::size_t parameter) const;
-  /// Of the parameters inside their bounds, the others held there.
+  /// Returns the uncertainty of the parameters inside their bounds, the others held there.
   [[nodiscard]] const LocalUncertainty& Conditional() const { return held_ ? *held_ : full_; }
 
   const Problem& problem_;

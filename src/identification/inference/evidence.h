@@ -6,14 +6,14 @@
 
 namespace mindahl::identification {
 
-/// What two fits to the same samples say of each other: the one comparison of fits there is.
+/// Compares two fits to the same samples; every comparison of fits uses it.
 class Evidence {
  public:
   /// @param samples    that count
   /// @param effective  as many independent ones as say the same, of what is compared
   Evidence(std::size_t samples, double effective);
 
-  /// As all residuals together tell a variance.
+  /// Takes the sample size over the variance inflation from autocorrelation.
   explicit Evidence(const Noise& noise) : Evidence(noise.samples, noise.effective_samples()) {}
 
   /// 2 ln Λ of the fit with the smaller sum of squares against the other: n_eff·ln(SS₀/SS₁), of

@@ -13,8 +13,8 @@ namespace {
 constexpr double kNormalMedian = 0.6744897501960817;  // of |z|
 constexpr std::size_t kAlike = 60;                    // samples that one width is taken from
 constexpr double kFar = 6.0;                          // of their widths
-/// That a reading is so far off by chance: 2e-9 of a normal law whose width is known, and of one
-/// that 60 samples know to 15 % (1.17/√60) below this.
+/// Chance that a reading is so far off: 2e-9 of a normal law whose width is known, and below this
+/// of one that 60 samples determine to 15 % (1.17/√60).
 constexpr double kChance = 1e-5;
 constexpr std::size_t kNearATurn = 3;  // samples, on which a law's own misfit is as narrow
 

@@ -86,7 +86,7 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
   if (!robust) add(kHeavyTails, FindHeavyTails(samples, evidence));
   // A force that is imposed drops by itself.
   if (problem.data->is_forced()) return found;
-  // What has one phase in all strokes is the drive's: a contact that sticks and slips has none.
+  // One phase in all strokes is the drive's: stick-slip of a contact has none.
   const std::optional<IrregularityFit> stick_slip = FindStickSlip(samples);
   const bool is_fitted = std::ranges::any_of(problem.parameters.free(), [&](std::size_t p) {
     return problem.parameters[p].term->option == "--ripple";

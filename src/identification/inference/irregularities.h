@@ -19,7 +19,7 @@ struct Irregularity {
   std::string_view option;  // of the command line; empty where there is none
 };
 
-/// What the residuals say of one.
+/// Holds the fit of one of them to the residuals.
 struct IrregularityFit {
   std::size_t irregularity = 0;  // its place in Irregularities()
   double p_value = 1.0;          // that noise alone makes it

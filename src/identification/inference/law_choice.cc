@@ -110,7 +110,7 @@ double CriterionOf(const Evidence& evidence, const Problem& problem, const Solut
   return evidence.Aicc(solution.sum_of_squares, problem.parameters.free().size());
 }
 
-/// Does a record start within the way of its strokes? Then it may be virgin.
+/// True if a record starts inside the range of its strokes: then it may be virgin.
 bool StartsInside(const ScaledRecord& record) {
   const auto [low, high] = std::ranges::minmax(record.excitation());
   const double start = record.excitation().front();
@@ -196,7 +196,7 @@ LawComparison CompareLaws(const Problem& problem, const Solution& best, const Fi
       delta = delta_by(evidence);
     }
     if (!other.solution.converged) continue;
-    // Where the laws are one curve, a virgin past says something only if it is the better one.
+    // If the laws are one curve, a virgin start counts only if it is better.
     if (state != problem.state && same_curve &&
         (delta > 0 || LawIsUndecided(delta, options.thresholds))) {
       continue;

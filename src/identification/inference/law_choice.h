@@ -14,7 +14,7 @@ namespace mindahl::identification {
 /// own (models/equivalent_law.h).
 bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds);
 
-/// Does the record hardly tell Masing's law from Dahl's own?
+/// True if the record hardly distinguishes Masing's law from Dahl's own.
 /// @param delta_aicc  of the two
 bool LawIsUndecided(double delta_aicc, const Thresholds& thresholds);
 
@@ -28,7 +28,7 @@ struct OtherFit {
 struct LawComparison {
   /// Empty where the laws are one (α = 0), and where they are not compared.
   std::optional<LawChoice> choice;
-  /// Of the past that is the likeliest for it; empty where it was not fitted.
+  /// Fit of the other law with its likeliest initial state; empty where it was not fitted.
   std::optional<OtherFit> other;
   /// σ and Tc are not held or bounded, as those of one law only, the motion turns and the load
   /// stays.

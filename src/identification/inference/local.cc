@@ -172,14 +172,14 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   Eigen::MatrixXd triangle = TriangleOf(jacobian);
   Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
-  // As of unit columns, whatever their units.
+  // Columns are scaled to one, whatever their units.
   const Eigen::VectorXd inverse_norms = norms.cwiseInverse();
   triangle *= inverse_norms.asDiagonal();
   std::optional<Eigen::MatrixXd> inverse = InverseIfRegular(triangle);
   const Eigen::MatrixXd half =
       inverse ? std::move(*inverse) : HalfOfPseudoInverse(triangle, norms, result);
-  // Of columns U = JH, which are orthonormal, the noise makes a product UᵀRU of order one: between
-  // two inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
+  // The columns U = JH are orthonormal, so that the noise makes a product UᵀRU of order one:
+  // between two inverses of an ill-conditioned JᵀJ its rounding errors would outgrow it.
   Eigen::MatrixXd root = half;
   result.absorbed = static_cast<double>(half.cols());
   if (!is_white) {

@@ -11,8 +11,8 @@
 
 namespace mindahl::identification {
 
-/// What the Jacobian at the solution says about the free parameters, before any noise level is put
-/// in: covariance = variance of a residual × `factor`.
+/// Holds the uncertainty of the free parameters by the Jacobian at the solution, without a noise
+/// level: covariance = variance of a residual × `factor`.
 struct LocalUncertainty {
   std::vector<std::size_t> columns;  // positions in θ, those not held at a bound
   /// columns²: (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ on the determined subspace, R the correlation of the residuals;
@@ -47,7 +47,7 @@ Eigen::MatrixXd JacobianAt(const Problem& problem, std::span<const double> theta
                            Response& response, std::span<const std::size_t> columns,
                            Eigen::VectorXd& residual);
 
-/// What errors of the displacement add to a fit's uncertainty.
+/// Holds the uncertainty that errors of the displacement add to a fit.
 struct DisplacementEffect {
   Eigen::MatrixXd residuals;  // drawn, weighted: rows as the Jacobian's; none where exact
   double variance = 1.0;      // of a residual, in whose units factors are
@@ -61,8 +61,8 @@ Autocorrelation AutocorrelationOf(
     std::span<const unsigned char> tells = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-/// As many independent samples as tell the variance of residuals, one record after the other,
-/// weighted or not: those that count over what their autocorrelation costs.
+/// Returns the effective number of samples of residuals, weighted or not, one record after the
+/// other: those that count, over the variance inflation from autocorrelation.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 

@@ -20,11 +20,11 @@ constexpr std::size_t kMostWaves = 4;
 constexpr std::size_t kFewestShapes = 3;
 /// Reversals whose forces lie closer [of the largest] are as good as at one force.
 constexpr double kOneForce = 0.05;
-/// Of the widest stroke: a way on a branch that is shorter after an inner loop shows nothing.
+/// Least length of a branch after an inner loop, as a fraction of the widest stroke.
 constexpr double kShortWay = 0.05;
-/// Of the widest virgin branch: less of one shows nothing.
+/// Least length of the virgin branch, as a fraction of the widest one.
 constexpr double kSeenWay = 0.25;
-/// Of the widest stroke: over it the slope after a reversal is that after a reversal.
+/// Length over which the slope after a reversal is measured, of the widest stroke.
 constexpr double kEarly = 0.1;
 
 /// A sample on its branch, or the origin of a branch on the one before (OnBranch).
@@ -46,7 +46,7 @@ struct BranchPlace {
   double before = 1.0;
 };
 
-/// What places are measured by, of all records.
+/// Holds the scales of displacement and force over all records.
 struct Extent {
   double stroke = 0.0;  // the widest way between reversals
   double force = 0.0;   // the largest response
@@ -59,7 +59,7 @@ double ShareOfStroke(const BranchPlace& at, const Extent& extent) {
   return Way(at) * (at.virgin ? 2 : 1) / extent.stroke;
 }
 
-/// By how much a branch of Masing's law is larger than the virgin one.
+/// Returns the scale of a branch of Masing's law against the virgin one.
 double MasingScaleOf(const BranchPlace& at) { return at.virgin ? 1.0 : 2.0; }
 
 /// Against the sense of the branch, where it starts, over Tc: T*/Tc of a steady loop.

@@ -10,7 +10,7 @@
 
 namespace mindahl::identification {
 
-/// What the test of a law's memory asks the residuals for, columns weighted, a row a sample.
+/// Holds the columns of the test of a law's memory, weighted, a row a sample.
 struct MemoryColumns {
   /// Other shapes of the law, the same on all branches: of the backbone where memory is Masing's,
   /// of the slope as a function of the force where it is Dahl's.

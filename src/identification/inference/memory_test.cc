@@ -32,7 +32,7 @@ Eigen::MatrixXd BasisOf(const Eigen::MatrixXd& law, const Eigen::MatrixXd& shape
   return factors.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), factors.rank());
 }
 
-/// What one memory makes of the comparisons.
+/// Holds the comparisons under one memory.
 struct Answer {
   double p_value = 1.0;
   std::vector<MemoryComparison> comparisons;
@@ -53,7 +53,7 @@ class MemoryTrial {
         basis_(BasisOf(law.jacobian, columns_.shape)),
         test_(Test(nullptr)) {}
 
-  /// By the noise of its own, or that of the law which leaves less.
+  /// Tests with its own noise, or with that of the other law where that is less.
   [[nodiscard]] Answer Ask(const MemoryTrial* other) const {
     return other != nullptr && other->test_.variance() < test_.variance()
                ? AskOf(Test(&other->test_))

@@ -19,8 +19,8 @@ struct FittedLaw {
   Eigen::VectorXd residual;
 };
 
-/// Is there a load, a lag or a series, under which branches are no copies of each other in the
-/// first place?
+/// True if branches may be copies of each other: an imposed displacement, a constant load, no lag
+/// and no load series.
 bool CanCompareBranches(const Problem& problem);
 
 /// Branches against each other, beside each law with a shape that is let free: the differences that

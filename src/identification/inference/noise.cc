@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kHighestOrder = Autocorrelation::kHighestOrder;
 constexpr std::size_t kSamplesPerOrder = 10;
-/// What a filter remembers below this share of its largest output is rounding.
+/// Fraction of its largest output below which a filter's memory is rounding.
 constexpr double kForgotten = 1e-9;
 constexpr std::size_t kLongest = 100'000;  // samples that it is given to forget
 

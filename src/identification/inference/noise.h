@@ -49,11 +49,11 @@ struct Noise {
   std::size_t samples = 0;          // that count
   double confidence = 0.95;         // of the intervals that follow from it
 
-  /// As many independent residuals as say the same, at least 1: autocorrelated ones tell a variance
-  /// as n/(1 + 2Σρ²) do, and what comes back in every stroke is told once.
+  /// Returns the effective sample size, at least 1: n/(1 + 2Σρ²) for autocorrelated residuals, and
+  /// one stroke's samples for what repeats in every stroke.
   [[nodiscard]] double effective_samples() const;
-  /// Of the variance: effective samples less what was fitted, at least 1; practically infinite
-  /// where it is known.
+  /// Returns those of the variance: effective samples less fitted parameters, at least 1;
+  /// practically infinite where it is known.
   [[nodiscard]] double degrees_of_freedom(std::size_t parameters) const;
 };
 

@@ -106,7 +106,7 @@ std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best,
                                    double last_gain, SearchBuffers& buffers) {
   const double critical = estimates.quantile() * estimates.quantile();
   SolverOptions search = SolverOptionsOf(options);
-  // Of the cost at the ends, by the parabola.
+  // The parabola predicts the cost at the ends.
   search.predicts_last = true;
   search.last_step = last_gain * noise.variance / (best.sum_of_squares + critical * noise.variance);
   HeldParameter held(problem, kSlipForce, best, noise, estimates, search, buffers);
@@ -216,7 +216,7 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
                           SearchBuffers& buffers) {
   if (problem.parameters[kStiffness].fixed) return false;
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kStiffness);
-  // Where nothing but rounding is left the parabola is of its derivatives at a corner.
+  // If only rounding is left, the parabola has the derivatives at a corner.
   const double rms = std::sqrt(best.sum_of_squares / static_cast<double>(problem.data->counted));
   const bool only_rounding = !noise.is_known && rms < kRoundingRms;
   const bool is_inside = best.side[kStiffness] == BoundSide::kInside;

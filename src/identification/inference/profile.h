@@ -16,7 +16,7 @@ struct Range {
   double upper = 0.0;
 };
 
-/// Of the points of a profile that are not rejected.
+/// Holds the ranges of the points of a profile that are not rejected.
 struct ProfiledRanges {
   Range slip_force = {};      // ln Tc
   Range shape_exponent = {};  // α
@@ -47,7 +47,7 @@ std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best,
                                    const Estimates& estimates, const FitOptions& options,
                                    double last_gain, SearchBuffers& buffers);
 
-/// What that is asked with: off by a thousandth of the critical F.
+/// Gain of F for RatiosAtEnds(), which is then off by a thousandth of the critical F.
 inline constexpr double kLastGainAtEnds = 0.02;
 
 /// May the parabola be wrong along Tc? It is asked where the loop stays away from slip, where Tc is
@@ -74,7 +74,7 @@ ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const 
                             const Estimates& estimates, const FitOptions& options,
                             SearchBuffers& buffers);
 
-/// What σ, α and Tc are along the likelihood from the bound α = 0 upwards, each with half the
+/// Profiles σ, α and Tc along the likelihood from the bound α = 0 upwards, each with half the
 /// interval that it has with α held; empty where α does not lie at that bound. There the parabola
 /// holds α, but a small α moves σ: at the same secant of a loop of T* the tangent σ is larger by
 /// (α/2)(T*/Tc), which may be many standard errors.

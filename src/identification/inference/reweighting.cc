@@ -94,7 +94,7 @@ class Weighting {
       from_displacement[k] = unit / deviation;  // root weight by noise
       if (counts_[k] != 0) standardised.push_back(residual[k]);
     }
-    // Where more than half of the samples are met to the last bit, rounding is their noise.
+    // If more than half of the samples are met to the last bit, rounding is their noise.
     const double scale = loss == Loss::kNone || known
                              ? 1.0
                              : std::max(RobustScale(standardised), kRoundingRms / unit);

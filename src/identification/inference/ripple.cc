@@ -207,7 +207,7 @@ std::optional<IrregularityFit> FindRipple(std::span<const FittedSample> samples)
   if (!(most.by_one > 0)) return std::nullopt;
   const double coarse = best;
   for (double part = -1; part <= 1; part += kFinest) look_at(coarse + part * step);
-  // Of noise a phase for each stroke explains as many times more as there are strokes.
+  // For noise, free phases explain more by a factor of the number of strokes.
   if (most.by_one < std::max(kOfFree * most.by_free, kOfAnyFree * most_by_free)) {
     return std::nullopt;
   }

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array kNames = {"virgin", "unloading", "reloading"};
 constexpr std::size_t kFewestOfKind = 10;
 
-/// Of α.
+/// Compares fits that differ in α.
 Evidence EvidenceOfShape(const Noise& noise, const Estimates& estimates) {
   return {noise.samples, static_cast<double>(noise.samples) * estimates.WhiteShare(kShape)};
 }
@@ -94,7 +94,7 @@ std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thi
   FindStartsOf(sprung, thin, with_rig, std::numeric_limits<double>::infinity(), buffers,
                std::pmr::get_default_resource());
   Descend(sprung, with_rig, buffers, nullptr);
-  // As many parameters in both: ΔAICc is 2 ln Λ.
+  // Both have as many parameters: ΔAICc is 2 ln Λ.
   const double loss = EvidenceOfShape(noise, estimates)
                           .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
@@ -147,7 +147,7 @@ std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution&
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(normal).pseudoInverse();
   const Eigen::VectorXd step = -factor * (split.transpose() * values);
   const Eigen::MatrixXd correlated = CorrelatedProduct(*problem.data, noise.autocorrelation, split);
-  // What the departure from one law leaves in the residuals is not noise here.
+  // The misfit of one law for all branches is not noise here.
   const double sum_of_squares = values.squaredNorm();
   if (!(sum_of_squares > 0)) return {};
   const double left = (values + split * step).squaredNorm() / sum_of_squares;

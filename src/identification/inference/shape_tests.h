@@ -17,7 +17,7 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
                                        const Noise& noise, const Estimates& estimates,
                                        const FitOptions& options, SearchBuffers& buffers);
 
-/// Does the likelihood allow α = 1/3, which the interval by its parabola excludes?
+/// True if the likelihood allows α = 1/3, which the interval by its parabola excludes.
 bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha);
 
 /// α = 1/3 in a rig that gives way.
@@ -43,8 +43,8 @@ std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution&
                                          const Noise& noise, const Estimates& estimates,
                                          Response& response);
 
-/// Is Mindlin's exponent rejected for a smaller one on a rigid rig, so that a rig that gives way
-/// may be what is behind it?
+/// True if Mindlin's exponent is rejected for a smaller one on a rigid rig, so that a compliant rig
+/// may be the cause.
 bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& test,
               const Thresholds& thresholds);
 

@@ -51,7 +51,7 @@ std::optional<TurningPointFit> FitTurnedAsTheMotion(const Problem& problem, cons
   buffers.solver.Solve(best.theta, SolverOptionsOf(options), fit.solution);
   if (!fit.solution.converged) return {};
   if (fit.solution.sum_of_squares <= best.sum_of_squares) return fit;
-  // Of two that the record does not tell apart, the one that does not take a sample for a turn.
+  // If both are nearly as likely, the fit that does not take a sample for a turn is chosen.
   std::vector<double> residual(problem.size());
   EvaluateResidual(problem, best.theta, buffers.response, residual);
   const Evidence evidence(problem.data->counted, EffectiveSamples(*problem.data, residual));

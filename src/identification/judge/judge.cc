@@ -27,8 +27,8 @@ bool IsOfLaw(const ParameterEstimate& estimate) {
   return estimate.name == "sigma" || estimate.name == "alpha" || estimate.name == "slip_force";
 }
 
-/// Where no omitted term explains the misfit, and what comes back in every stroke makes the model
-/// inadequate, that is what the model misses.
+/// Counts a residual that repeats in every stroke as model discrepancy, where no omitted term
+/// explains it and it makes the model inadequate.
 void CountWhatRepeats(FitResult& result, const Thresholds& thresholds) {
   Adequacy& adequacy = result.adequacy;
   if (adequacy.p_value < thresholds.doubt) return;

@@ -31,10 +31,10 @@ double LongestLag(double samples_a_cycle);
 ///   others not, or one never goes on
 void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& records);
 
-/// Where the contact was when each force of a record acted, and on which branch. The motion runs
+/// Locates the contact, and its branch, at the time of each force of a record. The motion runs
 /// straight from sample to sample of the displacement and turns at its reversals, whatever the lag:
-/// these are put in between the moved samples, and so are both ends of the record, where what lies
-/// beyond is held.
+/// these are put in between the moved samples, and so are both ends of the record, beyond which the
+/// displacement is constant.
 class LaggedMotion {
  public:
   /// @param record  with a clock; must not have moved since the last call that bound it
@@ -42,16 +42,16 @@ class LaggedMotion {
   void MoveTo(const ScaledRecord& record, double lag, models::Memory memory,
               const models::InitialContact& initial);
   void Forget() { valid_ = false; }
-  /// Is it at this lag, from this past?
+  /// True if it is valid for this lag and initial state.
   [[nodiscard]] bool IsAt(double lag, const models::InitialContact& initial) const {
     return valid_ && lag == lag_ && initial.unloaded_displacement == unloaded_ &&
            initial.asymmetry == path_.asymmetry;
   }
 
-  /// Of moved samples, reversals and ends, in order of time.
+  /// Displacements of moved samples, reversals and ends, in order of time.
   [[nodiscard]] std::span<const double> displacement() const { return displacement_; }
   [[nodiscard]] const models::LoadingPath& path() const { return path_; }
-  /// Of each sample among them.
+  /// Index of each sample in displacement().
   [[nodiscard]] std::span<const std::size_t> places() const { return places_; }
   /// ∂δ/∂lag of each sample, 0 beyond the ends.
   [[nodiscard]] std::span<const double> rates() const { return rates_; }

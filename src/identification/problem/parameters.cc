@@ -38,7 +38,7 @@ void Hold(Parameter& parameter, double value) {
   parameter.fixed = true;
 }
 
-/// Does a record begin where its file has both zeros?
+/// True if a record begins where both zeros of its file are.
 bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
   constexpr double kOfForce = 0.1;  // of its half range: noise of the first reading is less
   const double displacement =
@@ -219,7 +219,7 @@ bool Parameters::any_zero_is_known() const {
   });
 }
 
-/// What shapes columns of other parameters needs one of these.
+/// Refuses a parameter that shapes columns of others where none of these is fitted.
 void Parameters::RequireShapedColumns() const {
   for (const Parameter& shaping : parameters_) {
     if (shaping.absent || shaping.term->shapes.empty()) continue;
@@ -233,7 +233,7 @@ void Parameters::RequireShapedColumns() const {
   }
 }
 
-/// Of a contact that had slipped before it is a force that is always there, as an offset is.
+/// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
 void Parameters::HoldConfoundedAsymmetry() {
   Parameter& asymmetry = parameters_[PositionOf("asymmetry", 0)];
   if (asymmetry.fixed || any_zero_is_known()) return;

@@ -15,7 +15,7 @@
 
 namespace mindahl::identification {
 
-/// Does a fit have a term that is on demand, to find or at a given value?
+/// True if a fit has a term that is on demand, fitted or at a given value.
 bool HasTerm(const FitOptions& options, std::string_view name);
 
 /// A term of one fit, as the solver sees it: θ, non-dimensional and of order one.
@@ -41,7 +41,7 @@ struct Parameter {
   [[nodiscard]] double ToTheta(double value) const;
 };
 
-/// Where a parameter lies between its bounds.
+/// Says on which side of its bounds a parameter lies.
 enum class BoundSide { kInside, kLower, kUpper };
 
 /// The one definition of "at a bound": within 1e-9 of the way between the bounds, at least 1e-9.
@@ -61,8 +61,8 @@ inline constexpr std::size_t kSlipForce = 2;
 inline constexpr std::size_t kRig = 3;
 inline constexpr std::size_t kLoadExponent = 4;
 
-/// Of α where the normal load varies: from here on the displacement at gross slip is beyond a
-/// hundred times Tc/σ, and its law that of no record.
+/// Highest α where the normal load varies: beyond it the displacement at gross slip exceeds a
+/// hundred times Tc/σ, and no record has such a law.
 inline constexpr double kHighestShapeUnderLoad = 0.99;
 
 /// The term of where a contact is unloaded: the offset of the channel that is imposed.
@@ -92,9 +92,9 @@ class Parameters {
   [[nodiscard]] const std::pmr::vector<std::size_t>& free() const { return free_; }
   /// Positions of those that a result reports.
   [[nodiscard]] const std::pmr::vector<std::size_t>& reported() const { return reported_; }
-  /// Of where a record's contact is unloaded, in the channel that is imposed.
+  /// Returns the place of a record's reference position, in the imposed channel.
   [[nodiscard]] std::size_t PositionOfOrigin(std::size_t record) const;
-  /// Of a record's term; size() where there is no such term.
+  /// Returns the place of a record's term; size() where there is no such term.
   [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
   [[nodiscard]] bool has_lag() const { return !parameters_[PositionOf("lag", 0)].absent; }
@@ -105,7 +105,7 @@ class Parameters {
   [[nodiscard]] bool asymmetry_is_confounded() const {
     return parameters_[PositionOf("asymmetry", 0)].confounded;
   }
-  /// Is the force's offset held in a record?
+  /// True if the force's offset of a record is held.
   [[nodiscard]] bool any_zero_is_known() const;
   /// Are the records under loads that differ?
   [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }

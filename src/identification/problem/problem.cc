@@ -165,7 +165,7 @@ const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const doubl
 
 void Response::Evaluate(const LawPoint& at, std::span<double> t) { Differentiate(at, t, {}); }
 
-/// What moves a branch moves its forces in proportion to the slip force where they are read.
+/// Scales the derivatives by a branch's start with the slip force at each sample.
 void Response::ScaleSensitivity(std::size_t r, const LawPoint& at,
                                 models::OriginSensitivity& sensitivity) const {
   const ScaledRecord& record = problem_->data->records[r];
@@ -198,7 +198,7 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
   if (slip_varies_) ScaleSensitivity(r, at, sensitivity);
 }
 
-/// Of one record over its own slip force.
+/// Differentiates the response of one record, over its own slip force.
 void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<double> t,
                                    const ResponseColumns& columns) {
   const ScaledRecord& record = problem_->data->records[r];
@@ -230,7 +230,7 @@ void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<
   }
 }
 
-/// Of one record whose force is imposed.
+/// Differentiates the response of one record whose force is imposed.
 void Response::DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
                                    const ResponseColumns& columns) {
   const models::ForcedLaw law{.slip_force = std::exp(-at.log_rate), .shape_exponent = at.shape};

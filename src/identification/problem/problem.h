@@ -17,8 +17,8 @@
 
 namespace mindahl::identification {
 
-/// What is to be solved: records, a model, their past and the parameters. Nothing of it changes
-/// while it is solved.
+/// Holds what is to be solved: records, a model, their initial state and the parameters. Nothing of
+/// it changes during the solution.
 struct Problem {
   const ScaledRecords* data;
   const models::FrictionModel* model;
@@ -33,20 +33,20 @@ struct Problem {
   }
 };
 
-/// What the normalized response t depends on, in units of the data: all but its factor.
+/// Holds what the normalized response t depends on, in units of the data: all but its factor.
 struct LawPoint {
   double log_rate = 0.0;       // ln(σ/Tc); of an imposed force −ln Tc
   double shape = 0.0;          // α
   double log_travel = 0.0;     // ln(Tc/k) of the rig; ignored without one
   double load_exponent = 1.0;  // p; 1 where the records are under one load
-  // Of all parameters, for where each record is unloaded, the lag and the asymmetry.
+  // All parameters, for where each record is unloaded, the lag and the asymmetry.
   std::span<const double> theta;
 };
 
 /// The point of the law at θ.
 LawPoint PointAt(const Problem& problem, std::span<const double> theta);
 
-/// What the response is t times of: ln Tc, or ln(Tc/σ) of a displacement.
+/// Returns the log of the factor of t: ln Tc, or ln(Tc/σ) of a displacement.
 double LogScaleAt(const Problem& problem, std::span<const double> theta);
 
 /// The law over the slip force of one record, under its mean load: σ/Tc ∝ N^{p−1}, Tc/k ∝ N.
@@ -102,7 +102,7 @@ class Response {
   void Bind(const Problem& problem);
   void Evaluate(const LawPoint& at, std::span<double> t);
   void Differentiate(const LawPoint& at, std::span<double> t, const ResponseColumns& columns);
-  /// Of one record, for those who move its turning points.
+  /// Differentiates one record by its branches' starts, for fits of turning points.
   void DifferentiateByOrigins(const LawPoint& at, std::size_t record,
                               models::OriginSensitivity& sensitivity);
   /// The loading path of a record of the problem that is bound, of its samples.
@@ -153,7 +153,7 @@ class Response {
   std::size_t slip_speed_exponent_ = 0;
   bool slip_varies_ = false;  // over the positions or speeds
   bool slip_goes_by_speed_ = false;
-  // Of a problem with a lag:
+  // For a problem with a lag:
   std::size_t lag_ = 0;  // its position
   bool has_lag_ = false;
   std::vector<LaggedMotion> motions_;  // of each record

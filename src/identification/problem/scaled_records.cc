@@ -78,7 +78,7 @@ void FillAcceleration(ScaledRecord& record, double unit) {
   }
 }
 
-/// Of the stroke that ends at a reversal, or begins at the last one.
+/// Fills the direction of the stroke that ends at a reversal, or begins at the last one.
 void FillDirection(ScaledRecord& record) {
   record.direction.resize(record.size());
   std::size_t begin = 0;
@@ -123,7 +123,7 @@ double SpeedInTheMiddle(const ScaledRecords& data) {
   return sum > 0 ? sum / count : 1.0;
 }
 
-/// Does a sample say under which load the record was made? Cycles that are only held out do.
+/// True if a sample counts for the load of a record; cycles that are only held out do.
 bool TellsLoad(const loop::PreparedRecord& record, const loop::PreparationOptions& options,
                std::size_t r, std::size_t sample) {
   if (record.counts[sample] != 0) return true;
@@ -175,7 +175,7 @@ bool KnowsVaryingLoads(const FitOptions& options) {
          !HasTerm(options, "asymmetry");
 }
 
-/// What the columns say of loads within the records.
+/// Takes the loads within a record from their column.
 void TakeVaryingLoad(ScaledRecord& target, const loop::PreparedRecord& record,
                      const MeasuredLoad& measured, bool is_known) {
   for (const double load : record.record.normal_load) {

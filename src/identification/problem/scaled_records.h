@@ -64,7 +64,7 @@ struct ScaledRecord {
     return load_ratio.empty() ? load : load * load_ratio[i];
   }
 
-  /// What does not depend on its samples, of a record that has others.
+  /// Returns a copy without samples, for a record that has others.
   [[nodiscard]] ScaledRecord WithoutSamples(std::pmr::memory_resource* memory) const;
   /// Room for so many samples of another record.
   void Reserve(const ScaledRecord& from, std::size_t samples);
@@ -81,7 +81,7 @@ struct ScaledRecord {
     return imposed == loop::Channel::kForce ? displacement : force;
   }
   [[nodiscard]] std::size_t size() const { return force.size(); }
-  /// What a linear term is the factor of; empty where it is 0, or the same everywhere.
+  /// Returns the column of which a linear term is the factor; empty where 0 or constant.
   /// @param covariate  its place among the covariates, for a term of one
   [[nodiscard]] std::span<const double> ColumnOf(Regressor column, std::size_t covariate) const;
 };
@@ -118,9 +118,9 @@ struct ScaledRecords {
   bool load_varies = false;            // within a record, and the law knows it
   bool turns_are_fitted = false;       // are turning points between samples parameters of the fit?
 
-  /// Is the force imposed, and the displacement fitted?
+  /// True if the force is imposed, and the displacement fitted.
   [[nodiscard]] bool is_forced() const { return excitation == loop::Channel::kForce; }
-  /// Of the channel that is fitted [N or m].
+  /// Returns the unit of the channel that is fitted [N or m].
   [[nodiscard]] double response_unit() const { return is_forced() ? length : force; }
   [[nodiscard]] std::size_t samples() const;
   /// Units, loads and covariates without records, and none that counts.

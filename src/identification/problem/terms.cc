@@ -15,7 +15,7 @@ constexpr double kLowestSlipForce = 1e-3;
 constexpr double kHighestSlipForce = 1e4;
 constexpr double kHighestShapeExponent = 20.0;
 constexpr double kWidest = 10.0;
-// Of a cycle: a channel that is later has a filter or a clock of its own. Samples that near to the
+// Longest lag, in cycles: a longer one is a filter or a clock of its own. Samples that near to the
 // ends of a record do not count under a lag that is fitted.
 constexpr double kLongestLag = 0.05;
 // The theories have exponents of the load between 0 and 1.
@@ -27,7 +27,7 @@ constexpr double kLeastSpeedExponent = 0.2;
 constexpr double kLargestSlipChange = 0.5;
 // So much of the slip force that goes by the speed: the rest is positive.
 constexpr double kLargestSlipBySpeed = 0.95;
-// Of a period, in half ranges of the displacement: two in a stroke.
+// Periods in half ranges of the displacement: a stroke has two.
 constexpr double kShortestPeriod = 0.01;
 constexpr double kLongestPeriod = 1.0;
 

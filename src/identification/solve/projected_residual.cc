@@ -9,8 +9,8 @@
 namespace mindahl::identification {
 namespace {
 
-// Of σ/Tc and Tc/k in units of the data: a straight line, and a branch that is vertical; a rigid
-// rig, and one in which the contact is rigid.
+// Bounds of σ/Tc and Tc/k in units of the data: a straight line, and a branch that is vertical; a
+// rigid rig, and one in which the contact is rigid.
 const double kLowestLogRate = std::log(1e-4);
 const double kHighestLogRate = std::log(1e9);
 const double kLowestLogTravel = std::log(1e-9);
@@ -209,7 +209,7 @@ void ProjectedResidual::Store(std::span<const double> u, std::span<double> theta
   columns_.Solve(scale_, theta);
 }
 
-/// Of the factor of t, by those of Tc, or of a displacement by those of σ.
+/// Returns the bounds of the factor of t, from those of Tc, or of σ for a displacement.
 std::pair<double, double> ProjectedResidual::BoundsOfScale(double log_rate) const {
   if (is_forced()) {
     const Parameter& stiffness = problem_->parameters[kStiffness];
@@ -288,7 +288,7 @@ void ProjectedResidual::DifferentiateResponse(const LawPoint& point) {
         row += record.size();
         if (parameter.term->scope == Scope::kRecord && parameter.record != r) continue;
         for (const Sensitivity& summand : summands) {
-          // What is in proportion to t moves the scale, where that is eliminated.
+          // Summands proportional to t move the scale, where that is eliminated.
           if (summand.column == nullptr && scale_is_linear_) continue;
           const std::span<const double> of =
               summand.column == nullptr ? response_values_ : wanted.*summand.column;

@@ -72,7 +72,7 @@ class ProjectedResidual {
   /// @returns infinity where the regression has the wrong sign; else σ or Tc is written into θ
   double EvaluateFreely(const LawPoint& at, std::span<double> theta);
 
-  /// Is Tc, or Tc/σ of a displacement, eliminated?
+  /// True if Tc, or Tc/σ of a displacement, is eliminated.
   [[nodiscard]] bool scale_is_linear() const { return scale_is_linear_; }
 
  private:

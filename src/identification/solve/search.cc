@@ -26,7 +26,7 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
     return 0.0;
   }
   const ScaledRecords& thin = thinned.Get();
-  // Where a window or a fold leaves little of the thinned record, all of it is looked at.
+  // If a window or a fold leaves little of the thinned record, the whole record is used.
   constexpr std::size_t kEnough = 4;  // samples a parameter
   const bool is_enough = thin.counted >= kEnough * candidate.problem.parameters.free().size();
   // A thinned record has the history of the whole, and so tells a law; a column that wanders as it
@@ -62,7 +62,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
   const Parameters& parameters = candidate.problem.parameters;
   std::pmr::vector<std::size_t> terms(memory);
   for (const std::size_t p : parameters.free()) {
-    // What a word of the command line asks for; its further coefficients stay with it.
+    // Only terms that an option names; their further coefficients stay with them.
     const Term& term = *parameters[p].term;
     if (term.presence == Presence::kOnDemand && !term.option.empty()) terms.push_back(p);
   }

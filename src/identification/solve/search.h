@@ -11,7 +11,7 @@
 
 namespace mindahl::identification {
 
-/// What a search runs on; kept from one to the next.
+/// Holds the buffers of a search, kept from one to the next.
 struct SearchBuffers {
   Solver solver;
   Response response;
@@ -19,7 +19,7 @@ struct SearchBuffers {
   std::array<Solution, 3> smaller;  // of models with one term less, and those that they contain
 };
 
-/// What was reached from one starting point.
+/// Holds the end of the descent from one starting point.
 struct Descent {
   std::vector<double> start;  // θ
   double start_cost = 0.0;    // on all samples

@@ -13,8 +13,8 @@
 namespace mindahl::identification {
 namespace {
 
-/// Where the plane is looked at: σX/Tc for some α, closer where loops of that shape differ. The
-/// first two cost square roots and divisions only.
+/// Holds the starting points of one α: σX/Tc, closer where loops of that shape differ. The first
+/// two rows cost square roots and divisions only.
 struct StartRow {
   double shape;
   std::size_t count;
@@ -24,18 +24,18 @@ constexpr std::array kRows = {
     StartRow{1.0 / 3.0, 10, {0.1, 0.4, 0.8, 1.2, 1.7, 2.5, 4.5, 10., 40., 150.}},
     StartRow{0.0, 8, {0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.}},
     StartRow{1.0, 5, {0.5, 1.5, 4.0, 12., 60.}}, StartRow{2.5, 4, {0.7, 3.0, 12., 60.}}};
-/// Of an imposed force, which stays below slip: T*/Tc, closer where loops differ.
+/// Starting points T*/Tc under an imposed force, which stays below slip.
 constexpr std::array<StartRow, 4> kMobilisedRows = {
     StartRow{1.0 / 3.0, 7, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97, 0.995}},
     StartRow{0.0, 2, {0.5, 0.99}}, StartRow{1.0, 6, {0.1, 0.4, 0.65, 0.82, 0.92, 0.97}},
     StartRow{2.5, 6, {0.1, 0.25, 0.4, 0.6, 0.8, 0.92}}};
-/// Where α is held, all of one row.
+/// Starting points where α is held: all are of one row.
 constexpr std::array kReaches = {0.05, 0.15, 0.4, 0.8, 1.1, 1.6, 2.5, 4.5, 10., 40., 150.};
 constexpr double kNear = 4.0;
 constexpr std::array kMobilised = {0.05, 0.2, 0.4, 0.6, 0.75, 0.85, 0.92, 0.96, 0.98, 0.99, 0.997};
 constexpr std::array kRigRatios = {0.1, 0.5, 2.0, 10.0};  // σ/k
 
-/// Where α is held at 0 there are several minima next to each other.
+/// Number of starts where α is held at 0 and there are several minima next to each other.
 constexpr std::size_t kStartsAmongKinks = 4;
 
 constexpr double kHighestDrawnShape = 3.0;
@@ -203,7 +203,7 @@ class Plane {
 };
 
 void KeepBetter(Look& best, Plane& plane, Look look) {
-  // Where no slip is reached nothing depends on the reach: of equals the last, nearest to slip.
+  // Without slip nothing depends on the reach: of equals the last, nearest to slip.
   constexpr double kEqual = 1 + 1e-9;
   plane.At(look);
   if (std::isfinite(look.cost) && look.cost <= kEqual * best.cost) best = look;
@@ -241,7 +241,7 @@ void LookForLag(Look& best, Plane& plane) {
   }
 }
 
-/// Of a loop far off its centre the symmetric looks are all poor.
+/// Tries asymmetries: for a loop far off its centre all symmetric starts are poor.
 void LookForAsymmetry(Look& best, Plane& plane) {
   const Look none = best;
   for (const double asymmetry : {-0.6, -0.3, 0.3, 0.6}) {
@@ -330,8 +330,8 @@ constexpr SolverOptions kRough{.function_tolerance = 1e-2,
                                .max_iterations = 30,
                                .is_rough = true};
 
-/// Where α is held the likelihood may have kinks (a Jenkins loop just past slip has a false minimum
-/// where none of its samples slips); with α free it is smooth, and its minimum is a start.
+/// Adds the minimum with α free, where it is smooth: with α held the likelihood may have kinks (a
+/// Jenkins loop just past slip has a false minimum where none of its samples slips).
 void AddRelaxedStart(const Problem& thin, Solver& solver, Response& response, Solution& scratch,
                      std::pmr::memory_resource* memory, std::pmr::vector<StartingPoint>& starts) {
   Problem relaxed{thin.data, thin.model, thin.state, Parameters(thin.parameters, memory)};
@@ -406,7 +406,7 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
   if (thin.parameters[kShape].fixed && !starts.empty() && options.start.empty() && !is_beaten) {
     AddRelaxedStart(thin, solver, response, scratch, memory, starts);
   }
-  // By insertion, as they are few: stable_sort would allocate.
+  // Sorts by insertion, as they are few: stable_sort would allocate.
   for (auto start = starts.begin(); start != starts.end(); ++start) {
     std::rotate(
         std::ranges::upper_bound(starts.begin(), start, start->cost, {}, &StartingPoint::cost),
@@ -414,7 +414,7 @@ std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions
   }
   if (starts.size() > most)
     starts.erase(starts.begin() + static_cast<std::ptrdiff_t>(most), starts.end());
-  // Where all looks have the wrong sense, so have all draws.
+  // If all looks have the wrong sign of force, so have all draws.
   if (starts.empty() || options.starts <= starts.size()) return starts;
   Draws draws(options.seed);
   const Parameter& shape = thin.parameters[kShape];

@@ -18,8 +18,8 @@ struct StartingPoint {
   bool drawn = false;              // at random, not from the look
 };
 
-/// Is α held at 0? Then the likelihood has a kink wherever a sample begins to slip, and minima next
-/// to each other: all samples are looked at, and four starts followed.
+/// True if α is held at 0: the likelihood has a kink wherever a sample begins to slip, and minima
+/// next to each other; all samples are used, and four starts followed.
 bool HasKinks(const Parameters& parameters);
 
 /// The options' own start, where it leaves nothing to be looked for.

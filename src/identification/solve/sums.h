@@ -2,8 +2,8 @@
 
 #include <span>
 
-/// What a search does with columns of samples, built for several instruction sets of which the
-/// widest that the processor has is chosen at the first call; they differ in roundings only.
+/// Computes sums over columns of samples, built for several instruction sets of which the widest
+/// that the processor has is chosen at the first call; they differ in roundings only.
 namespace mindahl::identification {
 
 /// Σ aᵢbᵢ, of equal sizes.

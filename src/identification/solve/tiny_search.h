@@ -15,7 +15,7 @@ struct SolverOptions {
   /// … or |Δu| < parameter_tolerance · (|u| + parameter_tolerance), …
   double parameter_tolerance = 1e-13;
   int max_iterations = 500;
-  /// Where a full step can lower the cost by this fraction of it at the most, it is the last one.
+  /// Accepts a full step as the last one if it can lower the cost by at most this fraction.
   double last_step = 1e-8;
   /// Accepts the last step without evaluating the cost there.
   bool predicts_last = false;
@@ -50,7 +50,7 @@ class TinySearch {
   /// Tells a run that begins there what the residual at u is: it was linearised last.
   void KnowsLinearised(std::span<const double> u, double cost);
 
-  // Of the last run.
+  // Results of the last run.
   [[nodiscard]] double cost() const { return cost_; }
   [[nodiscard]] double initial_cost() const { return initial_cost_; }  // half of it, as Ceres'
   [[nodiscard]] int iterations() const { return iterations_; }

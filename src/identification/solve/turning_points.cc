@@ -37,7 +37,7 @@ double SenseOfTurn(const ScaledRecord& record, std::size_t reversal) {
   return record.displacement[record.reversals[reversal]] > record.displacement[next] ? 1.0 : -1.0;
 }
 
-/// Where each record's turning points lie among its samples, and their senses.
+/// Locates each record's turning points among its samples, with their directions.
 struct Turns {
   std::vector<double> sense;
   std::size_t highest = 0;  // the turn at the record's greatest displacement
@@ -167,7 +167,7 @@ std::optional<double> SharpOvershoot(std::span<const double> x, std::span<const 
   const double falling = velocity(b);
   const double at_turn = std::abs(rising - falling);
   const double beside = std::abs(rising - velocity(a - 2)) + std::abs(velocity(b + 1) - falling);
-  // Of a parabola they are equal, of a triangle there is nothing beside the turn.
+  // For a parabola both are equal; for a triangle the velocity changes at the turn only.
   if (!(beside < at_turn / 2)) return {};
   const double since = (x[b] - x[a] - falling * (t[b] - t[a])) / (rising - falling);
   return sense * (x[a] + rising * since - x[i]);

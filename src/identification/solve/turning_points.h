@@ -37,7 +37,7 @@ double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 /// How far a turning point may lie beyond its sample: the longer of the steps beside it.
 double LongestOvershoot(const ScaledRecord& record, std::size_t reversal);
 
-/// Of all records' reversals.
+/// Returns LongestOvershoot() of every reversal of all records.
 std::vector<double> LongestOvershoots(const ScaledRecords& data);
 
 /// ∂(weighted force)/∂overshoot, a sparse column a reversal: an overshoot moves the branch that
@@ -57,8 +57,8 @@ class TurningPointColumns {
   mutable Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> normal_;
 };
 
-/// What all parameters and overshoots together leave of the residuals after one linear step from
-/// the solution with some overshoots, and the overshoots after that step.
+/// Holds the residuals that one linear step in all parameters and overshoots leaves, from the
+/// solution with some overshoots, and the overshoots after that step.
 struct TurningPointStep {
   Eigen::VectorXd left;
   std::vector<double> overshoot;
