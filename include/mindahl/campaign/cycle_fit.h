@@ -69,7 +69,7 @@ std::span<const CycleFlag> CycleFlags();
 /// tolerance, and the standard errors of its noise.
 class CycleFitter {
  public:
-  /// @param options  of each cycle: steady unless the past is given; with the gate that split them
+  /// @param options  of each cycle: steady unless another state is given; with the splitting gate
   /// @throws InvalidArgument as Fitter
   explicit CycleFitter(identification::FitOptions options);
 

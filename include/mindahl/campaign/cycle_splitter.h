@@ -8,7 +8,7 @@
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 
-/// Records of many cycles, each fitted on its own as it goes by.
+/// Records of many cycles, each fitted on its own when it is complete.
 namespace mindahl::campaign {
 
 /// One cycle of a longer record, or several in a row: from a turning point to the next but one,

@@ -58,7 +58,7 @@ struct RepeatedQuantity {
 };
 
 /// The index of a batch: every file with its verdict and parameters, those alone that it
-/// identifies, what failed and why, and the scatter between files beside their stated errors.
+/// identifies, what failed and why, and the scatter between files against their stated errors.
 std::string BatchIndexPage(std::span<const FileResult> files,
                            std::span<const RepeatedQuantity> repeated,
                            const report::Provenance& provenance = {});

@@ -22,11 +22,11 @@ struct Reading {
 /// Samples as every stage takes them, valid as long as they.
 loop::RecordView ViewOf(const io::Samples& samples);
 
-/// Reads the first samples, as many as tell how the record is to be read: some cycles, or the
+/// Reads the first samples, as many as determine how the record is read: some cycles, or the
 /// first million.
 io::Samples ReadHead(io::RecordStream& stream);
 
-/// Chooses the reversal gate and the force's sense, one for all cycles.
+/// Chooses the reversal gate and the force's sign, one for all cycles.
 /// @param fit  written: both
 /// @throws InputError where the head shows no turning points
 Reading ChooseReading(const loop::RecordView& head, identification::FitOptions& fit);

@@ -65,10 +65,10 @@ struct PropagatedValue : UncertainValue {
   /// better first.
   std::string_view largest_input;
 
-  /// Share of the variance that the fit brings [-], 1 where it leaves the value open; 0 where
+  /// Fraction of the variance from the fit [-], 1 where it leaves the value open; 0 where
   /// nothing is uncertain.
   [[nodiscard]] double FitShare() const;
-  /// Share of the variance that the inputs bring [-]; with FitShare() it makes 1, or 0 where
+  /// Fraction of the variance from the inputs [-]; with FitShare() it makes 1, or 0 where
   /// nothing is uncertain.
   [[nodiscard]] double InputShare() const;
 };
@@ -156,7 +156,7 @@ std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantit
 ///  given
 ///    value, and sigma_over_mindlin compares them; ρ and p₀ use the given a and nothing of the fit;
 ///  - a given and Hertz complete: Hertz's a serves the prediction alone.
-/// The first and the last are also told in `redundant`, whatever the discrepancy.
+/// The first and the last are also named in `redundant`, whatever the discrepancy.
 ///
 /// Standard errors are propagated to first order (GUM, JCGM 100:2008, eq. 13) from σ and Tc with
 /// their correlation and from every input, each counted once however many ways it enters: E of a

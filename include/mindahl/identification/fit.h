@@ -43,8 +43,8 @@ class Fitter {
 
   /// Fit() of a record like the one before, from where the fit of that ended, without a look at the
   /// plane. By Fit() itself where there is none to go on from, where it ended at a bound or, from
-  /// Depth::kErrors on, either record does not tell the law, and where this does not converge or
-  /// leaves 1.5 times the residuals: what it finds is Fit()'s minimum, to the solver's tolerance.
+  /// Depth::kErrors on, either record does not determine the law, and where this does not converge
+  /// or leaves 1.5 times the residuals: it finds Fit()'s minimum, to the solver's tolerance.
   const FitResult& Continue(const loop::RecordView& record, Depth depth = Depth::kFull);
 
   [[nodiscard]] const FitOptions& options() const;

@@ -34,7 +34,7 @@ struct FitOptions {
   /// Offsets of force and, for a virgin contact, of displacement are free parameters; otherwise 0.
   bool offsets = true;
 
-  /// Terms that are fitted beside these, by name: rig_stiffness, plateau_slope, force_drift …
+  /// Terms that are fitted in addition, by name: rig_stiffness, plateau_slope, force_drift …
   /// Fixing one gives it a known value.
   std::vector<std::string> terms;
 

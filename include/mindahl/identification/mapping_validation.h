@@ -57,8 +57,8 @@ struct IntervalCount {
   [[nodiscard]] double fraction() const {
     return intervals == 0 ? 0.0 : static_cast<double>(covering) / static_cast<double>(intervals);
   }
-  /// Probability of so few covering intervals where each covers with kLowestCoverage: the binomial
-  /// distribution. 1 of none.
+  /// Probability of so few intervals that cover where each covers with kLowestCoverage: the
+  /// binomial distribution. 1 of none.
   [[nodiscard]] double ChanceOfSoFew() const;
   /// Probability of so many where each covers with kHighestCoverage. 1 of none.
   [[nodiscard]] double ChanceOfSoMany() const;

@@ -46,8 +46,8 @@ struct ExpectedFit {
   /// 95 % intervals; without errors what the loop does not determine. No verdicts. Of a series
   /// "load_exponent" too, and σ and Tc at the mean of the loads.
   std::vector<ParameterEstimate> parameters;
-  /// 2 ln Λ by which the loop is expected to tell Masing's rules from Dahl's own law; 0 for a
-  /// steady loop, where both are one curve.
+  /// 2 ln Λ by which the loop is expected to distinguish Masing's rules from Dahl's own law; 0 for
+  /// a steady loop, where both are one curve.
   double law_evidence = 0.0;
 
   /// nullptr when there is none of that name
@@ -67,7 +67,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
 
 /// A standard error that is wanted.
 struct Precision {
-  double value = 0.0;  ///< in the parameter's unit, or as a share of it; > 0
+  double value = 0.0;  ///< in the parameter's unit, or as a fraction of it; > 0
   bool is_relative = false;
 };
 

@@ -35,7 +35,7 @@ struct TermUnits {
   double half_duration = 1.0;           ///< [s], or samples where the record has no time
   double cycle = 1.0;                   ///< [s], or samples: of the record's cycles, on average
   double covariate = 1.0;               ///< half the range of a covariate's column, in its unit
-  double force_sense = 1.0;             ///< ±1: the force's sense in the file
+  double force_sense = 1.0;             ///< ±1: the force's sign in the file
   double force_reference = 0.0;         ///< [N], what was taken off the record's force
   double displacement_reference = 0.0;  ///< [m], likewise
   double speed = 1.0;                   ///< [m/s] of a scaled velocity of one
@@ -93,7 +93,7 @@ struct Term {
 /// All parameters of a fit of `response`, in the order in which they are reported: the contact's,
 /// then a record's. They are the same, in the same places, for either response: of a displacement
 /// that answers an imposed force the compliance 1/σ is the linear one and Tc enters the law, where
-/// the contact is unloaded is the offset of the force, and what is beside the contact's force has
+/// the contact is unloaded is the offset of the force, and what adds to the contact's force has
 /// no place.
 std::span<const Term> Terms(loop::Channel response = loop::Channel::kForce);
 

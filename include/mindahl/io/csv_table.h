@@ -72,7 +72,7 @@ class CsvTable {
   }
 
   /// True when the column was read with decimal commas, and every cell is written like 1,234, so
-  /// that nothing in it tells them from commas that separate thousands.
+  /// that nothing in it distinguishes them from commas that separate thousands.
   [[nodiscard]] bool MayHaveCommasForThousands(std::size_t column) const;
 
   /// False when not one cell of the column is a number.
@@ -121,7 +121,7 @@ class CsvTable {
 /// symbols of units, the units row, with the names row above it (or none, when all are). It has a
 /// text for every column; in a blank-separated file "Time [s]" is one, and so is whatever stands
 /// between two or more blanks. What is above the header is preamble and skipped. A file whose first
-/// row is data has no header. Anything else above the data is an error: a remark there must begin
+/// row is data has no header. Anything else above the data is an error: a comment there must begin
 /// with '#'.
 ///
 /// @param text  the file's content

@@ -32,7 +32,7 @@ std::string HtmlFigure(const PlotPanel& panel, const FigureText& text);
 /// --good, --poor and --bad for the rest of a page.
 std::string_view FigureStyle();
 
-/// A whole page, HTML 5, self-contained: it may load nothing, which it tells the browser, and has
+/// A whole page, HTML 5, self-contained: it may load nothing, by a policy for the browser, and has
 /// no script.
 /// @param title  plain text
 /// @param body   HTML, from the first heading on

@@ -117,7 +117,7 @@ struct LoadedPath {
   std::vector<double> normal_load;   ///< [N]
 };
 
-/// ReadDisplacementPath() with a normal load beside it.
+/// Reads a path like ReadDisplacementPath(), with a normal load.
 /// @param normal_load  column by name or number; unit as for ReadRecord(), without one N
 /// @throws InputError as ReadRecord()
 LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,

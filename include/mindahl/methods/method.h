@@ -43,10 +43,10 @@ class OperationCount;  // operations.h
 
 /// A way to evaluate a friction model along a drive.
 ///
-/// Each is told of reversals and of the loops that close (the rules are the model's, and so is the
-/// memory); what differs is how a branch is followed. The order below is that of the largest force
-/// error in 1/steps while the contact does not slip grossly. At gross slip du/dy = −u^α is not
-/// Lipschitz for α < 1: u reaches 0 as the power 1/(1−α) of the distance, which no step sees
+/// Each is given the reversals and of the loops that close (the rules are the model's, and so is
+/// the memory); what differs is how a branch is followed. The order below is that of the largest
+/// force error in 1/steps while the contact does not slip grossly. At gross slip du/dy = −u^α is
+/// not Lipschitz for α < 1: u reaches 0 as the power 1/(1−α) of the distance, which no step sees
 /// coming, so that next to slip higher orders fall to 1/(1−α), 1.5 for Mindlin. A step later the
 /// contact slips, exactly so, and what follows has the full order again. Every method is kept from
 /// |T| > Tc by clamping u to [0, 1]; the elements of Iwan add up to Tc, to rounding.
@@ -77,7 +77,7 @@ struct Method {
 /// - iwan, iwan-optimal: `steps` Jenkins elements (methods/iwan.h); orders 1 and 2
 /// - table: the branch law between `steps` equal intervals of y/(1+y), linear; order 2 while u > 0
 ///   at a fixed distance, min(2, 1/|1−α|) for any 0 < α: for α < 1/2 slip is a corner inside the
-///   last interval's chord, for α > 3/2 the way to infinity is one. Exact for α = 2
+///   last interval's chord, for α > 3/2 the interval to infinity is one. Exact for α = 2
 std::span<const Method> Methods();
 
 /// nullptr when there is no such method.

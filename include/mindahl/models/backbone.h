@@ -127,7 +127,7 @@ struct GeneralShape {
     return {log_remaining, 1 - force, force, (1 - force) / at.z};
   }
 
-  /// u, the share of the slip force still to be mobilised.
+  /// u, the fraction of the slip force still to be mobilised.
   [[nodiscard]] Real Remaining(const Reduced<Real>& at) const {
     return at.z > 0 ? At(at).remaining : Real(0);
   }
@@ -222,7 +222,7 @@ struct SeriesDerivatives {
 /// or u cancels:
 ///   y = D(β,ℓ),  φ = D(1,ℓ),  D(c,ℓ) = (1 − e^{−cℓ})/c
 ///
-/// Where κφ' >= 1 the spring gives way more than the contact, elsewhere less: Y is there nearly
+/// Where κφ' >= 1 the spring is more compliant than the contact, elsewhere less: Y is there nearly
 /// linear in φ and in y, with a slope that varies by less than twofold. Tangents at the ends of
 /// either part start an iteration of third order, whose steps take the sum of the two decays for
 /// one decay: exact for κ → 0, for κ → ∞ and for α = 0.
@@ -304,7 +304,7 @@ class InSeries<GeneralShape<Real>> {
                                                         : kFarthest;
   }
 
-  /// ℓ from a share of what is left to go, which rounding may have used up.
+  /// ℓ from a fraction of what is left to go, which rounding may have used up.
   static Real FromShare(Real share) {
     return -std::log1p(-std::min(share, 1 - std::numeric_limits<Real>::epsilon() / 2));
   }

@@ -36,9 +36,9 @@ double GrossSlipDisplacement(const BranchLaw& law);
 /// f(x) [N], odd in x [m]; ±Tc at and beyond gross slip.
 double BackboneForce(const BranchLaw& law, double x);
 
-/// u(x) = 1 − |f(x)|/Tc [–], the share of the slip force still to be mobilised; even in x, exactly
-/// 0 at and beyond gross slip. The stick radius of a Mindlin contact is c/a = u^{1/3} (Peyret eq.
-/// 5).
+/// u(x) = 1 − |f(x)|/Tc [–], the fraction of the slip force still to be mobilised; even in x,
+/// exactly 0 at and beyond gross slip. The stick radius of a Mindlin contact is c/a = u^{1/3}
+/// (Peyret eq. 5).
 double BackboneRemaining(const BranchLaw& law, double x);
 
 /// f'(x) [N/m] = σ·u^α, even in x; 0 beyond gross slip.

@@ -136,7 +136,7 @@ class ContactState {
     }
   };
 
-  /// A course that is entered, and how many branches are then open.
+  /// Holds a branch that is entered, and how many branches are then open.
   struct Entry {
     Course course;
     std::size_t open = 1;

@@ -89,11 +89,11 @@ struct InitialContact {
 ///   continues the branch before it; passing the mirror image of the first extremum rejoins the
 ///   virgin curve (Madelung's rules). Reaching it exactly counts as passing.
 /// - kNone: every reversal opens a branch from the last one.
-/// Where the slip forces differ, the virgin curve is one branch in either sense, both of which are
-/// there from the start, and the mirror image of an extremum at x is (1 − a)/(1 + a) times as far
-/// on the other side where x > 0, else (1 + a)/(1 − a) times. With a virgin contact the way from
-/// `unloaded_displacement` to the first sample is the first loading step. With a steady one the
-/// record is taken to go on from a loop between its own extremes.
+/// Where the slip forces differ, the virgin curve is one branch in either direction, both of which
+/// are there from the start, and the mirror image of an extremum at x is (1 − a)/(1 + a) times as
+/// far on the other side where x > 0, else (1 + a)/(1 − a) times. With a virgin contact the travel
+/// from `unloaded_displacement` to the first sample is the first loading step. With a steady one
+/// the record is taken to go on from a loop between its own extremes.
 ///
 /// @param displacement  [m], finite
 /// @param reversals     as from FindReversals on the same displacements; between them samples may

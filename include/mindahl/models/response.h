@@ -10,9 +10,9 @@
 
 namespace mindahl::models {
 
-/// A spring in series with the contact: what the rig itself gives way. Displacements are then those
-/// of both, δ = x + T/k_r with x the contact's, and T(δ) follows exactly the same rules, each
-/// branch φ being composed with the spring (docs/theory.md §5).
+/// Describes a spring in series with the contact: the compliance of the rig itself. Displacements
+/// are then those of both, δ = x + T/k_r with x the contact's, and T(δ) follows exactly the same
+/// rules, each branch φ being composed with the spring (docs/theory.md §5).
 struct SeriesSpring {
   /// k_r [N/m], > 0; infinite for a rigid rig
   double stiffness = std::numeric_limits<double>::infinity();

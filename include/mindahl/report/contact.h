@@ -17,7 +17,7 @@ double Correlation(const identification::FitResult& fit, std::string_view first,
                    std::string_view second);
 
 /// IdentifyContact() of a fit, with its errors and their correlation, and by the rules that
-/// keep it from saying what the record does not tell:
+/// keep it from stating what the record does not determine:
 ///  - errors are those of the parameters' intervals, FitResult::ErrorOf(): a parameter that was
 ///    held is exact, one that the record leaves open has an infinite error;
 ///  - no μ from a slip force that is not identifiable: `unidentified` then has the lower limit;

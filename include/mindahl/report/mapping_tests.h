@@ -38,7 +38,7 @@ inline constexpr double kSignificance = 0.05;
 AlphaTest TestAlpha(const identification::FitResult& fit);
 
 /// A ratio against 1, by Student's t with the degrees of freedom of Welch and Satterthwaite
-///   ν = ν_fit/s²,  s the fit's share of the variance
+///   ν = ν_fit/s²,  s the fit's fraction of the variance
 /// (GUM G.4.1): the uncertainties of inputs are taken as known for certain.
 /// @param degrees_of_freedom  ν_fit of the fit, > 0
 StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,

@@ -26,7 +26,7 @@ struct ReportInput {
   std::vector<io::RecordFile> records;  ///< as they were read, those that were fitted
   identification::FitResult fit;
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
-  /// Normal loads [N] of the samples that counted, as the fit was told.
+  /// Normal loads [N] of the samples that counted, as given to the fit.
   std::optional<identification::Interval> load_window = {};
   /// Holds the parts left out of each record as not of its test; empty where not requested.
   std::vector<loop::Trim> trims = {};

@@ -6,7 +6,7 @@
 
 namespace mindahl::report {
 
-/// The force [N] at which a contact slips in one sense of the motion; without an error or an
+/// The force [N] at which a contact slips in one direction of the motion; without an error or an
 /// interval where the fit leaves them open or holds both of what it follows from.
 struct SlipForce {
   double value = 0.0;
