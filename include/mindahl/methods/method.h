@@ -43,7 +43,7 @@ class OperationCount;  // operations.h
 
 /// A way to evaluate a friction model along a drive.
 ///
-/// Each is given the reversals and of the loops that close (the rules are the model's, and so is
+/// Each is given the reversals and the loops that close (the rules are the model's, and so is
 /// the memory); what differs is how a branch is followed. The order below is that of the largest
 /// force error in 1/steps while the contact does not slip grossly. At gross slip du/dy = −u^α is
 /// not Lipschitz for α < 1: u reaches 0 as the power 1/(1−α) of the distance, which no step sees
