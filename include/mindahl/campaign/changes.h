@@ -61,7 +61,7 @@ struct Stretch {
   /// τ [cycles] of a + b·exp(−n/τ) in place of a line.
   std::optional<double> time_constant = std::nullopt;
 
-  /// From its first cycle to its last.
+  /// Returns its line at a cycle between the first and the last.
   [[nodiscard]] double At(double cycle) const;
 };
 
@@ -71,7 +71,7 @@ enum class ChangeKind {
   kBend,            ///< the rate changes
 };
 
-/// "end_of_running_in", "transition", "bend".
+/// Returns "end_of_running_in", "transition", "bend".
 std::string_view NameOf(ChangeKind kind);
 
 struct Change {

@@ -61,7 +61,7 @@ struct CycleFlag {
   std::string_view meaning;
 };
 
-/// not_converged, sigma_open, …: every flag that a cycle may have.
+/// Returns every flag that a cycle may have: not_converged, sigma_open, …
 std::span<const CycleFlag> CycleFlags();
 
 /// Fits one cycle after the other, each from where the last one ended: by Fitter::Continue() at

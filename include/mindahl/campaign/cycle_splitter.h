@@ -44,7 +44,7 @@ class CycleSplitter {
   /// @returns samples that were part of no cycle, since the last one or in all
   std::size_t Restart();
 
-  /// Cycles that were complete so far.
+  /// Returns the number of complete cycles so far.
   [[nodiscard]] std::size_t cycles() const { return cycles_; }
 
   /// No cycle is that long: its record holds no turning points, or the gate hides them.

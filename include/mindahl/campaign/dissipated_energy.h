@@ -15,8 +15,8 @@ struct EnergyCounts {
   std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
 };
 
-/// ", counting 2 that do not close by those before them and 1 by nothing"; nothing where all were
-/// measured.
+/// Returns ", counting 2 that do not close by those before them and 1 by nothing"; nothing where
+/// all were measured.
 std::string InWords(const EnergyCounts& counts);
 
 /// Energy [J] dissipated over a test, from fits in their order.

@@ -19,7 +19,7 @@ struct Reading {
   std::size_t samples = 0;  ///< number of samples examined
 };
 
-/// Samples as every stage takes them, valid as long as they.
+/// Returns the samples as every stage takes them, valid as long as they.
 loop::RecordView ViewOf(const io::Samples& samples);
 
 /// Reads the first samples, as many as determine how the record is read: some cycles, or the
@@ -31,7 +31,7 @@ io::Samples ReadHead(io::RecordStream& stream);
 /// @throws InputError where the head shows no turning points
 Reading ChooseReading(const loop::RecordView& head, identification::FitOptions& fit);
 
-/// A sentence where the reversals are uncertain; empty where they are not.
+/// Returns a sentence where the reversals are uncertain; empty where they are not.
 /// @param source  what was read
 std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source);
 

@@ -23,7 +23,7 @@ struct TrackedQuantity {
   bool has_standard_error = false;
 };
 
-/// All of them, in the order of the report.
+/// Returns all of them, in the order of the report.
 std::span<const TrackedQuantity> TrackedQuantities();
 
 /// Collects the time histories of all of them, in memory that their number does not change.
@@ -34,13 +34,13 @@ class TrackedCourses {
   /// A cycle that did not converge, or leaves a quantity open, is not in its time history.
   void Add(const CycleFit& fit);
 
-  /// In the order of TrackedQuantities().
+  /// Returns them in the order of TrackedQuantities().
   [[nodiscard]] std::span<const Course> courses() const { return courses_; }
 
-  /// Whether any value of each had an error, likewise: what is held has none.
+  /// True, likewise, where any value of one had an error: what is held has none.
   [[nodiscard]] const std::vector<bool>& have_errors() const { return have_errors_; }
 
-  /// FindChanges() of each, likewise.
+  /// Returns FindChanges() of each, likewise.
   [[nodiscard]] std::vector<CourseDescription> Describe() const;
 
  private:

@@ -75,9 +75,9 @@ struct FitOptions {
 
   Thresholds thresholds;
 
-  /// The channel that is fitted, whose noise the residuals are: that which is not imposed.
+  /// Returns the channel that is fitted, whose noise the residuals are: that which is not imposed.
   [[nodiscard]] loop::Channel response() const { return loop::Other(preparation.excitation); }
-  /// Known standard deviation of its noise [N or m]; empty: from the residuals.
+  /// Returns the known standard deviation of its noise [N or m]; empty: from the residuals.
   [[nodiscard]] std::optional<double> response_noise() const {
     return response() == loop::Channel::kForce ? force_noise : preparation.displacement_noise;
   }

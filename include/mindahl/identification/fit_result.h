@@ -194,23 +194,23 @@ struct FitResult {
   std::vector<RecordFit> records;
   std::vector<Finding> findings;
 
-  /// nullptr when the fit has no such parameter.
+  /// Returns nullptr when the fit has no such parameter.
   [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
 
-  /// nullptr when nothing of the kind was found.
+  /// Returns nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
 
-  /// The record with the largest amplitude, in a load series over N^{1−p}, to which the gross-slip
-  /// displacement is in proportion: the one that comes nearest to gross slip.
+  /// Returns the record with the largest amplitude, in a load series over N^{1−p}, to which the
+  /// gross-slip displacement is in proportion: the one that comes nearest to gross slip.
   [[nodiscard]] const RecordFit& WidestRecord() const;
 
-  /// The law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
+  /// Returns the law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
   [[nodiscard]] models::BranchLaw LawOf(const RecordFit& record) const;
 
-  /// Standard deviation of the noise of the channel that was fitted [N or m], known or estimated.
+  /// Returns the noise of the fitted channel [N or m], its standard deviation, known or estimated.
   [[nodiscard]] double ResponseNoise() const;
 
-  /// The largest force [N] of the widest record, as it would be at the mean load of all.
+  /// Returns the largest force [N] of the widest record, as it would be at the mean load of all.
   [[nodiscard]] double PeakForce() const;
 
   /// Degrees of freedom of Student's law of the errors.
@@ -218,14 +218,14 @@ struct FitResult {
     return error_degrees_of_freedom.value_or(residuals.degrees_of_freedom);
   }
 
-  /// Error of a parameter [its unit] in whatever follows from it: the distance to the farther end
-  /// of its interval, along the logarithm of a positive parameter, in units of the half width of
-  /// Student's 95 % interval; the standard error where that is larger. 0 of a parameter that is
-  /// held, infinite of one whose interval is open or that has no error.
+  /// Returns the error of a parameter [its unit] in whatever follows from it: the distance to the
+  /// farther end of its interval, along the logarithm of a positive parameter, in units of the half
+  /// width of Student's 95 % interval; the standard error where that is larger. 0 of a parameter
+  /// that is held, infinite of one whose interval is open or that has no error.
   [[nodiscard]] double ErrorOf(const ParameterEstimate& estimate) const;
 
-  /// The same towards a value that the parameter is tested against: the value is beyond the 95 %
-  /// interval if and only if it lies farther away than Student's quantile of this error.
+  /// Returns the same towards a value that the parameter is tested against: the value is beyond the
+  /// 95 % interval if and only if it lies farther away than Student's quantile of this error.
   [[nodiscard]] double ErrorTowards(const ParameterEstimate& estimate, double value) const;
 
   [[nodiscard]] bool is_load_series() const { return Find("load_exponent") != nullptr; }

@@ -50,11 +50,11 @@ struct ExpectedFit {
   /// a steady loop, where both are one curve.
   double law_evidence = 0.0;
 
-  /// nullptr when there is none of that name
+  /// Returns nullptr when there is none of that name.
   [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
 };
 
-/// The Cramér–Rao bound of a fit with the options' terms, from the exact derivatives at the values
+/// Computes the Cramér–Rao bound with the options' terms, from the exact derivatives at the values
 /// that are expected: what unbiased estimates cannot better, and what those of the fit attain where
 /// the likelihood is a parabola over their errors. Offsets are unknown, so are all terms asked for.
 /// @param options  of the fit; its model must be one of Masing's rules
@@ -80,9 +80,9 @@ using WantedPrecision = std::map<std::string, Precision>;
 /// @throws InvalidArgument for a name that the fit does not have, or a precision that is not > 0
 double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted);
 
-/// The least amplitude that reaches what is wanted with the protocol's cycles, to 1 %; empty where
-/// none between `least` and `most` does. `fewest`, where given, is set to the protocol among those
-/// looked at that needs the fewest cycles, its number of cycles being those.
+/// Returns the least amplitude that reaches what is wanted with the protocol's cycles, to 1 %;
+/// empty where none between `least` and `most` does. `fewest`, where given, is set to the protocol
+/// among those looked at that needs the fewest cycles, its number of cycles being those.
 std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
                                           const WantedPrecision& wanted, double least, double most,
                                           const FitOptions& options = {},

@@ -44,7 +44,7 @@ struct ResidualStructureOptions {
   double repeat_chance = 1e-3;  ///< at which white noise passes for repeatable
 };
 
-/// One-way analysis of variance of residuals over 20 parts of each stroke.
+/// Makes a one-way analysis of variance of residuals over 20 parts of each stroke.
 /// @param displacement  [m]
 /// @param reversals     as from FindReversals
 /// @param residual      [N], same size as displacement

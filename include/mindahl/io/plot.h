@@ -54,7 +54,7 @@ struct Plot {
   std::string subtitle = {};  ///< under the title; "" = none
 };
 
-/// Before the work whose plot it is.
+/// Refuses a bad name, before the work whose plot it is.
 /// @throws InputError when WritePlot() has no format for a file of that name
 void RequirePlotName(const std::filesystem::path& path);
 

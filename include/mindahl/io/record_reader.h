@@ -99,7 +99,7 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {},
                       const ReadLimits& limits = {});
 
-/// ReadRecord() of a table that is in memory.
+/// Reads a table in memory as ReadRecord() reads a file.
 /// @throws InputError as ReadRecord()
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns = {});
 

@@ -87,7 +87,7 @@ struct LoopFacts {
 /// reaches 0.999 of its slip force, and 0.95 for α = 2.
 bool Slides(const LoopFacts& facts);
 
-/// µ_W = W/(4·N·sliding amplitude) [-]; empty where the contact slides nowhere or N [N] is not > 0.
+/// Returns µ_W = W/(4·N·sliding amplitude) [-]; empty where nothing slides or N [N] is not > 0.
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load);
 
 /// @param record       with the force of either sign

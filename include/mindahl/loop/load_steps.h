@@ -15,7 +15,7 @@ struct ConstantLoad {
   double normal_load = 0.0;  ///< [N], the median
 };
 
-/// The pieces of a record whose normal load goes in steps from one constant value to another.
+/// Finds the pieces of a record whose normal load goes in steps from one constant value to another.
 ///
 /// A load is constant while it stays within 1 % to either side, or within its white noise, for four
 /// turning points of the motion or more, and by less than a tenth of the step next to it;
@@ -32,8 +32,8 @@ struct ConstantLoad {
 /// Cost: n log n at most (ChooseReversalGate).
 std::vector<ConstantLoad> FindLoadSteps(const RecordView& record);
 
-/// The piece of a record whose load ramps up at its start, or down at its end, that is under one
-/// constant load: constant, and begun, as a piece of FindLoadSteps(), with three fifths of the
+/// Finds the piece of a record whose load ramps up at its start, or down at its end, that is under
+/// one constant load: constant, and begun, as a piece of FindLoadSteps(), with three fifths of the
 /// samples.
 /// @param record  likewise
 /// @returns empty where the record has no load, or none that is constant for so long, or is under

@@ -62,7 +62,7 @@ class ReversalFinder {
   std::size_t place_ = 0;
 };
 
-/// Samples at which the direction of displacement reverses.
+/// Returns the samples at which the direction of displacement reverses.
 ///
 /// A reversal is registered at an extremum once the displacement has retreated from it by more than
 /// `gate`; smaller excursions are noise and make no reversal. With gate = 0 every change of
@@ -86,8 +86,8 @@ struct ReversalGate {
   double other_gate = 0.0;      ///< [m]; `gate` where certain
 };
 
-/// Gate [m] that separates reversals of the drive from those made by noise, by an encoder's steps
-/// and by backward steps of a gauge.
+/// Returns the gate [m] that separates reversals of the drive from those made by noise, by an
+/// encoder's steps and by backward steps of a gauge.
 ///
 /// Each excursion, a pair of extremes with its range, vanishes from the count where the gate
 /// reaches its range: the count is a staircase that is known exactly. An excursion looks like noise

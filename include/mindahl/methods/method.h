@@ -20,7 +20,7 @@ struct Drive {
   std::span<const double> envelope = {};
 };
 
-/// The loading path of a drive under a model's memory, every change of direction a reversal.
+/// Makes the loading path of a drive, in which every change of direction is a reversal.
 /// @throws InvalidArgument as MakeLoadingPath and MakeEnvelopePath
 models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Drive& drive);
 
@@ -80,10 +80,10 @@ struct Method {
 ///   last interval's chord, for α > 3/2 the interval to infinity is one. Exact for α = 2
 std::span<const Method> Methods();
 
-/// nullptr when there is no such method.
+/// Returns nullptr when there is no such method.
 const Method* FindMethod(std::string_view name);
 
-/// A method made ready for a law: what a simulator does once.
+/// Returns a method made ready for a law: what a simulator does once.
 /// @param model  must outlive the evaluator
 /// @throws InvalidArgument for an invalid law or resolution, or a model that the method does not
 ///   serve, naming both

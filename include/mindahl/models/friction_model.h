@@ -51,10 +51,10 @@ struct FrictionModel {
   SteadyPeak (*steady_peak)(double y, double shape_exponent) = nullptr;
 };
 
-/// All models, in the order of the documentation.
+/// Returns all models, in the order of the documentation.
 std::span<const FrictionModel> FrictionModels();
 
-/// nullptr when there is no such model.
+/// Returns nullptr when there is no such model.
 const FrictionModel* FindFrictionModel(std::string_view name);
 
 }  // namespace mindahl::models
