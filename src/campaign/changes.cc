@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostChanges = 8;
 constexpr std::size_t kFewChanges = 4;  // without one of which there are none
-constexpr std::size_t kLeastBins = 4;   // of a stretch: two beyond a line
+constexpr std::size_t kLeastBins = 4;   // of a segment: two beyond a line
 constexpr std::size_t kLeastSettling = 2 * kLeastBins;
 constexpr double kTimeConstantStep = 1.2;  // from one that is tried to the next
 constexpr double kChiSquared95 = 3.841458820694124;
@@ -31,7 +31,7 @@ struct Line {
   [[nodiscard]] double At(double x) const { return level + slope * (x - x0); }
 };
 
-/// A course that settles: y = level + fall·e, e = exp(−(x − x₁)/τ), x₁ the first bin's.
+/// Fits a time history that settles: y = level + fall·e, e = exp(−(x − x₁)/τ), x₁ the first bin's.
 struct Settling {
   double x1 = 0.0;
   double level = 0.0;
@@ -145,7 +145,7 @@ class SettlingCurves {
   std::vector<Sums> sums_;
 };
 
-/// The course's time constants, from that of a single bin to all of it, in steps of a fifth.
+/// Returns time constants, from that of a single bin to the whole history, in steps of a fifth.
 std::vector<SettlingCurves> CurvesThrough(std::span<const Course::Bin> bins) {
   std::vector<SettlingCurves> curves;
   const double longest = bins.back().cycle - bins.front().cycle;
@@ -155,8 +155,8 @@ std::vector<SettlingCurves> CurvesThrough(std::span<const Course::Bin> bins) {
   return curves;
 }
 
-/// A cut into stretches: the bins of each, and the squares that are left. The bin within which
-/// something changes is of neither side, and may be left out between two.
+/// Holds a division into segments: the bins of each, and the squares that are left. The bin within
+/// which something changes is of neither side, and may be left out between two.
 struct Cut {
   struct Part {
     std::size_t begin = 0;
@@ -401,8 +401,8 @@ class Describer {
     return cuts[NumberOfChanges(cuts)];
   }
 
-  /// Any number of changes more, as long as they are beyond chance: of a course that bends, two
-  /// may be worth nothing where three are worth much.
+  /// Any number of changes more, as long as they are beyond chance: of a time history that bends,
+  /// two may be worth nothing where three are worth much.
   std::size_t NumberOfChanges(const std::vector<Cut>& cuts) {
     const auto bins = static_cast<double>(bins_.size());
     const double penalty = 2 * std::log(bins / thresholds_.chance);
@@ -574,7 +574,7 @@ class Describer {
         change.kind = ChangeKind::kTransition;
       }
     }
-    if (stretches.front().time_constant) return;  // it is told by its curve
+    if (stretches.front().time_constant) return;  // its curve describes it
     // A running-in goes on, ever slower, until it has settled.
     for (std::size_t k = 0; k < changes.size() && stretches[k].trends; ++k) {
       const bool slows = std::abs(stretches[k + 1].slope) < std::abs(stretches[k].slope);

@@ -124,7 +124,7 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
   const identification::RecordFit& fitted = result->records.front();
   if (fitted.glitches.total() > 0) fit.flags.emplace_back("glitches");
   FillFacts(FactsOf(record, *result), fit);
-  if (result->parameters.empty()) return fit;  // no start had the force's sense
+  if (result->parameters.empty()) return fit;  // no start had the force's sign
   fit.sigma = FittedValueOf(*result, "sigma", "sigma_open", fit);
   fit.alpha = FittedValueOf(*result, "alpha", "alpha_open", fit);
   fit.slip_force = FittedValueOf(*result, "slip_force", "slip_force_open", fit);

@@ -41,7 +41,7 @@ double WeightOf(double error) {
   return std::clamp(1 / error / error, 1 / kLargest, kLargest);
 }
 
-/// "p 0.003", or that it is beyond telling.
+/// Returns "p 0.003", or that p is too small to state.
 std::string ChanceText(double p_value) {
   return p_value < 1e-12 ? "p < 1e-12" : fmt::format("p {:.1g}", p_value);
 }
@@ -99,7 +99,7 @@ std::vector<std::string> ChangeStatements(const CourseDescription& course) {
   std::vector<std::string> lines;
   const auto settled =
       std::ranges::find(course.changes, ChangeKind::kEndOfRunningIn, &Change::kind);
-  std::size_t first = 0;  // stretch to be told
+  std::size_t first = 0;  // first segment not yet described
   if (settled != course.changes.end()) {
     lines.push_back(fmt::format("running-in up to cycle {} ({} to {}), {:.5g} to {:.5g}, {}",
                                 settled->cycle, settled->lower95, settled->upper95,

@@ -262,7 +262,7 @@ bool IsMeasured(const Repeated& quantity) {
   return quantity.name == "half_gap" || quantity.name == "energy_per_cycle";
 }
 
-/// One standard error: of an interval that covers more than the noise, a share of that.
+/// One standard error: of an interval that is inflated beyond the noise, a fraction of that.
 std::optional<double> StatedError(const Json& fit, const Repeated& quantity) {
   if (IsMeasured(quantity)) return std::nullopt;
   const std::string_view name = quantity.name;

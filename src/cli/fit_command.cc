@@ -129,7 +129,7 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
   if (!options.backbone_path.empty() && !report.failed()) {
     report.backbone = BackboneOf(request, report);
     for (identification::Cause& cause : report.fit.adequacy.causes) {
-      // Refused beside a backbone.
+      // Refused together with a backbone.
       const std::string_view option = cause.option;
       if (option.starts_with("--lag") || option.starts_with("--asymmetry")) cause.option.clear();
     }

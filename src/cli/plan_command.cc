@@ -71,7 +71,7 @@ struct Column {
   Protocol fewest;                     // that needs the fewest cycles for it
 };
 
-/// Between these shares of the displacement at gross slip amplitudes are looked at.
+/// Amplitudes are examined between these fractions of the displacement at gross slip.
 constexpr double kLeastOfSlip = 0.1;
 constexpr double kMost = 10.0;
 

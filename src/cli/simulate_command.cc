@@ -153,7 +153,7 @@ ImposedMotion FollowForce(const SimulateOptions& options, std::vector<double>& f
   return motion;
 }
 
-/// The force of a contact whose slip forces differ in the two senses of the motion.
+/// The force of a contact whose slip forces differ in the two directions of the motion.
 void FollowAsymmetry(const SimulateOptions& options, const models::BranchLaw& law,
                      std::span<const double> displacement, std::span<double> force) {
   const FrictionModel& model = *models::FindFrictionModel(options.model);

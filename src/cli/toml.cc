@@ -47,7 +47,7 @@ class TomlReader {
 
   void SkipBlanks() { at_ = std::min(text_.find_first_not_of(kBlanks, at_), text_.size()); }
 
-  /// Over blanks, remarks and ends of lines; false at the end of the text.
+  /// Skips blanks, comments and ends of lines; false at the end of the text.
   bool SkipToContent() {
     for (SkipBlanks(); !AtEnd(); SkipBlanks()) {
       if (Peek() == '#') at_ = std::min(text_.find('\n', at_), text_.size());

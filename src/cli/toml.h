@@ -16,7 +16,7 @@ struct TomlItem {
 };
 
 /// The part of TOML that options need: sections, and keys with a string, a number, a boolean or an
-/// array of such, which may span lines, have remarks between its values and end in a comma. A word
+/// array of such, which may span lines, have comments between its values and end in a comma. A word
 /// without quotation marks is a string too.
 /// @param file  the text's name, for messages
 /// @throws InputError naming file and line: what is not closed, has no value, or comes after one

@@ -176,8 +176,8 @@ class TrackRun {
   [[noreturn]] void ThrowOther() const;
   void SayProgress();
   void WriteSummary();
-  /// Courses that a picture of the test shows: of friction coefficient and slip force, which say
-  /// the same, the first where it is known.
+  /// Time histories that a figure of the test shows: of friction coefficient and slip force, which
+  /// say the same, the first where it is known.
   [[nodiscard]] std::vector<campaign::Evolution> Evolutions() const;
   [[nodiscard]] campaign::TestSummary Summary() const;
   void Draw();

@@ -25,8 +25,8 @@ void RequirePeakForce(double peak_force, double slip_force) {
   }
 }
 
-/// 1 − (1 − t)^{2/3} without cancellation at either end. The two shares of Tc, which add up to 1,
-/// come separately: as t → 1 the root needs every digit of the second.
+/// 1 − (1 − t)^{2/3} without cancellation at either end. The two fractions of Tc, which add up to
+/// 1, come separately: as t → 1 the root needs every digit of the second.
 double SlipShare(double force_share, double remaining_share) {
   const double stick_ratio = std::cbrt(remaining_share);
   return force_share * (1.0 + stick_ratio) / (1.0 + stick_ratio + stick_ratio * stick_ratio);

@@ -57,7 +57,7 @@ class Curve {
 };
 
 /// A virgin curve of straight lines from the origin through its corners and level behind the last.
-/// A corner has a place and an excess over the contact's curve: two that the loops tell apart,
+/// A corner has a place and an excess over the contact's curve: two that the loops distinguish,
 /// where place and force would move the polygon nearly alike.
 struct Polygon {
   std::vector<double> x;

@@ -6,7 +6,7 @@
 
 namespace mindahl {
 
-/// Are all values finite and within ±largest? Vectors of integers tell it: magnitudes are in the
+/// True if all values are finite and within ±largest. Decided on integers: magnitudes are in the
 /// order of their bits, and a larger one, infinity or NaN taken from the largest leaves its sign.
 /// @param largest  finite, >= 0
 [[nodiscard]] inline bool AreAllWithin(std::span<const double> values, double largest) {

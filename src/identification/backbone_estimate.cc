@@ -68,10 +68,10 @@ Grid MakeGrid(double largest) {
   return grid;
 }
 
-/// A record and the way that its contact took.
+/// Holds a record and the path of its contact.
 struct Followed {
   std::vector<double> displacement;  // [m]
-  std::vector<double> force;         // [N] of the contact, in the displacement's sense
+  std::vector<double> force;         // [N] of the contact, with the displacement's sign
   std::vector<unsigned char> counts;
   std::vector<std::size_t> reversals;
   models::LoadingPath path;
@@ -87,7 +87,7 @@ double ValueOf(const FitResult& fit, const std::string& name, std::size_t record
   return estimate != nullptr ? estimate->value : 0.0;
 }
 
-/// The record less all that is beside the contact's force, but its offset.
+/// Returns the record less all terms besides the contact's force, but its offset.
 Followed Follow(const loop::PreparedRecord& prepared, const FitResult& fit, std::size_t r) {
   Followed followed;
   followed.displacement.assign(prepared.displacement().begin(), prepared.displacement().end());

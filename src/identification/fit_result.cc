@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kOpen = std::numeric_limits<double>::infinity();
 
-/// Returns the way from the value to an end of its interval [unit of the value], along the
+/// Returns the distance from the value to an end of its interval [unit of the value], along the
 /// logarithm of a positive parameter: infinite where the end is open.
 double WayTo(const ParameterEstimate& estimate, const std::optional<double>& end) {
   if (!end) return kOpen;

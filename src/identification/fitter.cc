@@ -173,7 +173,7 @@ struct Attempt {
   std::pmr::memory_resource* memory;
 };
 
-/// The past that the options name; nothing where both have to be tried.
+/// Returns the initial state that the options name; nothing where both have to be tried.
 std::optional<InitialState> GivenState(const Attempt& attempt) {
   if (attempt.options.initial_state) return attempt.options.initial_state;
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
@@ -186,8 +186,8 @@ std::optional<InitialState> GivenState(const Attempt& attempt) {
   return std::nullopt;
 }
 
-/// Fits from the past that the options name, or from the one that Akaike's criterion prefers.
-/// @param rival  written: the other past, where the criterion hardly prefers either
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers.
+/// @param rival  written: the other initial state, where the criterion hardly prefers either
 Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second,
                        std::vector<Descent>* descents, std::optional<Candidate>& rival) {
   const FitOptions& options = attempt.options;
@@ -493,7 +493,7 @@ std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const 
   return tells;
 }
 
-/// Branches against each other, beside the fitted law and the other one.
+/// Compares branches with each other, under the fitted law and the other one.
 MemoryTest CompareBranches(const Problem& problem, const Solution& solution,
                            const LawComparison& laws, const Noise& noise,
                            const DisplacementEffect& displacement, const Estimates& estimates,
@@ -594,7 +594,7 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
 
 /// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
 /// @param at     the problem by all its free parameters, at the solution
-/// @param rival     the other past of the contact, where the record hardly tells; else null
+/// @param rival     the other initial state, where the record hardly determines it; else null
 /// @param descents  what other starts of this problem led to
 void Infer(const Attempt& attempt, const Problem& problem, const Solution& solution,
            Linearization at, Noise& noise, const DisplacementErrors& displacement_errors,
@@ -861,7 +861,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
                                  buffers.response, SolverOptionsOf(given), *best->solution, noise);
       };
       fit_with_weights();
-      // Outliers may have hidden the past and the valley: once more from all starts, as weighted.
+      // Outliers may have hidden the initial state: once more from all starts, as weighted.
       if (given.loss != Loss::kNone) {
         ThinnedRecords weighted_thin(data, &arena);
         const Attempt weighted{given, prepared, data, weighted_thin, buffers, &arena};
@@ -874,9 +874,9 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
       // nothing of where the motion turned.
       const bool gated = std::ranges::any_of(
           prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
-      // Turning points are not looked for beside a lag, which moves the samples off them.
+      // Turning points are not fitted together with a lag, which moves the samples off them.
       const bool has_lag = best->problem.parameters.has_lag();
-      // Nor under a load that varies: the way between the samples is not the displacement's alone.
+      // Nor under a load that varies: the path between the samples is not the displacement's alone.
       // An imposed force is taken as it was sampled.
       if (best->solution->converged && !gated && !has_lag && !data.load_varies &&
           !data.is_forced()) {

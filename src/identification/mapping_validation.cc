@@ -323,8 +323,8 @@ double IntervalCount::ChanceOfSoMany() const {
 }
 
 double NoiseFreeTolerance(double lambda) {
-  // Below λ = 1/2 the loop's departure from a straight line, which alone tells α from Tc, shrinks
-  // as λ² and magnifies rounding errors likewise.
+  // Below λ = 1/2 the loop's deviation from a straight line, which alone distinguishes α from Tc,
+  // shrinks as λ² and magnifies rounding errors likewise.
   return lambda >= 0.5 ? 1e-8 : 1e-6;
 }
 

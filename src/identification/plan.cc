@@ -96,8 +96,8 @@ std::vector<loop::Record> LoopsOf(const Expectation& expected, const Protocol& p
   return records;
 }
 
-/// θ of what is expected, the law being that at the mean load; terms that are fitted beside it are
-/// expected to be nothing.
+/// θ of what is expected, the law being that at the mean load; terms that are fitted in addition
+/// are expected to be nothing.
 Solution SolutionAt(const Expectation& expected, const models::BranchLaw& law,
                     const Parameters& parameters) {
   Solution solution;

@@ -22,7 +22,7 @@ struct Rung {
 };
 constexpr Rung kFitted[] = {{"jenkins"}, {"dahl", true}, {"dahl"}, {"mindlin"}, {"mindlin-dahl"}};
 
-/// The force of a law without a history, times a factor and beside an offset.
+/// The force of a law without a history, times a factor and plus an offset.
 struct Regression {
   double factor = 0.0;
   double sum_of_squares = 0.0;  // [N²]
@@ -59,7 +59,7 @@ Regression Regress(std::span<const double> column, std::span<const double> force
   return regression;
 }
 
-/// ±1, the sense of the motion from one reversal to the next.
+/// ±1, the direction of the motion from one reversal to the next.
 std::vector<double> SenseOfMotion(std::span<const double> displacement,
                                   std::span<const std::size_t> reversals) {
   std::vector<double> sense(displacement.size());

@@ -247,7 +247,7 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base,
     Fitter fitter(options);
     model.fit = fitter.Fit(records_, Depth::kEstimate);
   } catch (const InvalidArgument&) {
-    return std::nullopt;  // it cannot be told from the others here, or the rig is softer than the
+    return std::nullopt;  // it is confounded with the others here, or the rig is softer than the
                           // loop
   }
   if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;

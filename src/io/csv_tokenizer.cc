@@ -25,7 +25,7 @@ std::size_t CsvRow::FilledSize() const {
 CsvTokenizer::CsvTokenizer(std::string_view text, Delimiter delimiter, std::size_t offset,
                            std::size_t line)
     : text_(text), delimiter_(delimiter), next_offset_(offset), next_line_(line) {
-  // An empty cell arrives as null unless it was quoted: that tells a run of blanks from "".
+  // An empty cell arrives as null unless it was quoted: that distinguishes a run of blanks from "".
   if (csv_init(&parser_, CSV_EMPTY_IS_NULL) != 0) throw std::bad_alloc();
   csv_set_delim(&parser_, static_cast<unsigned char>(delimiter));
 }

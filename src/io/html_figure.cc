@@ -69,11 +69,11 @@ svg text{font:13px system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans",sans-se
 /// One axis: data to pixels, and where its tics are.
 class Axis {
  public:
-  /// @param margin  on either side of the data, a share of their span
+  /// @param margin  on either side of the data, a fraction of their span
   Axis(double least, double greatest, double margin, bool logarithmic)
       : logarithmic_(logarithmic), from_(At(least)), to_(At(greatest)) {
     double span = to_ - from_;
-    // A constant has an axis too: a share of it to either side, far above what rounding leaves.
+    // A constant has an axis too: a fraction of it to either side, far above what rounding leaves.
     const double size = std::max(std::abs(from_), std::abs(to_));
     if (!(span > 1e-9 * size)) {
       span = size > 0 ? (logarithmic ? 0.3 : 0.2 * size) : 1.0;
@@ -120,7 +120,7 @@ class Axis {
 
 void Axis::PlaceTics() {
   constexpr double kTics = 5.5;
-  constexpr double kShortest = 0.75;  // of the way between that many
+  constexpr double kShortest = 0.75;  // of the distance between that many
   const double span = to_ - from_;
   if (logarithmic_ && span > 0.6) {
     const bool has_multiples = span < 2.5;

@@ -54,7 +54,7 @@ bool BeginsWithErrorValue(std::string_view text) {
     if (text.size() < value.size() || !EqualsIgnoringCase(text.substr(0, value.size()), value)) {
       return false;
     }
-    // A cell ends here; "#N/Available" is a remark.
+    // A cell ends here; "#N/Available" is a comment.
     return text.size() == value.size() ||
            std::string_view(" \t\r\n,;\"").find(text[value.size()]) != std::string_view::npos;
   });

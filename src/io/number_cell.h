@@ -27,7 +27,7 @@ struct NumberCell {
 NumberCell ReadNumber(std::string_view cell, bool decimal_comma);
 
 /// The text, from its first character on, begins with an error value of a spreadsheet: "#N/A",
-/// "#DIV/0!". That is a broken number, where another '#' begins a remark.
+/// "#DIV/0!". That is a broken number, where another '#' begins a comment.
 bool BeginsWithErrorValue(std::string_view text);
 
 /// True for the ten digits of ASCII.

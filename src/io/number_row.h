@@ -12,7 +12,7 @@ namespace mindahl::io {
 
 /// Reads the numbers of some columns from lines of text, a row a line: what ParseCsvTable() reads
 /// there, but that a quoted cell cannot go on in the next line. A plain line, of numbers without
-/// quotation marks, goes by without a cell being copied; any other is cut up by the tokenizer.
+/// quotation marks, is read without a cell being copied; any other is cut up by the tokenizer.
 class NumberRowReader {
  public:
   /// @param columns  of the table
@@ -21,7 +21,7 @@ class NumberRowReader {
 
   enum class Row {
     kNumbers,
-    kNone,    ///< blank, of delimiters alone, or a remark
+    kNone,    ///< blank, of delimiters alone, or a comment
     kBroken,  ///< see fault()
   };
 

@@ -84,7 +84,7 @@ std::string_view ColourOf(const PlotSeries& curve, std::size_t series) {
 /// How a series is drawn. Beyond the first six, colours repeat with dashes, crosses or other
 /// markers.
 /// @param series     its place in the panel
-/// @param in_legend  there the dots of a dense series would be too small to tell
+/// @param in_legend  there the dots of a dense series would be too small to see
 std::string StyleCommand(const PlotSeries& curve, std::size_t series, bool in_legend) {
   const PlotStyle style = curve.style;
   const std::size_t round = series / kColours.size();
@@ -310,7 +310,7 @@ class Script {
   /// Range and tics of one axis.
   /// @param name    "x" or "y"
   /// @param values  which of a series it shows
-  /// @param margin  on either side of the data, a share of the axis
+  /// @param margin  on either side of the data, a fraction of the axis
   void AddAxis(const PlotPanel& panel, char name, bool logarithmic,
                std::vector<double> PlotSeries::*values, double margin) {
     if (!logarithmic) {
@@ -337,7 +337,7 @@ class Script {
         LogTics(from, to));
   }
 
-  /// Above the axes in a row that ends with them, or beside them in a column.
+  /// Above the axes in a row that ends with them, or next to them in a column.
   void AddKey(const PlotPanel& panel, const PanelFrame& frame) {
     if (IsLegendBeside(panel)) {
       Add("set key at screen {:.6f}, screen {:.6f} left top vertical Left reverse samplen 3\n",

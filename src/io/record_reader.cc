@@ -518,7 +518,7 @@ class RoleAssigner {
   }
 
   /// "name the column of the force with --force, as in --force 3": of all roles that no column's
-  /// name tells, by the first columns that have no other.
+  /// name decides, by the first columns that have no other.
   /// @param refused  a column that is none of them
   [[nodiscard]] std::string HowToName(std::optional<std::size_t> refused = std::nullopt) const {
     std::string rule;
@@ -554,7 +554,7 @@ std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const
   return "";
 }
 
-/// Reads the columns that were chosen beside displacement and force, and then some of the others.
+/// Reads the columns chosen in addition to displacement and force, then some of the others.
 class CovariateReader {
  public:
   CovariateReader(const CsvTable& table, const ColumnFinder& finder, const Assignment& assigned,

@@ -89,7 +89,7 @@ void RemoveTemporaryFiles() {
 void RemoveTemporaryFilesOnSignals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
-    // Who started the program may have told it to ignore the signal, as nohup does.
+    // The program may have been started to ignore the signal, as by nohup.
     if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
     Handle(signal);
   }

@@ -79,7 +79,7 @@ double CountSwings(std::span<const double> displacement, std::span<const std::si
   return static_cast<double>(points.size() - 1) + (head + tail) / (2 * amplitude);
 }
 
-/// The way from one turning point to the next.
+/// Describes a stroke from one turning point to the next.
 struct Swing {
   bool rising = false;
   double lowest = 0.0;  // [m]

@@ -17,7 +17,7 @@ namespace {
 using Column = std::span<const double>;
 using Points = std::span<const std::size_t>;
 
-/// A stroke between two turning points of a record in the displacement's sense.
+/// Describes a stroke between two turning points, the force with the displacement's sign.
 struct Stroke {
   Column displacement;  // [m]
   Column force;         // [N]
@@ -155,8 +155,8 @@ CycleFacts MeasureCycle(const RecordView& record, Points points) {
   return facts;
 }
 
-/// Slope [N/m] of the least-squares line through the samples of a stroke between two shares of its
-/// width; of the chord there where there are fewer than three.
+/// Slope [N/m] of the least-squares line through the samples of a stroke between two fractions of
+/// its width; of the chord there where there are fewer than three.
 std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to) {
   constexpr double kFewest = 3;
   const double width = stroke.width();
@@ -447,7 +447,7 @@ void Summarise(LoopFacts& facts) {
 /// one does, but for twice that fraction.
 constexpr double kReturn = 0.05;
 
-/// Forces in the displacement's sense.
+/// Forces with the displacement's sign.
 LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   LoopFacts facts;
   const std::pmr::vector<std::size_t> turns =

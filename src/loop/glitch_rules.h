@@ -12,7 +12,7 @@ struct GlitchRules {
   /// [samples] Longer ones are as well a pulse of the drive or an inner loop.
   std::size_t longest_spike = 3;
   /// [samples] So many to either side of a spike are looked at: the edges of a square wave of six
-  /// samples a cycle come often enough within them to be told from spikes.
+  /// samples a cycle come often enough within them to be distinguished from spikes.
   std::size_t about = 12;
   /// [usual steps] Least distance of 0 from the range of a dropout's neighbours.
   double dropout = 2.0;

@@ -14,7 +14,7 @@ namespace {
 
 using Readings = std::span<const double>;
 
-/// Share of the steps that are not zero which the usual one is not exceeded by.
+/// Fraction of the steps that are not zero which the usual one is not exceeded by.
 constexpr double kUsualShare = 0.9;
 
 /// The usual step [unit of the column]; 0 where all are zero.
@@ -33,7 +33,7 @@ double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
 }
 
 /// Can a step be so many times the usual one? Not where more than a tenth of the steps are so large
-/// that the largest is less than that beside them: the usual one is among these, or above.
+/// that the largest is less than that next to them: the usual one is among these, or above.
 bool MayLeap(Readings values, double factor, std::pmr::memory_resource* scratch) {
   if (values.size() < 2) return false;
   std::pmr::vector<double> steps(values.size() - 1, scratch);
@@ -71,7 +71,7 @@ class MendedChannel {
     BridgeOver(begin, end);
   }
 
-  /// Takes everything of a kind back where there is more of it than a share of the samples.
+  /// Takes everything of a kind back where there is more of it than a fraction of the samples.
   void TakeBackIfCommon(Glitch kind, double most) {
     const auto count = static_cast<double>(std::ranges::count(glitches_, kind));
     if (!(count > most * static_cast<double>(values_.size()))) return;
@@ -235,7 +235,7 @@ std::size_t NextLeap(Readings values, std::size_t from, double factor) {
   return end;
 }
 
-/// One pass: a spike may hide another, until it is mended.
+/// One pass: a spike may hide another, until it is interpolated.
 bool FindSpikes(MendedChannel& channel, const GlitchRules& rules) {
   if (channel.size() < 5) return false;
   bool found = false;

@@ -101,7 +101,7 @@ class LoadSteps {
     return {.first = first, .last = last};
   }
 
-  /// Without the ends of the ramps beside it.
+  /// Returns it without the ends of the adjacent ramps.
   void Settle(LoadRun& run) const {
     const std::span<const double> load = std::span(load_).subspan(run.first, run.last - run.first);
     run.load = UpperMedian(std::vector<double>(load.begin(), load.end()));

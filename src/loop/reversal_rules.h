@@ -28,7 +28,7 @@ struct ReversalRules {
   double outnumber = 20.0;
   /// [of the plateau's width in log(gate)] Least width of a second plateau that competes.
   double rival = 0.5;
-  /// Smooth disturbances are told from nested loops by their number,
+  /// Smooth disturbances are distinguished from nested loops by their number,
   std::size_t many = 8;
   /// [-] the ratio of their ranges, which lie as densely as those of noise,
   double spread = 10.0;

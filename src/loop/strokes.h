@@ -10,7 +10,7 @@
 
 namespace mindahl::loop {
 
-/// Least share of the widest cycle's amplitude that a cycle has which is one of the widest.
+/// Least fraction of the widest cycle's amplitude at which a cycle is one of the widest.
 inline constexpr double kSteadyAmplitude = 0.95;
 
 /// The reversals, with the record's first and last sample where they lie at an extreme.

@@ -112,7 +112,7 @@ class Trimming {
     cut_cycles_ = cycle;
   }
 
-  /// True if the amplitude grows (sense 1) or falls (−1) over these cycles without a step back.
+  /// True if the amplitude grows (+1) or falls (−1) over these cycles without a step back.
   [[nodiscard]] bool IsMonotone(std::size_t first, std::size_t last, double widest,
                                 double sense) const {
     for (std::size_t k = first; k + 1 < last; ++k) {

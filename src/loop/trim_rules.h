@@ -24,7 +24,7 @@ struct TrimRules {
   /// [-] A slope of the last half of the cycles is none where chance makes it more often: as
   /// identification's trend.
   double trend_chance = 0.01;
-  /// [cycles] Fewer have no last half of which to tell level, slope and scatter: four are the least
+  /// [cycles] Fewer have no last half to determine level, slope and scatter: four are the least
   /// about whose line there is a scatter that two do not make zero.
   std::size_t fewest = 8;
 };

@@ -33,7 +33,7 @@ Real WidenLoadZones(const LoadStep<Real>& step, const Real& slope, Zones& zones)
 
 /// An annulus slips to the rest positions δ − s·(δc − h), s the sign of `stretch`, which is δ − r
 /// at the rim. As |r'| <= 1, what slips is outside of what sticks.
-/// @param share  (width, δc) of an annulus to the share of the slip force that it carries
+/// @param share  (width, δc) of an annulus to the fraction of the slip force that it carries
 template <typename Real, typename Zones, typename Share>
 Real SlipLoadZones(const LoadStep<Real>& step, double stretch, const Share& share, Zones& zones) {
   const double s = std::copysign(1.0, stretch);

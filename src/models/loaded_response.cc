@@ -45,7 +45,7 @@ class RimLaw {
   double remaining_;
 };
 
-/// Share of the slip force that an annulus of some width carries: φ(y), y = width/(δc·β).
+/// Fraction of the slip force that an annulus of some width carries: φ(y), y = width/(δc·β).
 template <typename Shape>
 struct ShareOfWidth {
   Shape shape;

@@ -70,7 +70,7 @@ class OpenBranches {
     open_.push_back(static_cast<std::int32_t>(path_.branches.size() - 1));
   }
 
-  /// Opens the virgin curve, in either sense where the two differ.
+  /// Opens the virgin curve, in either direction where the two differ.
   void OpenVirgin(const Branch& branch) {
     Open(branch);
     if (asymmetry_ == 0) return;

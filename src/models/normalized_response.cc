@@ -72,7 +72,7 @@ void DifferentiateRun(const DirectShape& shape, const ScaledBranch<double>& bran
 }
 
 /// ∂t/∂a. A virgin branch of limit l = 1 ± a is t = ±l·Φ(κ|e|/l), so that it is Φ − YΦ′ in either
-/// sense; on every other it is what it was where the branch starts, which a steady contact has
+/// direction; on every other it is what it was where the branch starts, which a steady contact has
 /// as 1.
 template <typename Shape>
 void DifferentiateByAsymmetry(const Shape& shape, const LoadingPath& path,

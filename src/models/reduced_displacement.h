@@ -3,7 +3,7 @@
 #include <cmath>
 
 /// The branch law solved for the displacement, in reduced quantities (docs/theory.md §5):
-///   y(φ) = (1 − u^β)/β,  u = 1 − φ the share of the branch's height that is left, β = 1 − α.
+///   y(φ) = (1 − u^β)/β,  u = 1 − φ the fraction of the branch's height that is left, β = 1 − α.
 namespace mindahl::models {
 
 /// No form subtracts what cancels.

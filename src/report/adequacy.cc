@@ -179,7 +179,7 @@ void AdaptCauses(const Units& units, std::vector<Cause>& causes) {
 namespace {
 
 /// A column's factor that is known, as a piston's area is, is better held than fitted: a column
-/// that goes with the motion takes its share of the slip force.
+/// that goes with the motion takes its fraction of the slip force.
 std::string OrHeld(const Cause& cause) {
   if (cause.code != "covariate") return "";
   return fmt::format(", or {}=C where its factor is known", cause.option);

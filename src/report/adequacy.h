@@ -12,7 +12,7 @@ namespace mindahl::report {
 inline constexpr const char* kWhyNotJudged =
     "the record has too few samples for anything beside the model to be told";
 
-/// Whether the adequacy was judged: the fit did not fail, and something beside the model was tried.
+/// True if the adequacy was judged: the fit did not fail, and omitted terms were tried.
 bool IsJudged(const Report& report);
 
 /// Why no option takes a cause into account.

@@ -226,7 +226,7 @@ PlotPanel PanelOverLoad(const Report& report, const LoadPanel& quantity) {
   return panel;
 }
 
-/// Samples a cycle, where the record tells.
+/// Returns the samples per cycle, where the record determines it.
 std::size_t SamplesOfCycle(const RecordFit& fit) {
   if (fit.reversals.size() < 2) return 0;
   return 2 * (fit.reversals.back() - fit.reversals.front()) / (fit.reversals.size() - 1);

@@ -24,7 +24,7 @@ PanelUnits PlainUnits(const Report& report);
 /// Likewise, with forces and residuals in units of their own.
 PanelUnits PrefixedUnits(const Report& report);
 
-/// How points are told apart: those of each record, or, of a record that is alone, those of each of
+/// Says how points are distinguished: by record, or, of a record that is alone, those of each of
 /// its cycles too.
 enum class LoopColours { kOneARecord, kByCycle };
 
@@ -50,8 +50,8 @@ std::optional<io::PlotPanel> ResidualAutocorrelation(const Report& report);
 /// model that is inadequate.
 std::optional<io::PlotPanel> SlipForceLikelihood(const Report& report);
 
-/// σ and Tc against the load: of the whole series a line where it tells, of each file alone an
-/// interval. Empty where the records have one load, or nothing is told.
+/// σ and Tc against the load: of the whole series a line where it determines them, of each file
+/// alone an interval. Empty where the records have one load, or determine nothing.
 std::vector<io::PlotPanel> LoadPanels(const Report& report, const PanelUnits& units);
 
 /// The force of first loading without a law, with its band. Empty where it was not asked for.

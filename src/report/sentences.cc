@@ -85,7 +85,7 @@ std::string NoClosedCycle(const Finding& finding, const FitResult&, const Units&
       WhichRecord(finding));
 }
 
-// --- what the record does not tell
+// --- what the record does not determine
 
 std::string TurningPoints(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(

@@ -41,7 +41,7 @@ std::optional<double> ErrorOf(const ParameterEstimate& estimate) {
                                                     : estimate.standard_error;
 }
 
-/// @param sense  +1 where the motion is in the sense of positive displacement, −1 where it is not
+/// @param sense  +1 where the motion is towards positive displacement, −1 where it is not
 SlipForce InSense(double sense, const ParameterEstimate& slip_force,
                   const ParameterEstimate& asymmetry, double correlation) {
   const double share = 1 + sense * asymmetry.value;

@@ -42,7 +42,7 @@ std::string VerdictWords(const identification::ParameterEstimate& estimate);
 /// "p = 0.012" of two digits; no p-value is 0.
 std::string ChanceText(double p_value, int digits = 3);
 
-/// Whether a quantity of the contact follows from what the loop tells: of what it leaves open
+/// Whether a quantity of the contact follows from what the loop determines: of what it leaves open
 /// nothing follows, whatever the error is.
 bool IsIdentified(const Report& report, const ContactField& field,
                   const contact::PropagatedValue& value);
@@ -57,7 +57,7 @@ std::string SlipStatement(const LoopDescription& loop, const Units& units);
 /// Why intervals are far wider than standard errors make them, in a sentence; "" where none is.
 std::string WideIntervalStatement(const identification::FitResult& fit, const Units& units);
 
-/// The slip forces in either sense of the motion; "" where they are one, or not known.
+/// Returns the slip forces in either direction of the motion; "" where they are one, or not known.
 std::string SlipForcesStatement(const Report& report);
 
 /// Describes the significant trends over the cycles.

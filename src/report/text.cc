@@ -273,7 +273,7 @@ std::string ResidualText(const Report& report) {
   const Units& units = report.units;
   const identification::ResidualStatistics& residuals = fit.residuals;
   const bool is_of_force = fit.response == loop::Channel::kForce;
-  // A share of what is not known would say it all the same.
+  // A fraction of an unknown value would reveal it.
   const ParameterEstimate* slip_force = fit.Find("slip_force");
   const std::string share = slip_force != nullptr && slip_force->is_known()
                                 ? fmt::format(" ({:.3g} % of {})", 100 * residuals.normalized_rms,

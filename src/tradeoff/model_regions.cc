@@ -31,7 +31,7 @@ void RequireRegionOptions(const BranchLaw& law, const ModelRegionOptions& option
 }
 
 /// Cycles between ±X. On every model a branch is curved within twice the gross-slip displacement of
-/// its origin only, where samples lie evenly, and straight beyond.
+/// its start only, where samples lie evenly, and straight beyond.
 struct DenseCycles {
   std::vector<double> displacement;
   std::size_t loop = 0;    // samples of the loop from +X to +X, the first not counted

@@ -60,7 +60,7 @@ class RememberedExtrema {
     return extrema_.back().force + 2 * Backbone(displacement - extrema_.back().displacement, 0.5L);
   }
 
-  /// φ of a share of x, with its sign.
+  /// φ of a fraction of x, with its sign.
   [[nodiscard]] long double Backbone(double x, long double share) const {
     const auto y =
         models::backbone::Normalize(law_.tangential_stiffness, std::abs(x), law_.slip_force);
@@ -107,7 +107,7 @@ double CostOfRun(std::size_t samples, Run&& run) {
   return least / static_cast<double>(samples);
 }
 
-/// Tells the compiler that memory is read.
+/// Makes the compiler assume that memory is read.
 void Keep(std::span<const double> values) { asm volatile("" : : "g"(values.data()) : "memory"); }
 
 }  // namespace

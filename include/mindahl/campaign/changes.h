@@ -49,7 +49,7 @@ struct ChangeThresholds {
   double settled = 0.2;
 };
 
-/// A part of a course that is a straight line; at the beginning perhaps one that settles.
+/// Describes a straight segment of a time history; the first may settle exponentially.
 struct Stretch {
   std::size_t first_cycle = 0;
   std::size_t last_cycle = 0;
@@ -61,7 +61,7 @@ struct Stretch {
   /// τ [cycles] of a + b·exp(−n/τ) in place of a line.
   std::optional<double> time_constant = std::nullopt;
 
-  /// From its first cycle to its last.
+  /// Returns its line at a cycle between the first and the last.
   [[nodiscard]] double At(double cycle) const;
 };
 
@@ -71,7 +71,7 @@ enum class ChangeKind {
   kBend,            ///< the rate changes
 };
 
-/// "end_of_running_in", "transition", "bend".
+/// Returns "end_of_running_in", "transition", "bend".
 std::string_view NameOf(ChangeKind kind);
 
 struct Change {
@@ -84,22 +84,22 @@ struct Change {
   double p_value = 1.0;  ///< probability under no change, corrected for the choice of the place
 };
 
-/// A course in stretches, one more than changes.
+/// Divides a time history into segments, one more than changes.
 struct CourseDescription {
   std::vector<Stretch> stretches;
   std::vector<Change> changes;
 };
 
-/// Cuts a course into straight stretches. The first may settle instead, a + b·exp(−n/τ), and a bin
-/// within which something changes may be left out between two. Of all cuts that are made of k such
-/// things (places, bins left out, a curve), eight at the most, that of the least squares S_k
-/// (dynamic programming; Bellman & Roth 1969); and as many as are beyond chance,
+/// Divides a time history into straight segments. The first may settle instead, a + b·exp(−n/τ),
+/// and a bin within which something changes may be left out between two. Of all cuts that are made
+/// of k such things (places, bins left out, a curve), eight at the most, that of the least squares
+/// S_k (dynamic programming; Bellman & Roth 1969); and as many as are beyond chance,
 ///   n_eff ln(S_k/S_l) > 2 (l − k) ln(n/chance)
 /// for any l > k, n bins, n_eff of them independent by the residuals' lag-one correlation: beyond
 /// the likelihood ratio that a level and a slope more reach by chance at any of the n places. What
 /// settles has ended its running-in where its rate has fallen to `settled`. Positions have the
 /// interval in which n_eff ln(S/S_min) < 3.84, the quantile of χ²₁.
-/// @returns nothing for fewer than two bins; one stretch for too few to tell, below sixteen
+/// @returns nothing for fewer than two bins; one segment for fewer than sixteen
 /// Cost: n² a change, 3 ms for 512 bins where there is none, 7 ms where there are some.
 CourseDescription FindChanges(const Course& course, const ChangeThresholds& thresholds = {});
 

@@ -61,7 +61,7 @@ struct CycleFlag {
   std::string_view meaning;
 };
 
-/// not_converged, sigma_open, …: every flag that a cycle may have.
+/// Returns every flag that a cycle may have: not_converged, sigma_open, …
 std::span<const CycleFlag> CycleFlags();
 
 /// Fits one cycle after the other, each from where the last one ended: by Fitter::Continue() at
@@ -69,7 +69,7 @@ std::span<const CycleFlag> CycleFlags();
 /// tolerance, and the standard errors of its noise.
 class CycleFitter {
  public:
-  /// @param options  of each cycle: steady unless the past is given; with the gate that split them
+  /// @param options  of each cycle: steady unless another state is given; with the splitting gate
   /// @throws InvalidArgument as Fitter
   explicit CycleFitter(identification::FitOptions options);
 

@@ -8,7 +8,7 @@
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 
-/// Records of many cycles, each fitted on its own as it goes by.
+/// Records of many cycles, each fitted on its own when it is complete.
 namespace mindahl::campaign {
 
 /// One cycle of a longer record, or several in a row: from a turning point to the next but one,
@@ -44,7 +44,7 @@ class CycleSplitter {
   /// @returns samples that were part of no cycle, since the last one or in all
   std::size_t Restart();
 
-  /// Cycles that were complete so far.
+  /// Returns the number of complete cycles so far.
   [[nodiscard]] std::size_t cycles() const { return cycles_; }
 
   /// No cycle is that long: its record holds no turning points, or the gate hides them.

@@ -16,15 +16,15 @@ struct CycleNumber {
   std::optional<double>& (*of)(CycleFit&) = nullptr;
 };
 
-/// All of them, in the order of the table.
+/// Returns all of them, in the order of the table.
 std::span<const CycleNumber> CycleNumbers();
 
-/// The first line of a table of cycles: the columns with their units.
+/// Returns the first line of a table of cycles: the columns with their units.
 /// @param is_torsional  of torques against angles
 std::string CycleTableHeader(bool is_torsional);
 
-/// One line of it (RFC 4180, LF): numbers with as many digits as read back the same double, an
-/// empty cell for what is not known, flags separated by blanks.
+/// Returns one line of it (RFC 4180, LF): numbers with as many digits as read back the same double,
+/// an empty cell for what is not known, flags separated by blanks.
 /// @param accumulated_energy  [J] dissipated up to the end of the cycle
 std::string CycleTableRow(const CycleFit& fit, double accumulated_energy);
 

@@ -10,13 +10,13 @@ namespace mindahl::campaign {
 
 /// Counts the fits in a sum of energies by how the energy of each was obtained.
 struct EnergyCounts {
-  std::size_t measured = 0;  ///< their own, those with glitches as mended
-  std::size_t replaced = 0;  ///< by what the measured before them dissipate in as many samples
-  std::size_t left_out = 0;  ///< nothing: no energy is known of them, or they dissipate none
+  std::size_t measured = 0;  ///< fits with an energy of their own, glitches interpolated
+  std::size_t replaced = 0;  ///< fits given the energy per sample of the measured ones before
+  std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
 };
 
-/// ", counting 2 that do not close by those before them and 1 by nothing"; nothing where all were
-/// measured.
+/// Returns ", counting 2 that do not close by those before them and 1 by nothing"; nothing where
+/// all were measured.
 std::string InWords(const EnergyCounts& counts);
 
 /// Energy [J] dissipated over a test, from fits in their order.
@@ -25,7 +25,7 @@ std::string InWords(const EnergyCounts& counts);
 /// dissipated: a spike of the displacement, which turns it, makes two of one cycle with ten times
 /// its energy. Such count for W = n·median(Wₖ/nₖ) of the last nine measured ones, n the steps
 /// between samples, so that the parts of a cycle count for it together; before any was measured
-/// they are left out. A glitch of the force is mended by a straight line, and costs a few per cent.
+/// they are left out. A glitch of the force is interpolated linearly, and costs a few per cent.
 class DissipatedEnergy {
  public:
   /// @param cycles  that a fit stands for, >= 1

@@ -38,7 +38,7 @@ struct TestSummary {
   std::vector<std::string> changes = {};  ///< in words, one sentence each
 };
 
-/// A test of many cycles as one page of HTML, as report::ToPage() makes one of a fit.
+/// Returns a test of many cycles as one page of HTML, as report::ToPage() makes one of a fit.
 std::string ToPage(const TestSummary& test, const report::Provenance& provenance = {});
 
 /// A file of a batch.
@@ -57,8 +57,8 @@ struct RepeatedQuantity {
   Repeats repeats;
 };
 
-/// The index of a batch: every file with its verdict and parameters, those alone that it
-/// identifies, what failed and why, and the scatter between files beside their stated errors.
+/// Returns the index of a batch: every file with its verdict and parameters, those alone that it
+/// identifies, what failed and why, and the scatter between files against their stated errors.
 std::string BatchIndexPage(std::span<const FileResult> files,
                            std::span<const RepeatedQuantity> repeated,
                            const report::Provenance& provenance = {});

@@ -19,19 +19,19 @@ struct Reading {
   std::size_t samples = 0;  ///< number of samples examined
 };
 
-/// Samples as every stage takes them, valid as long as they.
+/// Returns the samples as every stage takes them, valid as long as they.
 loop::RecordView ViewOf(const io::Samples& samples);
 
-/// Reads the first samples, as many as tell how the record is to be read: some cycles, or the
+/// Reads the first samples, as many as determine how the record is read: some cycles, or the
 /// first million.
 io::Samples ReadHead(io::RecordStream& stream);
 
-/// Chooses the reversal gate and the force's sense, one for all cycles.
+/// Chooses the reversal gate and the force's sign, one for all cycles.
 /// @param fit  written: both
 /// @throws InputError where the head shows no turning points
 Reading ChooseReading(const loop::RecordView& head, identification::FitOptions& fit);
 
-/// A sentence where the reversals are uncertain; empty where they are not.
+/// Returns a sentence where the reversals are uncertain; empty where they are not.
 /// @param source  what was read
 std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source);
 

@@ -7,7 +7,7 @@
 
 namespace mindahl::campaign {
 
-/// How far repeats of a test are from each other, beside what each says of its own error.
+/// Compares the scatter of repeats of a test with their stated errors.
 struct Repeats {
   std::size_t count = 0;
   double mean = 0.0;

@@ -23,7 +23,7 @@ void PoolAlpha(const CycleFit& fit, PooledValue& alpha);
 /// @throws InputError where no cycle determined alpha
 void RequireSharedAlpha(const PooledValue& alpha);
 
-/// "alpha 0.333 ± 0.001 shared, of 298 cycles that scatter by 0 beyond their errors, p = 0.4"
+/// Makes "alpha 0.333 ± 0.001 shared, of 298 cycles that scatter by 0 beyond their errors, p = 0.4"
 std::string SharedAlphaInWords(const PooledValue& alpha);
 
 }  // namespace mindahl::campaign

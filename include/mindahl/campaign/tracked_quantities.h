@@ -11,7 +11,7 @@
 
 namespace mindahl::campaign {
 
-/// A quantity whose course over the test is described.
+/// Describes a quantity whose time history is reported.
 struct TrackedQuantity {
   std::string_view name;       ///< column of the table of cycles
   std::string_view unit;       ///< in a record of forces; "-" for a pure number
@@ -23,24 +23,24 @@ struct TrackedQuantity {
   bool has_standard_error = false;
 };
 
-/// All of them, in the order in which they are told.
+/// Returns all of them, in the order of the report.
 std::span<const TrackedQuantity> TrackedQuantities();
 
-/// The courses of all of them while cycles go by, in memory that their number does not change.
+/// Collects the time histories of all of them, in memory that their number does not change.
 class TrackedCourses {
  public:
   TrackedCourses();
 
-  /// A cycle that did not converge, or leaves a quantity open, is not in its course.
+  /// A cycle that did not converge, or leaves a quantity open, is not in its time history.
   void Add(const CycleFit& fit);
 
-  /// In the order of TrackedQuantities().
+  /// Returns them in the order of TrackedQuantities().
   [[nodiscard]] std::span<const Course> courses() const { return courses_; }
 
-  /// Whether any value of each had an error, likewise: what is held has none.
+  /// True, likewise, where any value of one had an error: what is held has none.
   [[nodiscard]] const std::vector<bool>& have_errors() const { return have_errors_; }
 
-  /// FindChanges() of each, likewise.
+  /// Returns FindChanges() of each, likewise.
   [[nodiscard]] std::vector<CourseDescription> Describe() const;
 
  private:

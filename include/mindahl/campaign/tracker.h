@@ -52,7 +52,7 @@ class Tracker {
   /// Fits what is left.
   void Finish();
 
-  /// Whole cycles that went by, fitted or not.
+  /// Returns the number of whole cycles so far, fitted or not.
   [[nodiscard]] std::size_t cycles() const { return splitter_.cycles(); }
 
  private:

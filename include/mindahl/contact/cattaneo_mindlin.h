@@ -26,7 +26,7 @@ struct MindlinContact {
 /// @throws InvalidArgument naming the first member that is not finite and > 0
 void Validate(const MindlinContact& contact);
 
-/// Tangential compliance G* [1/Pa] of the pair.
+/// Returns the tangential compliance G* [1/Pa] of the pair.
 ///   G* = (2 − ν₁)/G₁ + (2 − ν₂)/G₂
 /// Johnson (1985) §7.2; Peyret et al. (2017) eq. 7. A compliance: see above. It leaves out that
 /// shear changes the pressure between dissimilar bodies, an effect that is nil for (1 − 2ν₁)/G₁ =
@@ -35,7 +35,7 @@ void Validate(const MindlinContact& contact);
 /// Relative error < 2 ε.
 double TangentialCompliance(const Body& body_1, const Body& body_2);
 
-/// Force Tc [N] at which the whole contact slips.
+/// Returns the force Tc [N] at which the whole contact slips.
 ///   Tc = μN
 /// @param friction_coefficient  μ [-], finite, > 0
 /// @param normal_load           N [N], finite, > 0
@@ -53,7 +53,7 @@ double GrossSlipForce(double friction_coefficient, double normal_load);
 /// Relative error < 1 ε.
 double MindlinTangentialStiffness(double contact_radius, double tangential_compliance);
 
-/// Displacement δc [m] at which a virgin contact slips as a whole.
+/// Returns the displacement δc [m] at which a virgin contact slips as a whole.
 ///   δc = 3·Tc·G*/(16a)
 /// Eq. 6 at T = Tc; the paper's eq. 23 prints 12a. Relative error < 1 ε = 2.2e-16.
 /// @throws InvalidArgument as Validate
@@ -68,16 +68,16 @@ double GrossSlipDisplacement(const MindlinContact& contact);
 /// Relative error < 5 ulp up to T = Tc, where the difference Tc − |T| is exact.
 double StickRadiusRatio(double tangential_force, double slip_force);
 
-/// Area of the slip annulus over that of the contact, 1 − (c/a)² [-], on the virgin curve.
-/// It equals |δ|/δc. It stays below 1 in partial slip and is 1/2, slip area equal to stick area, at
-/// T = (1 − 2^{−3/2})·Tc ≈ 0.646·Tc.
+/// Returns the area of the slip annulus over that of the contact, 1 − (c/a)² [-], on the virgin
+/// curve. It equals |δ|/δc. It stays below 1 in partial slip and is 1/2, slip area equal to stick
+/// area, at T = (1 − 2^{−3/2})·Tc ≈ 0.646·Tc.
 /// @param tangential_force  T [N], |T| <= Tc
 /// @param slip_force        Tc [N], finite, > 0
 /// @throws InvalidArgument naming the parameter, its value and the rule
 /// Relative error < 8 ulp; no cancellation as T → 0.
 double SlipAreaFraction(double tangential_force, double slip_force);
 
-/// Displacement δ₀ [m] on the virgin curve, odd in T.
+/// Returns the displacement δ₀ [m] on the virgin curve, odd in T.
 ///   δ₀ = δc·[1 − (1 − T/Tc)^{2/3}] = δc·t(1 + s)/(1 + s + s²),  t = T/Tc,  s = ∛(1 − t)
 /// Johnson (1985) §7.2; eq. 6 of the paper.
 /// @param tangential_force  T [N], |T| <= Tc
@@ -85,7 +85,7 @@ double SlipAreaFraction(double tangential_force, double slip_force);
 /// Relative error < 10 ulp for every |T| <= Tc: the second form, used here, subtracts nothing.
 double MindlinVirginDisplacement(const MindlinContact& contact, double tangential_force);
 
-/// Displacement δ₁ [m] on the unloading branch of the loop with extremes ±T*.
+/// Returns the displacement δ₁ [m] on the unloading branch of the loop with extremes ±T*.
 ///   δ₁ = δ₀(T*) − 2·δ₀((T* − T)/2)
 /// Johnson (1985) §7.4; eq. 8 of the paper.
 /// @param tangential_force  T [N], |T| <= T*
@@ -95,13 +95,13 @@ double MindlinVirginDisplacement(const MindlinContact& contact, double tangentia
 double MindlinUnloadingDisplacement(const MindlinContact& contact, double tangential_force,
                                     double peak_force);
 
-/// Displacement δ₂ [m] on the reloading branch of the loop with extremes ±T*.
+/// Returns the displacement δ₂ [m] on the reloading branch of the loop with extremes ±T*.
 ///   δ₂(T) = −δ₁(−T)
 /// Eq. 9 of the paper. Parameters, errors and accuracy as MindlinUnloadingDisplacement.
 double MindlinReloadingDisplacement(const MindlinContact& contact, double tangential_force,
                                     double peak_force);
 
-/// Force T₀ [N] on the virgin curve, odd in δ; ±Tc beyond ±δc.
+/// Returns the force T₀ [N] on the virgin curve, odd in δ; ±Tc beyond ±δc.
 ///   T₀ = Tc·[1 − z√z] = Tc·w(1 + z + z²)/(1 + z√z),  w = δ/δc,  z = 1 − w
 /// Eq. 13 of the paper.
 /// @param displacement  δ [m], finite
@@ -109,7 +109,7 @@ double MindlinReloadingDisplacement(const MindlinContact& contact, double tangen
 /// Relative error < 6 ulp for every δ: the second form, used here, does not cancel as δ → 0.
 double MindlinVirginForce(const MindlinContact& contact, double displacement);
 
-/// Force T₁ [N] on the unloading branch of the loop with extremes ±δ*.
+/// Returns the force T₁ [N] on the unloading branch of the loop with extremes ±δ*.
 ///   T₁ = T₀(δ*) − 2·T₀((δ* − δ)/2)
 /// Eq. 14 of the paper, whose (1 − T*/Tc)^{2/3} is 1 − δ*/δc. Written in δ* it also covers δ* > δc,
 /// the loop in gross slip, and does not lose the digits of δ* that T* near Tc no longer carries.
@@ -120,14 +120,14 @@ double MindlinVirginForce(const MindlinContact& contact, double displacement);
 double MindlinUnloadingForce(const MindlinContact& contact, double displacement,
                              double displacement_amplitude);
 
-/// Force T₂ [N] on the reloading branch of the loop with extremes ±δ*.
+/// Returns the force T₂ [N] on the reloading branch of the loop with extremes ±δ*.
 ///   T₂(δ) = −T₁(−δ) = −T₀(δ*) + 2·T₀((δ* + δ)/2)
 /// Eq. 15 of the paper with its sign corrected (printed +16aδ/(3μNG*), must be −).
 /// Parameters, errors and accuracy as MindlinUnloadingForce.
 double MindlinReloadingForce(const MindlinContact& contact, double displacement,
                              double displacement_amplitude);
 
-/// Energy lost per closed cycle [J] of the loop in partial slip with extremes ±T*.
+/// Returns the energy lost per closed cycle [J] of the loop in partial slip with extremes ±T*.
 ///   W = (9Tc²G*/10a)·{1 − s⁵ − (5r/6)(1 + s²)} = (3Tc²G*/20a)·(1 + 3s + s²)·(r/(1 + s + s²))³
 /// with r = T*/Tc and s = ∛(1 − r). Johnson (1985) eq. 7.57; the second form divides the triple
 /// root at s = 1 out of 1 − 5s² + 5s³ − s⁵ (docs/theory.md §8). W → G*·T*³/(36a·Tc) as T* → 0.
@@ -136,7 +136,7 @@ double MindlinReloadingForce(const MindlinContact& contact, double displacement,
 /// Relative error < 20 ulp for every T*; the printed form has lost every digit at r = 1e-5.
 double MindlinEnergyPerCycle(const MindlinContact& contact, double peak_force);
 
-/// Energy lost per closed cycle [J] of the loop with extremes ±δ*, in partial or gross slip.
+/// Returns the energy lost per closed cycle [J] with extremes ±δ*, in partial or gross slip.
 ///   W = (3Tc²G*/20a)·(1 + 3s + s²)·(1 − s)³,  s = √(1 − δ*/δc),     δ* <= δc
 ///   W = 3Tc²G*/(20a) + 4Tc·(δ* − δc),                               δ* >  δc
 /// @param displacement_amplitude  δ* [m], finite, >= 0

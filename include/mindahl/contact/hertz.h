@@ -19,19 +19,19 @@ struct Body {
   double radius = std::numeric_limits<double>::infinity();
 };
 
-/// Shear modulus [Pa] of an isotropic body.
+/// Returns the shear modulus [Pa] of an isotropic body.
 ///   G = E/(2(1 + ν))
 /// The radius is not read.
 /// @throws InvalidArgument on a modulus that is not > 0 or a Poisson ratio outside (−1, 0.5]
 double ShearModulus(const Body& body);
 
-/// Effective modulus E* [Pa] of the pair.
+/// Returns the effective modulus E* [Pa] of the pair.
 ///   1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂
 /// Johnson, Contact Mechanics (1985), §4.2. The radii are not read.
 /// @throws InvalidArgument as ShearModulus, for either body
 double EffectiveModulus(const Body& body_1, const Body& body_2);
 
-/// Equivalent radius ρ [m] of two spherical surfaces.
+/// Returns the equivalent radius ρ [m] of two spherical surfaces.
 ///   1/ρ = 1/R₁ + 1/R₂
 /// Johnson (1985) §4.2. A plane has an infinite radius, a concave seat a negative one.
 /// @param radius_1, radius_2  [m], not 0, infinite for a plane; 1/R₁ + 1/R₂ > 0
@@ -50,7 +50,7 @@ double EquivalentRadius(double radius_1, double radius_2);
 /// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzContactRadius(double normal_load, double equivalent_radius, double effective_modulus);
 
-/// Equivalent radius ρ [m] under which the load makes a circle of the given radius.
+/// Returns the equivalent radius ρ [m] under which the load makes a circle of the given radius.
 ///   ρ = 4E*a³/(3N)
 /// The inverse of HertzContactRadius in ρ; a relative error of a counts three times.
 /// @param normal_load        N [N], finite, > 0
@@ -59,7 +59,7 @@ double HertzContactRadius(double normal_load, double equivalent_radius, double e
 /// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzEquivalentRadius(double normal_load, double contact_radius, double effective_modulus);
 
-/// Normal load N [N] that makes a circle of the given radius.
+/// Returns the normal load N [N] that makes a circle of the given radius.
 ///   N = 4E*a³/(3ρ)
 /// The inverse of HertzContactRadius in N.
 /// @param contact_radius     a [m], finite, > 0
@@ -68,7 +68,7 @@ double HertzEquivalentRadius(double normal_load, double contact_radius, double e
 /// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzNormalLoad(double contact_radius, double equivalent_radius, double effective_modulus);
 
-/// Pressure p₀ [Pa] at the centre of the contact circle, 3/2 of the mean.
+/// Returns the pressure p₀ [Pa] at the centre of the contact circle, 3/2 of the mean.
 ///   p₀ = 3N/(2πa²)
 /// Johnson (1985) eq. 4.24.
 /// @param normal_load     N [N], finite, > 0
@@ -76,7 +76,7 @@ double HertzNormalLoad(double contact_radius, double equivalent_radius, double e
 /// @throws InvalidArgument naming the parameter, its value and the rule
 double HertzMaximumPressure(double normal_load, double contact_radius);
 
-/// Mutual approach [m] of distant points of the two bodies under the load.
+/// Returns the mutual approach [m] of distant points of the two bodies under the load.
 ///   a²/ρ
 /// Johnson (1985) eq. 4.23.
 /// @param contact_radius     a [m], finite, > 0

@@ -20,7 +20,7 @@ namespace mindahl::contact {
 /// Dahl's exponent α of a Mindlin contact.
 inline constexpr double kMindlinShapeExponent = 1.0 / 3.0;
 
-/// Dahl's parameters of a contact whose radius and compliance are known: σ = 8a/G*, α = 1/3, Tc.
+/// Returns Dahl's parameters of a contact with known radius and compliance: σ = 8a/G*, α = 1/3, Tc.
 /// With a friction coefficient and a normal load, the slip force is GrossSlipForce(μ, N).
 /// @throws InvalidArgument as Validate(MindlinContact)
 models::BranchLaw MapMindlinToDahl(const MindlinContact& contact);
@@ -65,11 +65,11 @@ struct PropagatedValue : UncertainValue {
   /// better first.
   std::string_view largest_input;
 
-  /// Share of the variance that the fit brings [-], 1 where it leaves the value open; 0 where
-  /// nothing is uncertain.
+  /// Returns the fraction of the variance from the fit [-], 1 where it leaves the value open; 0
+  /// where nothing is uncertain.
   [[nodiscard]] double FitShare() const;
-  /// Share of the variance that the inputs bring [-]; with FitShare() it makes 1, or 0 where
-  /// nothing is uncertain.
+  /// Returns the fraction of the variance from the inputs [-]; with FitShare() it makes 1, or 0
+  /// where nothing is uncertain.
   [[nodiscard]] double InputShare() const;
 };
 
@@ -86,7 +86,7 @@ struct PredictedContact {
   PropagatedValue gross_slip_displacement;           ///< δc = 3·μN·G*/(16a) [m]
 };
 
-/// Hertz, Mindlin and the mapping with the uncertainty of every input; values as the
+/// Applies Hertz, Mindlin and the mapping with the uncertainty of every input; values as the
 /// functions of hertz.h and MapMindlinToDahl() give them. All uncertainty is that of inputs:
 /// fit_error is 0.
 /// @param known  N, and either a and G* alone or E, ν and R of both bodies
@@ -147,7 +147,7 @@ enum class ContactQuantity {
 /// quantity; empty where nothing is missing.
 std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantity quantity);
 
-/// The inverse mapping: from a fitted stiffness and slip force to the contact.
+/// Inverts the mapping: from a fitted stiffness and slip force to the contact.
 ///
 /// Knowledge may be redundant. What is given directly wins over what follows from other inputs:
 ///  - G* given and E, ν of both bodies: the given G* is used throughout, E* comes from the
@@ -156,7 +156,7 @@ std::vector<std::string> MissingInputs(const KnownContact& known, ContactQuantit
 ///  given
 ///    value, and sigma_over_mindlin compares them; ρ and p₀ use the given a and nothing of the fit;
 ///  - a given and Hertz complete: Hertz's a serves the prediction alone.
-/// The first and the last are also told in `redundant`, whatever the discrepancy.
+/// The first and the last are also named in `redundant`, whatever the discrepancy.
 ///
 /// Standard errors are propagated to first order (GUM, JCGM 100:2008, eq. 13) from σ and Tc with
 /// their correlation and from every input, each counted once however many ways it enters: E of a

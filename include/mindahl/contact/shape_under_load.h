@@ -18,7 +18,7 @@ enum class ContactShape {
   kRough,      ///< p = 1: nominally flat surfaces that touch at their summits
 };
 
-/// p [-] of a ∝ N^p.
+/// Returns p [-] of a ∝ N^p.
 double LoadExponentOf(ContactShape shape);
 
 /// Holds the quantities that follow from a shape; empty where they do not.
@@ -38,7 +38,7 @@ struct ShapeUnderLoad {
   std::string unidentified;
 };
 
-/// From a stiffness σ [N/m] under the normal load of what is known:
+/// Identifies a contact from a stiffness σ [N/m] under the normal load of what is known:
 ///
 /// | shape | known | identified |
 /// |---|---|---|

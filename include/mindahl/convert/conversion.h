@@ -26,7 +26,7 @@ struct TargetRow {
   std::string_view title;
 };
 
-/// All targets, in the order of the documentation.
+/// Returns all targets, in the order of the documentation.
 std::span<const TargetRow> Targets();
 
 /// Amplitudes [m].
@@ -53,7 +53,7 @@ struct Conversion {
   std::optional<AmplitudeRange> within = std::nullopt;
 };
 
-/// Parameters with which another law reproduces the steady loop of a contact.
+/// Returns the parameters with which another law reproduces the steady loop of a contact.
 ///
 /// Masing's law and Dahl's own are one curve at X, in closed form (models/equivalent_law.h). LuGre,
 /// Bouc–Wen, the spring with Coulomb's limit and Jenkins elements are fitted: the mean square

@@ -25,11 +25,11 @@ struct LammpsContact {
 /// @throws InputError for what belongs to another target, InvalidArgument for values out of range
 void Validate(const LammpsContact& contact, Target target);
 
-/// The parameters of a conversion, in the target's own names and units.
+/// Returns the parameters of a conversion, in the target's own names and units.
 std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
                                     const LammpsContact& contact = {});
 
-/// The lines that the target reads.
+/// Returns the lines that the target reads.
 /// @throws InputError for LAMMPS without a normal load
 std::vector<std::string> InputLines(const Conversion& conversion, Target target,
                                     const LammpsContact& contact = {});

@@ -31,8 +31,8 @@ struct BoucWenLaw {
 
 using SteadyLaw = std::variant<ModelLaw, BoucWenLaw, methods::IwanElements>;
 
-/// Force [N] on the rising branch of the steady loop between ±amplitude, at distances from its
-/// start at −amplitude. The falling branch is its image through the centre.
+/// Computes the force [N] on the rising branch of the steady loop between ±amplitude, at distances
+/// from its start at −amplitude. The falling branch is its image through the centre.
 /// @param amplitude  X [m], finite, > 0
 /// @param distance   [m], in 0 … 2X
 /// @param force      written; same size
@@ -41,8 +41,8 @@ using SteadyLaw = std::variant<ModelLaw, BoucWenLaw, methods::IwanElements>;
 void EvaluateRisingBranch(const SteadyLaw& law, double amplitude, std::span<const double> distance,
                           std::span<double> force);
 
-/// W [J] lost per cycle of the steady loop between ±amplitude.
-/// Relative error as of SteadyLoopEnergy, of Bouc's and Wen's below 1e-6.
+/// Returns W [J] lost per cycle of the steady loop between ±amplitude. Relative error as of
+/// SteadyLoopEnergy, of Bouc's and Wen's below 1e-6.
 double LoopEnergy(const SteadyLaw& law, double amplitude);
 
 /// How far one law's steady loop is from another's.
@@ -51,8 +51,8 @@ struct LoopError {
   double energy = 0.0;  ///< W over that of the reference, less 1 [-]; infinite where that is 0
 };
 
-/// At some 129 places of the branch, densest after the reversal, at the corners where elements slip
-/// and between them; then around the worst.
+/// Compares two laws at some 129 places of the branch, densest after the reversal, at the corners
+/// where elements slip and between them; then around the worst.
 /// @throws InvalidArgument for an invalid law or amplitude
 /// The largest difference to 1e-3 of itself.
 LoopError CompareLoops(const SteadyLaw& law, const SteadyLaw& reference, double amplitude);

@@ -15,7 +15,7 @@ class Arena final : public std::pmr::memory_resource {
   /// Forgets everything that was allocated. Nothing of it may be used, or destroyed, any more.
   void Reset();
 
-  /// Bytes held.
+  /// Returns the number of bytes held.
   [[nodiscard]] std::size_t capacity() const;
 
  private:

@@ -13,7 +13,7 @@ class InvalidArgument : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// A fault in what the user supplied (a file, an option), with where it is and how to mend it.
+/// Reports a fault in the user's input (a file, an option) with its place and remedy.
 ///   "loop.csv:12:3: '1,2,3' is not a number: …"
 class InputError : public std::runtime_error {
  public:

@@ -4,7 +4,7 @@
 
 namespace mindahl {
 
-/// Version of the library, "major.minor.patch".
+/// Returns the version of the library, "major.minor.patch".
 std::string_view Version();
 
 }  // namespace mindahl

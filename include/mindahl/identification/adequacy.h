@@ -10,7 +10,7 @@ namespace mindahl::identification {
 
 /// Says whether the model describes the record.
 enum class AdequacyVerdict {
-  kAdequate,    ///< residuals look like noise, as far as this record tells
+  kAdequate,    ///< residuals look like noise in this record
   kDoubtful,    ///< they do not; intervals cover what the causes that explain it would change
   kInadequate,  ///< parameters of this model mean nothing for this record
 };
@@ -23,11 +23,11 @@ enum class Use {
   kNone,
 };
 
-/// Something beside the model that the residuals look like.
+/// Describes an omitted term that the residuals look like.
 struct Cause {
   std::string_view code;    ///< stable, for scripts; docs/contract.md lists them
   double delta_aicc = 0.0;  ///< change of AICc with the term: negative where it helps
-  double explains = 0.0;    ///< share of the residuals' variance [–]
+  double explains = 0.0;    ///< fraction of the residuals' variance [–]
   double size = 0.0;        ///< its value in `unit`; of several numbers the first
   std::string_view unit;    ///< "s", "samples", "N s/m" …
   std::string option;       ///< command-line option that fits it; empty where there is none yet
@@ -48,7 +48,7 @@ struct Adequacy {
   /// rms of what the model misses over the measured half gap; empty where no gap was measured.
   std::optional<double> misfit_over_half_gap;
   Use use = Use::kNone;
-  std::size_t tried = 0;  ///< causes that the record could tell; 0: there is no verdict
+  std::size_t tried = 0;  ///< causes that the record can identify; 0: no verdict
 };
 
 }  // namespace mindahl::identification

@@ -48,12 +48,12 @@ struct BackboneEstimate {
 /// True if the backbone is defined: a fit of forces, one load, no lag, Masing's memory.
 bool HasBackbone(const FitResult& fit);
 
-/// The backbone F(x) = Σ wₖ·pₖ(x) + w∞·x, wₖ ≥ 0, of which the records' forces are
+/// Estimates the backbone F(x) = Σ wₖ·pₖ(x) + w∞·x, wₖ ≥ 0, of which the records' forces are
 ///   T = Σ s·m·F(|Δδ|/m) along branches + offset,  m = 1 on the virgin branch, else 2
 /// (docs/theory.md §5 and §13), by least squares. Of all distributions of slip displacements that
 /// cost the likelihood no more than 2 ln Λ = 1 it is the smoothest over their logarithm. The band
-/// is that of 400 draws of the residuals' own noise, and of the smoothness, fitted again. The past,
-/// the reversals, the sense of the force and all that is beside the contact's force are the fit's.
+/// is that of 400 draws of the residuals' own noise, and of the smoothness, fitted again. Initial
+/// state, reversals, sign of the force and all terms besides the contact's force are the fit's.
 /// @param records  those that were fitted
 /// @param options  that they were fitted with
 /// @throws InvalidArgument unless HasBackbone(fit)

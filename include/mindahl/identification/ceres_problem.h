@@ -68,16 +68,16 @@ class CeresProblem {
   CeresProblem& operator=(CeresProblem&&) noexcept;
   ~CeresProblem();
 
-  /// Those of the contact, then those of each record. The addresses of θ stay the same.
+  /// Returns those of the contact, then those of each record. The addresses of θ stay the same.
   [[nodiscard]] std::span<CeresParameter> parameters();
   /// @throws InvalidArgument where there is none of that name
   [[nodiscard]] CeresParameter& Find(std::string_view name);
 
   [[nodiscard]] std::size_t records() const;
-  /// Positions, among parameters(), of the blocks of a record's cost function, in its order.
+  /// Returns the positions in parameters() of the blocks of a record's cost function, in order.
   [[nodiscard]] std::span<const std::size_t> BlocksOf(std::size_t record) const;
-  /// Residuals of all samples of a record, those that do not count are 0. It refers to this
-  /// problem.
+  /// Returns the residuals of all samples of a record, those that do not count are 0. It refers to
+  /// this problem.
   [[nodiscard]] std::unique_ptr<ceres::CostFunction> MakeCostFunction(std::size_t record) const;
 
   /// Adds a residual block for every record, bounds, and holds what the fit holds.

@@ -20,7 +20,7 @@ struct Finding {
   std::vector<std::pair<std::string_view, double>> numbers = {};
   std::string_view kind = {};  ///< which of several forms it takes; empty where there is one only
 
-  /// Empty when the finding has no such number.
+  /// Returns a number of the finding; empty when it has none of that name.
   [[nodiscard]] std::optional<double> Number(std::string_view name) const {
     for (const auto& [key, value] : numbers) {
       if (key == name) return value;

@@ -41,10 +41,10 @@ class Fitter {
     return Fit({&record, 1}, depth);
   }
 
-  /// Fit() of a record like the one before, from where the fit of that ended, without a look at the
+  /// Fits a record like the one before, from where the fit of that ended, without a look at the
   /// plane. By Fit() itself where there is none to go on from, where it ended at a bound or, from
-  /// Depth::kErrors on, either record does not tell the law, and where this does not converge or
-  /// leaves 1.5 times the residuals: what it finds is Fit()'s minimum, to the solver's tolerance.
+  /// Depth::kErrors on, either record does not determine the law, and where this does not converge
+  /// or leaves 1.5 times the residuals: it finds Fit()'s minimum, to the solver's tolerance.
   const FitResult& Continue(const loop::RecordView& record, Depth depth = Depth::kFull);
 
   [[nodiscard]] const FitOptions& options() const;
@@ -54,7 +54,7 @@ class Fitter {
   std::unique_ptr<State> state_;
 };
 
-/// One fit of all the records together.
+/// Fits all the records together.
 FitResult Fit(std::span<const loop::Record> records, const FitOptions& options = {},
               Depth depth = Depth::kFull);
 

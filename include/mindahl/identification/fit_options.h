@@ -34,7 +34,7 @@ struct FitOptions {
   /// Offsets of force and, for a virgin contact, of displacement are free parameters; otherwise 0.
   bool offsets = true;
 
-  /// Terms that are fitted beside these, by name: rig_stiffness, plateau_slope, force_drift …
+  /// Terms that are fitted in addition, by name: rig_stiffness, plateau_slope, force_drift …
   /// Fixing one gives it a known value.
   std::vector<std::string> terms;
 
@@ -78,9 +78,9 @@ struct FitOptions {
 
   Thresholds thresholds;
 
-  /// The channel that is fitted, whose noise the residuals are: that which is not imposed.
+  /// Returns the channel that is fitted, whose noise the residuals are: that which is not imposed.
   [[nodiscard]] loop::Channel response() const { return loop::Other(preparation.excitation); }
-  /// Known standard deviation of its noise [N or m]; empty: from the residuals.
+  /// Returns the known standard deviation of its noise [N or m]; empty: from the residuals.
   [[nodiscard]] std::optional<double> response_noise() const {
     return response() == loop::Channel::kForce ? force_noise : preparation.displacement_noise;
   }

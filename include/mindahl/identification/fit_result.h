@@ -82,7 +82,7 @@ struct ParameterEstimate {
   }
 };
 
-/// α as one kind of branch tells it, the other parameters shared: a departure from one law shows
+/// Holds α from one kind of branch, the other parameters shared: a discrepancy of one law shows
 /// where it is. Linearised about the fit.
 struct BranchShape {
   std::string branch;  ///< "virgin", "unloading" or "reloading"
@@ -96,8 +96,8 @@ struct MindlinTest {
   double likelihood_ratio = 0.0;  ///< 2 ln Λ, for autocorrelated residuals
   double p_value = 1.0;           ///< by F(1, degrees of freedom)
   /// Stiffness [N/m] of a rig in series with which α = 1/3 fits as well as the fitted α without, by
-  /// ΔAICc: then the record does not tell a contact of another shape from Mindlin's in a rig that
-  /// gives way. Looked for where α = 1/3 is rejected, α is smaller and no rig is fitted.
+  /// ΔAICc: then the record does not distinguish a contact of another shape from Mindlin's in a
+  /// compliant rig. Computed where α = 1/3 is rejected, α is smaller and no rig is fitted.
   std::optional<double> rig_stiffness;
 };
 
@@ -126,7 +126,7 @@ struct RecordFit {
   /// How far the motion turned beyond the outermost sample [m], one a reversal; empty unless the
   /// record is sampled so coarsely that it had to be fitted.
   std::vector<double> overshoot;
-  loop::LoopMeasures measures;      ///< with the force in the displacement's sense
+  loop::LoopMeasures measures;      ///< with the force's sign that of the displacement
   loop::LoopFacts facts;            ///< likewise, cycle by cycle; from depth kErrors on
   double displacement_noise = 0.0;  ///< [m] of the readings; 0 where they count as exact
   /// [m], in a fit of the displacement: where the law has the contact under the force that was
@@ -136,7 +136,7 @@ struct RecordFit {
   std::size_t left_out = 0;           ///< samples that do not count
   std::optional<double> normal_load;  ///< mean N [N], given or of the column; empty where not known
   double load_ratio = 1.0;            ///< to the mean load of all records of a load series; else 1
-  bool load_varies = false;           ///< within the record, as the law was told
+  bool load_varies = false;           ///< within the record, if the law knows it
   /// Holds this record's own values, from Depth::kFull on; empty where it cannot be fitted alone.
   std::optional<RecordAlone> alone;
   /// Energy [J] that the fitted law loses in each cycle of `facts`, between ± their amplitude;
@@ -145,7 +145,7 @@ struct RecordFit {
   std::vector<double> law_energy;
   /// Averages residuals by place in the stroke, sign as the displacement; from kIntervals on.
   ResidualStructure structure;
-  /// [N], in the file's sense, offsets included; in a fit of the displacement as measured.
+  /// [N], with the file's sign, offsets included; in a fit of the displacement as measured.
   std::vector<double> fitted_force;
   std::vector<double> residual;  ///< fitted − measured [unit of the response]
 };
@@ -195,23 +195,23 @@ struct FitResult {
   std::vector<RecordFit> records;
   std::vector<Finding> findings;
 
-  /// nullptr when the fit has no such parameter.
+  /// Returns nullptr when the fit has no such parameter.
   [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
 
-  /// nullptr when nothing of the kind was found.
+  /// Returns nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
 
-  /// The record with the largest amplitude, in a load series over N^{1−p}, to which the gross-slip
-  /// displacement is in proportion: the one that comes nearest to gross slip.
+  /// Returns the record with the largest amplitude, in a load series over N^{1−p}, to which the
+  /// gross-slip displacement is in proportion: the one that comes nearest to gross slip.
   [[nodiscard]] const RecordFit& WidestRecord() const;
 
-  /// The law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
+  /// Returns the law of a record at its mean load: σ·(N/N₀)^p, α, Tc·N/N₀.
   [[nodiscard]] models::BranchLaw LawOf(const RecordFit& record) const;
 
-  /// Standard deviation of the noise of the channel that was fitted [N or m], known or estimated.
+  /// Returns the noise of the fitted channel [N or m], its standard deviation, known or estimated.
   [[nodiscard]] double ResponseNoise() const;
 
-  /// The largest force [N] of the widest record, as it would be at the mean load of all.
+  /// Returns the largest force [N] of the widest record, as it would be at the mean load of all.
   [[nodiscard]] double PeakForce() const;
 
   /// Degrees of freedom of Student's law of the errors.
@@ -219,14 +219,14 @@ struct FitResult {
     return error_degrees_of_freedom.value_or(residuals.degrees_of_freedom);
   }
 
-  /// Error of a parameter [its unit] in whatever follows from it: the way to the farther end of its
-  /// interval, along the logarithm of a positive parameter, in units of the half width of Student's
-  /// 95 % interval; the standard error where that is larger. 0 of a parameter that is held,
-  /// infinite of one whose interval is open or that has no error.
+  /// Returns the error of a parameter [its unit] in whatever follows from it: the distance to the
+  /// farther end of its interval, along the logarithm of a positive parameter, in units of the half
+  /// width of Student's 95 % interval; the standard error where that is larger. 0 of a parameter
+  /// that is held, infinite of one whose interval is open or that has no error.
   [[nodiscard]] double ErrorOf(const ParameterEstimate& estimate) const;
 
-  /// The same towards a value that the parameter is tested against: the value is beyond the 95 %
-  /// interval if and only if it lies farther away than Student's quantile of this error.
+  /// Returns the same towards a value that the parameter is tested against: the value is beyond the
+  /// 95 % interval if and only if it lies farther away than Student's quantile of this error.
   [[nodiscard]] double ErrorTowards(const ParameterEstimate& estimate, double value) const;
 
   [[nodiscard]] bool is_load_series() const { return Find("load_exponent") != nullptr; }

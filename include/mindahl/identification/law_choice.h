@@ -10,7 +10,7 @@ namespace mindahl::identification {
 /// Masing's law (Mindlin's, Full-Dahl) or Dahl's own: which of the two a record is of. σ and Tc are
 /// those of a law, and the two differ in them by up to 2^α and 2 where the loop is the same.
 struct LawChoice {
-  /// Whether the record tells them apart.
+  /// True if the record distinguishes them.
   bool decided = false;
   /// The law that the record is of: the fitted one or `alternative`; null where undecided.
   const models::FrictionModel* preferred = nullptr;

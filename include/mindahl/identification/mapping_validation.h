@@ -24,7 +24,7 @@ struct ValidationOptions {
   double interval_factor = 1.0;
 };
 
-/// Tolerance on the relative errors of σ and Tc and on the error of α of a noise-free loop.
+/// Returns the tolerance on relative errors of σ and Tc, and errors of α, of a noise-free loop.
 double NoiseFreeTolerance(double lambda);
 
 /// With noise, the truth may lie this many standard errors from the fit: the square root of twice
@@ -53,14 +53,14 @@ struct IntervalCount {
     intervals += other.intervals;
     covering += other.covering;
   }
-  /// Fraction that covers; 0 of none.
+  /// Returns the fraction that covers; 0 of none.
   [[nodiscard]] double fraction() const {
     return intervals == 0 ? 0.0 : static_cast<double>(covering) / static_cast<double>(intervals);
   }
-  /// Probability of so few covering intervals where each covers with kLowestCoverage: the binomial
-  /// distribution. 1 of none.
+  /// Returns the probability of so few intervals that cover where each covers with kLowestCoverage:
+  /// the binomial distribution. 1 of none.
   [[nodiscard]] double ChanceOfSoFew() const;
-  /// Probability of so many where each covers with kHighestCoverage. 1 of none.
+  /// Returns the probability of so many where each covers with kHighestCoverage. 1 of none.
   [[nodiscard]] double ChanceOfSoMany() const;
 };
 

@@ -46,15 +46,15 @@ struct ExpectedFit {
   /// 95 % intervals; without errors what the loop does not determine. No verdicts. Of a series
   /// "load_exponent" too, and σ and Tc at the mean of the loads.
   std::vector<ParameterEstimate> parameters;
-  /// 2 ln Λ by which the loop is expected to tell Masing's rules from Dahl's own law; 0 for a
-  /// steady loop, where both are one curve.
+  /// 2 ln Λ by which the loop is expected to distinguish Masing's rules from Dahl's own law; 0 for
+  /// a steady loop, where both are one curve.
   double law_evidence = 0.0;
 
-  /// nullptr when there is none of that name
+  /// Returns nullptr when there is none of that name.
   [[nodiscard]] const ParameterEstimate* Find(std::string_view name) const;
 };
 
-/// The Cramér–Rao bound of a fit with the options' terms, from the exact derivatives at the values
+/// Computes the Cramér–Rao bound with the options' terms, from the exact derivatives at the values
 /// that are expected: what unbiased estimates cannot better, and what those of the fit attain where
 /// the likelihood is a parabola over their errors. Offsets are unknown, so are all terms asked for.
 /// @param options  of the fit; its model must be one of Masing's rules
@@ -67,7 +67,7 @@ ExpectedFit ExpectFit(const Expectation& expected, const Protocol& protocol,
 
 /// A standard error that is wanted.
 struct Precision {
-  double value = 0.0;  ///< in the parameter's unit, or as a share of it; > 0
+  double value = 0.0;  ///< in the parameter's unit, or as a fraction of it; > 0
   bool is_relative = false;
 };
 
@@ -80,9 +80,9 @@ using WantedPrecision = std::map<std::string, Precision>;
 /// @throws InvalidArgument for a name that the fit does not have, or a precision that is not > 0
 double CyclesFactor(const ExpectedFit& fit, const WantedPrecision& wanted);
 
-/// The least amplitude that reaches what is wanted with the protocol's cycles, to 1 %; empty where
-/// none between `least` and `most` does. `fewest`, where given, is set to the protocol among those
-/// looked at that needs the fewest cycles, its number of cycles being those.
+/// Returns the least amplitude that reaches what is wanted with the protocol's cycles, to 1 %;
+/// empty where none between `least` and `most` does. `fewest`, where given, is set to the protocol
+/// among those looked at that needs the fewest cycles, its number of cycles being those.
 std::optional<ExpectedFit> LeastAmplitude(const Expectation& expected, const Protocol& protocol,
                                           const WantedPrecision& wanted, double least, double most,
                                           const FitOptions& options = {},

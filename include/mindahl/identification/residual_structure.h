@@ -9,7 +9,7 @@ namespace mindahl::identification {
 
 /// Mean residual over a part of the stroke.
 struct StrokeBin {
-  double position = 0.0;        ///< middle, as a share of the way from one reversal to the next
+  double position = 0.0;        ///< middle, as a fraction of the stroke's travel
   double mean = 0.0;            ///< [N]
   double standard_error = 0.0;  ///< [N], from the scatter between strokes; 0 for a single one
 };
@@ -26,7 +26,7 @@ struct StrokeResiduals {
 /// Holds the mean residual by place in the stroke, in either direction.
 struct ResidualStructure {
   std::array<StrokeResiduals, 2> directions;  ///< growing, then falling displacement
-  /// Share of the residuals' variance that comes back at the same place of every stroke: 0 for
+  /// Fraction of the residuals' variance that repeats at the same place of every stroke: 0 for
   /// noise, 1 for what the model cannot follow. 0 where an F test finds nothing, or a
   /// direction has one stroke only.
   double repeatable_share = 0.0;
@@ -44,7 +44,7 @@ struct ResidualStructureOptions {
   double repeat_chance = 1e-3;  ///< at which white noise passes for repeatable
 };
 
-/// One-way analysis of variance of residuals over 20 parts of each stroke.
+/// Makes a one-way analysis of variance of residuals over 20 parts of each stroke.
 /// @param displacement  [m]
 /// @param reversals     as from FindReversals
 /// @param residual      [N], same size as displacement

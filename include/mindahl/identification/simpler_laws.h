@@ -12,7 +12,7 @@
 
 namespace mindahl::identification {
 
-/// A law fitted to a record, and what the record says of it beside the best one. Pessimistic by
+/// Holds a law fitted to a record, and its comparison with the best one. Pessimistic by
 /// default.
 struct LawScore {
   std::string model;             ///< name in FrictionModels() or LimitLaws()
@@ -42,10 +42,10 @@ struct SimplerLaws {
 
 /// Fits a spring, Coulomb's law, Jenkins' element, Dahl's own law with α = 1 and with free α,
 /// Mindlin's contact and the Masing law with free α to one record, each with the offsets of the
-/// options, and says which of them the record tells from the best, by the criterion of
+/// options, and says which of them the record distinguishes from the best, by the criterion of
 /// model_selection.h:
 ///   AICc = n_eff·ln(rms²) + 2k + 2k(k+1)/(n − k − 1),      2 ln Λ = n_eff·ln(rms²/rms_best²)
-/// What is not told apart may be used in the place of the best on such motions as the record's: its
+/// A law that is not distinguished may replace the best for motions like the record's: its
 /// misfit is within what the record's noise hides.
 /// @param options  of every fit; `model` is set here, a given α leaves nothing to choose
 /// @throws InvalidArgument as Fit does, where the options fix α, and where no law can be fitted

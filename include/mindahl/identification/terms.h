@@ -35,7 +35,7 @@ struct TermUnits {
   double half_duration = 1.0;           ///< [s], or samples where the record has no time
   double cycle = 1.0;                   ///< [s], or samples: of the record's cycles, on average
   double covariate = 1.0;               ///< half the range of a covariate's column, in its unit
-  double force_sense = 1.0;             ///< ±1: the force's sense in the file
+  double force_sense = 1.0;             ///< ±1: the force's sign in the file
   double force_reference = 0.0;         ///< [N], what was taken off the record's force
   double displacement_reference = 0.0;  ///< [m], likewise
   double speed = 1.0;                   ///< [m/s] of a scaled velocity of one
@@ -90,21 +90,21 @@ struct Term {
   std::string_view help = {};
 };
 
-/// All parameters of a fit of `response`, in the order in which they are reported: the contact's,
-/// then a record's. They are the same, in the same places, for either response: of a displacement
-/// that answers an imposed force the compliance 1/σ is the linear one and Tc enters the law, where
-/// the contact is unloaded is the offset of the force, and what is beside the contact's force has
-/// no place.
+/// Returns all parameters of a fit of `response`, in the order in which they are reported: the
+/// contact's, then a record's. They are the same, in the same places, for either response: of a
+/// displacement that answers an imposed force the compliance 1/σ is the linear one and Tc enters
+/// the law, where the contact is unloaded is the offset of the force, and what adds to the
+/// contact's force has no place.
 std::span<const Term> Terms(loop::Channel response = loop::Channel::kForce);
 
-/// nullptr when there is none of that name, which is without a record's number.
+/// Returns nullptr when there is none of that name, which is without a record's number.
 const Term* FindTerm(std::string_view name, loop::Channel response = loop::Channel::kForce);
 
-/// The name without a record's number: force_offset for force_offset_2.
+/// Returns the name without a record's number: force_offset for force_offset_2.
 std::string_view TermNameOf(std::string_view parameter);
 
-/// Name of the parameter of a column: covariate_COLUMN, with '_' for what would need quoting in
-/// options and paths (blanks, '=', ':', ',', '.', brackets and quotes).
+/// Returns the name of the parameter of a column: covariate_COLUMN, with '_' for what would need
+/// quoting in options and paths (blanks, '=', ':', ',', '.', brackets and quotes).
 std::string NameOfCovariate(std::string_view column);
 
 }  // namespace mindahl::identification

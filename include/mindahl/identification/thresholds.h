@@ -70,7 +70,7 @@ struct ThresholdRow {
   std::string_view reason;
 };
 
-/// One row a member of Thresholds, in their order.
+/// Returns one row a member of Thresholds, in their order.
 std::span<const ThresholdRow> ThresholdTable();
 
 }  // namespace mindahl::identification

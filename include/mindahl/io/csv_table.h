@@ -47,18 +47,18 @@ class CsvTable {
   [[nodiscard]] std::size_t rows() const { return lines_.size(); }
   [[nodiscard]] std::size_t columns() const { return values_.size(); }
 
-  /// Header cells as written, one a column, or none when the file has no names row.
+  /// Returns the header cells as written, one a column, or none when the file has no names row.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// Cells of the units row, one a column, or none when the file has no units row.
   [[nodiscard]] const std::vector<std::string>& units() const { return units_; }
-  /// Physical line of the header, 0 when there is none.
+  /// Returns the physical line of the header, 0 when there is none.
   [[nodiscard]] std::size_t header_line() const { return header_line_; }
-  /// Rows of preamble above the header, blank lines and comments aside.
+  /// Returns the number of rows of preamble above the header, blank lines and comments aside.
   [[nodiscard]] std::size_t preamble_rows() const { return preamble_rows_; }
-  /// Physical line of each data row.
+  /// Returns the physical line of each data row.
   [[nodiscard]] const std::vector<std::size_t>& lines() const { return lines_; }
 
-  /// The numbers of a column, one a row, valid as long as the table.
+  /// Returns the numbers of a column, one a row, valid as long as the table.
   /// @param column  from 0, < columns()
   /// @throws InputError at the first cell that is missing or is not a number, and at the first
   /// whose
@@ -66,13 +66,13 @@ class CsvTable {
   ///   1000, and the column is smooth without the mark only
   [[nodiscard]] std::span<const double> Numbers(std::size_t column) const;
 
-  /// Likewise, with NaN where a cell is missing or is not a number.
+  /// Returns the same, with NaN where a cell is missing or is not a number.
   [[nodiscard]] std::span<const double> NumbersOrNan(std::size_t column) const {
     return values_.at(column);
   }
 
   /// True when the column was read with decimal commas, and every cell is written like 1,234, so
-  /// that nothing in it tells them from commas that separate thousands.
+  /// that nothing in it distinguishes them from commas that separate thousands.
   [[nodiscard]] bool MayHaveCommasForThousands(std::size_t column) const;
 
   /// False when not one cell of the column is a number.
@@ -121,7 +121,7 @@ class CsvTable {
 /// symbols of units, the units row, with the names row above it (or none, when all are). It has a
 /// text for every column; in a blank-separated file "Time [s]" is one, and so is whatever stands
 /// between two or more blanks. What is above the header is preamble and skipped. A file whose first
-/// row is data has no header. Anything else above the data is an error: a remark there must begin
+/// row is data has no header. Anything else above the data is an error: a comment there must begin
 /// with '#'.
 ///
 /// @param text  the file's content
@@ -130,14 +130,14 @@ class CsvTable {
 /// About 0.1 s for 10⁶ cells; keeps the text and 8 bytes a cell.
 CsvTable ParseCsvTable(std::string text, std::string file);
 
-/// ParseCsvTable() of a file.
+/// Parses a file as ParseCsvTable() does.
 /// @param path    kStandardInput reads that, called "standard input" in messages
 /// @throws InputError also when the file cannot be read, and where it is beyond the limits: a file
 ///   that is too large, holds a zero byte or a line of more than 16 MiB is read no further
 CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits = {});
 
-/// A table of columns that are in memory, to be read as a file with these names in its first line
-/// is; its lines are the rows, counted from 1.
+/// Returns a table of columns that are in memory, to be read as a file with these names in its
+/// first line is; its lines are the rows, counted from 1.
 /// @param columns  of one length, at least one
 /// @param source   where they are from, for messages
 /// @throws InputError where lengths differ, and where there is no column or no row

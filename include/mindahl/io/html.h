@@ -7,8 +7,8 @@
 
 namespace mindahl::io {
 
-/// Text that a page of HTML shows as it is, between tags or in quotes: & < > " ' are escaped; what
-/// is not UTF-8, and control characters but for the line feed, become U+FFFD.
+/// Returns the text that a page of HTML shows as it is, between tags or in quotes: & < > " ' are
+/// escaped; what is not UTF-8, and control characters but for the line feed, become U+FFFD.
 std::string HtmlText(std::string_view text);
 
 /// Describes a figure in words, also for readers who do not see it.
@@ -18,9 +18,9 @@ struct FigureText {
   std::string description;  ///< how to read it, under the title
 };
 
-/// A panel as a figure element with its drawing as inline SVG and a legend: nothing is loaded and
-/// no script is run. Text stays text; colours are classes of FigureStyle(), which follows the
-/// scheme of the reader, light or dark, and is light in print.
+/// Returns a panel as a figure element with its drawing as inline SVG and a legend: nothing is
+/// loaded and no script is run. Text stays text; colours are classes of FigureStyle(), which
+/// follows the scheme of the reader, light or dark, and is light in print.
 ///
 /// At most 6000 points are drawn, evenly over the series, of which each is thinned as WritePlot()
 /// thins: no peak is lost, and a page has a size.
@@ -32,8 +32,8 @@ std::string HtmlFigure(const PlotPanel& panel, const FigureText& text);
 /// --good, --poor and --bad for the rest of a page.
 std::string_view FigureStyle();
 
-/// A whole page, HTML 5, self-contained: it may load nothing, which it tells the browser, and has
-/// no script.
+/// Returns a whole page, HTML 5, self-contained: it may load nothing, by a policy for the browser,
+/// and has no script.
 /// @param title  plain text
 /// @param body   HTML, from the first heading on
 std::string HtmlPage(std::string_view title, std::string_view body);

@@ -14,13 +14,13 @@ struct NamedRecord {
   RecordFile file;
 };
 
-/// The part of a record under one constant load, where that ramps at its ends (FindSettledLoad());
-/// else the record itself.
+/// Returns the part of a record under one constant load, where that ramps at its ends
+/// (FindSettledLoad()); else the record itself.
 /// @param file  its name
 NamedRecord CutAtLoadRamps(const RecordFile& input, const std::string& file);
 
-/// A record whose normal load goes in steps (loop/load_steps.h) as one record for each load; else
-/// the record itself.
+/// Returns a record whose normal load goes in steps (loop/load_steps.h) as one record for each
+/// load; else the record itself.
 /// @param file  its name
 std::vector<NamedRecord> SplitAtLoadSteps(const RecordFile& input, const std::string& file);
 

@@ -28,7 +28,7 @@ struct PlotSeries {
 /// A vertical line across a panel, where something happened.
 struct PlotMark {
   double x = 0.0;     ///< finite; > 0 on a logarithmic axis
-  std::string label;  ///< beside it; "" = none
+  std::string label;  ///< next to it; "" = none
 };
 
 /// One pair of axes. The legend stands above them, on the right of them when it has more than four
@@ -36,8 +36,8 @@ struct PlotMark {
 struct PlotPanel {
   std::string x_label;  ///< with its unit, e.g. "displacement δ [µm]"; "" = none
   std::string y_label;
-  std::vector<PlotSeries> series;  ///< the first twelve are told apart in colour and in grey
-  double height = 1.0;             ///< share of the page, relative to the other panels, > 0
+  std::vector<PlotSeries> series;  ///< the first twelve differ in colour and in grey
+  double height = 1.0;             ///< fraction of the page, relative to the other panels, > 0
   bool log_x = false;
   bool log_y = false;
   std::string title = {};  ///< above the axes; "" = none
@@ -54,7 +54,7 @@ struct Plot {
   std::string subtitle = {};  ///< under the title; "" = none
 };
 
-/// Before the work whose plot it is.
+/// Refuses a bad name, before the work whose plot it is.
 /// @throws InputError when WritePlot() has no format for a file of that name
 void RequirePlotName(const std::filesystem::path& path);
 

@@ -99,7 +99,7 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns = {},
                       const ReadLimits& limits = {});
 
-/// ReadRecord() of a table that is in memory.
+/// Reads a table in memory as ReadRecord() reads a file.
 /// @throws InputError as ReadRecord()
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns = {});
 
@@ -117,7 +117,7 @@ struct LoadedPath {
   std::vector<double> normal_load;   ///< [N]
 };
 
-/// ReadDisplacementPath() with a normal load beside it.
+/// Reads a path like ReadDisplacementPath(), with a normal load.
 /// @param normal_load  column by name or number; unit as for ReadRecord(), without one N
 /// @throws InputError as ReadRecord()
 LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,

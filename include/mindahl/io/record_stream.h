@@ -40,7 +40,7 @@ class RecordStream {
   RecordStream(const RecordStream&) = delete;
   RecordStream& operator=(const RecordStream&) = delete;
 
-  /// Columns, units and notes; without samples.
+  /// Returns the columns, units and notes; without samples.
   [[nodiscard]] const RecordFile& layout() const;
 
   /// Replaces the samples by the next, as many as a mebibyte holds, or as there are before a row
@@ -50,11 +50,11 @@ class RecordStream {
   ///   read
   bool Next(Samples& samples);
 
-  /// Rows that were skipped so far, and the first of them as an error would have named it.
+  /// Returns the number of rows skipped so far; below, the fault of the first as an error names it.
   [[nodiscard]] std::size_t broken_rows() const;
   [[nodiscard]] const std::string& first_broken_row() const;
 
-  /// Bytes read so far.
+  /// Returns the number of bytes read so far.
   [[nodiscard]] std::uintmax_t bytes() const;
 
  private:

@@ -29,10 +29,10 @@ struct LoopMeasures {
   std::optional<double> energy_per_cycle;
 };
 
-/// Energy of each closed cycle [J] = ∮ T dδ by the trapezoidal rule, closed by a chord: from every
-/// other reversal to the next but one. The record's ends count as reversals where they lie within 2
-/// % of the range of the extreme on their side. Positive when the contact dissipates and the force
-/// is that of the contact on the displacement's sense.
+/// Returns the energy of each closed cycle [J] = ∮ T dδ by the trapezoidal rule, closed by a chord:
+/// from every other reversal to the next but one. The record's ends count as reversals where they
+/// lie within 2 % of the range of the extreme on their side. Positive when the contact dissipates
+/// and the force is that of the contact, with the displacement's sign.
 /// @throws InvalidArgument where an energy exceeds the largest double
 /// Summed in long double: where it has 64 bits the error is below 1 ε of the result plus n·2⁻⁶² of
 /// Σ|½(Tᵢ + Tᵢ₋₁)Δδᵢ|, forces counted from the first of the cycle's n samples.
@@ -42,7 +42,7 @@ std::vector<double> CycleEnergies(const RecordView& record, std::span<const std:
 /// @throws InvalidArgument when the record is empty or inconsistent
 LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> reversals);
 
-/// +1 when the force has the displacement's sense, −1 when it opposes it (a load cell on the other
+/// Returns +1 for a force with the displacement's sign, −1 for the opposite (load cell on the other
 /// body): the sign of the mean energy of the closed cycles, which no offset changes; that of the
 /// covariance of force and displacement without a closed cycle, or where the loop is under 1 % of
 /// the rectangle round it or five standard deviations of what noise of both channels makes of its

@@ -6,15 +6,15 @@
 
 namespace mindahl::loop {
 
-/// Standard deviation [m] of white noise on a smooth displacement, from the median of its absolute
-/// third differences, which a smooth drive hardly enters; of an encoder that counts in steps q, at
-/// least q/√12. Samples that repeat the one before say nothing new and are passed over.
+/// Returns the standard deviation [m] of white noise on a smooth displacement, from the median of
+/// its absolute third differences, which a smooth drive hardly enters; of an encoder that counts in
+/// steps q, at least q/√12. Samples that repeat the one before say nothing new and are passed over.
 ///   σ_δ = 1.4826·median|x_i − 3x_{i−1} + 3x_{i−2} − x_{i−3}|/√20
 /// 0 for fewer than four different samples. Efficiency about 0.4: 2 % at 5000 samples.
 double EstimateDisplacementNoise(std::span<const double> displacement);
 
-/// Step [m] of the encoder that a displacement was read from: neighbours differ by whole steps or
-/// not at all. 0 where it was not.
+/// Returns the step [m] of the encoder that a displacement was read from: neighbours differ by
+/// whole steps or not at all. 0 where it was not.
 double EncoderStep(std::span<const double> displacement);
 
 /// Estimates the displacement under its noise, where the motion is smooth.
@@ -32,7 +32,7 @@ class DisplacementSmoother {
   /// @throws InvalidArgument when the noise is negative or not finite
   DisplacementSmoother(std::span<const double> displacement, double noise);
 
-  /// Linear in the displacement.
+  /// Returns the smoothed displacement, which is linear in the readings.
   /// @throws InvalidArgument for another number of samples
   /// Cost: at most 128 additions a sample.
   [[nodiscard]] std::vector<double> Smooth(std::span<const double> displacement) const;
@@ -41,8 +41,8 @@ class DisplacementSmoother {
   std::vector<std::size_t> reach_;  // h of each sample
 };
 
-/// The reversals of a smoothed displacement: the outermost sample of each swing that noise has made
-/// part of two strokes. Between them no sample lies beyond either.
+/// Returns the reversals of a smoothed displacement: the outermost sample of each swing that noise
+/// has made part of two strokes. Between them no sample lies beyond either.
 /// @param smoothed   [m]
 /// @param reversals  those of the displacement as it was read
 std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,

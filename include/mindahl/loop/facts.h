@@ -14,7 +14,7 @@ namespace mindahl::loop {
 /// no offset matters; what a cycle does not show is empty.
 struct CycleFacts {
   std::size_t start = 0;      ///< sample of its first turning point
-  double amplitude = 0.0;     ///< X [m]: a quarter of the way of its two strokes
+  double amplitude = 0.0;     ///< X [m]: a quarter of the travel of its two strokes
   double peak_force = 0.0;    ///< T* [N]: half the range of the force, as in LoopMeasures
   double energy = 0.0;        ///< W [J] = ∮ T dδ, closed by a chord
   double energy_ratio = 0.0;  ///< W/(4XT*) [-]: 1 of a rectangle, 0 of a line
@@ -87,10 +87,10 @@ struct LoopFacts {
 /// reaches 0.999 of its slip force, and 0.95 for α = 2.
 bool Slides(const LoopFacts& facts);
 
-/// µ_W = W/(4·N·sliding amplitude) [-]; empty where the contact slides nowhere or N [N] is not > 0.
+/// Returns µ_W = W/(4·N·sliding amplitude) [-]; empty where nothing slides or N [N] is not > 0.
 std::optional<double> EnergyFrictionCoefficient(const LoopFacts& facts, double normal_load);
 
-/// @param record       with the force in any sense
+/// @param record       with the force of either sign
 /// @param reversals    as from FindReversals on the same record; the first and the last sample may
 /// be
 ///   among them, where the record is known to begin or end at one

@@ -30,7 +30,7 @@ struct GlitchCount {
   [[nodiscard]] std::size_t total() const { return spikes + dropouts + held; }
 };
 
-/// Samples that no contact and no drive has made.
+/// Finds the samples that no contact and no drive has made.
 ///
 /// - A spike of 1 to 3 samples leaves its neighbours and comes back: it lies beyond both by more
 ///   than three times the steps about it (the third largest of 24) and of the record (of ten steps

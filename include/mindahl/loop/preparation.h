@@ -88,7 +88,7 @@ struct PreparedRecord {
   double reversal_gate = 0.0;                    ///< [unit of the excitation]
   ReversalGate gate_choice;                 ///< how sure the gate is; `certain` where it was given
   std::pmr::vector<std::size_t> reversals;  ///< samples; of a noisy record after smoothing
-  LoopMeasures measures;                    ///< with the force in the displacement's sense
+  LoopMeasures measures;                    ///< with the force's sign that of the displacement
   double encoder_step = 0.0;                ///< [m]; 0 where the displacement is no encoder's
   double displacement_noise = 0.0;          ///< [m]; 0 where readings are not smoothed
   std::pmr::vector<unsigned char> counts;   ///< one per sample: 1 where it counts, else 0
@@ -101,9 +101,9 @@ struct PreparedRecord {
   [[nodiscard]] std::span<const double> displacement() const {
     return smoothed.empty() ? readings().displacement : std::span<const double>(smoothed);
   }
-  /// [N]: as measured, with lines over glitches.
+  /// Returns the force [N] as measured, with lines over glitches.
   [[nodiscard]] std::span<const double> force() const { return readings().force; }
-  /// The record with lines over glitches.
+  /// Returns the record with lines over glitches.
   [[nodiscard]] RecordView readings() const {
     RecordView mended = record;
     if (!mended_displacement.empty()) mended.displacement = mended_displacement;
@@ -121,12 +121,12 @@ struct PreparedRecords {
   int force_sense = 1;  ///< ±1, of all records
 
   [[nodiscard]] std::size_t samples() const;
-  /// Samples that count.
+  /// Returns the number of samples that count.
   [[nodiscard]] std::size_t counted() const;
 };
 
-/// Glitches, reversals, sense of force, smoothing and the mask of samples that count: what depends
-/// on no model.
+/// Finds glitches, reversals, sign of force, smoothing and the mask of samples that count: what
+/// depends on no model.
 /// @param records  not empty; their memory must outlive the result
 /// @param memory   of the result and of scratch; must outlive it
 /// @throws InvalidArgument for records or options that break a rule, where a record has no normal

@@ -58,11 +58,11 @@ class ReversalFinder {
   double high_ = 0.0;  // before the displacement goes either way
   double low_ = 0.0;
   double sense_ = 0.0;    // of the motion, ±1; 0 before it is known
-  double extreme_ = 0.0;  // the outermost displacement of the stroke, times the sense
+  double extreme_ = 0.0;  // the outermost displacement of the stroke, times the direction
   std::size_t place_ = 0;
 };
 
-/// Samples at which the direction of displacement reverses.
+/// Returns the samples at which the direction of displacement reverses.
 ///
 /// A reversal is registered at an extremum once the displacement has retreated from it by more than
 /// `gate`; smaller excursions are noise and make no reversal. With gate = 0 every change of
@@ -86,12 +86,12 @@ struct ReversalGate {
   double other_gate = 0.0;      ///< [m]; `gate` where certain
 };
 
-/// Gate [m] that separates reversals of the drive from those made by noise, by an encoder's steps
-/// and by backward steps of a gauge.
+/// Returns the gate [m] that separates reversals of the drive from those made by noise, by an
+/// encoder's steps and by backward steps of a gauge.
 ///
 /// Each excursion, a pair of extremes with its range, vanishes from the count where the gate
 /// reaches its range: the count is a staircase that is known exactly. An excursion looks like noise
-/// where it is brief beside the main strokes and either within the reach of the white noise, of
+/// where it is brief against the main strokes and either within the reach of the white noise, of
 /// which an encoder's steps q make q/√12,
 ///   1.25·2√(2 ln n) standard deviations,
 /// or made mostly of a jump between two samples. Of the plateaus of the count that nearly agree

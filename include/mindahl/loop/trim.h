@@ -16,7 +16,7 @@ enum class TrimReason {
   kRunningIn,  ///< cycles of the test's amplitude whose facts have not settled
 };
 
-/// "rest", "ramp" or "running_in".
+/// Returns "rest", "ramp" or "running_in".
 std::string_view NameOf(TrimReason reason);
 
 /// Successive samples [first, last) at an end of a record.

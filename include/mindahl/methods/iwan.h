@@ -22,7 +22,7 @@ enum class IwanSpacing {
   kOptimal,     ///< √u falls evenly: as good as n elements allow, but for the last
 };
 
-/// The elements whose virgin curve is the polygon of tangents to f at u₀ = 1 > u₁ > … > uₙ = 0:
+/// Makes elements whose virgin curve is the polygon of tangents to f at u₀ = 1 > u₁ > … > uₙ = 0:
 ///   stiffness kᵢ = σ(uᵢ₋₁^α − uᵢ^α),  slip force Tc(Fᵢ − Fᵢ₋₁),  F(u) = (f − xf')/Tc
 /// so that the stiffness at rest and the slip force are those of the law. Between tangents a short
 /// way h apart the polygon lies |f''|h²/8 above f.
@@ -41,8 +41,8 @@ enum class IwanSpacing {
 IwanElements MakeIwanElements(const models::BranchLaw& law, std::size_t elements,
                               IwanSpacing spacing);
 
-/// Force [N] along a displacement [m] of elements unloaded at 0: each keeps its force as its
-/// memory.
+/// Computes the force [N] along a displacement [m] of elements unloaded at 0: each keeps its force
+/// as its memory.
 /// @throws InvalidArgument when sizes differ or a displacement is not finite
 /// Cost: one multiply, add and clamp an element and sample, vectorised.
 void EvaluateIwanForce(const IwanElements& elements, std::span<const double> displacement,

@@ -20,7 +20,7 @@ struct Drive {
   std::span<const double> envelope = {};
 };
 
-/// The loading path of a drive under a model's memory, every change of direction a reversal.
+/// Makes the loading path of a drive, in which every change of direction is a reversal.
 /// @throws InvalidArgument as MakeLoadingPath and MakeEnvelopePath
 models::LoadingPath MakeDrivePath(const models::FrictionModel& model, const Drive& drive);
 
@@ -43,10 +43,10 @@ class OperationCount;  // operations.h
 
 /// A way to evaluate a friction model along a drive.
 ///
-/// Each is told of reversals and of the loops that close (the rules are the model's, and so is the
-/// memory); what differs is how a branch is followed. The order below is that of the largest force
-/// error in 1/steps while the contact does not slip grossly. At gross slip du/dy = −u^α is not
-/// Lipschitz for α < 1: u reaches 0 as the power 1/(1−α) of the distance, which no step sees
+/// Each is given the reversals and the loops that close (the rules are the model's, and so is
+/// the memory); what differs is how a branch is followed. The order below is that of the largest
+/// force error in 1/steps while the contact does not slip grossly. At gross slip du/dy = −u^α is
+/// not Lipschitz for α < 1: u reaches 0 as the power 1/(1−α) of the distance, which no step sees
 /// coming, so that next to slip higher orders fall to 1/(1−α), 1.5 for Mindlin. A step later the
 /// contact slips, exactly so, and what follows has the full order again. Every method is kept from
 /// |T| > Tc by clamping u to [0, 1]; the elements of Iwan add up to Tc, to rounding.
@@ -77,13 +77,13 @@ struct Method {
 /// - iwan, iwan-optimal: `steps` Jenkins elements (methods/iwan.h); orders 1 and 2
 /// - table: the branch law between `steps` equal intervals of y/(1+y), linear; order 2 while u > 0
 ///   at a fixed distance, min(2, 1/|1−α|) for any 0 < α: for α < 1/2 slip is a corner inside the
-///   last interval's chord, for α > 3/2 the way to infinity is one. Exact for α = 2
+///   last interval's chord, for α > 3/2 the interval to infinity is one. Exact for α = 2
 std::span<const Method> Methods();
 
-/// nullptr when there is no such method.
+/// Returns nullptr when there is no such method.
 const Method* FindMethod(std::string_view name);
 
-/// A method made ready for a law: what a simulator does once.
+/// Returns a method made ready for a law: what a simulator does once.
 /// @param model  must outlive the evaluator
 /// @throws InvalidArgument for an invalid law or resolution, or a model that the method does not
 ///   serve, naming both

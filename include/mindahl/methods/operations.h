@@ -34,7 +34,7 @@ enum class Operation : std::size_t {
 
 inline constexpr std::size_t kOperations = static_cast<std::size_t>(Operation::kIteration) + 1;
 
-/// "sample", "place", "reversal", …
+/// Returns "sample", "place", "reversal", …
 std::string_view NameOf(Operation operation);
 
 /// How many of each a whole drive takes.

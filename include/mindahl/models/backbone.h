@@ -33,7 +33,7 @@ template <typename Real>
 inline constexpr Real kLargestDisplacement = std::numeric_limits<Real>::max() /
                                              (kLargestShapeExponent<Real> * Real(1e8));
 
-/// The largest |x| that y = rate·|x| may be formed from.
+/// Returns the largest |x| that y = rate·|x| may be formed from.
 template <typename Real>
 [[nodiscard]] Real Reach(Real rate) {
   constexpr Real kLargest = std::numeric_limits<Real>::max();
@@ -127,18 +127,18 @@ struct GeneralShape {
     return {log_remaining, 1 - force, force, (1 - force) / at.z};
   }
 
-  /// u, the share of the slip force still to be mobilised.
+  /// Returns u, the fraction of the slip force still to be mobilised.
   [[nodiscard]] Real Remaining(const Reduced<Real>& at) const {
     return at.z > 0 ? At(at).remaining : Real(0);
   }
 
-  /// φ
+  /// Returns φ.
   [[nodiscard]] Real Force(const Reduced<Real>& at) const {
     return at.z > 0 ? At(at).force : Real(1);
   }
   [[nodiscard]] Real Force(Real y) const { return Force(Reduce(y)); }
 
-  /// φ'; 0 at and beyond gross slip.
+  /// Returns φ'; 0 at and beyond gross slip.
   [[nodiscard]] Real Slope(const Reduced<Real>& at) const {
     return at.z > 0 ? At(at).slope : Real(0);
   }
@@ -151,14 +151,14 @@ struct GeneralShape {
 /// α = 1/3, Mindlin: u = z·√z with z = 1 − 2y/3. A square root and a division a value.
 template <typename Real>
 struct MindlinShape {
-  /// 1 − z√z = (1 − z³)/(1 + z√z) = w(1 + z + z²)/(1 + z√z): no cancellation as y → 0.
+  /// Returns 1 − z√z = (1 − z³)/(1 + z√z) = w(1 + z + z²)/(1 + z√z): no cancellation as y → 0.
   [[nodiscard]] Real Force(Real y) const {
     const Real w = std::min(Real(2) / 3 * y, Real(1));
     const Real z = 1 - w;
     return w * (1 + z + z * z) / (1 + z * std::sqrt(z));
   }
 
-  /// √z
+  /// Returns √z.
   [[nodiscard]] Real Slope(Real y) const {
     return std::sqrt(std::max(GeneralShape<Real>{Real(1) / 3}.Reduce(y).z, Real(0)));
   }
@@ -222,7 +222,7 @@ struct SeriesDerivatives {
 /// or u cancels:
 ///   y = D(β,ℓ),  φ = D(1,ℓ),  D(c,ℓ) = (1 − e^{−cℓ})/c
 ///
-/// Where κφ' >= 1 the spring gives way more than the contact, elsewhere less: Y is there nearly
+/// Where κφ' >= 1 the spring is more compliant than the contact, elsewhere less: Y is there nearly
 /// linear in φ and in y, with a slope that varies by less than twofold. Tangents at the ends of
 /// either part start an iteration of third order, whose steps take the sum of the two decays for
 /// one decay: exact for κ → 0, for κ → ∞ and for α = 0.
@@ -253,12 +253,12 @@ class InSeries<GeneralShape<Real>> {
     return beta_ > 0 && beta_ * total >= 1 + beta_ * compliance_;
   }
 
-  /// Φ
+  /// Returns Φ.
   [[nodiscard]] Real Force(Real total) const {
     return Slips(total) ? Real(1) : ForceAt(LogShare(total));
   }
 
-  /// dΦ/dY = φ'/(1+κφ')
+  /// Returns dΦ/dY = φ'/(1+κφ').
   [[nodiscard]] Real Slope(Real total) const {
     if (Slips(total)) return 0;
     const Real slope = GeneralShape<Real>{shape_exponent_}.Slope(DisplacementAt(LogShare(total)));
@@ -295,7 +295,7 @@ class InSeries<GeneralShape<Real>> {
   [[nodiscard]] Real DisplacementAt(Real log_share) const { return DecayOf(beta_, log_share).sum; }
   [[nodiscard]] static Real ForceAt(Real log_share) { return -std::expm1(-log_share); }
 
-  /// ℓ where κφ' = κ·e^{−αℓ} = 1; 0 where κ < 1, kFarthest where u underflows before.
+  /// Returns ℓ where κφ' = κ·e^{−αℓ} = 1; 0 where κ < 1, kFarthest where u underflows before.
   [[nodiscard]] Real Balance() const {
     constexpr Real kFarthest = Real(-2) * std::numeric_limits<Real>::min_exponent;
     if (compliance_ <= 1) return 0;
@@ -304,7 +304,7 @@ class InSeries<GeneralShape<Real>> {
                                                         : kFarthest;
   }
 
-  /// ℓ from a share of what is left to go, which rounding may have used up.
+  /// Returns ℓ from a fraction of what is left to go, which rounding may have used up.
   static Real FromShare(Real share) {
     return -std::log1p(-std::min(share, 1 - std::numeric_limits<Real>::epsilon() / 2));
   }
@@ -328,7 +328,7 @@ class InSeries<GeneralShape<Real>> {
     return 2 * half * (1 + square * (Real(1) / 3 + square / 5));
   }
 
-  /// ℓ at Y short of slip.
+  /// Returns ℓ at Y short of slip.
   [[nodiscard]] Real LogShare(Real total) const {
     constexpr Real kEpsilon = std::numeric_limits<Real>::epsilon();
     constexpr Real kRounding = 16 * kEpsilon;    // of Y: what the residual is known to

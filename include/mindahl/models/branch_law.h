@@ -17,14 +17,14 @@ struct BranchLaw {
 /// @throws InvalidArgument naming the parameter, its value and the rule
 void Validate(const BranchLaw& law);
 
-/// The law of the same contact under another load: σ·(N/N₀)^p, α, Tc·N/N₀.
+/// Returns the law of the same contact under another load: σ·(N/N₀)^p, α, Tc·N/N₀.
 /// @param load_ratio     N/N₀ [–], finite, > 0
 /// @param load_exponent  p [–], finite
 BranchLaw AtLoad(const BranchLaw& law, double load_ratio, double load_exponent);
 
-/// Displacement at gross slip [m]: δc = Tc/(σ(1−α)) for α < 1. Infinite for α >= 1, which only
-/// approaches Tc, and where it exceeds the largest double, which no x reaches. Johnson (1985) 7.42
-/// at the limit, for α = 1/3. Relative error < 1 ε = 2.2e-16.
+/// Returns the displacement at gross slip [m]: δc = Tc/(σ(1−α)) for α < 1. Infinite for α >= 1,
+/// which only approaches Tc, and where it exceeds the largest double, which no x reaches. Johnson
+/// (1985) 7.42 at the limit, for α = 1/3. Relative error < 1 ε = 2.2e-16.
 double GrossSlipDisplacement(const BranchLaw& law);
 
 // The functions below take a valid law and any x but NaN, which they refuse by InvalidArgument.
@@ -33,18 +33,18 @@ double GrossSlipDisplacement(const BranchLaw& law);
 // what underflows is right to half the smallest denormal. With a 53-bit long double the errors of f
 // stay below 4 ε, those near slip and of the work grow (docs/accuracy.md).
 
-/// f(x) [N], odd in x [m]; ±Tc at and beyond gross slip.
+/// Returns f(x) [N], odd in x [m]; ±Tc at and beyond gross slip.
 double BackboneForce(const BranchLaw& law, double x);
 
-/// u(x) = 1 − |f(x)|/Tc [–], the share of the slip force still to be mobilised; even in x, exactly
-/// 0 at and beyond gross slip. The stick radius of a Mindlin contact is c/a = u^{1/3} (Peyret eq.
-/// 5).
+/// Returns u(x) = 1 − |f(x)|/Tc [–], the fraction of the slip force still to be mobilised; even in
+/// x, exactly 0 at and beyond gross slip. The stick radius of a Mindlin contact is c/a = u^{1/3}
+/// (Peyret eq. 5).
 double BackboneRemaining(const BranchLaw& law, double x);
 
-/// f'(x) [N/m] = σ·u^α, even in x; 0 beyond gross slip.
+/// Returns f'(x) [N/m] = σ·u^α, even in x; 0 beyond gross slip.
 double BackboneSlope(const BranchLaw& law, double x);
 
-/// ∫₀^|x| f dx [J] = Tc·x − Tc²·(1 − u^{2−α})/(σ(2−α)), by its series where these cancel.
+/// Returns ∫₀^|x| f dx [J] = Tc·x − Tc²·(1 − u^{2−α})/(σ(2−α)), by its series where these cancel.
 /// @throws InvalidArgument also for an infinite x and where the work exceeds the largest double
 double BackboneWork(const BranchLaw& law, double x);
 

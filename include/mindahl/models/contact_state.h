@@ -33,7 +33,7 @@ struct ContactStateOptions {
 /// reuses its memory; Peek tries a displacement without either.
 class ContactState {
  public:
-  /// The virgin contact: T = 0 at δ₀, nothing to remember.
+  /// Makes the virgin contact: T = 0 at δ₀, nothing to remember.
   /// @param model  any of FrictionModels() that is not scaled by the peak, or a model of the user's
   ///   that outlives the state and its copies
   /// @param law    its α is used as it stands, also for a model that prescribes one
@@ -68,16 +68,16 @@ class ContactState {
                                          : PeekAcrossBranches(displacement);
   }
 
-  /// T [N] at the present displacement.
+  /// Returns T [N] at the present displacement.
   [[nodiscard]] double Force() const { return Force(force_over_slip_); }
 
-  /// δ [m]
+  /// Returns δ [m].
   [[nodiscard]] double Displacement() const { return displacement_; }
 
-  /// dT/dδ [N/m] onward in the direction of the last motion, for a further iteration or an implicit
-  /// step; σ before any. The stiffness against that direction is that of a new branch. At a corner
-  /// (α = 0 at slip) that of the slipping side; infinite where Dahl's σ·2^α exceeds the largest
-  /// double.
+  /// Returns dT/dδ [N/m] onward in the direction of the last motion, for a further iteration or an
+  /// implicit step; σ before any. The stiffness against that direction is that of a new branch. At
+  /// a corner (α = 0 at slip) that of the slipping side; infinite where Dahl's σ·2^α exceeds the
+  /// largest double.
   /// Error below 16 ε of the stiffness with which the branch starts, to what a change of δ by 4 ε
   /// would make. Cost: as of Move.
   [[nodiscard]] double TangentStiffness() const;
@@ -86,7 +86,7 @@ class ContactState {
   /// @throws InvalidArgument as Move
   [[nodiscard]] double PeekTangentStiffness(double displacement) const;
 
-  /// Back to the virgin contact at δ₀; keeps the memory that was reserved.
+  /// Returns to the virgin contact at δ₀; keeps the memory that was reserved.
   void Reset();
 
   /// Makes room for so many remembered extremes, after which Move allocates nothing before they are
@@ -122,12 +122,12 @@ class ContactState {
     double end = 0.0;        // s times the displacement before which the branch holds
     double rise = 0.0;       // s·height
 
-    /// Neither a reversal, nor beyond the end, nor NaN.
+    /// True if a displacement is neither a reversal, nor beyond the end, nor NaN.
     [[nodiscard]] bool HoldsTo(double displacement) const {
       const double there = direction * displacement;
       return there >= ahead && there < end;
     }
-    /// y
+    /// Returns y.
     [[nodiscard]] double Reduced(double displacement) const {
       return branch.rate * std::min(direction * displacement - start, branch.reach);
     }
@@ -136,13 +136,13 @@ class ContactState {
     }
   };
 
-  /// A course that is entered, and how many branches are then open.
+  /// Holds a branch that is entered, and how many branches are then open.
   struct Entry {
     Course course;
     std::size_t open = 1;
   };
 
-  /// φ(y)
+  /// Returns φ(y).
   static double Share(const Shape& shape, double y) {
     if (std::holds_alternative<Jenkins>(shape)) return Jenkins{}.Force(y);
     if (std::holds_alternative<Mindlin>(shape)) return Mindlin{}.Force(y);

@@ -6,7 +6,7 @@
 /// amplitude: they are one curve there, each with a σ and a Tc of its own (docs/theory.md §6).
 namespace mindahl::models {
 
-/// Dahl's own law on whose steady loop between ±amplitude a Masing law runs:
+/// Returns Dahl's own law on whose steady loop between ±amplitude a Masing law runs:
 ///   α' = α      σ' = σ·(1 − T*/(2Tc))^α = σ·((1+u)/2)^α      Tc' = 2Tc − T* = Tc·(1+u)
 /// with T* = f(X) and u = 1 − T*/Tc; in gross slip σ' = 2^{−α}·σ and Tc' = Tc, for X = 0, which is
 /// a straight line, σ' = σ and Tc' = 2Tc. Peyret et al. (2017) eq. 20 is eq. 10 of these:
@@ -18,7 +18,7 @@ namespace mindahl::models {
 /// Relative error below (2 + α) ε of σ', below 2 ε of Tc'.
 BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude);
 
-/// The Masing law that runs through the steady loop of Dahl's own law between ±amplitude:
+/// Returns the Masing law that runs through the steady loop of Dahl's own law between ±amplitude:
 ///   α = α'      σ = σ'·(1 + T*/Tc')^α      Tc = (Tc' + T*)/2
 /// the inverse of DahlEquivalent(). σ is eq. 12's slope after a reversal at T*, where a Masing
 /// branch starts with the virgin stiffness.

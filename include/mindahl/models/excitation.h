@@ -11,10 +11,10 @@ namespace mindahl::models {
 
 enum class Waveform { kSine, kTriangle, kGrowingSine, kRandom, kNested };
 
-/// "sine", "triangle", "growing-sine", "random", "nested": in the order of Waveform.
+/// Returns "sine", "triangle", "growing-sine", "random", "nested": in the order of Waveform.
 std::span<const std::string_view> WaveformNames();
 
-/// The waveform of one of these names; empty for any other.
+/// Returns the waveform of one of these names; empty for any other.
 std::optional<Waveform> FindWaveform(std::string_view name);
 
 struct ExcitationOptions {
@@ -34,7 +34,7 @@ struct Excitation {
   std::vector<double> envelope;      ///< amplitude [m] at each sample
 };
 
-/// Displacement imposed on a contact.
+/// Makes the displacement imposed on a contact.
 ///   sine          A·sin(2πft)
 ///   triangle      the same extremes and zeros joined by straight lines
 ///   growing sine  A·g^{t/t_end − 1}·sin(2πft)

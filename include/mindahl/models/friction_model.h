@@ -41,7 +41,7 @@ struct FrictionModel {
   Memory memory = Memory::kReturnPoint;
   std::optional<double> shape_exponent = std::nullopt;  ///< α where the model prescribes it
   bool bounded = true;                                  ///< |T| <= Tc on every path
-  /// `scale` looks at the peak: the model must be told the amplitude, so it cannot be fitted.
+  /// `scale` looks at the peak: the model needs the amplitude as an input, so it cannot be fitted.
   bool scaled_by_peak = false;
 
   /// @param signed_force  s·T₀/Tc at the branch's origin, s its direction
@@ -51,10 +51,10 @@ struct FrictionModel {
   SteadyPeak (*steady_peak)(double y, double shape_exponent) = nullptr;
 };
 
-/// All models, in the order of the documentation.
+/// Returns all models, in the order of the documentation.
 std::span<const FrictionModel> FrictionModels();
 
-/// nullptr when there is no such model.
+/// Returns nullptr when there is no such model.
 const FrictionModel* FindFrictionModel(std::string_view name);
 
 }  // namespace mindahl::models

@@ -8,8 +8,8 @@
 
 namespace mindahl::models {
 
-/// Tangential displacement [m] of a contact at each sample of an imposed force: exact, no time
-/// step, the inverse of EvaluateForce for a contact that starts unloaded, T = 0 at δ = 0.
+/// Computes the tangential displacement [m] of a contact at each sample of an imposed force: exact,
+/// no time step, the inverse of EvaluateForce for a contact that starts unloaded, T = 0 at δ = 0.
 ///
 ///   δ = δᵣ + s·y(|T − Tᵣ|/(span·v·Tc))/k + T/k_r,   y(φ) = (1 − u^{1−α})/(1 − α),  u = 1 − φ
 ///

@@ -26,7 +26,7 @@ struct LimitLaw {
 /// Exact to rounding.
 std::span<const LimitLaw> LimitLaws();
 
-/// nullptr when there is no such law.
+/// Returns nullptr when there is no such law.
 const LimitLaw* FindLimitLaw(std::string_view name);
 
 }  // namespace mindahl::models

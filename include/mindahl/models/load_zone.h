@@ -7,7 +7,7 @@ namespace mindahl::models {
 template <typename Real>
 struct LoadZone {
   Real inner{};       ///< h₁ [m]
-  Real slope{};       ///< r' [–], within ±1; ±1 where the last slip was in that sense
+  Real slope{};       ///< r' [–], within ±1; ±1 where the last slip was in that direction
   Real intercept{};   ///< r(0) [m], of the line
   Real force{};       ///< Σ r'·ΔTc [N] over the zones within
   Real slip_force{};  ///< Tc(h₁) [N]

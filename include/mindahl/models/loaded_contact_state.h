@@ -44,16 +44,16 @@ class LoadedContactState {
   /// Returns or throws what Move(δ, N) would, without moving.
   [[nodiscard]] double Peek(double displacement, double normal_load) const;
 
-  /// T [N] after the last step.
+  /// Returns T [N] after the last step.
   [[nodiscard]] double Force() const { return force_; }
 
-  /// δ [m]
+  /// Returns δ [m].
   [[nodiscard]] double Displacement() const { return displacement_; }
 
-  /// N [N]
+  /// Returns N [N].
   [[nodiscard]] double NormalLoad() const { return rim_.normal_load; }
 
-  /// Back to the contact before its first step; keeps the memory that was reserved.
+  /// Returns to the contact before its first step; keeps the memory that was reserved.
   void Reset();
 
   /// Makes room for so many zones, after which Move allocates nothing before they are more.

@@ -20,9 +20,9 @@ struct LoadedHistory {
   std::vector<std::size_t> before;
 };
 
-/// History of a record under the load ratios given. Between reversals the law takes any step back
-/// for one: where samples step back within the gate, the displacement is the nearest that does not
-/// (least squares, by pooling neighbours: Ayer et al. 1955).
+/// Makes the history of a record under the load ratios given. Between reversals the law takes any
+/// step back for one: where samples step back within the gate, the displacement is the nearest that
+/// does not (least squares, by pooling neighbours: Ayer et al. 1955).
 ///
 /// A contact that had settled has no closed form under a varying load, but repeats itself exactly
 /// from the second cycle of (δ, N) on: a steady one is taken, from unloaded at 0, to the record's
@@ -53,8 +53,8 @@ class NormalizedLoadedResponse {
   void Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
                 std::span<double> t);
 
-  /// The same with derivatives: exact, where t has them. They are taken along with the recursion,
-  /// at two to three times its cost.
+  /// Computes the same with derivatives: exact, where t has them. They are taken along with the
+  /// recursion, at two to three times its cost.
   /// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0
   void Differentiate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
                      std::span<double> t, const NormalizedGradient& gradient);

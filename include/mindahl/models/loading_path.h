@@ -59,8 +59,8 @@ struct LoadingPath {
   double asymmetry = 0.0;          ///< asymmetry of the slip forces, as InitialContact's
 };
 
-/// Largest force in the sense of a branch [Tc]: that of the slip forces where it is the virgin
-/// curve's; every other is as high as its law has it.
+/// Returns the largest force [Tc] in the direction of a branch: that of the slip forces where it is
+/// the virgin curve's; every other is as high as its law has it.
 [[nodiscard]] inline double VirginLimit(const LoadingPath& path, const Branch& branch) {
   return branch.start == BranchStart::kUnloaded ? 1 + branch.direction * path.asymmetry : 1.0;
 }
@@ -84,16 +84,16 @@ struct InitialContact {
   double asymmetry = 0.0;
 };
 
-/// Path of a record under the rules of `memory`:
+/// Makes the path of a record under the rules of `memory`:
 /// - kReturnPoint: a branch that passes the previous extremum of its side erases the inner loop and
 ///   continues the branch before it; passing the mirror image of the first extremum rejoins the
 ///   virgin curve (Madelung's rules). Reaching it exactly counts as passing.
 /// - kNone: every reversal opens a branch from the last one.
-/// Where the slip forces differ, the virgin curve is one branch in either sense, both of which are
-/// there from the start, and the mirror image of an extremum at x is (1 − a)/(1 + a) times as far
-/// on the other side where x > 0, else (1 + a)/(1 − a) times. With a virgin contact the way from
-/// `unloaded_displacement` to the first sample is the first loading step. With a steady one the
-/// record is taken to go on from a loop between its own extremes.
+/// Where the slip forces differ, the virgin curve is one branch in either direction, both of which
+/// are there from the start, and the mirror image of an extremum at x is (1 − a)/(1 + a) times as
+/// far on the other side where x > 0, else (1 + a)/(1 − a) times. With a virgin contact the travel
+/// from `unloaded_displacement` to the first sample is the first loading step. With a steady one
+/// the record is taken to go on from a loop between its own extremes.
 ///
 /// @param displacement  [m], finite
 /// @param reversals     as from FindReversals on the same displacements; between them samples may
@@ -107,12 +107,12 @@ LoadingPath MakeLoadingPath(std::span<const double> displacement,
                             std::span<const std::size_t> reversals, Memory memory,
                             const InitialContact& initial);
 
-/// The same into a path whose memory is used again.
+/// Makes the same into a path whose memory is used again.
 void MakeLoadingPath(std::span<const double> displacement, std::span<const std::size_t> reversals,
                      Memory memory, const InitialContact& initial, LoadingPath& path);
 
-/// Path of a model without memory whose steady amplitude changes along the way: every sample is a
-/// branch of its own, from the last, with the amplitude X given for it.
+/// Makes the path of a model without memory whose steady amplitude changes along the way: every
+/// sample is a branch of its own, from the last, with the amplitude X given for it.
 /// @param amplitude  [m] of the excitation's envelope, one a sample
 LoadingPath MakeEnvelopePath(std::span<const double> displacement,
                              std::span<const double> amplitude, double unloaded_displacement);

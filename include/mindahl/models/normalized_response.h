@@ -39,7 +39,7 @@ struct OriginSensitivity {
 
 /// EvaluateForce and its gradient over Tc (response.h has the equations and the accuracy), for
 /// solvers: columns instead of rows, and buffers that are kept, so that nothing is allocated once
-/// they are large enough. Tc itself and what is linear beside it are the caller's.
+/// they are large enough. Tc itself and all other linear terms are the caller's.
 class NormalizedResponse {
  public:
   NormalizedResponse();

@@ -10,9 +10,9 @@
 
 namespace mindahl::models {
 
-/// A spring in series with the contact: what the rig itself gives way. Displacements are then those
-/// of both, δ = x + T/k_r with x the contact's, and T(δ) follows exactly the same rules, each
-/// branch φ being composed with the spring (docs/theory.md §5).
+/// Describes a spring in series with the contact: the compliance of the rig itself. Displacements
+/// are then those of both, δ = x + T/k_r with x the contact's, and T(δ) follows exactly the same
+/// rules, each branch φ being composed with the spring (docs/theory.md §5).
 struct SeriesSpring {
   /// k_r [N/m], > 0; infinite for a rigid rig
   double stiffness = std::numeric_limits<double>::infinity();
@@ -21,12 +21,12 @@ struct SeriesSpring {
 /// @throws InvalidArgument unless the stiffness is > 0, or infinite
 void Validate(const SeriesSpring& rig);
 
-/// Displacement at gross slip [m] of spring and contact: δc + Tc/k_r, infinite for α >= 1.
+/// Returns the gross-slip displacement [m] of spring and contact: δc + Tc/k_r, ∞ for α >= 1.
 /// @throws InvalidArgument for an invalid law or spring
 /// Relative error < 2 ε.
 double GrossSlipDisplacement(const BranchLaw& law, const SeriesSpring& rig);
 
-/// Tangential force [N] at each sample of a loading path: exact, no time step.
+/// Computes the tangential force [N] at each sample of a loading path: exact, no time step.
 ///
 ///   T(δ) = Tc·(t₀ + span·v·sgn(e)·φ(k|e|)),  e = δ − origin of the sample's branch
 ///
@@ -52,7 +52,7 @@ void EvaluateForce(const FrictionModel& model, const BranchLaw& law, const Loadi
                    std::span<const double> displacement, std::span<double> force,
                    const SeriesSpring& rig = {});
 
-/// The same in single precision: samples and forces are float, branches are prepared in double.
+/// Computes the same in single precision: float samples and forces, branches prepared in double.
 /// @param path  as from MakeLoadingPath on the same displacements, widened to double
 /// @throws InvalidArgument also where Tc or σ/Tc is no normal float, or α > 1e10
 /// Absolute error below 16·2⁻²³·Tc = 2e-6·Tc, however many reversals; docs/accuracy.md says where
@@ -70,9 +70,9 @@ enum GradientColumn : std::size_t {
   kGradientColumns = 5,
 };
 
-/// EvaluateForce with closed-form derivatives. Where the law has a corner (α = 0 at slip) they are
-/// those of the slipping side. On the virgin curve the error is below 16 ε of Tc, of ∂T/∂δ₀ of σ,
-/// to what a change of δ by 4 ε would make: for α < 1/2 the slope varies without bound next to
+/// Computes the force with closed-form derivatives. Where the law has a corner (α = 0 at slip) they
+/// are those of the slipping side. On the virgin curve the error is below 16 ε of Tc, of ∂T/∂δ₀ of
+/// σ, to what a change of δ by 4 ε would make: for α < 1/2 the slope varies without bound next to
 /// slip. ∂T/∂δ₀ keeps the amplitude that a peak-scaled model refers to.
 /// @param gradient  written, row-major, displacement.size() × kGradientColumns
 void EvaluateForceAndGradient(const FrictionModel& model, const BranchLaw& law,

@@ -6,14 +6,14 @@
 
 namespace mindahl::models {
 
-/// T* [N]: force at the extremes of the steady loop between ±amplitude [m].
+/// Returns T* [N]: force at the extremes of the steady loop between ±amplitude [m].
 /// @throws InvalidArgument for an invalid law or amplitude
 /// Relative error below 6 ε = 1.3e-15 for a Masing law, 16 ε for Dahl's.
 double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double amplitude);
 
-/// W [J] lost per cycle in the steady loop between ±amplitude [m].
-/// For a Masing law 8∫₀^X f dx − 4X·f(X) (Johnson 7.57 for α = 1/3), without the cancellation of
-/// the two terms at small X; for the laws without memory the same integral over their own branches.
+/// Returns W [J] lost per cycle in the steady loop between ±amplitude [m]. For a Masing law
+/// 8∫₀^X f dx − 4X·f(X) (Johnson 7.57 for α = 1/3), without the cancellation of the two terms at
+/// small X; for the laws without memory the same integral over their own branches.
 /// @throws InvalidArgument for an invalid law or amplitude, and where the energy exceeds the
 /// largest
 ///   double
@@ -22,7 +22,7 @@ double SteadyPeakForce(const FrictionModel& model, const BranchLaw& law, double 
 /// W is a difference of nearly equal numbers, of 4XT*.
 double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double amplitude);
 
-/// The part of an amplitude [m] that is the contact's where a rig in series shares in it:
+/// Returns the part of an amplitude [m] that is the contact's where a rig in series shares in it:
 ///   X_c = X − T*(X_c)/k_r
 /// @param amplitude  [m] of contact and rig, finite, >= 0
 /// @throws InvalidArgument for an invalid law or amplitude
@@ -30,14 +30,14 @@ double SteadyLoopEnergy(const FrictionModel& model, const BranchLaw& law, double
 double ContactAmplitude(const FrictionModel& model, const BranchLaw& law, const SeriesSpring& rig,
                         double amplitude);
 
-/// Least amplitude [m] of the contact whose steady loop slips grossly: δc = Tc/(σ(1−α)) of a Masing
-/// law, 2^−α·δc of Dahl's own, whose branches set out steeper after a reversal. Infinite for α
-/// >= 1.
+/// Returns the least amplitude [m] of the contact whose steady loop slips grossly: δc = Tc/(σ(1−α))
+/// of a Masing law, 2^−α·δc of Dahl's own, whose branches set out steeper after a reversal.
+/// Infinite for α >= 1.
 /// @throws InvalidArgument for an invalid law
 /// Relative error 4 ε.
 double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law);
 
-/// Energy ratio A = W/(4·X·T*) at the onset of gross slip, X that of contact and rig together:
+/// Returns A = W/(4·X·T*) at the onset of gross slip, with X of contact and rig together:
 ///   α/(2−α)·X_s/(X_s + Tc/k_r),  X_s = SteadyGrossSlipAmplitude
 /// of either kind of law, since a steady loop of one amplitude is the same curve for both
 /// (docs/theory.md §6); 1 for α >= 1, where slip is only approached.
@@ -46,9 +46,9 @@ double SteadyGrossSlipAmplitude(const FrictionModel& model, const BranchLaw& law
 double GrossSlipEnergyRatio(const FrictionModel& model, const BranchLaw& law,
                             const SeriesSpring& rig);
 
-/// Energy ratio A = W/(4·X·T*) at the onset of gross slip of a Masing law: α/(2−α), 0.2 for
-/// Mindlin, the fretting community's limit between partial and gross slip (Fouvry). NaN-free: 1 for
-/// α >= 1, where slip is only approached. Relative error below 1 ε.
+/// Returns the energy ratio A = W/(4·X·T*) at the onset of gross slip of a Masing law: α/(2−α), 0.2
+/// for Mindlin, the fretting community's limit between partial and gross slip (Fouvry). NaN-free: 1
+/// for α >= 1, where slip is only approached. Relative error below 1 ε.
 double GrossSlipEnergyRatio(double shape_exponent);
 
 }  // namespace mindahl::models

@@ -12,12 +12,12 @@
 
 namespace mindahl::report {
 
-/// Correlation of the errors of two parameters of a fit; 0 where the fit does not say.
+/// Returns the correlation of the errors of two parameters of a fit; 0 where the fit does not say.
 double Correlation(const identification::FitResult& fit, std::string_view first,
                    std::string_view second);
 
-/// IdentifyContact() of a fit, with its errors and their correlation, and by the rules that
-/// keep it from saying what the record does not tell:
+/// Identifies the contact of a fit, with its errors and their correlation, and by the rules that
+/// keep it from stating what the record does not determine:
 ///  - errors are those of the parameters' intervals, FitResult::ErrorOf(): a parameter that was
 ///    held is exact, one that the record leaves open has an infinite error;
 ///  - no μ from a slip force that is not identifiable: `unidentified` then has the lower limit;
@@ -27,19 +27,19 @@ double Correlation(const identification::FitResult& fit, std::string_view first,
 contact::IdentifiedContact IdentifyFittedContact(const identification::FitResult& fit,
                                                  const contact::KnownContact& known);
 
-/// The contact by another law than the fitted one, whose σ and Tc are as uncertain, relatively.
+/// Identifies the contact by a law that was not fitted, with the same relative errors of σ and Tc.
 /// @throws InvalidArgument as IdentifyContact()
 contact::IdentifiedContact IdentifyContactOf(const identification::FitResult& fit,
                                              const models::BranchLaw& law,
                                              const contact::KnownContact& known);
 
-/// Why μ is withheld though the normal load is known: the slip force is not identifiable. Empty
-/// where it is not withheld.
+/// Returns why μ is withheld though the normal load is known: the slip force is not identifiable.
+/// Empty where it is not withheld.
 std::optional<std::string> WhyFrictionIsWithheld(const identification::FitResult& fit,
                                                  const contact::KnownContact& known);
 
-/// Mean measured normal load [N], which a steady test keeps to: of the samples in the window where
-/// there is one. Empty where a record has no load or no sample counts.
+/// Returns the mean measured normal load [N], which a steady test keeps to: of the samples in the
+/// window where there is one. Empty where a record has no load or no sample counts.
 std::optional<double> MeanNormalLoad(std::span<const loop::Record> records,
                                      const std::optional<identification::Interval>& window = {});
 

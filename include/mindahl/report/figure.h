@@ -5,8 +5,8 @@
 
 namespace mindahl::report {
 
-/// Measured and fitted loop, with the residual along the displacement below: of samples in the load
-/// window where there is one.
+/// Plots the measured and fitted loop, with the residual along the displacement below: of samples
+/// in the load window where there is one.
 /// @throws InvalidArgument for a fit that failed
 io::Plot ToPlot(const Report& report);
 

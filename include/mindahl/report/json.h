@@ -6,8 +6,8 @@
 
 namespace mindahl::report {
 
-/// Schema mindahl.fit/1, as `mindahl fit --json` writes it, with the end of line: docs/contract.md.
-/// UTF-8; bytes of a file name that are not are replaced.
+/// Returns the JSON of schema mindahl.fit/1, as `mindahl fit --json` writes it, with the end of
+/// line: docs/contract.md. UTF-8; bytes of a file name that are not are replaced.
 std::string ToJson(const Report& report);
 
 }  // namespace mindahl::report

@@ -62,7 +62,7 @@ struct LoadSeries {
   std::vector<LoadLaw> laws;
 };
 
-/// Whether a load series denies Hertz's law: p = 1/3 is rejected, or p was held at another value.
+/// True if a load series denies Hertz's law: p = 1/3 is rejected, or p was held at another value.
 /// Then no ρ and no pressure follow from a contact radius.
 bool DeniesHertz(const identification::FitResult& fit);
 

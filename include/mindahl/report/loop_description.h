@@ -43,8 +43,8 @@ struct LoopDescription {
   std::optional<SlipRegime> regime;
 };
 
-/// From this share of Tc on a law with α >= 1 is said to slip as a whole, which it never quite
-/// does: no record tells 1 % of the force.
+/// Fraction of Tc from which a law with α >= 1 is said to slip as a whole, which it never quite
+/// does: no record determines 1 % of the force.
 inline constexpr double kAsGoodAsSlip = 0.99;
 
 /// True if a law's steady loop of amplitude X [m] of the contact reaches gross slip.

@@ -38,15 +38,15 @@ inline constexpr double kSignificance = 0.05;
 /// @param fit  one that did not fail
 AlphaTest TestAlpha(const identification::FitResult& fit);
 
-/// A ratio against 1, by Student's t with the degrees of freedom of Welch and Satterthwaite
-///   ν = ν_fit/s²,  s the fit's share of the variance
+/// Tests a ratio against 1, by Student's t with the degrees of freedom of Welch and Satterthwaite
+///   ν = ν_fit/s²,  s the fit's fraction of the variance
 /// (GUM G.4.1): the uncertainties of inputs are taken as known for certain.
 /// @param degrees_of_freedom  ν_fit of the fit, > 0
 StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedValue& ratio,
                             double degrees_of_freedom, double confidence = 0.95);
 
-/// One for each radius that is known besides the fit, where G* is known too; with the ratio alone
-/// where σ is not identifiable.
+/// Returns one for each radius that is known besides the fit, where G* is known too; with the ratio
+/// alone where σ is not identifiable.
 std::vector<StiffnessTest> TestStiffness(const identification::FitResult& fit,
                                          const contact::IdentifiedContact& contact);
 

@@ -26,7 +26,7 @@ struct ReportInput {
   std::vector<io::RecordFile> records;  ///< as they were read, those that were fitted
   identification::FitResult fit;
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
-  /// Normal loads [N] of the samples that counted, as the fit was told.
+  /// Normal loads [N] of the samples that counted, as given to the fit.
   std::optional<identification::Interval> load_window = {};
   /// Holds the parts left out of each record as not of its test; empty where not requested.
   std::vector<loop::Trim> trims = {};
@@ -53,13 +53,13 @@ struct Report : ReportInput {
 
   Units units;  ///< units of all numbers in words
 
-  /// A torque against an angle has no Hertz-Mindlin contact and no mapping: theirs are of a force.
+  /// True for a torque against an angle, which has no Hertz-Mindlin contact and no mapping.
   [[nodiscard]] bool is_torsional() const { return records.front().is_torsional; }
-  /// A fit that failed has no parameter, residual, loop, contact or mapping.
+  /// True for a fit that failed and has no parameter, residual, loop, contact or mapping.
   [[nodiscard]] bool failed() const { return fit.parameters.empty(); }
 };
 
-/// Loop, contact and mapping from a fit.
+/// Makes loop, contact and mapping from a fit.
 /// @param input  one name and one record for each record of the fit
 /// @throws InvalidArgument when their numbers differ or there is none, when the fit has no model,
 /// and

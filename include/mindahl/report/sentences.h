@@ -8,8 +8,8 @@
 
 namespace mindahl::report {
 
-/// A finding in words, without an end of line: what was found, what it means and, where something
-/// can be done, what to do.
+/// Describes a finding in words, without an end of line: what was found, what it means and, where
+/// something can be done, what to do.
 /// @param finding  with the numbers and parameters that its code has (docs/contract.md)
 /// @param fit      the fit that found it: the model's name and why the solver stopped are its own
 /// @param units    of the record

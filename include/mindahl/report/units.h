@@ -34,8 +34,8 @@ inline constexpr Units kUnitsOfTorque{.force = "N m",
                                       .response = "N m",
                                       .excitation = "rad"};
 
-/// The unit in which a quantity is that has `unit` where the record has a force: "N/m" is N m/rad
-/// of a torque. Energies are in J either way.
+/// Returns the unit in which a quantity is that has `unit` where the record has a force: "N/m" is N
+/// m/rad of a torque. Energies are in J either way.
 constexpr std::string_view UnitIn(const Units& units, std::string_view unit) {
   if (unit == kUnitsOfForce.force) return units.force;
   if (unit == kUnitsOfForce.displacement) return units.displacement;

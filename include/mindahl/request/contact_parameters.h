@@ -23,8 +23,8 @@ struct ContactParameters {
   std::vector<ContactQuantity> quantities;
 };
 
-/// Dahl's parameters of a contact described by friction and normal load with either contact radius
-/// and compliance or the materials and radii of both bodies; uncertain inputs make uncertain
+/// Returns Dahl's parameters of a contact described by friction and normal load with either contact
+/// radius and compliance or the materials and radii of both bodies; uncertain inputs make uncertain
 /// quantities.
 /// @throws InputError naming the options that are missing
 ContactParameters ResolveContact(const ContactOptions& options);

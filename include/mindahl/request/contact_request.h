@@ -20,8 +20,8 @@ struct ContactOptions {
   std::optional<contact::UncertainValue> friction_coefficient;
 };
 
-/// Normal loads [N], one for all records or one a record: their mean is what is known of the
-/// contact, their uncertainties independent.
+/// Sets the normal loads [N], one for all records or one a record: their mean is what is known of
+/// the contact, their uncertainties independent.
 /// @throws InvalidArgument for one that is not > 0
 void SetNormalLoads(ContactOptions& options, std::span<const contact::UncertainValue> loads);
 

@@ -13,12 +13,12 @@
 
 namespace mindahl::request {
 
-/// Told what is assumed, one sentence each.
+/// Receives the assumptions, one sentence each.
 using Tell = std::function<void(std::string_view)>;
 
 /// Has the fit leave out what is no part of the test of each record, and take the contact for one
-/// that was not unloaded before where that leaves out every first loading and nothing else is said
-/// of it.
+/// that was not unloaded before where that leaves out every first loading and nothing else is
+/// stated of it.
 /// @param trims  one a record, or none
 void LeaveOutTrimmed(std::span<const loop::Trim> trims, identification::FitOptions& options);
 

@@ -78,10 +78,10 @@ identification::FitOptions MakeFitOptions(const FitRequest& request);
 /// @throws InvalidArgument or InputError likewise
 identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
 
-/// The columns that are covariates, as the reader takes them.
+/// Returns the columns that are covariates, as the reader takes them.
 std::vector<std::string> CovariateColumns(const FitRequest& request);
 
-/// [s]; empty where every time counts
+/// Returns the time window [s]; empty where every time counts.
 std::optional<identification::Interval> TimeWindow(const FitRequest& request);
 
 }  // namespace mindahl::request

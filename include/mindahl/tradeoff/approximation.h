@@ -24,30 +24,30 @@ struct Approximation {
 const models::FrictionModel& RequireModel(std::string_view name);
 const methods::Method& RequireMethod(std::string_view name);
 
-/// In words: "mindlin by rk4, 4 substeps a sample", "dahl by exact, refitted at alpha 0.333".
+/// Returns "mindlin by rk4, 4 substeps a sample", "dahl by exact, refitted at alpha 0.333".
 std::string Describe(const Approximation& approximation);
 
-/// The law as the approximation's model uses it: its own, or the contact's, with the model's α
-/// where that prescribes one.
+/// Returns the law as the approximation's model uses it: its own, or the contact's, with the
+/// model's α where that prescribes one.
 models::BranchLaw LawOf(const Approximation& approximation, const models::BranchLaw& law);
 
-/// The approximation made ready for a contact.
+/// Returns the approximation made ready for a contact.
 /// @throws InvalidArgument for an unknown model or method, or as Prepare() of methods/method.h
 methods::Evaluator Prepare(const Approximation& approximation, const models::BranchLaw& law);
 
-/// The Masing law with the contact's α, by the name under which it is cheapest: "mindlin" for
-/// α = 1/3, "jenkins" for α = 0, else "mindlin-dahl".
+/// Returns the Masing law with the contact's α, by the name under which it is cheapest: "mindlin"
+/// for α = 1/3, "jenkins" for α = 0, else "mindlin-dahl".
 std::string ExactModel(const models::BranchLaw& law);
 
-/// The models a contact may be simplified to, simplest first, each in closed form: spring, coulomb,
-/// jenkins, simplified-dahl, dahl, mindlin, mindlin-dahl. Those that are the contact's own law are
-/// named once.
+/// Returns the models a contact may be simplified to, simplest first, each in closed form: spring,
+/// coulomb, jenkins, simplified-dahl, dahl, mindlin, mindlin-dahl. Those that are the contact's own
+/// law are named once.
 std::vector<Approximation> ModelLadder(const models::BranchLaw& law);
 
-/// The exact model by every method, from coarse to fine.
+/// Returns the exact model by every method, from coarse to fine.
 std::vector<Approximation> MethodLadder(const models::BranchLaw& law);
 
-/// ModelLadder, then what of MethodLadder is not in it: each way once.
+/// Returns ModelLadder, then what of MethodLadder is not in it: each way once.
 std::vector<Approximation> AllApproximations(const models::BranchLaw& law);
 
 }  // namespace mindahl::tradeoff

@@ -17,16 +17,16 @@ namespace mindahl::tradeoff {
 methods::OperationCount CountOperations(const Approximation& approximation,
                                         const models::BranchLaw& law, const methods::Drive& drive);
 
-/// Price [ns] of an operation on the machine that docs/tradeoff.md names: a regression of measured
-/// times on the counts.
+/// Returns the price [ns] of an operation on the machine that docs/tradeoff.md names: a regression
+/// of measured times on the counts.
 double PriceOf(methods::Operation operation);
 
-/// Cost [ns/sample] by the counts and their prices: the same on every machine and in every run, and
-/// in proportion to what another machine takes as far as that is built alike.
+/// Returns the cost [ns/sample] by the counts and their prices: the same on every machine and in
+/// every run, and in proportion to what another machine takes as far as that is built alike.
 double ModelledCost(const methods::OperationCount& count, std::size_t samples);
 
-/// The cheapest of those that are allowed, the first of equals: costs within a tenth of each other
-/// are equal, since no machine is known better, and the simpler stand before the others.
+/// Returns the cheapest of those that are allowed, the first of equals: costs within a tenth of
+/// each other are equal, since no machine is known better, and the simpler stand before the others.
 /// @returns nothing where none is allowed
 std::optional<std::size_t> CheapestOf(std::span<const double> costs,
                                       const std::function<bool(std::size_t)>& allowed);

@@ -42,10 +42,10 @@ struct Recommendation {
   double cycles = 0.0;      ///< number of cycles of the drive
 };
 
-/// The cheapest model and method that meet a tolerance along this drive, found by running every
-/// one and comparing it with the exact response of the Masing law (MakeReferenceResponse); costs
-/// are those of the cost model, so that one drive has one answer. Costs within a tenth of each
-/// other count as equal, and the simpler model is then preferred: no machine is known better.
+/// Finds the cheapest model and method that meet a tolerance along this drive, found by running
+/// every one and comparing it with the exact response of the Masing law (MakeReferenceResponse);
+/// costs are those of the cost model, so that one drive has one answer. Costs within a tenth of
+/// each other count as equal, and the simpler model is then preferred: no machine is known better.
 /// @throws InvalidArgument for options out of range, an invalid law or drive, or a transient that
 ///   leaves no sample
 Recommendation Recommend(const models::BranchLaw& law, const methods::Drive& drive,

@@ -10,8 +10,8 @@
 
 namespace mindahl::tradeoff {
 
-/// The models of ModelLadder that are not the contact's own law, with the σ and Tc that suit a
-/// drive best instead of the contact's, and Dahl's law with α = 1 besides, in the same order:
+/// Refits the models of ModelLadder that are not the contact's own law: with the σ and Tc that suit
+/// a drive best instead of the contact's, and Dahl's law with α = 1 besides, in the same order:
 ///   min Σ (T_model(σ, Tc) − T)²   over the samples from `first` on
 /// What a user gets who fits the simpler model to the contact's loop rather than to its parameters:
 /// on a steady loop of one amplitude Dahl's law then errs by rounding alone (docs/theory.md §6).
@@ -27,7 +27,7 @@ std::vector<Approximation> RefittedLadder(const models::BranchLaw& law, const me
                                           const ReferenceResponse& reference,
                                           std::size_t first = 0);
 
-/// AllApproximations with the refitted models, each after the model at the contact's parameters.
+/// Returns AllApproximations with refitted models, each after that at the contact's parameters.
 std::vector<Approximation> AllApproximationsAlong(const models::BranchLaw& law,
                                                   const methods::Drive& drive,
                                                   const ReferenceResponse& reference,

@@ -39,7 +39,7 @@ Precision Compare(const ReferenceResponse& reference, const methods::Drive& driv
 /// Names the norm of the error by which an approximation is judged.
 enum class Criterion { kMaxForce, kRmsForce, kEnergy };
 
-/// The error that a criterion looks at; infinite where it is not known.
+/// Returns the error that a criterion looks at; infinite where it is not known.
 double ErrorBy(Criterion criterion, const Precision& precision);
 
 /// One point of a work–precision diagram.
@@ -52,7 +52,7 @@ struct WorkPrecision {
   std::optional<double> measured_cost = std::nullopt;
 };
 
-/// An approximation along a drive, not timed.
+/// Assesses an approximation along a drive, not timed.
 /// @param force  [N], written: the response, one a sample
 /// @param first  sample from which errors count
 /// @throws InvalidArgument as Prepare() and Compare()
@@ -65,12 +65,12 @@ struct CostFloor {
   double memory = 0.0;      ///< reading a displacement and writing a force
   double arithmetic = 0.0;  ///< the same with one square root and one division between
 };
-/// Measured as the others are.
+/// Measures the floor as the others are measured.
 CostFloor MeasureCostFloor(const methods::Drive& drive);
 /// Returns the floor of the cost model.
 CostFloor ModelledCostFloor();
 
-/// Cost [ns/sample] of an evaluation, the least of several runs.
+/// Measures the cost [ns/sample] of an evaluation, the least of several runs.
 /// @param force  [N], written, one a sample
 /// Takes about 10 ms, or three runs where that is longer.
 double MeasureCost(const methods::Evaluator& evaluate, const methods::Drive& drive,
@@ -83,7 +83,7 @@ std::vector<WorkPrecision> MeasureWorkPrecision(const models::BranchLaw& law,
                                                 const methods::Drive& drive,
                                                 std::span<const Approximation> approximations);
 
-/// Which points no other beats both in cost and in error, of equals the first.
+/// Returns which points no other beats both in cost and in error, of equals the first.
 std::vector<bool> ParetoFront(std::span<const WorkPrecision> points, Criterion criterion);
 
 }  // namespace mindahl::tradeoff

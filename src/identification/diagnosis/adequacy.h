@@ -17,8 +17,8 @@ namespace mindahl::identification {
 /// True if noise hardly makes what all omitted terms, or the best of them, explain.
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);
 
-/// The departures that noise alone does not make, the best first, without those that another beats
-/// clearly.
+/// Returns the omitted terms that noise alone does not make, the best first, without those that
+/// another beats clearly.
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds);
 
 /// True if the size of a cause, that of its first column, differs from zero beyond noise. Where its
@@ -30,7 +30,7 @@ Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const A
                        std::span<const DepartureFit> causes, const FitOptions& options,
                        std::span<const ParameterEstimate> estimates);
 
-/// Adds the irregularities that noise alone does not make to the causes, the best first, without
+/// Adds the disturbances that noise alone does not make to the causes, the best first, without
 /// those that another beats clearly, and doubts the record where one is there. Of causes that
 /// explain nearly as much as the best those that were measured, or can be tried, come first.
 void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
@@ -42,7 +42,7 @@ bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds);
 
 /// Residuals that are a poor misfit and remember for longer than noise_memory: by their
 /// autocorrelation at one sample, ρ = 1 − DW/2, for −1/ln ρ samples. Noise of that length would be
-/// told from nothing that changes slowly.
+/// confounded with whatever changes slowly.
 std::optional<Finding> FindSlowResiduals(const FitResult& result, const Thresholds& thresholds);
 
 /// A misfit that is no noise and as large as failing_misfit, wherever it comes back; or a force in

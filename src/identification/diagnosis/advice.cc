@@ -37,12 +37,12 @@ bool HasTimes(const ScaledRecords& data) {
                               [](const ScaledRecord& record) { return record.velocity.empty(); });
 }
 
-/// Under a load that varies the law has no account of it, and Dahl's own law has no asymmetry.
+/// Under a load that varies the law does not model it, and Dahl's own law has no asymmetry.
 bool MayBeAsymmetric(const Problem& problem) {
   return problem.model->memory == models::Memory::kReturnPoint && !problem.data->load_varies;
 }
 
-/// An asymmetry is told from an offset where that is known, or by a contact that set out unloaded.
+/// An asymmetry is identifiable where the offset is known, or if the contact started unloaded.
 bool TellsAsymmetry(const Problem& problem) {
   return problem.state == models::InitialState::kVirgin || problem.parameters.any_zero_is_known();
 }
@@ -78,7 +78,7 @@ std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
     accepted += accepted.empty() ? "" : " ";
     accepted += advised.words;
   }
-  // Another term may let the steady loop win, beside which an asymmetry is refused.
+  // Another term may let the steady loop win, with which an asymmetry is refused.
   if (!accepted.empty() && has_asymmetry && !options.initial_state &&
       !problem.parameters.any_zero_is_known()) {
     accepted += " --initial-state virgin";

@@ -8,8 +8,8 @@
 
 namespace mindahl::identification {
 
-/// Returns the options, as a cause names them, that the program accepts beside those of the fit:
-/// as they are, with what they need beside them, or nothing where they would be refused. Every
+/// Returns the options, as a cause names them, that the program accepts in addition to those of the
+/// fit: as they are, with what they need in addition, or nothing where they would be refused. Every
 /// advice is checked here, against what the fit's own requirements refuse.
 /// @param wanted  words of the command line, e.g. "--viscous fit --speed-exponent fit"; may be
 /// empty

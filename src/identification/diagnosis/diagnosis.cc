@@ -253,7 +253,7 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
         result.records.size() == 1 ? "force_offset" : fmt::format("force_offset_{}", r + 1);
     const ParameterEstimate* zero = result.Find(offset);
     const bool zero_is_known = zero == nullptr || zero->status == ParameterStatus::kFixed;
-    // A zero that is known tells A, and an A that is known the offset: each of its own record.
+    // A known zero determines A, and a known A the offset: each of its own record.
     if (zero_is_known == is_known) continue;
     const RecordFit& record = result.records[r];
     const models::BranchLaw law = result.LawOf(record);
@@ -324,7 +324,7 @@ Finding FoundRigAlternative(const FitResult& result, const RigAlternative& alter
   Finding finding{.code = "shape_or_rig",
                   .numbers = {{"rig_stiffness", alternative.rig_stiffness},
                               {"alpha", result.law.shape_exponent}}};
-  // A contact that is rigid beside the rig is Jenkins' element again: the same curve, no other α.
+  // A contact far stiffer than the rig is Jenkins' element again: the same curve, no other α.
   if (alternative.tangential_stiffness < thresholds.rigid_beside_rig * alternative.rig_stiffness) {
     finding.parameters = {"sigma", "alpha"};
     if (result.is_load_series()) finding.parameters.emplace_back("load_exponent");

@@ -57,7 +57,7 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
 /// what lies between them, the turning points too, no cycle shows.
 std::optional<Finding> FindFewPlaces(const Problem& problem, const Thresholds& thresholds);
 
-/// A loop of which so little shows beside what else is in the force that its shape and height are
+/// A loop that is so small against the rest of the force that its shape and height are
 /// those of the rest.
 std::optional<Finding> FindUnseenLoop(const FitResult& result, const Thresholds& thresholds);
 

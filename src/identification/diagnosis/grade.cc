@@ -25,7 +25,7 @@ double WhiteVariance(const FitResult& result) {
 }  // namespace
 
 bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thresholds) {
-  constexpr double kOfPeak = 0.5;  // less is no plateau: the strokes were not told apart
+  constexpr double kOfPeak = 0.5;  // less is no plateau: the strokes were not separated
   return facts.closed && facts.energy_ratio >= thresholds.sliding_energy_ratio && facts.half_gap &&
          *facts.half_gap > kOfPeak * facts.peak_force;
 }

@@ -13,7 +13,7 @@ struct MainStroke {
   bool rises = false;
 };
 
-/// @param main_stroke  least share of the longest
+/// @param main_stroke  least fraction of the longest
 std::vector<MainStroke> MainStrokes(std::span<const double> displacement,
                                     std::span<const std::size_t> reversals, double main_stroke);
 

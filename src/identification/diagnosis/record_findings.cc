@@ -125,7 +125,7 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   const RecordFit& record = result.WidestRecord();
   // The measured energy includes the readings that a robust loss weighs down.
   if (result.outliers > 0) return std::nullopt;
-  // Whose energy is that of the load's course too.
+  // Its energy depends on the load's time history too.
   if (record.load_varies) return std::nullopt;
   // These lose, or shift, energy that is not the contact's.
   const bool has_other = std::ranges::any_of(result.parameters, [](const ParameterEstimate& other) {

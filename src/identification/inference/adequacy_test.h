@@ -17,7 +17,7 @@ struct DepartureFit {
   std::optional<std::size_t> covariate = {};  // which, among those of ScaledRecords
   double p_value = 1.0;                       // that noise alone makes it
   double delta_aicc = 0.0;                    // against the fit without
-  double explains = 0.0;                      // share of the sum of squares
+  double explains = 0.0;                      // fraction of the sum of squares
   double size = 0.0;                          // of its first column, in its unit
   double size_p_value = 1.0;                  // that noise alone makes that
   std::string_view unit = {};
@@ -26,16 +26,16 @@ struct DepartureFit {
   std::vector<double> error = {};  // standard error of θ with it, likewise
 };
 
-/// Residuals against noise: as noise counts what no departure explains, with the autocorrelation
-/// that it has. What the model misses is smooth along the loop and would pass for autocorrelated
-/// noise otherwise.
+/// Tests residuals against noise: what no omitted term explains counts as noise, with the
+/// autocorrelation that it has. What the model misses is smooth along the loop and would pass for
+/// autocorrelated noise otherwise.
 struct AdequacyTest {
   double misfit_over_noise = 0.0;
   double p_value = 1.0;
   double noise = 0.0;               // standard deviation of a weighted residual
   double degrees_of_freedom = 1.0;  // of the noise
-  double effective_samples = 1.0;   // that tell of it
-  std::vector<DepartureFit> fits;   // of the departures that the record can tell
+  double effective_samples = 1.0;   // of it
+  std::vector<DepartureFit> fits;   // of the terms that the record can identify
 };
 
 /// @param displacement  what drawn errors of the displacement do to the residuals: that is noise
@@ -48,7 +48,7 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
 double MoveOf(const Problem& problem, const Solution& solution, const DepartureFit& fit,
               std::size_t parameter, const ParameterEstimate& estimate);
 
-/// Intervals that cover what the parameters would be with each of the departures.
+/// Inflates intervals to cover the parameters with each of the omitted terms.
 void WidenByDepartures(const Problem& problem, const Solution& solution,
                        std::span<const DepartureFit> fits, double quantile,
                        std::span<ParameterEstimate> estimates);

@@ -108,7 +108,7 @@ void TryBacklash(const Problem& problem, const Solution& solution,
   const auto& free = problem.parameters.free();
   fit->step.resize(free.size(), 0.0);
   fit->error.resize(free.size(), 0.0);
-  // Other things beside the gap may leave a fit behind it no better than one without.
+  // Other effects in addition to the gap may leave a fit behind it no better than one without.
   if (!after.converged || !(after.sum_of_squares < before)) return;
   const Evidence evidence(data.counted, test.effective_samples);
   fit->explains = 1 - after.sum_of_squares / before;

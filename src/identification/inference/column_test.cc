@@ -11,9 +11,9 @@
 namespace mindahl::identification {
 namespace {
 
-/// A column of which less is left beside the law's is one of theirs.
+/// Least part of a column orthogonal to the law's, below which it is one of theirs.
 constexpr double kOwnShare = 0.02;
-/// Likewise beside those before it.
+/// Least part orthogonal to the columns before it.
 constexpr double kIndependent = 1e-3;
 
 /// Wald's statistic, over their number, of the coefficients of orthonormal columns U in the
@@ -81,7 +81,7 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
     if (is_told) {
       columns.col(j) *= 1 / norms_[j];
     } else {
-      columns.col(j).setZero();  // overflow: nothing to be told
+      columns.col(j).setZero();  // overflow: not identifiable
     }
     residual_[j] = Dot(ColumnValues(columns, j), SpanOf(residual));
   }

@@ -16,7 +16,7 @@ inline constexpr std::size_t kSamplesAColumn = 8;
 
 /// A linear step from a fit that lets some more columns in.
 struct LinearStep {
-  double explains = 0.0;      // share of the sum of squares
+  double explains = 0.0;      // fraction of the sum of squares
   double size = 0.0;          // factor of the first of them
   double size_error = 0.0;    // its standard error
   std::vector<double> step;   // of the law's columns

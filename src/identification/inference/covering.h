@@ -20,10 +20,10 @@ struct Rival {
   IntervalSource source;
 };
 
-/// Covers σ, α and Tc of a rival, as the other past of the contact; an end that is open there is
-/// open then. Leaves the response bound to `problem`.
+/// Extends intervals to σ, α and Tc of a competing solution, as of the other initial state; an end
+/// that is open there is open then. Leaves the response bound to `problem`.
 /// @param peak_force  largest |force| of the record [N]: no slip force lies below it
-/// @returns the names of those that the rival has outside the interval of this one
+/// @returns the names of those that the competing solution has outside this one's interval
 std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, const Noise& noise,
                                     const Thresholds& thresholds, double peak_force,
                                     Response& response, std::span<ParameterEstimate> estimates);

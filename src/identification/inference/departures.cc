@@ -15,7 +15,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// A sample as the departures see it, in units of the data; time in that of the clock.
+/// Describes a sample for the omitted terms, in units of the data; time in that of the clock.
 struct ForcePlace {
   double displacement = 0.0;
   double time = 0.0;  // from the record's middle
@@ -36,7 +36,7 @@ struct ForcePlace {
   double asymmetry = 0.0;    // of the force over the slip force, its derivative by an asymmetry
   double gain = 1.0;         // and by that at the origin of the branch
   // The branch:
-  bool sets_out = false;  // on the virgin curve, the way that it was first run
+  bool sets_out = false;  // on the virgin curve, in its first direction
   bool virgin = false;    // on the virgin curve
   double reach = 1.0;     // what it has to go from its origin to slip
   double origin = 0.0;
@@ -200,7 +200,7 @@ constexpr std::array<Departure, 23> kDepartures = {{
      .simpler = {"slip_position", "plateau_slope"}},
 }};
 
-/// How far the branch has come, of the way to slip.
+/// Fraction of the travel to slip that the branch has covered.
 double Mobilised(const ForcePlace& at) {
   if (!(at.reach > 0)) return 1.0;
   return std::clamp(std::abs(at.response - at.origin_response) / at.reach, 0.0, 1.0);

@@ -31,21 +31,21 @@ struct Departure {
   std::array<std::string_view, 2> simpler = {};
 };
 
-/// Columns of all departures at a solution.
+/// Holds the columns of all omitted terms at a solution.
 struct DepartureColumns {
   Eigen::MatrixXd columns;         // weighted, rows as the Jacobian's
   std::vector<std::size_t> of;     // of each column: its place in Departures()
-  std::vector<std::size_t> group;  // of each: those of one departure, or one covariate, are one
+  std::vector<std::size_t> group;  // of each: those of one term, or one covariate, are one
   std::size_t groups = 0;
   std::vector<std::size_t> covariates;  // of the last columns: their place in ScaledRecords
-  std::vector<double> unit_of_size;     // of each: what a factor of one is, in the departure's unit
+  std::vector<double> unit_of_size;     // of each: what a factor of one is, in the term's unit
   bool timed = true;                    // else sizes are by sample
 };
 
 /// In the order in which they are given up where a record has few samples.
 std::span<const Departure> Departures();
 
-/// @param most  columns that are wanted; fewer where the next departure's do not fit
+/// @param most  columns that are wanted; fewer where the next term's do not fit
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      Response& response, std::size_t most);
 

@@ -12,7 +12,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// A sample as the departures see it, in units of the data; time in that of the clock.
+/// Describes a sample for the omitted terms, in units of the data; time in that of the clock.
 struct DisplacementPlace {
   double time = 0.0;  // from the record's middle
   double force = 0.0;

@@ -17,7 +17,7 @@ namespace mindahl::identification {
 ///
 /// An error of a turning point goes along with the whole branch that starts there, one of an
 /// encoder with all turning points at that count, and smoothing ties neighbours together: no
-/// variance of a sample tells that, a drawn record has it all.
+/// variance of a sample represents that; a drawn record has it all.
 class DisplacementErrors {
  public:
   /// @param data  the prepared records, scaled; must outlive this

@@ -39,7 +39,7 @@ class Estimates {
   /// Returns the uncertainty of all free parameters together.
   [[nodiscard]] const LocalUncertainty& local() const { return full_; }
   /// Variance of the parameter if residuals were white and did not repeat, over what it is: by
-  /// this share a likelihood ratio counts. 1 where it is not determined.
+  /// this fraction a likelihood ratio counts. 1 where it is not determined.
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;

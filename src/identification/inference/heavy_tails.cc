@@ -112,7 +112,7 @@ std::optional<IrregularityFit> FindHeavyTails(std::span<const FittedSample> samp
   const double mixing = -2 * (share * std::log(share) + (1 - share) * std::log1p(-share));
   const double widths = share * std::log(std::max(fit.explains, 1e-300) / share) +
                         (1 - share) * std::log(rest / (1 - share));
-  constexpr double kParameters = 2.0;  // the other width, and the share
+  constexpr double kParameters = 2.0;  // the other width, and the fraction
   fit.delta_aicc = 2 * kParameters - evidence.LikelihoodRatio(1.0, std::exp(mixing + widths));
   return fit;
 }

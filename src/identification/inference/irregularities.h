@@ -24,7 +24,7 @@ struct IrregularityFit {
   std::size_t irregularity = 0;  // its place in Irregularities()
   double p_value = 1.0;          // that noise alone makes it
   double delta_aicc = 0.0;       // against the fit without
-  double explains = 0.0;         // share of the sum of squares
+  double explains = 0.0;         // fraction of the sum of squares
   double size = 0.0;             // in its unit, forces in units of the data
 };
 
@@ -40,7 +40,7 @@ struct FittedSample {
   bool turns = false;  // the motion turns there
 };
 
-/// Those that the residuals show, of what can be told. Cost: n log n, next to nothing beside a fit.
+/// Finds those that the residuals show, if identifiable. Cost: n log n, negligible against a fit.
 /// @param residual  weighted, of all samples
 /// @param robust    large residuals count less already, and are not looked for
 /// @param doubtful  then a ripple is looked for, and else only where the force drops: it costs more

@@ -137,7 +137,7 @@ void TryLag(const Problem& problem, const Solution& solution, const SolverOption
   fit->unit = timed ? parameter.term->unit : parameter.term->unit_by_sample;
   const auto& free = problem.parameters.free();
   fit->step.resize(free.size(), 0.0);
-  fit->error.resize(free.size(), 0.0);  // first order told nothing of it
+  fit->error.resize(free.size(), 0.0);  // the first order did not determine it
   for (std::size_t j = 0; j < free.size(); ++j) {
     fit->step[j] = after.theta[free[j]] - solution.theta[free[j]];
   }

@@ -6,10 +6,10 @@
 
 namespace mindahl::identification {
 
-/// Fits a lag to a doubted record, beside everything else, from its solution, and puts what it
-/// explains in the place of what its first order does. That order ends where a sample comes to lie
-/// on the stroke before its own, which a lag of a few samples does just where it shows.
-/// @param test  of the same solution; left as it is where the lag is a term, cannot be told, or
+/// Fits a lag to a doubted record, together with everything else, from its solution, and puts what
+/// it explains in the place of what its first order does. That order ends where a sample comes to
+/// lie on the stroke before its own, which a lag of a few samples does just where it shows.
+/// @param test  of the same solution; unchanged where the lag is a term, is not identifiable, or
 ///              explains no more
 void TryLag(const Problem& problem, const Solution& solution, const SolverOptions& options,
             SearchBuffers& buffers, AdequacyTest& test);

@@ -30,7 +30,7 @@ const FrictionModel& OtherModel(const FrictionModel& model) {
 /// Can the two laws have a σ and a Tc of their own? Not before the motion turns; σ and Tc that the
 /// user holds are of one law only.
 bool AreComparable(const Problem& problem) {
-  // Dahl's own has no account of a load that varies.
+  // Dahl's own law does not model a load that varies.
   if (problem.data->load_varies) return false;
   // Nor of slip forces that differ: its directions would differ in stiffness too.
   if (problem.parameters.has_asymmetry()) return false;
@@ -53,7 +53,7 @@ models::BranchLaw EquivalentOf(const FitResult& result) {
              : models::MasingEquivalent(result.law, amplitude);
 }
 
-/// A cost to 1e-4 tells 2 ln Λ to 1e-4 of the samples: enough where the other law is far off.
+/// A cost to 1e-4 determines 2 ln Λ to 1e-4 of the samples: enough where the other law is far off.
 SolverOptions RoughlyAs(const FitOptions& options) {
   constexpr double kCost = 1e-4;
   constexpr double kStep = 1e-6;

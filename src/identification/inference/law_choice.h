@@ -24,7 +24,7 @@ struct OtherFit {
   Solution solution;
 };
 
-/// Masing's law beside Dahl's own.
+/// Compares Masing's law with Dahl's own.
 struct LawComparison {
   /// Empty where the laws are one (α = 0), and where they are not compared.
   std::optional<LawChoice> choice;
@@ -36,7 +36,7 @@ struct LawComparison {
 };
 
 /// Masing's law against Dahl's own, whichever of them was fitted. The other is fitted too where the
-/// record may tell them apart, from where its loop at the widest amplitude would be the same; of
+/// record may distinguish them, from where its loop at the widest amplitude would be the same; of
 /// one amplitude it follows in closed form.
 LawComparison CompareLaws(const Problem& problem, const Solution& best, const FitResult& result,
                           const FitOptions& options, SearchBuffers& buffers);

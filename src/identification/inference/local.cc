@@ -12,7 +12,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// Singular values below this share of the largest are rounding of a Jacobian of unit columns.
+/// Singular values below this fraction of the largest are rounding of a Jacobian of unit columns.
 constexpr double kRankTolerance = 1e-11;
 /// Far from that: substitution then leaves the inverse all but five digits.
 constexpr double kRegular = 1e-5;

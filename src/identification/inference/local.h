@@ -16,8 +16,8 @@ namespace mindahl::identification {
 struct LocalUncertainty {
   std::vector<std::size_t> columns;  // positions in θ, those not held at a bound
   /// columns²: (JᵀJ)⁻¹·JᵀRJ·(JᵀJ)⁻¹ on the determined subspace, R the correlation of the residuals;
-  /// with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's share of the noise and
-  /// E the K drawn residuals
+  /// with errors of the displacement, JᵀSRSJ + JᵀEEᵀJ/(K s²), S the force's fraction of the noise
+  /// and E the K drawn residuals
   Eigen::MatrixXd factor;
   Eigen::MatrixXd white_factor;  // (JᵀJ)⁻¹: what white residuals would give
   /// Residuals' worth of noise that the fit takes up, tr((JᵀJ)⁻¹JᵀRJ): the number of parameters
@@ -55,7 +55,7 @@ struct DisplacementEffect {
 
 /// Autocorrelation of the residuals of all records, one after the other.
 /// @param residual  of every sample
-/// @param tells     of every sample, 0 where it tells nothing; empty: those that count tell
+/// @param tells     of every sample, 0 where it is left out; empty: those that count are used
 Autocorrelation AutocorrelationOf(
     const ScaledRecords& data, std::span<const double> residual,
     std::span<const unsigned char> tells = {},

@@ -54,7 +54,7 @@ struct Extent {
 
 double Way(const BranchPlace& at) { return std::abs(at.displacement - at.origin); }
 
-/// Way on the branch over that of the widest, whose virgin branch has half the way of a stroke.
+/// Travel on the branch over that of the widest, whose virgin branch has half a stroke's travel.
 double ShareOfStroke(const BranchPlace& at, const Extent& extent) {
   return Way(at) * (at.virgin ? 2 : 1) / extent.stroke;
 }
@@ -62,7 +62,7 @@ double ShareOfStroke(const BranchPlace& at, const Extent& extent) {
 /// Returns the scale of a branch of Masing's law against the virgin one.
 double MasingScaleOf(const BranchPlace& at) { return at.virgin ? 1.0 : 2.0; }
 
-/// Against the sense of the branch, where it starts, over Tc: T*/Tc of a steady loop.
+/// Force at its start against the direction of the branch, over Tc: T*/Tc of a steady loop.
 double HeightOf(const BranchPlace& at) {
   return at.virgin ? 0.0 : -at.direction * at.origin_response;
 }

@@ -16,7 +16,7 @@ namespace {
 /// An orthonormal basis of the law's columns and of its other shapes; these are nearly those of the
 /// law, and products of what they have in common would be of rounding errors.
 Eigen::MatrixXd BasisOf(const Eigen::MatrixXd& law, const Eigen::MatrixXd& shape) {
-  constexpr double kOwn = 1e-6;  // of a column, beside those before it
+  constexpr double kOwn = 1e-6;  // of a column, orthogonal to those before it
   Eigen::MatrixXd columns(law.rows(), law.cols() + shape.cols());
   columns << law, shape;
   for (auto column : columns.colwise()) {

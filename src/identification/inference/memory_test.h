@@ -23,7 +23,7 @@ struct FittedLaw {
 /// and no load series.
 bool CanCompareBranches(const Problem& problem);
 
-/// Branches against each other, beside each law with a shape that is let free: the differences that
+/// Compares branches with each other, under each law with a free shape: the differences that
 /// are left are held against the noise (ColumnTest).
 /// @param masing  with Masing's memory
 /// @param dahl    with Dahl's; null where the two are one curve
@@ -31,7 +31,7 @@ MemoryTest TestMemory(const FittedLaw& masing, const FittedLaw* dahl, const Nois
                       const DisplacementEffect& displacement, const Thresholds& thresholds,
                       Response& response);
 
-/// @param p_value       that noise makes what a record has beside Masing's memory
+/// @param p_value       that noise makes the discrepancy from Masing's memory
 /// @param dahl_p_value  likewise
 MemoryVerdict VerdictOf(double p_value, double dahl_p_value, const Thresholds& thresholds);
 

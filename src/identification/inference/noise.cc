@@ -18,7 +18,7 @@ using Series = std::span<const double>;
 using Mask = std::span<const unsigned char>;
 using Autocovariances = std::array<double, kHighestOrder + 1>;
 
-/// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the share of lags
+/// Means of r_t·r_{t+k} over pairs that both count, k = 0 … order, each times the fraction of lags
 /// that a series of this length has: without gaps that keeps the sequence positive definite.
 Autocovariances EstimateAutocovariances(std::span<const Series> residuals,
                                         std::span<const Mask> counts, std::size_t order) {

@@ -20,19 +20,19 @@ struct Autocorrelation {
   std::array<double, kHighestOrder + 1> correlations{};  // ρ₀ … ρ_p, the sample's
   double innovation_share = 1.0;                         // variance of ε over that of r
 
-  /// 1 + 2Σρ_k² over all lags: as many correlated residuals tell a variance as well as one
+  /// 1 + 2Σρ_k² over all lags: as many correlated residuals determine a variance as well as one
   /// independent one does (Bartlett 1946).
   [[nodiscard]] double SquaredCorrelations() const;
 
   /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it: the
-  /// columns are filtered backwards by 1/φ, on into the past until they have died away.
+  /// columns are filtered backwards by 1/φ, on to earlier times until they have decayed.
   /// @param columns  J of one record, a row a sample in order of time
   /// @returns columns², relative error below 1e-8
   [[nodiscard]] Eigen::MatrixXd Quadratic(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 };
 
 /// @param residuals  one series a record
-/// @param counts     of each sample, 0 where it tells nothing; of the same sizes
+/// @param counts     of each sample, 0 where it is left out; of the same sizes
 Autocorrelation EstimateAutocorrelation(std::span<const std::span<const double>> residuals,
                                         std::span<const std::span<const unsigned char>> counts);
 

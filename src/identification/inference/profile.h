@@ -10,7 +10,7 @@
 
 namespace mindahl::identification {
 
-/// Ends of the set of parameters that the data do not tell from the best fit.
+/// Ends of the set of parameters that the data do not distinguish from the best fit.
 struct Range {
   double lower = 0.0;  // of θ
   double upper = 0.0;
@@ -68,7 +68,7 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
                           SearchBuffers& buffers);
 
 /// The likelihood along α, from the estimate outwards. Where few samples lie on the bend of the
-/// branches σ and α are told by next to nothing together, and a fit is anywhere in a flat valley,
+/// branches σ and α are nearly confounded, and a fit is anywhere in a flat valley,
 /// at whose floor's end the parabola sees a steep wall.
 ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const Noise& noise,
                             const Estimates& estimates, const FitOptions& options,

@@ -125,7 +125,7 @@ class Weighting {
       weights.insert(weights.end(), record.root_weight.begin(), record.root_weight.end());
     }
   }
-  /// Goes only a share of the way from the last weights.
+  /// Moves only a fraction of the distance from the last weights.
   void GoOnlyPartOfTheWay(std::span<const double> last, double share) {
     std::size_t i = 0;
     for (ScaledRecord& record : data_.records) {
@@ -136,13 +136,13 @@ class Weighting {
     }
   }
 
-  /// The last weights leave no sample that tells anything.
+  /// True if the last weights leave no sample of any weight.
   [[nodiscard]] bool is_lost() const { return is_lost_; }
 
  private:
   /// The likeliest σ_F, Σ (r²/s − 1)/s = 0 with s = σ_F² + σ_T²: samples with little noise from the
-  /// displacement tell it. Where outliers are expected, that for which the standardised residuals
-  /// have the median of normal ones. Bisection.
+  /// displacement determine it. Where outliers are expected, that for which the standardised
+  /// residuals have the median of normal ones. Bisection.
   [[nodiscard]] double ForceNoise(const std::vector<double>& residual,
                                   const std::vector<double>& from_displacement, Loss loss) const {
     std::vector<double> standardised;

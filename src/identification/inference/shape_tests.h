@@ -20,14 +20,14 @@ std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& b
 /// True if the likelihood allows α = 1/3, which the interval by its parabola excludes.
 bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha);
 
-/// α = 1/3 in a rig that gives way.
+/// Holds α = 1/3 in a compliant rig.
 struct RigAlternative {
   double rig_stiffness = 0.0;         // [N/m]
   double tangential_stiffness = 0.0;  // σ of the contact [N/m]
 };
 
 /// A rig makes a loop more angular, as a smaller α does: where α = 1/3 is rejected for a rigid rig,
-/// one that gives way may bring it back.
+/// a compliant one may restore it.
 /// @returns empty where α = 1/3 is not rejected, α is the larger one, a rig is there already, or
 ///   none helps
 std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thin,

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSliding = 0.8;          // of the largest force: the plateau
 constexpr double kLarge = 5.0;            // deviations of the steps
 constexpr double kNormal = 1.4826;        // standard deviation over median deviation
-constexpr std::size_t kFewestSteps = 20;  // steps that tell their own deviation
+constexpr std::size_t kFewestSteps = 20;  // steps that determine their own deviation
 
 /// The residual's change from one sample to the next while the contact slides, as the measured
 /// force grows along the motion.
@@ -123,7 +123,7 @@ std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> sampl
   fit.p_value = boost::math::cdf(boost::math::complement(by_chance, count - 1));
   fit.size = boost::math::statistics::median(drops.begin(), drops.end());
   fit.explains = before > 0 ? std::clamp(1 - after / before, 0.0, 1.0) : 0.0;
-  // The teeth autocorrelate the residuals: what is left of them tells how many are independent.
+  // The teeth autocorrelate the residuals: the rest determines how many are independent.
   const std::span<const double> left = teeth.left;
   const std::span<const unsigned char> mask = counts;
   const double effective = static_cast<double>(counted) /

@@ -33,7 +33,7 @@ double LargestShift(const Problem& problem, const Solution& best) {
 }
 
 /// The fit with turning points where the motion has them; empty where that hardly matters, or the
-/// record tells that its outermost samples are better.
+/// record shows its outermost samples to be better.
 std::optional<TurningPointFit> FitTurnedAsTheMotion(const Problem& problem, const Solution& best,
                                                     const FitOptions& options,
                                                     SearchBuffers& buffers) {

@@ -12,7 +12,7 @@ namespace mindahl::identification {
 ///
 /// At first where the motion itself has them, by the samples about each reversal, without a
 /// parameter more: if they may move one by more than `turning_point_shift` standard errors, unless
-/// the record tells the outermost samples to be better. Then with a free overshoot a reversal. A
+/// the record shows the outermost samples to be better. Then with a free overshoot a reversal. A
 /// linear step in all parameters says what overshoots would gain; where that is far beyond chance
 /// (2 ln Λ on the effective samples of what it leaves, χ² on as many degrees of freedom as
 /// reversals), they are fitted. The step is not taken where even the longest overshoots would be

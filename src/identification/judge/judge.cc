@@ -70,7 +70,7 @@ void WithdrawInadequate(FitResult& result, const Thresholds& thresholds) {
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   result.mindlin_test.reset();
   result.branch_shapes.clear();
-  // Departures are taken to first order, here of a curve that is none of the record's.
+  // Omitted terms are taken to first order, here of a curve that is none of the record's.
   if (result.FindFinding("loop_not_seen") != nullptr) result.adequacy.causes.clear();
   std::erase_if(result.findings, [](const Finding& finding) {
     // Another account of a curve that is not there: also where it is but a note.

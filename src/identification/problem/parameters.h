@@ -44,7 +44,7 @@ struct Parameter {
 /// Says on which side of its bounds a parameter lies.
 enum class BoundSide { kInside, kLower, kUpper };
 
-/// The one definition of "at a bound": within 1e-9 of the way between the bounds, at least 1e-9.
+/// The one definition of "at a bound": within 1e-9 of the bounds' distance, at least 1e-9.
 BoundSide SideOf(double theta, double lower, double upper);
 inline BoundSide SideOf(const Parameter& parameter, double theta) {
   return SideOf(theta, parameter.lower, parameter.upper);
@@ -101,7 +101,7 @@ class Parameters {
   [[nodiscard]] bool has_asymmetry() const {
     return !parameters_[PositionOf("asymmetry", 0)].absent;
   }
-  /// Asked for, of a contact whose records tell it from no offset of theirs.
+  /// True if it is held for being confounded with the force's offset in every record.
   [[nodiscard]] bool asymmetry_is_confounded() const {
     return parameters_[PositionOf("asymmetry", 0)].confounded;
   }

@@ -34,7 +34,7 @@ void TakeOffCubic(std::vector<PlacedForce>& forces) {
 /// Forces of the strokes of one direction, of their second halves.
 std::vector<PlacedForce> SlidingForces(const ScaledRecords& data, bool is_up) {
   constexpr double kMayStick = 0.5;
-  constexpr std::size_t kFewest = 12;  // of a cubic and a wave that are told from noise
+  constexpr std::size_t kFewest = 12;  // for a cubic and a wave to be distinguished from noise
   std::vector<PlacedForce> forces;
   for (const ScaledRecord& record : data.records) {
     std::size_t begin = 0;

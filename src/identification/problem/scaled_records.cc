@@ -168,7 +168,7 @@ MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
 }
 
 /// Has the law an account of a load that varies? It is of Masing's kind, its displacement that of
-/// the contact alone, and read with the force, and slips as easily in either sense.
+/// the contact alone, and read with the force, and slips as easily in either direction.
 bool KnowsVaryingLoads(const FitOptions& options) {
   return options.model->memory == models::Memory::kReturnPoint &&
          !HasTerm(options, "rig_stiffness") && !HasTerm(options, "lag") &&
@@ -250,7 +250,7 @@ double CovariateScale(std::string_view name, const loop::PreparedRecords& record
   return scale;
 }
 
-/// Samples of a stroke that are kept, at growing shares of its way: (k/n)².
+/// Samples of a stroke that are kept, at growing fractions of its travel: (k/n)².
 constexpr std::size_t kKeptOfAStroke = 8;
 /// Strokes that are thinned so: more are thinned to their ends and one sample in between.
 constexpr std::size_t kDenseStrokes = 16;
@@ -498,7 +498,7 @@ void ThinnedRecords::Make() {
     turns.reserve(record.reversals.size());
     if (!record.clock.empty()) target.whole = &record;
     const std::size_t strokes = record.reversals.size() + 1;
-    // Under a load that varies the way between samples is part of the history.
+    // Under a load that varies the path between samples is part of the history.
     const bool is_dense = strokes <= kDenseStrokes || !record.load_ratio.empty();
     const std::size_t kept = is_dense ? kKeptOfAStroke : 2;
     const std::size_t most = std::min(record.size(), strokes * (kept + 1) + 1);

@@ -14,7 +14,7 @@
 
 namespace mindahl::identification {
 
-/// A record in units of the data, with the force in the displacement's sense.
+/// Holds a record in units of the data, with the force's sign that of the displacement.
 struct ScaledRecord {
   explicit ScaledRecord(std::pmr::memory_resource* memory)
       : displacement(memory),
@@ -32,7 +32,7 @@ struct ScaledRecord {
         covariates(memory) {}
 
   std::pmr::vector<double> displacement;  // (δ − displacement_reference)/length
-  std::pmr::vector<double> force;         // (sense·T − force_reference)/force unit
+  std::pmr::vector<double> force;         // (sign·T − force_reference)/force unit
   std::pmr::vector<double> time;      // −1 … 1 over the record; by sample where it has no time
   std::pmr::vector<double> velocity;  // in the first record's time; empty where there is none
   std::pmr::vector<double> acceleration;  // likewise; empty unless a term asks for it
@@ -93,7 +93,7 @@ inline constexpr double kRoundingRms = 1e-13;
 /// Mean duration of a record's cycles [s], or samples where there is no time: of two strokes.
 double MeanCycleDuration(std::span<const double> time, std::size_t samples, std::size_t reversals);
 
-/// A column beside displacement and force that all records have.
+/// Describes a column besides displacement and force that all records have.
 struct CovariateColumn {
   std::string_view name = {};  // in the records' memory
   std::string_view unit = {};
@@ -137,7 +137,7 @@ struct ScaledRecords {
 ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& options,
                     std::pmr::memory_resource* memory);
 
-/// Adds columns beside displacement and force, each less the middle of its range in the record, so
+/// Adds columns to displacement and force, each less the middle of its range in the record, so
 /// that the offset of the force keeps its meaning; literally where there are no offsets.
 /// @param fitted       names of those that a term is fitted to; they come first
 /// @param with_others  also those that change and that all records have

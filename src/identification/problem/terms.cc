@@ -7,8 +7,8 @@ namespace mindahl::identification {
 namespace {
 
 // Default bounds, in units of the data (half ranges of displacement and force), lie far outside
-// what a record can tell: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a straight
-// line.
+// what a record can determine: a stiffness of 1e9 is a vertical branch, a slip force of 1e4 a
+// straight line.
 constexpr double kLowestStiffness = 1e-6;
 constexpr double kHighestStiffness = 1e9;
 constexpr double kLowestSlipForce = 1e-3;
@@ -25,7 +25,7 @@ constexpr double kLargestLoadExponent = 5.0;
 constexpr double kLeastSpeedExponent = 0.2;
 // With both the slip force stays positive over the whole stroke.
 constexpr double kLargestSlipChange = 0.5;
-// So much of the slip force that goes by the speed: the rest is positive.
+// Largest part of the slip force that depends on the speed: the rest is positive.
 constexpr double kLargestSlipBySpeed = 0.95;
 // Periods in half ranges of the displacement: a stroke has two.
 constexpr double kShortestPeriod = 0.01;

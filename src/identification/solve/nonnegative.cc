@@ -26,7 +26,7 @@ Eigen::VectorXd SolveFree(const Eigen::MatrixXd& product, const Eigen::VectorXd&
 Eigen::VectorXd SolveNonnegative(const Eigen::MatrixXd& product, const Eigen::VectorXd& b,
                                  const Eigen::VectorXd& start) {
   const Eigen::Index count = b.size();
-  // A gradient below this share of what makes it up is rounding.
+  // A gradient below this fraction of its summands is rounding.
   constexpr double kRounding = 1e-12;
   std::vector<bool> free(static_cast<std::size_t>(count), false);
   Eigen::VectorXd w = Eigen::VectorXd::Zero(count);

@@ -29,8 +29,8 @@ double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOpti
   // If a window or a fold leaves little of the thinned record, the whole record is used.
   constexpr std::size_t kEnough = 4;  // samples a parameter
   const bool is_enough = thin.counted >= kEnough * candidate.problem.parameters.free().size();
-  // A thinned record has the history of the whole, and so tells a law; a column that wanders as it
-  // likes explains a few samples a stroke whatever the law is.
+  // A thinned record has the history of the whole, and so determines a law; a column that wanders
+  // as it likes explains a few samples a stroke whatever the law is.
   const bool has_covariate = std::ranges::any_of(
       candidate.problem.parameters.free(),
       [&](std::size_t p) { return candidate.problem.parameters[p].term->of_column; });
@@ -100,7 +100,7 @@ class Rivals {
          std::vector<Descent>* descents)
       : options_(options), buffers_(buffers), best_(best), descents_(descents) {}
 
-  /// @param drawn  of a start; no value: from beside a minimum that was found before
+  /// @param drawn  of a start; no value: from next to a minimum that was found before
   void From(std::span<const double> theta, std::optional<bool> drawn = {}) {
     Solution& scratch = buffers_.scratch;
     buffers_.solver.Solve(theta, SolverOptionsOf(options_), scratch);
@@ -125,7 +125,7 @@ class Rivals {
   std::vector<Descent>* descents_;
 };
 
-/// Searches from beside a minimum: with slip that begins sooner or later, and with a smoother law.
+/// Searches from next to a minimum: with slip that begins sooner or later, and with a smoother law.
 void SearchAcrossKinks(const Problem& problem, Rivals& rivals) {
   constexpr double kSmoother = 0.1;
   const std::vector<double> from = rivals.best().theta;

@@ -24,7 +24,7 @@ struct Descent {
   std::vector<double> start;  // θ
   double start_cost = 0.0;    // on all samples
   bool drawn = false;
-  bool is_rival = false;  // from beside a minimum that was found before
+  bool is_rival = false;  // from next to a minimum that was found before
   Solution solution;
 };
 
@@ -52,8 +52,8 @@ struct Candidate {
 SolverOptions SolverOptionsOf(const FitOptions& options);
 
 /// Finds the candidate's starting points on the thinned records, unless the options give one.
-/// @param rival  of another past, as FindStarts() takes it
-/// @returns the least cost there; infinity where none has the sense of the force
+/// @param rival  of another initial state, as FindStarts() takes it
+/// @returns the least cost there; infinity where none has the sign of the force
 double FindStartsOf(Candidate& candidate, ThinnedRecords& thinned, const FitOptions& options,
                     double rival, SearchBuffers& buffers, std::pmr::memory_resource* memory);
 
@@ -69,7 +69,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
 void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers,
              std::vector<Descent>* descents);
 
-/// Solves once more from beside the best solution where there may be lower minima, and keeps the
+/// Solves once more from next to the best solution where there may be lower minima, and keeps the
 /// best: a law with a sharp knee has a minimum between any two samples, one with a rig another
 /// where the rig takes another part of the compliance. Where a start is given it is the only one.
 /// @param descents  likewise

@@ -304,7 +304,7 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
     if (std::isfinite(least)) {  // else no look led anywhere yet, and there is none to repeat
       look.guess = guess;
       plane.At(look);
-      // A grid this coarse is some way from the minimum wherever the contact was unloaded.
+      // A grid this coarse is at a distance from the minimum wherever the contact was unloaded.
       constexpr double kWorthALook = 4.0;
       if (!(look.cost < kWorthALook * least)) continue;
     }

@@ -35,10 +35,10 @@ std::optional<StartingPoint> GivenStart(const Parameters& parameters, const FitO
 /// of each third of the plane, goes on to the minimum of the thinned record. Where options ask for
 /// more than these four, the others are drawn at random over the same range, seeded.
 /// @param thin      the problem on its thinned record
-/// @param rival     look of another past of the contact; of looks ten times as dear the best alone
+/// @param rival     look of another initial state; of looks ten times as dear the best alone
 ///                  is followed. Infinite where there is none
 /// @param solver    bound to it here
-/// @returns empty where no point has the sense of the force
+/// @returns empty where no point has the sign of the force
 std::pmr::vector<StartingPoint> FindStarts(const Problem& thin, const FitOptions& options,
                                            double rival, Solver& solver, Response& response,
                                            Solution& scratch, std::pmr::memory_resource* memory);

@@ -47,7 +47,7 @@ class TinySearch {
   /// Searches from u, which it moves.
   virtual void Run(std::span<double> u) = 0;
 
-  /// Tells a run that begins there what the residual at u is: it was linearised last.
+  /// Passes the residual at u to a run that begins there: it was linearised last.
   void KnowsLinearised(std::span<const double> u, double cost);
 
   // Results of the last run.

@@ -15,9 +15,9 @@ namespace mindahl::identification {
 /// Records whose turning points lie beyond their outermost samples, by an overshoot each.
 ///
 /// A record that is sampled coarsely misses the extremes of its motion; the branches that follow
-/// then start in the wrong place, and no other parameter can mend that without a bias.
+/// then start in the wrong place, and no other parameter can correct that without a bias.
 struct TurnedRecords {
-  ScaledRecords data;  // with the turning points put in beside the outermost samples
+  ScaledRecords data;  // with the turning points inserted next to the outermost samples
   std::pmr::vector<std::pmr::vector<std::size_t>> reversals;  // of `data`, which refers to them
   std::vector<double> overshoot;  // of all records' reversals, in units of the data
 };
@@ -27,14 +27,14 @@ std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
                                                   std::span<const double> overshoot);
 
 /// How far the motion turns beyond a reversal's sample, by the samples about it alone: >= 0, at
-/// most the longer of the steps beside it. It turns where the lines through the two samples before
-/// and the two after meet if its velocity changes there and hardly beside it, as that of a triangle
-/// does; else at the extremum of the polynomial through the outermost sample and two on each side
-/// (one, where the strokes are short). Of a sine of n samples a cycle that is off by at most
-/// (2π/n)⁶/200 of the amplitude.
+/// most the longer of the adjacent steps. It turns where the lines through the two samples before
+/// and the two after meet if its velocity changes there and hardly next to it, as that of a
+/// triangle does; else at the extremum of the polynomial through the outermost sample and two on
+/// each side (one, where the strokes are short). Of a sine of n samples a cycle that is off by at
+/// most (2π/n)⁶/200 of the amplitude.
 double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 
-/// How far a turning point may lie beyond its sample: the longer of the steps beside it.
+/// How far a turning point may lie beyond its sample: the longer of the adjacent steps.
 double LongestOvershoot(const ScaledRecord& record, std::size_t reversal);
 
 /// Returns LongestOvershoot() of every reversal of all records.
