@@ -204,9 +204,9 @@ class TrackRun {
   std::optional<io::DeferredSignals> signals_;  // while rows are written
   std::optional<campaign::Tracker> tracker_;
   std::optional<Progress> progress_;
-  std::uintmax_t bytes_ = 0;  // of all files
-  std::uintmax_t bytes_before_ = 0;
-  const io::RecordStream* stream_ = nullptr;
+  std::uintmax_t bytes_ = 0;         // of all files
+  std::uintmax_t bytes_before_ = 0;  // of the files that are done
+  std::uintmax_t bytes_read_ = 0;
   std::span<const campaign::TrackedQuantity> tracked_ = campaign::TrackedQuantities();
   std::vector<campaign::CourseDescription> courses_;  // of each, once all is read
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -332,8 +332,8 @@ void TrackRun::ThrowOther() const {
 void TrackRun::SayProgress() {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const double share = static_cast<double>(bytes_before_ + stream_->bytes()) /
-                       static_cast<double>(std::max<std::uintmax_t>(bytes_, 1));
+  const double share =
+      static_cast<double>(bytes_read_) / static_cast<double>(std::max<std::uintmax_t>(bytes_, 1));
   const auto made = static_cast<double>(totals_.fits - resumed_);
   progress_->Say(fmt::format("{} cycles, {:.0f} % of {:.3g} MB, {:.3g} a second, {:.0f} s left",
                              tracker_->cycles(), 100 * share, static_cast<double>(bytes_) / 1e6,
@@ -346,8 +346,8 @@ void TrackRun::RequireNoSignal() const {
 }
 
 void TrackRun::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
-  stream_ = &stream;
   while (piece.size() > 0) {
+    bytes_read_ = bytes_before_ + stream.bytes();
     reading_.samples += piece.size();
     tracker_->Add(campaign::ViewOf(piece), piece.lines);
     RequireNoSignal();

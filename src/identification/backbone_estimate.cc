@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/draws.h"
+#include "identification/backbone_prior.h"
 #include "identification/inference/noise.h"
 #include "identification/solve/nonnegative.h"
 #include "mindahl/core/error.h"
@@ -343,7 +344,7 @@ SeenNoise NoiseAboutBackbone(const BackboneSeries& series, std::span<const Follo
 Eigen::MatrixXd Draw(const BackboneSeries& series, const Smoothest& smoothest,
                      const SeenNoise& noise, const Eigen::MatrixXd& differences) {
   const double prior =
-      std::sqrt(noise.variance * series.samples / noise.effective_samples * smoothest.weight);
+      DeviationOfPrior(noise.variance, series.samples, noise.effective_samples, smoothest.weight);
   Eigen::MatrixXd off(smoothest.w.size(), static_cast<Eigen::Index>(kDraws));
   Draws draws(1);
   const auto draw = [&](Eigen::Index size) {

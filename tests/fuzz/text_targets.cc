@@ -88,7 +88,6 @@ void ReadConfigurations(Input input) {
     std::size_t line = 0;
     for (const cli::TomlItem& item : cli::ReadToml(text, "fuzz")) {
       Require(item.line > line || item.line == line, "items are in order");
-      Require(!item.key.empty(), "an item has a key");
       line = item.line;
     }
   } catch (const InputError& error) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "identification/backbone_prior.h"
 #include "identification/solve/nonnegative.h"
 #include "mindahl/core/error.h"
 #include "recovery/recovered.h"
@@ -192,6 +193,11 @@ TEST(BackboneEstimate, IsConcaveAndRises) {
     EXPECT_LE(next, slope * (1 + 1e-9));  // differences of rounded forces
     slope = next;
   }
+}
+
+TEST(BackboneEstimate, PriorIsAsUncertainAsTheEffectiveSamplesLeaveIt) {
+  // √(4·600/150·9): of 600 samples that count as 150 twice what 600 would give.
+  EXPECT_EQ(DeviationOfPrior(4.0, 600.0, 150.0, 9.0), 12.0);
 }
 
 TEST(BackboneEstimate, DoesNotKnowTheUnits) {

@@ -125,5 +125,15 @@ TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWithTheLoopsStiffness) {
   EXPECT_EQ(RefusalOf({record}, options), "accepted");
 }
 
+TEST(EdgeRecords, ARigSofterThanTheLoopIsRefusedWhateverTheSignOfTheForce) {
+  const Record record = Loop();
+  Record opposite = record;
+  for (double& force : opposite.force) force = -force;
+  FitOptions options;
+  options.fixed = {{"rig_stiffness", 0.5 * kLaw.slip_force / testing::kReach}};
+  EXPECT_EQ(RefusalOf({opposite}, options), RefusalOf({record}, options));
+  EXPECT_THAT(RefusalOf({opposite}, options), HasSubstr("the stiffness that the loop itself has"));
+}
+
 }  // namespace
 }  // namespace mindahl::identification::edge_records_test

@@ -74,6 +74,10 @@ def test_a_load_series_is_one_joint_fit_of_lists_of_arrays():
     assert without_files(result.to_dict()) == without_files(expected)
     assert result.load_exponent.identifiability == "identifiable"
     assert [len(residual) for residual in result.residual] == [len(x) for x in displacement]
+    for measured, fitted, residual in zip(force, result.fitted_force, result.residual):
+        # A rounding of the difference, and one of each of its two terms' own storage.
+        rounding = 4 * np.finfo(float).eps * np.abs(measured).max()
+        np.testing.assert_allclose(fitted - measured, residual, rtol=0, atol=rounding)
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")

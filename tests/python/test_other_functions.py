@@ -53,6 +53,16 @@ def test_track_gives_the_program_s_table(long_record, tmp_path):
     assert list(tracked.to_pandas()["cycle"]) == list(tracked["cycle"])
 
 
+def test_track_of_cycles_together_accumulates_the_energy_of_each(long_record, tmp_path):
+    table = table_of(long_record, tmp_path, "--average", 2)
+    tracked = mindahl.track(long_record, average=2)
+    assert_same_table(tracked, table)
+    # Two of 29 cycles a row, each of which dissipates the same but for the noise.
+    single = mindahl.track(long_record)
+    assert len(tracked["cycle"]) == 14
+    assert tracked["accumulated_energy"][-1] == pytest.approx(single["accumulated_energy"][27], rel=0.01)
+
+
 def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     worn = tmp_path / "worn.csv"
     worn.write_text(program("simulate", "--model", "mindlin-dahl", "--sigma", SIGMA, "--slip-force",

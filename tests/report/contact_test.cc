@@ -92,6 +92,18 @@ TEST(FittedContact, TakesTheCorrelationOfTheErrorsAlong) {
   EXPECT_NEAR(slip.standard_error / slip.value, 0.01 * std::sqrt(2.0), 1e-15);
 }
 
+TEST(ContactOfAnotherLaw, HasTheRelativeErrorsOfTheFit) {
+  const FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);  // of which each is 1 %
+  const models::BranchLaw other{2 * kSigma, 0.5, 3 * kSlipForce};
+  const IdentifiedContact contact =
+      report::IdentifyContactOf(fit, other, {.normal_load = kLoad, .tangential_compliance = 4e-11});
+  EXPECT_NEAR(contact.contact_radius->value / (2 * kSigma * 4e-11 / 8), 1, kRounding);
+  EXPECT_NEAR(contact.contact_radius->standard_error / contact.contact_radius->value, 0.01, 1e-15);
+  EXPECT_NEAR(contact.friction_coefficient->value / (3 * kSlipForce / kLoad), 1, kRounding);
+  EXPECT_NEAR(contact.friction_coefficient->standard_error / contact.friction_coefficient->value,
+              0.01, 1e-15);
+}
+
 TEST(FittedContact, CountsAHeldParameterAsExactAndAnOpenOneAsUnknown) {
   FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
   fit.parameters[0].standard_error.reset();

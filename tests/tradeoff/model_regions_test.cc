@@ -139,6 +139,33 @@ TEST_F(MindlinRegions, SimplifiedDahlIsRightOnceItHasSlippedAndConvergesBefore) 
   }
 }
 
+TEST_F(MindlinRegions, TheFirstCycleHasTheVirginLoading) {
+  // At twice gross slip all that Simplified-Dahl misses is the way to the first reversal: it starts
+  // as a steady branch does that comes from −Tc.
+  const double reach = 2 * GrossSlipDisplacement(law());
+  const FrictionModel& model = *FindFrictionModel("simplified-dahl");
+  const BranchScale scale = model.scale(0.0, 1.0, true);
+  const double rate = law().tangential_stiffness / law().slip_force *
+                      std::pow(scale.remaining, law().shape_exponent - 1) / scale.span;
+  double largest = 0.0;  // over Tc, which is the peak
+  constexpr int kPlaces = 1000;
+  for (int i = 1; i <= kPlaces; ++i) {
+    const double x = reach * i / kPlaces;
+    const BranchLaw unit{1.0, law().shape_exponent, 1.0};
+    const double force = scale.span * scale.remaining * BackboneForce(unit, rate * x);
+    largest = std::max(largest, std::abs(force - BackboneForce(law(), x) / law().slip_force));
+  }
+  constexpr double kTolerance = 0.05;  // the widest of the three
+  ASSERT_GT(largest, kTolerance);
+  const auto holds_there = [&](std::size_t cycle) {
+    const auto& ranges = Region("simplified-dahl", cycle, Criterion::kMaxForce, kTolerance).ranges;
+    return std::ranges::any_of(
+        ranges, [](const LambdaRange& range) { return range.from <= 2 && 2 <= range.to; });
+  };
+  EXPECT_FALSE(holds_there(1));
+  EXPECT_TRUE(holds_there(2));
+}
+
 TEST_F(MindlinRegions, RangesAscendAndDoNotTouch) {
   for (const ModelRegion& region : regions()) {
     double last = 0.0;

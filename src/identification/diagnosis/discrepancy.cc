@@ -57,28 +57,23 @@ struct ColumnSums {
   double squares = 0.0;
 };
 
-/// The slope of parallel straight lines, one a group of points.
-class Slope {
+/// Sums Σ(x − x̄)(y − ȳ) of groups of points: of the same x, slopes are in proportion to it.
+class CrossProduct {
  public:
   void Add(double x, double y) {
     ++count_;
     const double off = x - mean_x_;
     mean_x_ += off / count_;
     mean_y_ += (y - mean_y_) / count_;
-    squares_ += off * (x - mean_x_);
     product_ += off * (y - mean_y_);
   }
-  void AddWithin(const Slope& other) {
-    squares_ += other.squares_;
-    product_ += other.product_;
-  }
-  [[nodiscard]] double Value() const { return product_ / squares_; }
+  void AddWithin(const CrossProduct& other) { product_ += other.product_; }
+  [[nodiscard]] double product() const { return product_; }
 
  private:
   double count_ = 0.0;
   double mean_x_ = 0.0;
   double mean_y_ = 0.0;
-  double squares_ = 0.0;
   double product_ = 0.0;
 };
 
@@ -176,8 +171,8 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
   std::vector<double> ratios;
   if (problem.data->is_forced()) return ratios;
   for (const double window : {0.125, 0.25, 0.5}) {
-    Slope measured;
-    Slope model;
+    CrossProduct measured;
+    CrossProduct model;
     double strokes = 0.0;
     double samples = 0.0;
     std::size_t begin = 0;
@@ -188,8 +183,8 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
       };
       for (const MainStroke& stroke :
            MainStrokes(record.displacement, record.reversals, thresholds.main_stroke)) {
-        Slope measured_here;
-        Slope model_here;
+        CrossProduct measured_here;
+        CrossProduct model_here;
         std::optional<double> first;
         double last = 0.0;
         for (std::size_t i = stroke.begin; i < stroke.end; ++i) {
@@ -214,8 +209,9 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
       begin += record.size();
     }
     constexpr double kFewestOfAStroke = 2;  // samples a stroke, for a chord
-    const double ratio = measured.Value() / model.Value();
-    if (samples < kFewestOfAStroke * strokes || !(ratio > 0) || !std::isfinite(ratio)) continue;
+    if (samples < kFewestOfAStroke * strokes || model.product() == 0) continue;
+    const double ratio = measured.product() / model.product();  // of slopes at the same points
+    if (!(ratio > 0) || !std::isfinite(ratio)) continue;
     ratios.push_back(ratio);
   }
   // Each window is twice the one before: the line through the first two and the parabola through

@@ -1,0 +1,152 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "identification/inference/adequacy_test.h"
+#include "identification/inference/column_test.h"
+#include "identification/inference/departures.h"
+#include "identification/inference/estimates.h"
+#include "identification/inference/evidence.h"
+#include "identification/stages.h"
+
+// What residuals are asked for in addition to the model: degrees of freedom, several columns, and
+// the move of a parameter, each by a calculation of its own.
+namespace mindahl::identification::omitted_terms_test {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Generator;
+using testing::Normal;
+using testing::Stages;
+
+constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
+constexpr double kReach = 3e-6;  // [m], twice gross slip
+
+Record LoopOf(std::size_t samples_per_cycle, double cycles) {
+  const auto displacement =
+      testing::Cycling(testing::Wave::kSine, kReach, cycles, static_cast<int>(samples_per_cycle));
+  return testing::MakeRecord(displacement,
+                             testing::Respond(testing::Model("mindlin-dahl"), kLaw, displacement));
+}
+
+Eigen::MatrixXd Drawn(Eigen::Index rows, Eigen::Index columns, Generator& generator) {
+  Eigen::MatrixXd drawn(rows, columns);
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    for (Eigen::Index i = 0; i < rows; ++i) drawn(i, j) = Normal(generator);
+  }
+  return drawn;
+}
+
+/// Sum of squares of what the columns leave of a vector.
+double LeftBy(const Eigen::MatrixXd& columns, const Eigen::VectorXd& values) {
+  return (values - columns * columns.colPivHouseholderQr().solve(values)).squaredNorm();
+}
+
+/// Number of a term's columns that are independent of each other and of the law's.
+double OwnColumns(const Eigen::MatrixXd& law, const DepartureColumns& columns, std::size_t term) {
+  const auto count = std::ranges::count(columns.of, term);
+  Eigen::MatrixXd own(law.rows(), count);
+  Eigen::Index next = 0;
+  for (std::size_t c = 0; c < columns.of.size(); ++c) {
+    if (columns.of[c] != term) continue;
+    const Eigen::VectorXd unit = columns.columns.col(static_cast<Eigen::Index>(c)).normalized();
+    const Eigen::VectorXd left = unit - law * law.colPivHouseholderQr().solve(unit);
+    if (left.norm() >= 0.02) own.col(next++) = left;  // as column_test.h asks of a column
+  }
+  if (next == 0) return 0.0;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(1e-3);
+  return static_cast<double>(qr.compute(own.leftCols(next)).rank());
+}
+
+TEST(ColumnTest, CountsItsOwnColumnsAmongTheParametersOfAShortRecord) {
+  // 21 samples, 3 columns of the law and 7 that are asked for: a third of the samples.
+  constexpr Eigen::Index kOfLaw = 3;
+  constexpr Eigen::Index kOthers = 7;
+  Stages stages(LoopOf(10, 2));
+  const auto samples = static_cast<Eigen::Index>(stages.problem.size());
+  ASSERT_EQ(samples, 21);
+  Generator generator(8);
+  const Eigen::MatrixXd law = Drawn(samples, kOfLaw, generator);
+  const Eigen::MatrixXd others = Drawn(samples, kOthers, generator);
+  const Eigen::VectorXd values = Drawn(samples, 1, generator);
+  const Eigen::VectorXd residual = values - law * law.colPivHouseholderQr().solve(values);
+
+  const ColumnTest test(stages.problem, {}, {}, law, others, residual);
+  ASSERT_EQ(test.effective_samples(), 21.0) << "the case needs residuals that look white";
+  constexpr double kDegrees = 21 - 3 - 7;
+  EXPECT_EQ(test.degrees_of_freedom(), kDegrees);
+  Eigen::MatrixXd all(samples, kOfLaw + kOthers);
+  all << law, others;
+  const double left = LeftBy(all, residual);
+  constexpr double kRounding = 1e-10;  // of products of columns, which are squared once
+  EXPECT_NEAR(test.variance() / (left / kDegrees), 1, kRounding);
+  const double f = (residual.squaredNorm() - left) / kOthers / (left / kDegrees);
+  const double p_value =
+      boost::math::cdf(boost::math::complement(boost::math::fisher_f(kOthers, kDegrees), f));
+  EXPECT_NEAR(test.p_value() / p_value, 1, 1e-8);
+}
+
+TEST(MoveOf, IsInHalvesOfTheInterval) {
+  Stages stages(LoopOf(100, 2));
+  const Problem& problem = stages.problem;
+  Solution solution;
+  for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
+    solution.theta.push_back(problem.parameters[p].theta);
+  }
+  solution.theta[kStiffness] = problem.parameters[kStiffness].ToTheta(5e7);
+  DepartureFit fit;
+  fit.step.assign(problem.parameters.free().size(), 0.0);
+  const auto place = std::ranges::find(problem.parameters.free(), kStiffness);
+  ASSERT_NE(place, problem.parameters.free().end());
+  fit.step[static_cast<std::size_t>(place - problem.parameters.free().begin())] = 0.2;
+  // θ of σ is its logarithm: from 5e7 to 5e7·e^0.2, in halves of 7e7 − 4e7.
+  ParameterEstimate estimate;
+  estimate.value = 5e7;
+  estimate.lower95 = 4e7;
+  estimate.upper95 = 7e7;
+  EXPECT_NEAR(MoveOf(problem, solution, fit, kStiffness, estimate),
+              5e7 * (std::exp(0.2) - 1) / 1.5e7, 1e-12);
+  estimate.upper95.reset();
+  EXPECT_EQ(MoveOf(problem, solution, fit, kStiffness, estimate), 0.0);
+}
+
+TEST(TestAdequacy, CountsEveryColumnOfATermInItsAicc) {
+  // A friction that grows along the stroke, of which several terms explain a part.
+  Record record = LoopOf(200, 3);
+  Generator generator(5);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double place = record.displacement[i] / kReach;
+    record.force[i] = record.force[i] * (1 + 0.05 * place + 0.03 * place * place) +
+                      0.002 * kLaw.slip_force * Normal(generator);
+  }
+  Stages stages(record);
+  const testing::WeightedFit weighted = testing::FitWeighted(stages);
+  const Estimates estimates(stages.problem, weighted.solution, weighted.noise, {}, {},
+                            stages.buffers.response);
+  const AdequacyTest test = TestAdequacy(stages.problem, weighted.solution, weighted.noise, {},
+                                         estimates, {}, stages.buffers.response);
+  const DepartureColumns columns = ColumnsOfDepartures(
+      stages.problem, weighted.solution.theta, stages.buffers.response, stages.problem.size());
+  const Evidence evidence(stages.data.counted, test.effective_samples);
+  std::size_t of_several = 0;
+  for (const DepartureFit& fit : test.fits) {
+    if (fit.step.empty()) continue;  // no more than noise explains
+    const double count = OwnColumns(estimates.jacobian(), columns, fit.departure);
+    const double ratio = evidence.LikelihoodRatio(1.0, 1.0 - fit.explains);
+    EXPECT_NEAR(fit.delta_aicc + ratio, 2 * count, 1e-6 * ratio)
+        << Departures()[fit.departure].code;
+    of_several += count > 1 ? 1 : 0;
+  }
+  EXPECT_GE(of_several, 1u) << "the case needs a term of several columns";
+}
+
+}  // namespace
+}  // namespace mindahl::identification::omitted_terms_test
