@@ -36,7 +36,7 @@ COMPLETIONS = [
     ("mindahl fit --model = ", "mindlin-dahl mindlin jenkins dahl auto"),
     ("mindahl fit loop.csv --loss t", "tukey"),
     ("mindahl --config my.toml fit --lo", "--load-window --loss"),
-    ("mindahl fit --conf", "--config"),
+    ("mindahl fit --confid", "--confidence"),
     ("mindahl simulate --waveform ne", "nested"),
     ("mindahl simulate --out", "--output"),
     ("mindahl convert --to b", "bouc-wen"),
