@@ -66,12 +66,12 @@ def convert(
 
     sigma [N/m], alpha [-], slip_force Tc [N]: of the law from_, "masing" or "dahl".
     amplitude: X [m] of the steady loop, the contact's.
-    to: "masing", "dahl", "lugre", "bouc-wen", "iwan" or "lammps".
+    to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "liggghts" or "yade".
     least_amplitude, largest_amplitude [m]: what cannot be exact is fitted between; default X.
     tolerance: of force and energy [-]. elements: of "iwan". beta: of "bouc-wen".
-    normal_load [N], contact_radius [m]: of "lammps".
+    normal_load [N]: of "lammps", "liggghts", "yade". contact_radius [m]: of "lammps".
     Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
-        None for "lammps" without a normal load.
+        None for these three without a normal load.
     Raises ValueError naming the quantity, its value and the rule.
     """
     amplitude = number("amplitude", amplitude)

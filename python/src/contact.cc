@@ -76,13 +76,13 @@ py::object PairOrNone(const std::optional<convert::AmplitudeRange>& range) {
 /// @returns what `mindahl convert --json` writes, and the lines that the target reads
 std::pair<py::dict, py::object> Convert(const models::BranchLaw& law, const std::string& from,
                                         const std::string& to, const ConversionOptions& options,
-                                        const convert::LammpsContact& lammps) {
+                                        const convert::NormalContact& normal) {
   std::vector<std::string_view> names;
   for (const convert::TargetRow& target : convert::Targets()) names.push_back(target.name);
   request::RequireOneOf("--to", to, names);
   request::RequireOneOf("--from", from, std::array<std::string_view, 2>{"masing", "dahl"});
   const auto row = std::ranges::find(convert::Targets(), to, &convert::TargetRow::name);
-  Validate(lammps, row->target);
+  Validate(normal, row->target);
   const Conversion conversion =
       convert::Convert({models::FindFrictionModel(from == "dahl" ? "dahl" : "mindlin-dahl"), law},
                        row->target, options);
@@ -101,7 +101,7 @@ std::pair<py::dict, py::object> Convert(const models::BranchLaw& law, const std:
   result["tolerance"] = options.tolerance;
   py::dict parameters;
   for (const convert::Parameter& parameter :
-       convert::ParametersOf(conversion, row->target, lammps)) {
+       convert::ParametersOf(conversion, row->target, normal)) {
     py::dict value;
     value["value"] = NumberOrNone(parameter.value);
     value["unit"] = parameter.unit;
@@ -122,8 +122,8 @@ std::pair<py::dict, py::object> Convert(const models::BranchLaw& law, const std:
   result["largest_error"] = DictOf(conversion.largest);
   result["within"] = PairOrNone(conversion.within);
   py::object lines = py::none();
-  if (row->target != convert::Target::kLammps || lammps.normal_load) {
-    lines = py::cast(convert::InputLines(conversion, row->target, lammps));
+  if (!IsDiscreteElementCode(row->target) || normal.normal_load) {
+    lines = py::cast(convert::InputLines(conversion, row->target, normal));
   }
   return {result, lines};
 }

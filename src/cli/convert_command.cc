@@ -49,7 +49,7 @@ struct ConvertCommandOptions {
   convert::ConversionOptions conversion;
   std::optional<double> least_amplitude;
   std::optional<double> largest_amplitude;
-  convert::LammpsContact lammps;
+  convert::NormalContact normal;
   std::string json_path;
   std::string input_lines_path;
 };
@@ -137,7 +137,7 @@ std::string ToText(const ConvertCommandOptions& options, const TargetRow& target
 
 /// @throws InputError for options that belong to another target or contradict
 void RequireConvertOptions(const ConvertCommandOptions& options, Target target) {
-  Validate(options.lammps, target);
+  Validate(options.normal, target);
   if (options.json_path == "-" && options.input_lines_path == "-") {
     throw InputError("--json - and --input-lines - both write to standard output: give a file");
   }
@@ -158,10 +158,10 @@ void RunConvert(ConvertCommandOptions options, Console& console) {
   const ModelLaw contact{
       models::FindFrictionModel(options.from == "dahl" ? "dahl" : "mindlin-dahl"), options.law};
   const Conversion conversion = convert::Convert(contact, target.target, asked);
-  const std::vector<Parameter> parameters = ParametersOf(conversion, target.target, options.lammps);
+  const std::vector<Parameter> parameters = ParametersOf(conversion, target.target, options.normal);
   if (!options.input_lines_path.empty()) {
     std::string lines;
-    for (const std::string& line : InputLines(conversion, target.target, options.lammps)) {
+    for (const std::string& line : InputLines(conversion, target.target, options.normal)) {
       lines += line + '\n';
     }
     WriteText(lines, options.input_lines_path, console);
@@ -241,10 +241,10 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->capture_default_str()
       ->type_name("BETA")
       ->group(result);
-  AddOptional(*command, "--normal-load", options->lammps.normal_load,
-              "of --to lammps [N]: friction coefficient is Tc/N", "N")
+  AddOptional(*command, "--normal-load", options->normal.normal_load,
+              "of --to lammps, liggghts and yade [N]: friction coefficient is Tc/N", "N")
       ->group(result);
-  AddOptional(*command, "--contact-radius", options->lammps.contact_radius,
+  AddOptional(*command, "--contact-radius", options->normal.contact_radius,
               "of --to lammps [m]: for a stiffness that follows the radius", "M")
       ->group(result);
   const std::string outputs = "Output";

@@ -23,6 +23,8 @@ constexpr std::array kTargets = {
     TargetRow{Target::kBoucWen, "bouc-wen", "Bouc's and Wen's law"},
     TargetRow{Target::kIwan, "iwan", "Jenkins elements in parallel"},
     TargetRow{Target::kLammps, "lammps", "a tangential spring with Coulomb's limit"},
+    TargetRow{Target::kLiggghts, "liggghts", "a tangential spring with Coulomb's limit"},
+    TargetRow{Target::kYade, "yade", "a tangential spring with Coulomb's limit"},
 };
 
 const models::FrictionModel& Dahl() { return *models::FindFrictionModel("dahl"); }
@@ -81,6 +83,8 @@ SteadyLaw LawOf(const ModelLaw& contact, Target target, const ConversionOptions&
     case Target::kLuGre:
       return ReferenceLoops(contact, amplitudes).Fit(Dahl(), 1.0);
     case Target::kLammps:
+    case Target::kLiggghts:
+    case Target::kYade:
       return ReferenceLoops(contact, amplitudes).Fit(Masing(), 0.0);
   }
   throw InvalidArgument("no such target");
@@ -110,6 +114,10 @@ double EdgeOf(const IsWithin& is_within, double amplitude, double factor) {
 }  // namespace
 
 std::span<const TargetRow> Targets() { return kTargets; }
+
+bool IsDiscreteElementCode(Target target) {
+  return target == Target::kLammps || target == Target::kLiggghts || target == Target::kYade;
+}
 
 Conversion Convert(const ModelLaw& contact, Target target, const ConversionOptions& options) {
   RequireConversion(contact, options);

@@ -18,18 +18,57 @@ double PerTravel(const BoucWenLaw& law, double share) {
   return share * std::pow(law.stiffness / law.slip_force, law.exponent);
 }
 
+/// Returns what a discrete-element code reads of a spring with Coulomb's limit; what is normal to
+/// the contact is the user's.
+std::vector<std::string> LinesOfSpring(const models::BranchLaw& law, Target target,
+                                       const NormalContact& contact) {
+  if (!contact.normal_load) {
+    throw InputError(
+        "--input-lines of a discrete-element code needs --normal-load: its friction coefficient is "
+        "Tc/N");
+  }
+  const double friction = law.slip_force / *contact.normal_load;
+  if (target == Target::kLiggghts) {
+    return {
+        "# LIGGGHTS, in SI units; kn and gamman are yours",
+        "pair_style gran model hooke/stiffness tangential history",
+        fmt::format("fix kt all property/global kt peratomtypepair 1 {}", law.tangential_stiffness),
+        "fix gammat all property/global gammat peratomtypepair 1 0.0",
+        fmt::format("fix mu all property/global coefficientFriction peratomtypepair 1 {}",
+                    friction)};
+  }
+  if (target == Target::kYade) {
+    return {"# YADE, with Law2_ScGeom_FrictPhys_CundallStrack, in SI units; kn is yours",
+            fmt::format("Ip2_FrictMat_FrictMat_FrictPhys(ks=MatchMaker(algo='val', val={}), "
+                        "frictAngle=MatchMaker(algo='val', val={}))",
+                        law.tangential_stiffness, std::atan(friction))};
+  }
+  std::vector<std::string> lines = {
+      "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff",
+      fmt::format("tangential linear_history {} 0.0 {}", law.tangential_stiffness, friction)};
+  if (contact.contact_radius) {
+    lines.emplace_back("# or, where the contact's radius changes with the load");
+    lines.push_back(fmt::format("tangential mindlin {} 0.0 {}",
+                                law.tangential_stiffness / *contact.contact_radius, friction));
+  }
+  return lines;
+}
+
 }  // namespace
 
-void Validate(const LammpsContact& contact, Target target) {
+void Validate(const NormalContact& contact, Target target) {
   if (contact.normal_load) RequirePositive("--normal-load [N]", *contact.normal_load);
   if (contact.contact_radius) RequirePositive("--contact-radius [m]", *contact.contact_radius);
-  if ((contact.normal_load || contact.contact_radius) && target != Target::kLammps) {
-    throw InputError("--normal-load and --contact-radius are of --to lammps alone");
+  if (contact.normal_load && !IsDiscreteElementCode(target)) {
+    throw InputError("--normal-load is of --to lammps, liggghts and yade alone");
+  }
+  if (contact.contact_radius && target != Target::kLammps) {
+    throw InputError("--contact-radius is of --to lammps alone");
   }
 }
 
 std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
-                                    const LammpsContact& contact) {
+                                    const NormalContact& contact) {
   if (const auto* law = std::get_if<BoucWenLaw>(&conversion.law)) {
     return {{"k", law->stiffness, "N/m", "stiffness, of force = k z"},
             {"A", 1.0, "-", "dz/dx at z = 0"},
@@ -56,16 +95,23 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
             {"Fc", law.slip_force, "N", "Coulomb's force"},
             {"Fs", law.slip_force, "N", "static force: no Stribeck effect"}};
   }
-  if (target == Target::kLammps) {
+  if (IsDiscreteElementCode(target)) {
     std::vector<Parameter> parameters = {
-        {"kt", law.tangential_stiffness, "N/m", "of tangential linear_history"},
+        {target == Target::kYade ? "ks" : "kt", law.tangential_stiffness, "N/m",
+         target == Target::kLammps     ? "of tangential linear_history"
+         : target == Target::kLiggghts ? "of hooke/stiffness, tangential history"
+                                       : "of FrictPhys"},
         {"slip_force", law.slip_force, "N", "Coulomb's limit"}};
     if (contact.contact_radius) {
       parameters.push_back({"kt_mindlin", law.tangential_stiffness / *contact.contact_radius, "Pa",
                             "of tangential mindlin, whose stiffness is kt a"});
     }
     if (contact.normal_load) {
-      parameters.push_back({"mu", law.slip_force / *contact.normal_load, "-", "friction, Tc/N"});
+      const double friction = law.slip_force / *contact.normal_load;
+      parameters.push_back({"mu", friction, "-", "friction, Tc/N"});
+      if (target == Target::kYade) {
+        parameters.push_back({"friction_angle", std::atan(friction), "rad", "atan(Tc/N)"});
+      }
     }
     return parameters;
   }
@@ -76,7 +122,7 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
 }
 
 std::vector<std::string> InputLines(const Conversion& conversion, Target target,
-                                    const LammpsContact& contact) {
+                                    const NormalContact& contact) {
   if (const auto* law = std::get_if<BoucWenLaw>(&conversion.law)) {
     return {
         "# OpenSees, force in N and displacement in m: tag alpha ko n gamma beta Ao deltaA "
@@ -98,22 +144,7 @@ std::vector<std::string> InputLines(const Conversion& conversion, Target target,
     return lines;
   }
   const models::BranchLaw& law = std::get<ModelLaw>(conversion.law).law;
-  if (target == Target::kLammps) {
-    if (!contact.normal_load) {
-      throw InputError(
-          "--input-lines of lammps needs --normal-load: its friction coefficient is Tc/N");
-    }
-    const double friction = law.slip_force / *contact.normal_load;
-    std::vector<std::string> lines = {
-        "# LAMMPS, pair_style granular in SI units, behind the normal model of pair_coeff",
-        fmt::format("tangential linear_history {} 0.0 {}", law.tangential_stiffness, friction)};
-    if (contact.contact_radius) {
-      lines.emplace_back("# or, where the contact's radius changes with the load");
-      lines.push_back(fmt::format("tangential mindlin {} 0.0 {}",
-                                  law.tangential_stiffness / *contact.contact_radius, friction));
-    }
-    return lines;
-  }
+  if (IsDiscreteElementCode(target)) return LinesOfSpring(law, target, contact);
   if (target == Target::kLuGre) {
     return {fmt::format("sigma0 = {}", law.tangential_stiffness), "sigma1 = 0", "sigma2 = 0",
             fmt::format("Fc = {}", law.slip_force), fmt::format("Fs = {}", law.slip_force)};

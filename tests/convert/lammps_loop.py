@@ -11,7 +11,6 @@ where the program is absent.
 """
 
 import argparse
-import json
 import math
 import pathlib
 import re
@@ -20,24 +19,10 @@ import subprocess
 import sys
 import tempfile
 
+from mindlin_contact import (AMPLITUDE, CONTACT_RADIUS, EFFECTIVE_MODULUS, NORMAL_LOAD, OVERLAP,
+                             PEAK_FORCE, RADIUS, SIGMA, SLIP_FORCE, converted, loop_error)
+
 SKIPPED = 77
-
-YOUNGS_MODULUS = 2.1e11  # [Pa]
-POISSON = 0.3
-RADIUS = 0.01            # equivalent, [m]
-NORMAL_LOAD = 100.0      # [N]
-FRICTION = 0.4
-MOBILISED = 0.8          # amplitude over the displacement at gross slip
-
-EFFECTIVE_MODULUS = YOUNGS_MODULUS / 2 / (1 - POISSON**2)
-SHEAR_MODULUS = YOUNGS_MODULUS / 2 / (1 + POISSON)
-COMPLIANCE = 2 * (2 - POISSON) / SHEAR_MODULUS
-OVERLAP = (3 * NORMAL_LOAD / (4 * EFFECTIVE_MODULUS * math.sqrt(RADIUS))) ** (2 / 3)
-CONTACT_RADIUS = math.sqrt(RADIUS * OVERLAP)
-SIGMA = 8 * CONTACT_RADIUS / COMPLIANCE
-SLIP_FORCE = FRICTION * NORMAL_LOAD
-GROSS_SLIP = 1.5 * SLIP_FORCE / SIGMA
-AMPLITUDE = MOBILISED * GROSS_SLIP
 
 STEPS = 100_000   # a cycle
 EVERY = 10        # of them is printed of the last cycle
@@ -87,19 +72,6 @@ run {steps}
 """
 
 
-def mindlin_force(distance):
-    """Of the virgin curve, Johnson (1985) eq. 7.42 [N]."""
-    return SLIP_FORCE * (1 - max(0.0, 1 - distance / GROSS_SLIP) ** 1.5)
-
-
-def mindlin_energy():
-    """Of the steady loop, Johnson (1985) eq. 7.57 [J]."""
-    r = mindlin_force(AMPLITUDE) / SLIP_FORCE
-    return 9 * SLIP_FORCE**2 * COMPLIANCE / (10 * CONTACT_RADIUS) * (
-        1 - (1 - r) ** (5 / 3) - 5 * r / 6 * (1 + (1 - r) ** (2 / 3)))
-
-
-PEAK_FORCE = mindlin_force(AMPLITUDE)
 STEEPEST = SIGMA * AMPLITUDE / PEAK_FORCE  # of either loop, in T* a displacement of X
 # LAMMPS adds up velocity times time step: since a reversal, half a step of the velocity too much.
 STEP_ERROR = STEEPEST * math.pi / STEPS
@@ -109,17 +81,6 @@ FORCE_ERROR = STEP_ERROR + STEEPEST * math.pi * EVERY / STEPS
 ENERGY_ERROR = 10 * STEP_ERROR
 # A sphere that moves by X is X^2 / 2d further away: so much of the overlap, times 3/2, of the load.
 LOAD_ERROR = 1.5 * AMPLITUDE**2 / (8 * RADIUS) / OVERLAP
-
-
-def converted(program):
-    """The exported lines and what is stated of them."""
-    command = [program, "convert", "--sigma", repr(SIGMA), "--slip-force", repr(SLIP_FORCE),
-               "--amplitude", repr(AMPLITUDE), "--to", "lammps", "--normal-load", repr(NORMAL_LOAD),
-               "--contact-radius", repr(CONTACT_RADIUS)]
-    lines = subprocess.run([*command, "--input-lines", "-"], check=True, capture_output=True,
-                           text=True).stdout.splitlines()
-    stated = subprocess.run([*command, "--json", "-"], check=True, capture_output=True, text=True)
-    return [line for line in lines if not line.startswith("#")], json.loads(stated.stdout)
 
 
 def run(lammps, setting, tangential):
@@ -155,19 +116,6 @@ def run(lammps, setting, tangential):
     return displacement, force, load
 
 
-def loop_error(displacement, force):
-    """Largest difference of force from Mindlin's steady loop over T*, and of the energy."""
-    worst = 0.0
-    rising = [b >= a for a, b in zip(displacement, displacement[1:])]
-    for i, up in enumerate([rising[-1], *rising]):
-        side = 1 if up else -1
-        expected = 2 * mindlin_force((AMPLITUDE + side * displacement[i]) / 2) - PEAK_FORCE
-        worst = max(worst, abs(side * force[i] - expected))
-    energy = sum((force[i] + force[i + 1]) / 2 * (displacement[i + 1] - displacement[i])
-                 for i in range(len(force) - 1))
-    return worst / PEAK_FORCE, energy / mindlin_energy() - 1
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--program", required=True, help="mindahl")
@@ -180,7 +128,7 @@ def main():
     version = subprocess.run([arguments.lammps, "-help"], check=True, capture_output=True, text=True)
     print(re.search(r"^Large-scale.*", version.stdout, re.MULTILINE)[0])
     print(f"sigma {SIGMA:.8g} N/m, Tc {SLIP_FORCE:g} N, X {AMPLITUDE:.6g} m, a {CONTACT_RADIUS:.6g} m\n")
-    lines, report = converted(arguments.program)
+    lines, report = converted(arguments.program, "lammps", CONTACT_RADIUS)
     stated = report["error_at_amplitude"]
     failed = False
     print(f"{'line':<32} {'against':<7} {'force':>8} {'stated':>8} {'energy':>9} {'stated':>9}")

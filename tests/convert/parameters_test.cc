@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "mindahl/core/error.h"
@@ -40,7 +41,24 @@ TEST(InputLines, OfLammpsNeedANormalLoad) {
   EXPECT_EQ(InputLines(conversion, Target::kLammps, {.normal_load = 100.0}).size(), 2U);
 }
 
-TEST(LammpsContact, IsOfLammpsAlone) {
+TEST(InputLines, OfYadeHaveTheAngleOfFriction) {
+  const Conversion conversion = To(Target::kYade);
+  const std::vector<Parameter> parameters =
+      ParametersOf(conversion, Target::kYade, {.normal_load = 100.0});
+  ASSERT_EQ(parameters.size(), 4U);
+  EXPECT_EQ(parameters[0].name, "ks");
+  EXPECT_NEAR(std::tan(parameters[3].value), parameters[1].value / 100.0, 1e-15);
+  EXPECT_EQ(InputLines(conversion, Target::kYade, {.normal_load = 100.0}).size(), 2U);
+}
+
+TEST(InputLines, OfLiggghtsAreItsPairStyleAndItsProperties) {
+  const Conversion conversion = To(Target::kLiggghts);
+  EXPECT_THROW(InputLines(conversion, Target::kLiggghts), InputError);
+  EXPECT_EQ(InputLines(conversion, Target::kLiggghts, {.normal_load = 100.0}).size(), 5U);
+  EXPECT_THROW(Validate({.contact_radius = 1e-4}, Target::kLiggghts), InputError);
+}
+
+TEST(NormalContact, IsOfDiscreteElementCodesAlone) {
   EXPECT_THROW(Validate({.normal_load = 100.0}, Target::kDahl), InputError);
   EXPECT_THROW(Validate({.normal_load = -1.0}, Target::kLammps), InvalidArgument);
   EXPECT_NO_THROW(Validate({.normal_load = 100.0, .contact_radius = 1e-4}, Target::kLammps));

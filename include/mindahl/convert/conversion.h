@@ -17,8 +17,14 @@ enum class Target {
   kLuGre,   ///< σ₀ and g = Tc of LuGre's law without σ₁, σ₂ and Stribeck: Dahl's of α = 1
   kBoucWen,  ///< k, n, Tc of Bouc's and Wen's law at a given β
   kIwan,     ///< n Jenkins elements in parallel
-  kLammps,   ///< a tangential spring with Coulomb's limit, as discrete-element codes have it
+  // A tangential spring with Coulomb's limit, as discrete-element codes have it:
+  kLammps,
+  kLiggghts,
+  kYade,
 };
+
+/// True for a code whose contact is a tangential spring with Coulomb's limit μN.
+bool IsDiscreteElementCode(Target target);
 
 struct TargetRow {
   Target target;

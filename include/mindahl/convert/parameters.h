@@ -16,22 +16,22 @@ struct Parameter {
   std::string meaning;
 };
 
-/// Holds the properties of a contact that LAMMPS needs in addition to a law.
-struct LammpsContact {
+/// Holds the properties of a contact that discrete-element codes need in addition to a law.
+struct NormalContact {
   std::optional<double> normal_load = {};     ///< N [N], > 0: its friction coefficient is Tc/N
-  std::optional<double> contact_radius = {};  ///< a [m], > 0: its Mindlin stiffness is kt·a
+  std::optional<double> contact_radius = {};  ///< a [m], > 0: LAMMPS' Mindlin stiffness is kt·a
 };
 
 /// @throws InputError for what belongs to another target, InvalidArgument for values out of range
-void Validate(const LammpsContact& contact, Target target);
+void Validate(const NormalContact& contact, Target target);
 
 /// Returns the parameters of a conversion, in the target's own names and units.
 std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
-                                    const LammpsContact& contact = {});
+                                    const NormalContact& contact = {});
 
 /// Returns the lines that the target reads.
-/// @throws InputError for LAMMPS without a normal load
+/// @throws InputError for a discrete-element code without a normal load
 std::vector<std::string> InputLines(const Conversion& conversion, Target target,
-                                    const LammpsContact& contact = {});
+                                    const NormalContact& contact = {});
 
 }  // namespace mindahl::convert
