@@ -127,8 +127,11 @@ void AddParameterFields(FieldTable& table) {
   table.Add({
       {"model", "", "name of the model",
        [](const Report& report) { return Text(report.fit.model->name); }},
-      {"initial_state", "", "virgin or steady: the contact before the record",
-       [](const Report& report) { return Text(Name(report.fit.initial_state)); }},
+      {"initial_state", "",
+       "virgin or steady: the contact before the record; mixed where records differ",
+       [](const Report& report) {
+         return Text(report.fit.has_mixed_states() ? "mixed" : Name(report.fit.initial_state));
+       }},
       {"parameters", "", "one member a parameter, by name", Parameters},
       {"correlation", "-", "correlation of the errors of free parameters, by their names",
        Correlations},

@@ -271,7 +271,7 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
     std::vector<BranchPlace> places =
         BranchPlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity);
     const models::LoadingPath& path = response.PathOf(r, theta);
-    const BranchPlace extreme = problem.state == models::InitialState::kSteady
+    const BranchPlace extreme = problem.state.Of(r) == models::InitialState::kSteady
                                     ? SteadyExtreme<BranchPlace>(problem, point, record)
                                     : BranchPlace{};
     const std::vector<BranchPlace> origins =
@@ -283,7 +283,7 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
           std::span<const BranchPlace>(origins),
           {result.shape.col(static_cast<Eigen::Index>(j)).data() + begin, record.size()});
     }
-    const std::vector<double> since = WaySinceReturn(record, problem.state, extent.stroke);
+    const std::vector<double> since = WaySinceReturn(record, problem.state.Of(r), extent.stroke);
     samples.places.insert(samples.places.end(), places.begin(), places.end());
     samples.way_since_return.insert(samples.way_since_return.end(), since.begin(), since.end());
     begin += record.size();
