@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mindahl/report/contact.h"
 #include "report/made_report.h"
 
 // Is the fitted contact Mindlin's? Student's t with the degrees of freedom that each error has.

@@ -61,6 +61,10 @@ Autocorrelation AutocorrelationOf(
     std::span<const unsigned char> tells = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
+/// The same of noise of which the residuals are what orthonormal columns leave.
+Autocorrelation AutocorrelationBeside(const ScaledRecords& data, std::span<const double> residual,
+                                      const Eigen::MatrixXd& columns);
+
 /// As many independent samples as tell the variance of residuals, one record after the other,
 /// weighted or not: those that count over what their autocorrelation costs.
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
