@@ -24,6 +24,9 @@ struct Autocorrelation {
   /// independent one does (Bartlett 1946).
   [[nodiscard]] double SquaredCorrelations() const;
 
+  /// R·columns with R that matrix: filtered backwards, then forwards.
+  [[nodiscard]] Eigen::MatrixXd Apply(const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+
   /// JᵀRJ with R the correlation matrix of one record's residuals, without ever forming it: the
   /// columns are filtered backwards by 1/φ, on to earlier times until they have decayed.
   /// @param columns  J of one record, a row a sample in order of time
@@ -36,12 +39,21 @@ struct Autocorrelation {
 Autocorrelation EstimateAutocorrelation(std::span<const std::span<const double>> residuals,
                                         std::span<const std::span<const unsigned char>> counts);
 
+/// The autocorrelation of noise of which the residuals are what orthonormal columns Q leave, which
+/// take up most of what is slow in it: the process whose covariances Γ, as the residuals would have
+/// them, (1 − QQᵀ)Γ(1 − QQᵀ) along its diagonals, are the measured ones.
+/// @param columns  Q, a row a sample of all series one after the other
+Autocorrelation EstimateAutocorrelationBeside(
+    std::span<const std::span<const double>> residuals,
+    std::span<const std::span<const unsigned char>> counts, const Eigen::MatrixXd& columns);
+
 /// The one account of the noise of a fit, in units of the data: whoever states an error, compares
 /// two fits or counts samples asks it.
 struct Noise {
-  double variance = 0.0;  // of a weighted residual
-  bool is_known = false;  // it was given, not estimated
-  double force = 0.0;     // standard deviation of the force's own
+  double variance = 0.0;           // of a weighted residual
+  bool is_known = false;           // it was given, not estimated
+  double force = 0.0;              // standard deviation of the force's own, of all records
+  std::vector<double> of_records;  // of each record's own, where they differ in it; else empty
   Autocorrelation autocorrelation;
   double repeating = 1.0;           // by how much a repeatable residual widens a variance
   std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact
