@@ -86,6 +86,7 @@ class Weighting {
     }
     Noise noise;
     noise.samples = data_.counted;
+    noise.confidence = options_.confidence;
     const std::optional<double> known = options_.response_noise();
     noise.is_known = known.has_value();
     if (by_record_ && !known) {
