@@ -12,7 +12,7 @@ std::string WhyNotMeasured(const LoopFacts& facts, const char* why) {
   return facts.closed ? why : "the record closes no cycle";
 }
 
-/// A row whose null has one reason, besides that there is no cycle at all.
+/// Returns a row whose null has one reason, besides that there is no cycle at all.
 Field<LoopFacts> Fact(const char* path, const char* unit, const char* label,
                       Field<LoopFacts>::Get get, const char* why = "not a finite number") {
   return {path, unit, label,

@@ -36,7 +36,7 @@ bool IsInadequate(const Report& report) {
   return report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
 }
 
-/// No number of what is not known.
+/// False for what is not known, of which no number is shown.
 bool IsShown(const FitResult& fit, std::string_view parameter) {
   const ParameterEstimate* const estimate = fit.Find(parameter);
   return estimate != nullptr &&
@@ -45,7 +45,7 @@ bool IsShown(const FitResult& fit, std::string_view parameter) {
 
 // --- the verdict
 
-/// "identifiable: sigma, alpha": parameters by their verdicts.
+/// Returns "identifiable: sigma, alpha": parameters by their verdicts.
 std::vector<std::string> ParameterVerdicts(const FitResult& fit) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   for (const ParameterEstimate& estimate : fit.parameters) {
@@ -194,7 +194,7 @@ std::string WarningSection(const Report& report, const Provenance& provenance) {
 
 // --- what needs no model
 
-/// A value as people read it; empty for what is missing.
+/// Returns a value as people read it; empty for what is missing.
 std::string TextOf(const DescribedValue& item) {
   struct Writer {
     std::string_view unit;
@@ -211,7 +211,7 @@ std::string TextOf(const DescribedValue& item) {
   return std::visit(Writer{item.field.unit}, item.value.content);
 }
 
-/// Rows of the report's fields of one subject, named as the JSON names them.
+/// Adds the rows of the report's fields of one subject, named as the JSON names them.
 void AddFields(const Report& report, std::string_view prefix, Table& table,
                const std::vector<std::string_view>& without = {}) {
   for (const DescribedValue& item : ValuesUnder(report, prefix)) {
@@ -296,7 +296,7 @@ std::string LikelihoodSection(const Report& report) {
 
 // --- the model's loop, the contact, the mapping
 
-/// "–" with why where the record leaves it open.
+/// Returns "–" with why where the record leaves it open.
 Cell ValueCell(const UncertainValue& value, std::string_view unit) {
   if (!std::isfinite(value.standard_error)) return Number("not identified");
   return Number(QuantityWithError(value.value, value.standard_error, unit));

@@ -27,7 +27,7 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   return fields;
 }
 
-/// With the unit of the quantity, which the table does not know.
+/// Returns members with the unit of the quantity, which the table does not know.
 Value::Object PropagatedMembers(const PropagatedValue& value, std::string_view unit) {
   Value::Object object = Render(PropagatedFields(), value);
   Place(object, "unit", Text(unit));
