@@ -35,9 +35,15 @@ WORDS = {
     "the past": Word(r"(?:the|its|their|a|no|virgin|unknown|undecided) pasts?",
                      r"in the past", 100000),
     "rival": Word(r"rivals?", r"", 100000),
+    # The origin of a branch, the place where it begins, and a contact under no force are standard.
     "origin": Word(r"(?:its|the) origin",
-                   r"(?:through|at|about|to|from|near|of|in) the origin", 100000),
-    "unloaded": Word(r"unloaded", r"unloaded (?:and|or|then|to|from|by)", 100000),
+                   r"(?:through|at|about|to|from|near|of|in|on which|and) (?:its|the) origin"
+                   r"|the origins? of (?:a|the|each) branch", 100000),
+    "unloaded": Word(r"unloaded",
+                     r"unloaded (?:and|or|then|to|from|by|at|under|contact)"
+                     r"|(?:contact|elements?|one|it) (?:(?:is|was|are|that) )*(?:taken as )?(?:not )?unloaded"
+                     r"|(?:is|was|are|be|an|starts?|started|had been) unloaded|unloaded[- ]displacement",
+                     100000),
     "share": Word(r"(?:a|the|its|this|largest|smallest|least|that|what) share|shares? of",
                   r"", 100000),
     "course": Word(r"courses?", r"of course", 100000),

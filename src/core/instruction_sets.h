@@ -11,7 +11,7 @@
 
 namespace mindahl {
 
-/// Has the processor what MINDAHL_TARGET_AVX2 asks for?
+/// True if the processor runs MINDAHL_TARGET_AVX2.
 inline bool HasAvx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 
 /// True if the processor runs MINDAHL_TARGET_AVX512.

@@ -32,8 +32,8 @@ double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
   return *at;
 }
 
-/// Can a step be so many times the usual one? Not where more than a tenth of the steps are so large
-/// that the largest is less than that next to them: the usual one is among these, or above.
+/// True if a step can be so many times the usual one: unless more than a tenth are so large that
+/// the largest is less than that next to them: the usual one is among these, or above.
 bool MayLeap(Readings values, double factor, std::pmr::memory_resource* scratch) {
   if (values.size() < 2) return false;
   std::pmr::vector<double> steps(values.size() - 1, scratch);
@@ -260,7 +260,7 @@ double LargestStep(const MendedChannel& channel, std::size_t begin, std::size_t 
   return largest;
 }
 
-/// Has the column another value at half of the samples of [begin, end) than at the one before?
+/// True if half of the samples of [begin, end) have another value than the one before them.
 bool Moves(const MendedChannel& channel, std::size_t begin, std::size_t end) {
   std::size_t moves = 0;
   for (std::size_t i = begin; i < end; ++i) moves += channel.Step(i) > 0 ? 1U : 0U;

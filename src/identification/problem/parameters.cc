@@ -241,7 +241,7 @@ void Parameters::HoldConfoundedAsymmetry() {
   asymmetry.fixed = asymmetry.confounded = true;
 }
 
-/// Under a load that varies slip must be complete at a finite displacement.
+/// Bounds α: under a load that varies slip must be complete at a finite displacement.
 void Parameters::KeepShapeBelowOne(const FitOptions& options) {
   Parameter& shape = parameters_[kShape];
   const double lowest = shape.fixed ? shape.theta : shape.lower;
