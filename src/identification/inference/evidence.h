@@ -47,7 +47,7 @@ double PValueOfChiSquared(double x, double degrees_of_freedom);
 /// P(χ²(k) > x) = chance at x
 double ChiSquaredQuantile(double degrees_of_freedom, double chance);
 
-/// Returns the half width of a two-sided interval of this confidence in standard errors, by Student.
+/// Returns the half width of a two-sided interval of this confidence in standard errors (Student).
 double StudentQuantile(double degrees_of_freedom, double confidence);
 
 }  // namespace mindahl::identification

@@ -63,7 +63,7 @@ SolverOptions RoughlyAs(const FitOptions& options) {
   return rough;
 }
 
-/// From the law that runs through the same steady loop, and from that of the fit itself, roughly.
+/// Fits the other law roughly, from that of the same steady loop and from the fitted one.
 OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult& result,
                   const models::BranchLaw& equivalent, InitialState state,
                   const FitOptions& options, SearchBuffers& buffers) {

@@ -48,7 +48,7 @@ bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
          std::abs(force) <= kOfForce * data.units.force;
 }
 
-/// A single loading curve looks the same wherever its origin is put: where the contact is unloaded
+/// A single loading curve looks the same from any reference position: where the contact is unloaded
 /// must be said. It is the file's zero where the record begins there; else the first sample, where
 /// the force is then the offset's.
 void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
