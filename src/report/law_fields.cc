@@ -82,7 +82,7 @@ Value Alternatives(const Report& report) {
 void AddLawFields(FieldTable& table) {
   table.Add({
       LawRow(
-          "law.decided", "", "whether the record tells Masing's law from Dahl's own",
+          "law.decided", "", "whether the record distinguishes Masing's law from Dahl's own",
           [](const LawChoice& choice) { return Flag(choice.decided); }, WhyNoChoice),
       LawRow(
           "law.preferred", "", "the law that it is of, as --model takes it",

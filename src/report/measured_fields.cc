@@ -29,7 +29,7 @@ const std::vector<Field<CycleFacts>>& CycleFields() {
   static const std::vector<Field<Item>> fields = {
       {"start", "", "number of the sample at which it starts, from 0",
        [](const Item& item) { return Count(item.start); }},
-      {"amplitude", "m", "X: a quarter of the way of its two strokes",
+      {"amplitude", "m", "X: a quarter of the travel of its two strokes",
        [](const Item& item) { return Number(item.amplitude); }},
       {"peak_force", "N", "T*: half the range of the force",
        [](const Item& item) { return Number(item.peak_force); }},
