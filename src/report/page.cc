@@ -134,7 +134,7 @@ struct NextCommand {
 constexpr std::array kNextCommands = {
     NextCommand{"systematic_residual", "--model auto", "Compares the laws on this record:"},
     NextCommand{"no_model_fits", "--model auto", "Compares the laws on this record:"},
-    NextCommand{"shape_or_rig", "--rig-stiffness fit", "Asks whether the rig gives way:"},
+    NextCommand{"shape_or_rig", "--rig-stiffness fit", "Asks whether the rig is compliant:"},
 };
 
 /// Lists the commands to run next, each after its purpose.
@@ -273,9 +273,10 @@ std::string FigureSection(const Report& report) {
              "Bars beyond the curve on either side are readings that are far off: look for "
              "disturbances.");
   if (const auto panel = ResidualAutocorrelation(report)) {
-    figures += Figure(*panel, "residual-autocorrelation", "Autocorrelation of the residuals",
-                      "Outside the band residuals know of each other, and samples count for less; "
-                      "a peak a cycle apart is a shape that repeats.");
+    figures +=
+        Figure(*panel, "residual-autocorrelation", "Autocorrelation of the residuals",
+               "Values outside the band mean autocorrelated residuals and fewer effective samples; "
+               "a peak a cycle apart is a shape that repeats.");
   }
   html += Grid(figures);
   Table table("residuals", {"figure", "value", "what it is"});
@@ -290,8 +291,8 @@ std::string LikelihoodSection(const Report& report) {
   if (!panel) return "";
   return Heading("Likelihood") +
          Grid(Figure(*panel, "likelihood", "Likelihood of the slip force",
-                     "Where the curve stays below the line, the record does not tell those slip "
-                     "forces from the best: a side that never rises is open."));
+                     "Where the curve stays below the line, the record does not distinguish "
+                     "those slip forces from the best: a side that never rises is open."));
 }
 
 // --- the model's loop, the contact, the mapping
@@ -397,7 +398,8 @@ std::string SelectionSection(const Report& report) {
     if (i == selection.chosen) {
       remark = remark.empty() ? "reported" : fmt::format("reported; {}", remark);
     } else if (is_listed) {
-      remark = remark.empty() ? "not told from it" : fmt::format("not told from it; {}", remark);
+      remark = remark.empty() ? "not distinguished from it"
+                              : fmt::format("not distinguished from it; {}", remark);
     }
     table.Row(fmt::format("{}{}", score.model->name, score.rig ? " + rig" : ""),
               {Number(std::to_string(score.free_parameters)),

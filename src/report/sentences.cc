@@ -188,7 +188,8 @@ std::string AsymmetryNotIdentifiable(const Finding& finding, const FitResult&, c
   return fmt::format(
       "{}: {:.2g} % of slip_force never slips, and keeps a force that no record of a cycled "
       "contact "
-      "tells; raise the amplitude until the contact slips as a whole, or record from the unloaded "
+      "determines; raise the amplitude until the contact slips as a whole, or record from the "
+      "unloaded "
       "contact on",
       fmt::join(finding.parameters, ", "), 100 * Needed(finding, "never_slips"));
 }
@@ -266,7 +267,7 @@ std::string UnknownPast(const Finding& finding, const FitResult&, const Units&) 
 std::string InitialStateUndecided(const Finding& finding, const FitResult& fit, const Units&) {
   const bool virgin = fit.initial_state == models::InitialState::kVirgin;
   return fmt::format(
-      "{}: the record does not tell whether the contact was unloaded before it or in a steady "
+      "{}: the record does not determine whether the contact was unloaded before it or in a steady "
       "loop, and the two differ: the values are of {}, the intervals cover both; give "
       "--initial-state, or record more cycles",
       fmt::join(finding.parameters, ", "), virgin ? "an unloaded contact" : "a steady loop");
@@ -304,7 +305,8 @@ std::string LawUndecided(const Finding& finding, const FitResult& fit, const Uni
   const std::optional<double> delta_aicc = finding.Number("delta_aicc");
   const std::string known = KnownOf(finding, fit, units);
   return fmt::format(
-      "sigma, slip_force: the record does not tell {} from {} ({}){}; start from an unloaded "
+      "sigma, slip_force: the record does not distinguish {} from {} ({}){}; start from an "
+      "unloaded "
       "contact, or record a second amplitude",
       NameOfLaw(fit.model->name), NameOfLaw(finding.kind),
       delta_aicc ? fmt::format("ΔAICc = {:.3g}", *delta_aicc)

@@ -108,7 +108,8 @@ std::string SelectionText(const identification::ModelSelection& selection, const
                                        : "-",
                     score.remark.empty() ? "" : "\n      " + score.remark);
   }
-  return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
+  return text + "  * reported, = not distinguished from it\n" +
+         Wrapped("  " + selection.verdict, 2) + "\n";
 }
 
 /// Returns which terms were added and what each gained, in one line.

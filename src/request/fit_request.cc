@@ -402,7 +402,7 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
   if (request.terms.contains("asymmetry")) {
     throw InputError(
         "--asymmetry is not read by track: where the contact slips as a whole, force_offset of a "
-        "cycle is (Tc+ - Tc-)/2 beside the sensor's own; fit a part of the record with fit");
+        "cycle is (Tc+ - Tc-)/2 plus the sensor's own; fit a part of the record with fit");
   }
   return MakeFitOptions(request);
 }
