@@ -16,7 +16,7 @@ void AppendColumn(std::span<const Value> from, std::vector<Value>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-/// From `begin` to before `end`; nothing of what is not recorded.
+/// Returns the values from `begin` to before `end`; nothing where not recorded.
 std::vector<double> PartOf(const std::vector<double>& values, std::size_t begin, std::size_t end) {
   if (values.empty()) return {};
   return {values.begin() + static_cast<std::ptrdiff_t>(begin),

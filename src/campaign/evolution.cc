@@ -88,7 +88,7 @@ io::Plot EvolutionPlot(std::span<const Evolution> evolutions, const std::string&
   plot.subtitle = subtitle;
   plot.panels = EvolutionPanels(evolutions);
   if (plot.panels.empty()) {
-    throw InvalidArgument("there is no course to draw: no quantity is known of two cycles");
+    throw InvalidArgument("there is no time history to draw: no quantity is known of two cycles");
   }
   for (std::size_t k = 0; k + 1 < plot.panels.size(); ++k) plot.panels[k].x_label.clear();
   plot.height = kPanelHeight * static_cast<int>(plot.panels.size() + 1);

@@ -126,7 +126,7 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
                             test.cycles, test.samples, test.fits, Quantity(test.dissipated, "J"),
                             InWords(test.energy_counts), test.unused_samples));
   if (test.shared_alpha) body += Paragraph(SharedAlphaInWords(*test.shared_alpha) + ".");
-  Table courses("by the stretches of each course", {"quantity", "at first", "at last"});
+  Table courses("by the segments of each time history", {"quantity", "at first", "at last"});
   for (const Evolution& evolution : test.evolutions) {
     const auto& stretches = evolution.description.stretches;
     if (stretches.empty()) continue;

@@ -191,7 +191,7 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, Strictness str
   return result;
 }
 
-/// In the order of the files, whatever the number of threads.
+/// Fits the files and returns them in their order, whatever the number of threads.
 std::vector<FileFit> FitFiles(const BatchCommandOptions& options, const CLI::App& command,
                               const Console& console, Progress& progress) {
   const std::vector<std::string>& files = options.request.files;

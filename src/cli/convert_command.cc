@@ -97,7 +97,7 @@ nlohmann::ordered_json ConversionJson(const ConvertCommandOptions& options, cons
   return json;
 }
 
-/// In percent; what rounding leaves of two curves that are one is 0.
+/// Returns an error in percent; what rounding leaves of two curves that are one is 0.
 std::string Percent(double error) {
   constexpr double kRounding = 1e-12;
   return std::abs(error) < kRounding ? "0 %" : fmt::format("{:.3g} %", 100 * error);

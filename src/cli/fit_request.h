@@ -24,7 +24,7 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
 /// @throws InputError where any of these is given, but no record that it would be of
 void RequireNoColumns(const io::RecordColumns& columns);
 
-/// And what is fitted to them.
+/// Adds the options of the model that is fitted to them.
 void AddModelOptions(CLI::App& command, FitRequest& request);
 
 }  // namespace mindahl::cli

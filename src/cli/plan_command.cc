@@ -141,7 +141,7 @@ bool IsIdentified(const identification::FitResult& fit, std::string_view name) {
   return estimate != nullptr && estimate->is_known();
 }
 
-/// From a record: its fit's law and noise. Where it does not identify α, that is taken to be
+/// Takes law and noise from the fit of a record. Where it does not identify α, that is taken to be.
 /// --alpha or Mindlin's: the record has the other parameters to it.
 void ExpectFromRecord(const PlanOptions& options, Expectation& expected, Console& console) {
   constexpr double kMindlin = 1.0 / 3;

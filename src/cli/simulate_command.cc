@@ -108,7 +108,7 @@ Approximation ResolveMethod(const SimulateOptions& options) {
   return approximation;
 }
 
-/// Under a varying load: σ and Tc are those at the reference load.
+/// Returns the law under a varying load: σ and Tc are those at the reference load.
 models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
   const FrictionModel* model = models::FindFrictionModel(options.model);
   if (model == nullptr || model->memory != models::Memory::kReturnPoint ||

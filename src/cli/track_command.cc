@@ -407,7 +407,7 @@ void TrackRun::Go() {
     }
     throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume",
                                  is_stopped ? "stopped by a signal" : error.what(), totals_.fits,
-                                 options_.output, is_stopped ? "" : "mend the fault and "));
+                                 options_.output, is_stopped ? "" : "repair the fault and "));
   }
   signals_.reset();
   progress_.reset();

@@ -25,14 +25,14 @@ void RequirePeakForce(double peak_force, double slip_force) {
   }
 }
 
-/// 1 − (1 − t)^{2/3} without cancellation at either end. The two fractions of Tc, which add up to
-/// 1, come separately: as t → 1 the root needs every digit of the second.
+/// Returns 1 − (1 − t)^{2/3} without cancellation at either end. The two fractions of Tc, which add
+/// up to 1, come separately: as t → 1 the root needs every digit of the second.
 double SlipShare(double force_share, double remaining_share) {
   const double stick_ratio = std::cbrt(remaining_share);
   return force_share * (1.0 + stick_ratio) / (1.0 + stick_ratio + stick_ratio * stick_ratio);
 }
 
-/// (1 + 3s + s²)·(1 − s)³, given s and 1 − s.
+/// Returns (1 + 3s + s²)·(1 − s)³, given s and 1 − s.
 double EnergyShare(double stick_ratio, double one_minus_stick_ratio) {
   return (1.0 + 3.0 * stick_ratio + stick_ratio * stick_ratio) * one_minus_stick_ratio *
          one_minus_stick_ratio * one_minus_stick_ratio;
@@ -45,7 +45,7 @@ double EnergyAtGrossSlip(const MindlinContact& contact) {
                      (20.0L * contact.contact_radius));
 }
 
-/// T₀ for a contact that is known to be valid.
+/// Returns T₀ for a contact that is known to be valid.
 double VirginForce(double slip_force, double gross_slip_displacement, double displacement) {
   const double magnitude = std::abs(displacement);
   if (magnitude >= gross_slip_displacement) return std::copysign(slip_force, displacement);

@@ -7,7 +7,7 @@
 
 namespace mindahl::contact {
 
-/// A positive result rounded to double.
+/// Returns a positive result rounded to double.
 /// @throws InvalidArgument where it is beyond the normal doubles
 inline double InRange(std::string_view quantity, long double value) {
   using Limits = std::numeric_limits<double>;

@@ -34,7 +34,7 @@ void RequireBody(const KnownBody& body, int number) {
   }
 }
 
-/// For functions that do not read the radius.
+/// Makes a body for functions that do not read the radius.
 Body Elastic(const KnownBody& body) {
   return {.youngs_modulus = Present(body.youngs_modulus),
           .poisson_ratio = Present(body.poisson_ratio)};

@@ -30,16 +30,16 @@ const Value& Present(const std::optional<Value>& quantity) {
   return *quantity;
 }
 
-/// E and ν are known.
+/// True if E and ν are known.
 inline bool IsElastic(const KnownBody& body) { return body.youngs_modulus && body.poisson_ratio; }
 
-/// 1/E* = Σ (1 − ν²)/E, of bodies whose E and ν are known
+/// Returns 1/E* = Σ (1 − ν²)/E, of bodies whose E and ν are known.
 Quantity EffectiveModulusOf(const KnownContact& known);
 
-/// G* = Σ 2(2 − ν)(1 + ν)/E, likewise
+/// Returns G* = Σ 2(2 − ν)(1 + ν)/E, likewise.
 Quantity TangentialComplianceOf(const KnownContact& known);
 
-/// 1/ρ = 1/R₁ + 1/R₂; a plane changes nothing.
+/// Returns 1/ρ = 1/R₁ + 1/R₂; a plane changes nothing.
 Quantity EquivalentRadiusOf(const UncertainValue& radius_1, const UncertainValue& radius_2);
 
 // Names the missing elastic constants, in words: "the radius of body 1".

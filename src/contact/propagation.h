@@ -44,7 +44,7 @@ struct Factor {
 /// A product of powers, whose value is computed elsewhere: relative changes add, times the powers.
 Quantity Product(double value, std::initializer_list<Factor> factors, double root = 1.0);
 
-/// With the errors of the fit and of the inputs.
+/// Returns it with the errors of the fit and of the inputs.
 /// @param correlation  of σ and Tc
 PropagatedValue Total(const Quantity& quantity, double correlation = 0.0);
 

@@ -38,7 +38,7 @@ bool KnowsCompliance(const KnownContact& known) {
   return known.tangential_compliance.has_value() || HasElasticBodies(known);
 }
 
-/// a = σG*/8
+/// Returns a = σG*/8.
 Quantity ContactRadiusOf(const Quantity& stiffness, const Quantity& compliance) {
   return Product(0.125 * stiffness.value * compliance.value, {{stiffness}, {compliance}});
 }
@@ -50,7 +50,7 @@ int BodyOfUnknownModulus(const KnownContact& known) {
   return known.body_1.youngs_modulus ? 2 : 1;
 }
 
-/// ν of both bodies, where it is one.
+/// Returns ν of both bodies, where it is one.
 const UncertainValue* CommonPoissonRatio(const KnownContact& known) {
   const std::optional<UncertainValue>& first = known.body_1.poisson_ratio;
   const std::optional<UncertainValue>& second = known.body_2.poisson_ratio;
@@ -86,8 +86,8 @@ class StiffnessOverModulus {
   int body_;
 };
 
-/// E [Pa] of a body by its stiffness, which grows with it; empty where it would have to be more
-/// than rigid.
+/// Returns E [Pa] of a body by its stiffness, which grows with it; empty where it would have to be
+/// more than rigid.
 std::optional<double> ModulusOfStiffness(const StiffnessOverModulus& stiffness, double target,
                                          double other_modulus) {
   // Beyond these times the other body's a body is rigid, or as soft as none, to every digit.
@@ -106,7 +106,7 @@ std::optional<double> ModulusOfStiffness(const StiffnessOverModulus& stiffness, 
   return std::exp(std::midpoint(bracket.first, bracket.second));
 }
 
-/// G*, E* and the unknown E of a sphere of known radius whose other modulus is known.
+/// Identifies G*, E* and the unknown E of a sphere of known radius whose other modulus is known.
 void IdentifyModulus(const Question& question, const Quantity& equivalent_radius, int body,
                      ShapeUnderLoad& shape) {
   KnownContact known = question.known;

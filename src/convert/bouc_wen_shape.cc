@@ -28,7 +28,7 @@ BoucWenShape::BoucWenShape(double exponent, double beta)
   }
 }
 
-/// Derivatives of the integrals by q: those by t times dt/dq = 2q·e^{−q²}.
+/// Returns the derivatives of the integrals by q: those by t times dt/dq = 2q·e^{−q²}.
 BoucWenShape::Row BoucWenShape::SlopesAt(double q) const {
   if (q == 0) return {};
   const double remaining = std::exp(-q * q);
@@ -77,7 +77,7 @@ double BoucWenShape::At(double q, Column column) const {
   return Interpolate(std::min(static_cast<std::size_t>(q / kStep), kTableIntervals - 1), q, column);
 }
 
-/// q at which an integral reaches the target.
+/// Returns q at which an integral reaches the target.
 double BoucWenShape::Solve(double target, Column column) const {
   const auto above = std::ranges::upper_bound(
       nodes_, target, {}, [column](const Node& node) { return node.integral[column]; });

@@ -24,9 +24,9 @@ class BoucWenShape {
   };
   /// Returns the loop between ±y.
   [[nodiscard]] Loop LoopOf(double y) const;
-  /// t at a distance from the branch's start, in 0 … 2y.
+  /// Returns t at a distance from the branch's start, in 0 … 2y.
   [[nodiscard]] double Rising(const Loop& loop, double distance) const;
-  /// W·k/Tc² of the loop between ±y.
+  /// Returns W·k/Tc² of the loop between ±y.
   [[nodiscard]] double Energy(double y) const;
 
  private:

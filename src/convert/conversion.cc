@@ -51,7 +51,7 @@ void RequireConversion(const ModelLaw& contact, const ConversionOptions& options
   }
 }
 
-/// Those that are fitted and looked at, evenly in their logarithm, X among them.
+/// Returns the amplitudes that are fitted and compared, evenly in their logarithm, X among them.
 std::vector<double> AmplitudesOf(const ConversionOptions& options) {
   std::vector<double> amplitudes = {options.amplitude};
   if (!options.range || options.range->lower == options.range->upper) return amplitudes;

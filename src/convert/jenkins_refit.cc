@@ -31,7 +31,7 @@ class Curve {
   [[nodiscard]] double Slope(double x) const {
     return models::BackboneSlope(law_, largest_ * x) * (largest_ / law_.slip_force);
   }
-  /// Places where √u, u = 1 − force, falls evenly from 1 to what it is at the last.
+  /// Returns the places where √u, u = 1 − force, falls evenly from 1 to what it is at the last.
   [[nodiscard]] std::vector<double> EvenCorners(double last, std::size_t count) const {
     const double yield = law_.slip_force / law_.tangential_stiffness / largest_;
     const double beta = 1 - law_.shape_exponent;
@@ -81,7 +81,7 @@ struct Polygon {
   [[nodiscard]] bool IsInOrder() const {
     return x.front() > 0 && std::ranges::adjacent_find(x, std::greater_equal<>()) == x.end();
   }
-  /// Whether it is one of elements: it rises, ever less steeply.
+  /// True if it is one of elements: it rises, ever less steeply.
   [[nodiscard]] bool IsOfElements() const {
     double last = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < size(); ++j) {
@@ -156,7 +156,7 @@ class Loops {
     return corners;
   }
 
-  /// The mean square difference of force.
+  /// Returns the mean square difference of force.
   [[nodiscard]] double Cost(const Polygon& polygon) const {
     const std::vector<double> force = ForcesAt(polygon, PointsAt(polygon, middle_));
     double cost = 0.0;
@@ -170,7 +170,7 @@ class Loops {
     return cost;
   }
 
-  /// The polygon with the least cost that is found from this one.
+  /// Returns the polygon with the least cost that is found from this one.
   /// @param last_is_held  the last corner keeps its place
   [[nodiscard]] Polygon Fit(Polygon polygon, bool last_is_held) const;
 
@@ -225,8 +225,8 @@ class Loops {
     for (const Point& point : points) force.push_back(ForceAt(polygon, point));
     return force;
   }
-  /// Derivatives of the force there by place and excess of the corners to either side, of which
-  /// corner j has the unknowns 2j and 2j + 1.
+  /// Returns the derivatives of the force there by place and excess of the corners to either side,
+  /// of which corner j has the unknowns 2j and 2j + 1.
   static std::array<std::pair<Eigen::Index, double>, 4> GradientAt(const Polygon& polygon,
                                                                    const Point& point) {
     std::array<std::pair<Eigen::Index, double>, 4> gradient{};

@@ -13,7 +13,7 @@ using methods::IwanElements;
 
 namespace {
 
-/// γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
+/// Returns γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
 double PerTravel(const BoucWenLaw& law, double share) {
   return share * std::pow(law.stiffness / law.slip_force, law.exponent);
 }

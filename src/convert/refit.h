@@ -12,9 +12,9 @@ class ReferenceLoops {
  public:
   ReferenceLoops(const ModelLaw& contact, const std::vector<double>& amplitudes);
 
-  /// Dahl's law of α = 1, or a spring with Coulomb's limit: σ and Tc.
+  /// Fits Dahl's law of α = 1, or a spring with Coulomb's limit: σ and Tc.
   [[nodiscard]] ModelLaw Fit(const models::FrictionModel& model, double shape_exponent) const;
-  /// k, n and Tc at a given β.
+  /// Fits k, n and Tc at a given β.
   [[nodiscard]] BoucWenLaw FitBoucWen(double beta) const;
 
  private:
@@ -33,7 +33,7 @@ class ReferenceLoops {
   /// @param t  T/Tc on the rising branch: (rate, loop, written)
   template <typename Response>
   Regression Regress(const Response& t, double rate) const;
-  /// The rate with the least cost.
+  /// Returns the rate with the least cost.
   template <typename Response>
   double BestRate(const Response& t) const;
 

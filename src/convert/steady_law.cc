@@ -164,7 +164,7 @@ std::vector<double> Differences(const SteadyLaw& law, const SteadyLaw& reference
   return difference;
 }
 
-/// The largest difference of force [N]: the largest at some places, and what is larger next to it.
+/// Returns the largest difference of force [N] at some places, or next to the largest of these.
 double LargestDifference(const SteadyLaw& law, const SteadyLaw& reference, double amplitude) {
   const std::vector<double> places = PlacesToCompare(law, reference, amplitude);
   const std::vector<double> difference = Differences(law, reference, amplitude, places);

@@ -23,7 +23,7 @@ class Draws {
     return std::exp(Uniform(std::log(low), std::log(high)));
   }
   double Normal() { return normal_(engine_); }
-  /// In 0 … count − 1.
+  /// Draws an index in 0 … count − 1.
   std::size_t Index(std::size_t count) {
     return boost::random::uniform_int_distribution<std::size_t>(0, count - 1)(engine_);
   }

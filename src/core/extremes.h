@@ -13,8 +13,8 @@ struct Extremes {
   double greatest = 0.0;
 };
 
-/// Least and greatest of values that are no NaN, at least one. In registers side by side, as
-/// comparisons one after the other would wait for each other.
+/// Returns the least and greatest of values that are no NaN, at least one. In registers side by
+/// side, as comparisons one after the other would wait for each other.
 [[nodiscard]] inline Extremes ExtremesOf(std::span<const double> values) {
   using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
   constexpr std::size_t kSideBySide = 4;

@@ -11,10 +11,10 @@
 
 namespace mindahl {
 
-/// Has the processor what MINDAHL_TARGET_AVX2 asks for?
+/// True if the processor runs MINDAHL_TARGET_AVX2.
 inline bool HasAvx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 
-/// And MINDAHL_TARGET_AVX512?
+/// True if the processor runs MINDAHL_TARGET_AVX512.
 inline bool HasAvx512() {
   return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq");
 }

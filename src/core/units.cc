@@ -62,7 +62,7 @@ std::optional<Unit> Find(std::span<const Entry> table, std::string_view symbol) 
   return Unit{wanted, entry->numerator, entry->denominator};
 }
 
-/// "Nm", "N·m", "N*m" and "N-m" as the table has it, "N m".
+/// Returns "Nm", "N·m", "N*m" and "N-m" as the table has it, "N m".
 std::string WithBlank(std::string_view symbol) {
   std::string letters = WithAsciiMicro(symbol);
   for (const std::string_view sign : {"·", "⋅", "*", "-", " "}) {

@@ -340,8 +340,8 @@ SeenNoise NoiseAboutBackbone(const BackboneSeries& series, std::span<const Follo
   return noise;
 }
 
-/// How far drawn stiffnesses are from the found ones, a column a draw. The smoothness is a prior of
-/// second differences whose variance is that of the noise over its weight.
+/// Returns how far drawn stiffnesses are from the found ones, a column a draw. The smoothness is a
+/// prior of second differences whose variance is that of the noise over its weight.
 Eigen::MatrixXd Draw(const BackboneSeries& series, const Smoothest& smoothest,
                      const SeenNoise& noise, const Eigen::MatrixXd& differences) {
   const double prior =

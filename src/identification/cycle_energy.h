@@ -11,7 +11,7 @@ namespace mindahl::identification {
 
 /// A virgin contact of slip forces Tc(1 ± asymmetry) that is cycled between ±amplitude.
 struct AsymmetricCycles {
-  double asymmetry = 0.0;   ///< in (−1, 1), in the sense of positive displacement
+  double asymmetry = 0.0;   ///< in (−1, 1), for positive displacement
   double amplitude = 0.0;   ///< [m] > 0, of contact and rig
   int first_direction = 1;  ///< ±1: of the first loading
   std::size_t cycles = 1;

@@ -130,7 +130,7 @@ void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
                            is_forced ? "m" : "N"));
 }
 
-/// How many samples are left out for what: "; of 12 that were read 8 are left out: 2 glitches, …".
+/// Counts the samples left out by reason: "; of 12 that were read 8 are left out: 2 glitches, …".
 std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOptions& fit) {
   const loop::PreparationOptions& options = fit.preparation;
   const std::size_t left_out = prepared.samples() - prepared.counted();

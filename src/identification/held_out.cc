@@ -29,7 +29,7 @@ std::vector<Part> PartsOf(const FitResult& fit, const SampleMask& mask, std::siz
   return parts;
 }
 
-/// Those that the options hold out, and the parts of one fold.
+/// Returns those that the options hold out, and the parts of one fold.
 std::vector<std::vector<bool>> HeldOut(std::span<const RecordView> records,
                                        const FitOptions& options, std::span<const Part> parts,
                                        std::size_t fold, std::size_t folds) {

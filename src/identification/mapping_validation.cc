@@ -66,7 +66,7 @@ class CaseGenerator {
   Draws draws_;
 };
 
-/// The loop by Mindlin's equations 13 to 15, phase by phase.
+/// Returns the loop by Mindlin's equations 13 to 15, phase by phase.
 Record MindlinRecord(const Case& drawn) {
   const models::Excitation excitation = models::MakeExcitation(drawn.excitation);
   const double amplitude = drawn.excitation.amplitude;
@@ -128,7 +128,7 @@ Trial ByDahl(const Record& steady, const Case& drawn) {
   return {steady, options, law, models::DahlEquivalent(law, amplitude), amplitude};
 }
 
-/// From the first extreme on.
+/// Returns the record from the first extreme on.
 Record SteadyPart(const Record& record, const Case& drawn) {
   const auto first = static_cast<std::ptrdiff_t>(drawn.excitation.samples_per_cycle / 4);
   Record steady;

@@ -86,7 +86,7 @@ loop::Record LoopOf(const models::BranchLaw& law, const models::SeriesSpring& ri
   return record;
 }
 
-/// One a load.
+/// Returns one a load.
 std::vector<loop::Record> LoopsOf(const Expectation& expected, const Protocol& protocol) {
   std::vector<loop::Record> records;
   for (const double load : LoadsOf(protocol)) {

@@ -81,7 +81,7 @@ std::vector<double> RoughVelocity(const RecordView& record) {
   return velocity;
 }
 
-/// Whether a column says what another one says already.
+/// Names what keeps a column out: it repeats another one.
 /// @param before  covariates that are candidates
 std::string_view ObstacleTo(const loop::Covariate& covariate, const RecordView& record,
                             const FitResult& law, std::span<const std::string> before) {
@@ -223,7 +223,7 @@ FitOptions Selection::With(const TermCandidate& candidate, FitOptions options) c
 
 double Selection::SquaresOf(const FitResult& fit) const { return SumOfSquares(fit.rms, samples_); }
 
-/// From the solution of a smaller model; nothing where the data are not enough, or it fails.
+/// Fits from the solution of a smaller model; nothing where the data are not enough, or it fails.
 std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base,
                                                  const TermCandidate* candidate) {
   CandidateModel model;
@@ -255,7 +255,7 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base,
   return model;
 }
 
-/// From the data alone.
+/// Fits from the data alone.
 std::optional<CandidateModel> Selection::FitAnew(const FitOptions& options) {
   CandidateModel model;
   model.options = options;

@@ -64,8 +64,8 @@ void Validate(const Plot& plot) {
   }
 }
 
-/// In single quotes gnuplot interprets nothing but the quote itself; the terminal is told to leave
-/// the text alone too. A string ends with its line.
+/// Quotes a text: in single quotes gnuplot interprets nothing but the quote itself; the terminal is
+/// told to leave the text alone too. A string ends with its line.
 std::string Quoted(std::string_view text) {
   std::string quoted = "'";
   for (const char character : text) {
@@ -81,8 +81,8 @@ std::string_view ColourOf(const PlotSeries& curve, std::size_t series) {
   return kShades[std::min(shade, kShades.size() - 1)];
 }
 
-/// How a series is drawn. Beyond the first six, colours repeat with dashes, crosses or other
-/// markers.
+/// Returns how a series is drawn. Beyond the first six, colours repeat with dashes, crosses or
+/// other markers.
 /// @param series     its place in the panel
 /// @param in_legend  there the dots of a dense series would be too small to see
 std::string StyleCommand(const PlotSeries& curve, std::size_t series, bool in_legend) {
@@ -239,8 +239,8 @@ class Script {
     return legend.entries > kMostAbove || row > room;
   }
 
-  /// Room for the legends on the right of each column [px]. One that stands where a panel is
-  /// missing from the last row needs none.
+  /// Returns the room for the legends on the right of each column [px]. One that stands where a
+  /// panel is missing from the last row needs none.
   std::vector<double> LegendWidths() const {
     std::vector<double> widths(Columns(), 0.0);
     const double largest = kLargestLegendShare * plot_.width / plot_.columns;

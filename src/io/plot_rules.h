@@ -6,7 +6,7 @@
 
 namespace mindahl::io {
 
-/// Whether a series of that style has lower and upper ends.
+/// True if a series of that style has lower and upper ends.
 constexpr bool HasEnds(PlotStyle style) {
   return style == PlotStyle::kIntervals || style == PlotStyle::kBand;
 }

@@ -351,7 +351,7 @@ class ColumnReader {
                     role.name, role.unit_symbols(), role.unit_option));
   }
 
-  /// Whether the two are an angle and a torque: by their units, and by name where there is none.
+  /// True if the two are an angle and a torque: by their units, and by name where there is none.
   /// @throws InputError when only one of them is
   bool IsTorsional(std::size_t displacement, const ColumnChoice& displacement_choice,
                    std::size_t force, const ColumnChoice& force_choice) const {
@@ -542,7 +542,7 @@ class RoleAssigner {
   std::vector<const Role*> nameless_;  // of displacement and force
 };
 
-/// Why a column that nobody asked for cannot be used; "" when it can.
+/// Returns why a column that nobody asked for cannot be used; "" when it can.
 std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const Role& role,
                         std::size_t column, const ColumnChoice& choice) {
   if (!table.HasNumbers(column)) return "holds no numbers";

@@ -13,9 +13,9 @@ namespace mindahl::io {
 /// @param most  >= 8
 std::vector<std::size_t> Thinned(const PlotSeries& series, std::size_t most);
 
-/// Likewise of a cloud of points, whose order does not matter: of those in one cell of a grid the
-/// first is kept, and the least and greatest x and y. The grid is as fine as `most` allows, at most
-/// 512 cells wide: what is left out would lie upon what is kept.
+/// Thins, likewise, a cloud of points, whose order does not matter: of those in one cell of a grid
+/// the first is kept, and the least and greatest x and y. The grid is as fine as `most` allows, at
+/// most 512 cells wide: what is left out would lie upon what is kept.
 /// @param most  >= 8
 std::vector<std::size_t> ThinnedCloud(const PlotSeries& series, std::size_t most);
 

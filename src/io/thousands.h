@@ -19,8 +19,8 @@ bool MayHaveThousands(std::span<const double> values);
 /// @param cells  of one column, without blanks around them
 std::optional<std::size_t> FindThousands(std::span<const std::string_view> cells);
 
-/// Are all cells one to three digits, not a 0, a mark and three more digits, so that nothing shows
-/// a decimal mark from one that separates thousands?
+/// True if all cells are one to three digits, not a 0, a mark and three more digits, so that
+/// nothing distinguishes a decimal mark from one that separates thousands.
 /// @param cells  likewise
 bool AreAllGrouped(std::span<const std::string_view> cells);
 

@@ -21,7 +21,7 @@ inline double Mean(std::span<const double> values) {
   return ((sums[0] + sums[1]) + (sums[2] + sums[3])) / static_cast<double>(values.size());
 }
 
-/// The middle one of values, at least one; of an even number the upper of the two. Reorders them.
+/// Returns the middle of at least one value; of an even number the upper of two. Reorders them.
 template <typename Values>
 auto UpperMedian(Values&& values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
@@ -29,7 +29,7 @@ auto UpperMedian(Values&& values) {
   return *middle;
 }
 
-/// The middle one of values, at least one; of an even number the mean of the two. Reorders them.
+/// Returns the middle of at least one value; of an even number the mean of the two. Reorders them.
 template <typename Values>
 double Median(Values&& values) {
   return boost::math::statistics::median(values.begin(), values.end());

@@ -104,7 +104,7 @@ Swing MeasureSwing(const RecordView& record, std::size_t first, std::size_t last
           .greatest_force = greatest};
 }
 
-/// The swings that reach as far as the widest, to a twentieth: not nested loops, run-in or
+/// Returns the swings that reach as far as the widest, to a twentieth: not nested loops, run-in or
 /// run-out.
 /// Without two turning points the whole record is one.
 std::pmr::vector<Swing> MainSwings(const RecordView& record, std::span<const std::size_t> points,

@@ -80,7 +80,7 @@ struct ParabolaWeights {
 constexpr std::array<std::size_t, 15> kReaches = {2,  3,  4,  6,  8,   11,  16, 23,
                                                   32, 45, 64, 91, 128, 181, 256};
 
-/// Half of the widest window about a sample in which parabolas agree.
+/// Returns half of the widest window about a sample in which parabolas agree.
 std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise) {
   constexpr double kDeviations = 2.5;
   const std::size_t room = std::min(at, values.size() - 1 - at);

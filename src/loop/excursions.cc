@@ -8,7 +8,7 @@
 namespace mindahl::loop {
 namespace {
 
-/// The extremes, with the record's ends.
+/// Returns the extremes, with the record's ends.
 std::pmr::vector<std::size_t> LocalExtremes(std::span<const double> displacement,
                                             std::pmr::memory_resource* scratch) {
   std::pmr::vector<std::size_t> points(scratch);

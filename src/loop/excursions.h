@@ -18,10 +18,10 @@ struct Excursion {
   [[nodiscard]] std::size_t duration() const { return last - first; }
 };
 
-/// The excursions of a displacement, by range. Closed inner loops by the four-point rule (ASTM
-/// E1049 describes an equivalent one), the record's ends being extremes; what is left widens up to
-/// the widest and then narrows, and goes one reversal at a time, from its ends.
-/// Cost: n, and m log m for m extremes.
+/// Returns the excursions of a displacement, by range. Closed inner loops by the four-point rule
+/// (ASTM E1049 describes an equivalent one), the record's ends being extremes; what is left widens
+/// up to the widest and then narrows, and goes one reversal at a time, from its ends. Cost: n, and
+/// m log m for m extremes.
 std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
                                            std::pmr::memory_resource* scratch);
 

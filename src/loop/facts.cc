@@ -155,8 +155,8 @@ CycleFacts MeasureCycle(const RecordView& record, Points points) {
   return facts;
 }
 
-/// Slope [N/m] of the least-squares line through the samples of a stroke between two fractions of
-/// its width; of the chord there where there are fewer than three.
+/// Returns the slope [N/m] of the least-squares line through the samples of a stroke between two
+/// fractions of its width; of the chord there where there are fewer than three.
 std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to) {
   constexpr double kFewest = 3;
   const double width = stroke.width();
@@ -197,7 +197,7 @@ std::optional<double> SlopeBetween(const Stroke& stroke, double from, double to)
          ((std::clamp(to, 0.01, 0.99) - std::clamp(from, 0.01, 0.99)) * width);
 }
 
-/// The turning points of the cycles of the widest amplitude, three each.
+/// Returns the turning points of the cycles of the widest amplitude, three each.
 std::vector<Points> SteadyCycles(const LoopFacts& facts, Points points) {
   std::vector<Points> steady;
   for (std::size_t k = 0; k < facts.cycles.size(); ++k) {
@@ -247,8 +247,8 @@ struct Flat {
   double width = 0.0;     // [m]
 };
 
-/// Width [m] of a gap between the levels k and k + 2: the travel from a level before to one after,
-/// less what the slopes beyond these take.
+/// Returns the width [m] of a gap between the levels k and k + 2: the travel from a level before to
+/// one after, less what the slopes beyond these take.
 double GapAt(const Passage& passage, std::size_t k, double before, double after) {
   return passage[k + 3] - passage[k - 1] - 4 * (before + after) / 2;
 }
@@ -361,7 +361,7 @@ std::optional<double> Asymmetry(const RecordView& record, std::span<const Points
   return StandardDeviation(sums) / peak_force;
 }
 
-/// Least squares of values against the numbers of their cycles.
+/// Fits a line to values against the numbers of their cycles by least squares.
 std::optional<Trend> TrendOf(Column numbers, Column values) {
   if (values.size() < 3) return std::nullopt;
   const Line line = LineThrough(numbers, values);
@@ -376,7 +376,7 @@ std::optional<Trend> TrendOf(Column numbers, Column values) {
   return trend;
 }
 
-/// Way over the widths of all strokes of the cycles.
+/// Returns the path length over the widths of all strokes of the cycles.
 double PathRatio(Column displacement, Points points, std::size_t cycles) {
   double path = 0.0;
   for (std::size_t i = points[0] + 1; i <= points[2 * cycles]; ++i) {
@@ -447,7 +447,7 @@ void Summarise(LoopFacts& facts) {
 /// one does, but for twice that fraction.
 constexpr double kReturn = 0.05;
 
-/// Forces with the displacement's sign.
+/// Measures forces with the displacement's sign.
 LoopFacts MeasureInSense(const RecordView& record, Points reversals) {
   LoopFacts facts;
   const std::pmr::vector<std::size_t> turns =

@@ -16,7 +16,7 @@ struct GlitchRules {
   std::size_t about = 12;
   /// [usual steps] Least distance of 0 from the range of a dropout's neighbours.
   double dropout = 2.0;
-  /// [usual steps of the displacement] Likewise at an end: a record may begin at 0 and 0.
+  /// [usual steps of the displacement] The same at an end: a record may begin at 0 and 0.
   double end_dropout = 4.0;
   /// [samples] Fewer equal readings are common where a file has few digits.
   std::size_t shortest_held = 5;

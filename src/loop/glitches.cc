@@ -17,7 +17,7 @@ using Readings = std::span<const double>;
 /// Fraction of the steps that are not zero which the usual one is not exceeded by.
 constexpr double kUsualShare = 0.9;
 
-/// The usual step [unit of the column]; 0 where all are zero.
+/// Returns the usual step [unit of the column]; 0 where all are zero.
 double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
   std::pmr::vector<double> steps(scratch);
   steps.reserve(values.size());
@@ -32,8 +32,8 @@ double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
   return *at;
 }
 
-/// Can a step be so many times the usual one? Not where more than a tenth of the steps are so large
-/// that the largest is less than that next to them: the usual one is among these, or above.
+/// True if a step can be so many times the usual one: unless more than a tenth are so large that
+/// the largest is less than that next to them: the usual one is among these, or above.
 bool MayLeap(Readings values, double factor, std::pmr::memory_resource* scratch) {
   if (values.size() < 2) return false;
   std::pmr::vector<double> steps(values.size() - 1, scratch);
@@ -93,7 +93,7 @@ class MendedChannel {
   std::pmr::vector<double> TakeMended() { return std::move(mended_); }
 
  private:
-  /// A line between the samples about [begin, end); a level one at the record's ends.
+  /// Draws a line between the samples about [begin, end); a level one at the record's ends.
   void BridgeOver(std::size_t begin, std::size_t end) {
     if (begin == 0 && end == size()) return;
     const double last = mended_[end < size() ? end : begin - 1];
@@ -112,12 +112,12 @@ class MendedChannel {
   std::pmr::memory_resource* memory_;
 };
 
-/// How far 0 lies outside the range of two values.
+/// Returns how far 0 lies outside the range of two values.
 double OutsideOf(double one, double other) {
   return std::max({std::min(one, other), -std::max(one, other), 0.0});
 }
 
-/// The steps [unit of the column] of neighbours of which neither reads 0 and 0.
+/// Returns the steps [unit of the column] of neighbours of which neither reads 0 and 0.
 double UsualStepWithoutZeros(Readings values, const RecordView& record,
                              std::pmr::memory_resource* scratch) {
   std::pmr::vector<double> kept(scratch);
@@ -136,7 +136,7 @@ struct Run {
   [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
 };
 
-/// Samples that read 0 and 0.
+/// Returns the samples that read 0 and 0.
 std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resource* scratch) {
   const auto is_zero = [x = record.displacement, force = record.force](std::size_t i) {
     return x[i] == 0 && force[i] == 0;
@@ -183,8 +183,8 @@ void FindDropouts(const RecordView& record, const GlitchRules& rules, MendedChan
   }
 }
 
-/// Third largest step about [begin, end), that into it and that out of it aside: a second spike
-/// makes two. 0 with fewer.
+/// Returns the third largest step about [begin, end), that into it and that out of it aside: a
+/// second spike makes two. 0 with fewer.
 double StepAbout(const MendedChannel& channel, std::size_t begin, std::size_t end,
                  const GlitchRules& rules) {
   std::array<double, 3> largest{};
@@ -204,7 +204,7 @@ double StepAbout(const MendedChannel& channel, std::size_t begin, std::size_t en
   return largest[2];
 }
 
-/// Samples of the spike that begins at i; 0 where none does.
+/// Returns the number of samples of the spike that begins at i; 0 where none does.
 std::size_t SpikeAt(MendedChannel& channel, std::size_t i, const GlitchRules& rules) {
   const Readings values = channel.values();
   const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
@@ -222,8 +222,8 @@ std::size_t SpikeAt(MendedChannel& channel, std::size_t i, const GlitchRules& ru
   return 0;
 }
 
-/// The next sample from one on, two or later, that leaves its neighbour by so many times the step
-/// before, as hardly one of a clean record does; the last but one where none does.
+/// Returns the next sample from one on, two or later, that leaves its neighbour by so many times
+/// the step before, as hardly one of a clean record does; the last but one where none does.
 std::size_t NextLeap(Readings values, std::size_t from, double factor) {
   const std::size_t end = values.size() - 2;
   double before = std::abs(values[from - 1] - values[from - 2]);
@@ -235,7 +235,7 @@ std::size_t NextLeap(Readings values, std::size_t from, double factor) {
   return end;
 }
 
-/// One pass: a spike may hide another, until it is interpolated.
+/// Makes one pass: a spike may hide another, until it is interpolated.
 bool FindSpikes(MendedChannel& channel, const GlitchRules& rules) {
   if (channel.size() < 5) return false;
   bool found = false;
@@ -260,7 +260,7 @@ double LargestStep(const MendedChannel& channel, std::size_t begin, std::size_t 
   return largest;
 }
 
-/// Has the column another value at half of the samples of [begin, end) than at the one before?
+/// True if half of the samples of [begin, end) have another value than the one before them.
 bool Moves(const MendedChannel& channel, std::size_t begin, std::size_t end) {
   std::size_t moves = 0;
   for (std::size_t i = begin; i < end; ++i) moves += channel.Step(i) > 0 ? 1U : 0U;
@@ -297,7 +297,7 @@ Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
   return {values.size(), values.size()};
 }
 
-/// One channel reads one value, away from what it read before and reads again after.
+/// Finds where one channel reads one value, away from what it read before and reads again after.
 void FindFlatDropouts(MendedChannel& channel, const MendedChannel& other,
                       const GlitchRules& rules) {
   const std::size_t size = channel.size();

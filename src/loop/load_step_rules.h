@@ -8,7 +8,7 @@ namespace mindahl::loop {
 struct LoadStepRules {
   /// [of the load] Largest deviation of a constant load, which a fit hardly sees.
   double constant = 0.01;
-  /// [standard deviations of the readings' white noise] Or within the noise: of 10⁵ readings the
+  /// [standard deviations of the readings' white noise] The same by noise: of 10⁵ readings the
   /// widest is 4.4 off.
   double noise = 5.0;
   /// [of the smaller] Least difference of loads with a step between; a smaller one may be a drift.

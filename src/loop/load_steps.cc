@@ -14,7 +14,7 @@
 namespace mindahl::loop {
 namespace {
 
-/// Standard deviation of white noise, from the median of the steps between readings.
+/// Returns the standard deviation of white noise, from the median of the steps between readings.
 double NoiseOf(std::span<const double> load) {
   if (load.size() < 2) return 0.0;
   std::vector<double> steps(load.size() - 1);
@@ -86,7 +86,7 @@ class LoadSteps {
     return std::ranges::lower_bound(reversals_, sample);
   }
 
-  /// From a sample on as far as the load stays within the tolerance.
+  /// Returns the samples from one on as far as the load stays within the tolerance.
   [[nodiscard]] LoadRun RunFrom(std::size_t first) const {
     double low = load_[first];
     double high = low;

@@ -20,7 +20,7 @@ struct Mended {
   std::pmr::vector<double> force;         // [N]
 };
 
-/// FindGlitches, and what is left.
+/// Returns the glitches of FindGlitches, and what is left.
 /// @param memory  of the result and of scratch
 Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
                    std::pmr::memory_resource* memory);

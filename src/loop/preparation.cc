@@ -36,8 +36,8 @@ void RequireOptions(std::size_t records, const PreparationOptions& options) {
   }
 }
 
-/// How far noise that is known spreads [m]: normal noise of n samples reaches √(2 ln n) standard
-/// deviations to either side, and must not make a reversal.
+/// Returns how far noise that is known spreads [m]: normal noise of n samples reaches √(2 ln n)
+/// standard deviations to either side, and must not make a reversal.
 double ReachOfKnownNoise(const RecordView& record, const PreparationOptions& options) {
   if (options.excitation == Channel::kForce) return 0.0;
   const double deviations = std::sqrt(2 * std::log(static_cast<double>(record.size())));
@@ -68,7 +68,7 @@ void Smooth(PreparedRecord& prepared) {
   prepared.reversals.assign(moved.begin(), moved.end());
 }
 
-/// Their samples do not count, and the path goes straight over them.
+/// Leaves out glitches: their samples do not count, and the path goes straight over them.
 void LeaveOutGlitches(PreparedRecord& prepared, const PreparationOptions& options,
                       std::pmr::memory_resource* memory) {
   prepared.counts.assign(prepared.size(), 1);
@@ -107,7 +107,7 @@ void KeepOnly(std::size_t first, std::size_t last, PreparedRecord& prepared) {
   }
 }
 
-/// First sample of a cycle, counted from 1; the record's size beyond the last.
+/// Returns the first sample of a cycle, counted from 1; the record's size beyond the last.
 std::size_t StartOfCycle(const PreparedRecord& prepared, std::size_t cycle) {
   // Two reversals a cycle; the first of them ends the way in.
   if (cycle == 1) return 0;

@@ -14,7 +14,7 @@ namespace {
 
 using Excursions = std::span<const Excursion>;
 
-/// Median duration [samples] of the strokes at least half as wide as the widest.
+/// Returns the median duration [samples] of the strokes at least half as wide as the widest.
 double MainDuration(Excursions excursions, std::pmr::memory_resource* scratch) {
   std::pmr::vector<std::size_t> durations(scratch);
   durations.reserve(excursions.size());
@@ -24,7 +24,7 @@ double MainDuration(Excursions excursions, std::pmr::memory_resource* scratch) {
   return static_cast<double>(UpperMedian(durations));
 }
 
-/// Widest excursion [m] that white noise or an encoder's last digit makes.
+/// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
 double ReachOfNoise(std::span<const double> displacement, double full_range,
                     const ReversalRules& rules, std::pmr::memory_resource* scratch) {
   const double noise = EstimateDisplacementNoise(displacement, scratch);
@@ -120,7 +120,7 @@ struct Plateau {
   std::size_t exceptions = 0;  // that look otherwise than they are taken
 
   [[nodiscard]] double width() const { return lower > 0 ? std::log(upper / lower) : 0.0; }
-  /// Well above what it rejects, but not at the small strokes.
+  /// Returns a gate well above what it rejects, but not at the small strokes.
   [[nodiscard]] double gate() const { return std::min(2 * lower, std::sqrt(lower * upper)); }
 };
 
@@ -163,8 +163,8 @@ std::pair<Plateau, Plateau> WidestPlateaus(Excursions excursions, std::span<cons
   return {widest, next};
 }
 
-/// A far wider plateau above many brief excursions that lie as densely as those of noise, though
-/// none of them looks like it: vibration, or noise that a filter has made smooth.
+/// Returns a far wider plateau above many brief excursions that lie as densely as those of noise,
+/// though none of them looks like it: vibration, or noise that a filter has made smooth.
 Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
                                 const ReversalRules& rules) {
   Plateau widest;

@@ -26,7 +26,7 @@ LoopMeasures MeasureLoop(const RecordView& record, std::span<const std::size_t> 
 int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
                std::pmr::memory_resource* scratch);
 
-/// The measures of the record whose force has its sign changed, for a sign of −1.
+/// Returns the measures of the record whose force has its sign changed, for a sign of −1.
 LoopMeasures InSense(LoopMeasures measures, int force_sense);
 
 }  // namespace mindahl::loop

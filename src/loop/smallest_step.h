@@ -10,7 +10,7 @@
 
 namespace mindahl::loop {
 
-/// Least distance [m] between neighbours that differ; 0 where none do.
+/// Returns the least distance [m] between neighbours that differ; 0 where none do.
 inline double SmallestStep(std::span<const double> displacement) {
   // Magnitudes are in the order of their bits, and of one less those of no step come last.
   constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();

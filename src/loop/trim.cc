@@ -19,13 +19,13 @@
 namespace mindahl::loop {
 namespace {
 
-/// Student's t beyond which chance lies, to either side.
+/// Returns Student's t beyond which chance lies, to either side.
 double TwoSided(double chance, double degrees_of_freedom) {
   return boost::math::quantile(
       boost::math::complement(boost::math::students_t(degrees_of_freedom), chance / 2));
 }
 
-/// Samples, one or more, that the displacement rests for from its first one on.
+/// Returns the number of samples, at least one, at which the displacement rests from its start.
 template <typename Displacements>
 std::size_t Resting(const Displacements& displacements, double reach) {
   const double at_rest = *displacements.begin();
@@ -64,7 +64,7 @@ class Trimming {
   }
 
  private:
-  /// Samples of a usual stroke; 0 where there is none.
+  /// Returns the number of samples of a usual stroke; 0 where there is none.
   [[nodiscard]] double UsualStroke() const {
     if (points_.size() < 2) return 0.0;
     std::vector<double> lengths;
@@ -98,7 +98,7 @@ class Trimming {
     }
   }
 
-  /// From the samples that are left on those before a cycle, counted from 0.
+  /// Cuts, from the first sample that is left, those before a cycle, counted from 0.
   void CutBefore(TrimReason reason, std::size_t cycle) {
     const std::size_t begin = points_[2 * cycle];
     if (begin <= first_) return;
@@ -122,7 +122,7 @@ class Trimming {
     return true;
   }
 
-  /// The cycles of the test, [first, second): all where there are no ramps.
+  /// Finds the cycles of the test, [first, second): all where there are no ramps.
   void FindRamps() {
     steady_ = {0, cycles_.size()};
     const auto is_steady = [](const CycleFacts& cycle) { return cycle.steady; };
@@ -142,7 +142,7 @@ class Trimming {
     if (is_of_one_amplitude_) steady_ = {begin_cycle, end_cycle};
   }
 
-  /// A fact of each cycle of the test; empty where one does not have it.
+  /// Returns a fact of each cycle of the test; empty where one does not have it.
   template <typename Get>
   [[nodiscard]] std::vector<double> FactOf(Get get) const {
     std::vector<double> values;

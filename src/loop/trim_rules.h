@@ -18,7 +18,7 @@ struct TrimRules {
   /// [of the level] Largest distance of a settled fact: less is not worth cycles, as identification
   /// reports no smaller trend.
   double settled = 0.01;
-  /// [-] Or within what the scatter of the cycles makes: beyond it one is by this chance, of two
+  /// [-] Chance at which the scatter of the cycles makes a fact seem unsettled: of two
   /// facts one record in five hundred.
   double chance = 0.001;
   /// [-] A slope of the last half of the cycles is none where chance makes it more often: as

@@ -17,8 +17,8 @@ struct Tangent {
   long double intercept;  // F = φ − yφ' = 1 − u − (u^α − u)/(1 − α)
 };
 
-/// The tangent where the larger of u and u^α is `larger`: of the smaller, for α far from 1, nothing
-/// would be left.
+/// Returns the tangent where the larger of u and u^α is `larger`: of the smaller, for α far from 1,
+/// nothing would be left.
 Tangent TangentAt(long double larger, long double shape_exponent) {
   const long double beta = 1 - shape_exponent;
   if (larger <= 0) return {0, 1};
@@ -31,7 +31,7 @@ Tangent TangentAt(long double larger, long double shape_exponent) {
           1 - larger + (beta > 0 ? less : 0) - less / std::abs(beta)};
 }
 
-/// The larger of u and u^α at tangent i of n.
+/// Returns the larger of u and u^α at tangent i of n.
 long double PointOfTangent(std::size_t i, std::size_t n, IwanSpacing spacing,
                            long double shape_exponent) {
   if (i == 0) return 1;

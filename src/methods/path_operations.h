@@ -6,7 +6,7 @@
 
 namespace mindahl::methods {
 
-/// The branch law of an exponent, by what it is made of.
+/// Returns the branch law of an exponent, by what it is made of.
 inline Operation LawOperation(double shape_exponent) {
   if (shape_exponent == 0) return Operation::kLinear;
   return shape_exponent == 1.0 / 3 ? Operation::kRoot : Operation::kPower;

@@ -11,7 +11,7 @@
 namespace mindahl::methods {
 namespace {
 
-/// A shape in the sense of backbone.h.
+/// Implements a shape as backbone.h defines it.
 class TableShape {
  public:
   TableShape(double shape_exponent, std::size_t intervals) : node_(intervals + 1) {

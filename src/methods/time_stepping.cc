@@ -74,7 +74,7 @@ class BranchFollower {
     followed_.reserve(path.branches.size());
   }
 
-  /// Force over Tc.
+  /// Returns the force over Tc.
   double MoveTo(std::size_t branch, double displacement) {
     while (followed_.size() <= branch) Open(path_.branches[followed_.size()]);
     FollowedBranch& on = followed_[branch];
@@ -115,7 +115,7 @@ Evaluator Follow(const FrictionModel& model, const BranchLaw& law, Advance advan
   };
 }
 
-/// Equal steps by `step(rate, u, h)`.
+/// Makes equal steps by `step(rate, u, h)`.
 template <typename Step>
 Evaluator FollowInSteps(const FrictionModel& model, const BranchLaw& law, std::size_t steps,
                         OperationCount* count, Step step) {
@@ -131,7 +131,7 @@ Evaluator FollowInSteps(const FrictionModel& model, const BranchLaw& law, std::s
                 });
 }
 
-/// u' with u' + h·u'^α = u. In x = u'^α for α < 1, else in u' itself, that is
+/// Returns u' with u' + h·u'^α = u. In x = u'^α for α < 1, else in u' itself, that is
 ///   a·x + b·x^q = u,  q = max(α, 1/α) >= 1,
 /// convex: Newton's rule falls to the root from either term's own, in 2 to 4 steps on average and
 /// at most 7 for α from 0.2 to 5.
@@ -185,7 +185,7 @@ Evaluator MakeBackwardEuler(const FrictionModel& model, const BranchLaw& law,
       [](const Rate& rate, double u, double h) { return SolveBackwardStep(rate, u, h); });
 }
 
-/// u' = u − h·u^α·φ₁(−αh·u^{α−1}), φ₁(q) = (e^q − 1)/q.
+/// Makes steps u' = u − h·u^α·φ₁(−αh·u^{α−1}), φ₁(q) = (e^q − 1)/q.
 Evaluator MakeExponential(const FrictionModel& model, const BranchLaw& law,
                           const Resolution& resolution, OperationCount* count) {
   return FollowInSteps(model, law, resolution.steps, count,

@@ -23,7 +23,7 @@ bool SeriesConverges(long double y, long double shape_exponent) {
   return y <= kSeriesLimit && std::abs((1 - shape_exponent) * y) <= kSeriesLimit;
 }
 
-/// Σ_{k>=first} (−1)ᵏ·pₖ·weight(k)·y^{k+1}
+/// Returns Σ_{k>=first} (−1)ᵏ·pₖ·weight(k)·y^{k+1}.
 template <typename Weight>
 long double BackboneSeries(long double y, long double shape_exponent, int first, Weight weight) {
   const long double beta = 1 - shape_exponent;
@@ -56,7 +56,7 @@ long double NearlyElasticSlip(const SplitDisplacement& y, long double shape_expo
   return stuck * std::expm1(log_ratio);
 }
 
-/// ∫φ beyond the series, α middling.
+/// Returns ∫φ beyond the series, α middling.
 long double MiddlingWork(const SplitDisplacement& y, long double shape_exponent) {
   const long double exponent = 2 - shape_exponent;
   const Reduced<long double> reduced = Reduce(y, shape_exponent);

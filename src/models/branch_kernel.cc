@@ -47,7 +47,7 @@ MINDAHL_INLINE Reduction Reduce(double w, double z) {
   return {k, Choose(is_near, -w, m - 1) / Choose(is_near, 2 - w, m + 1)};
 }
 
-/// Σ cᵢxⁱ, even and odd powers side by side: half as long a chain of operations.
+/// Returns Σ cᵢxⁱ, even and odd powers side by side: half as long a chain of operations.
 template <std::size_t kCount>
 MINDAHL_INLINE double Polynomial(const std::array<double, kCount>& c, double x) {
   static_assert(kCount % 2 == 0);
@@ -61,8 +61,8 @@ MINDAHL_INLINE double Polynomial(const std::array<double, kCount>& c, double x) 
   return even + x * odd;
 }
 
-/// P = Σ xⁱ/(2i+3): 2·atanh(s) = 2s + 2s³·P(s²). For x <= 0.0295 the first term left out is below
-/// ε/20 of P.
+/// Returns P = Σ xⁱ/(2i+3): 2·atanh(s) = 2s + 2s³·P(s²). For x <= 0.0295 the first term left out is
+/// below ε/20 of P.
 MINDAHL_INLINE double AtanhSeries(double x) {
   constexpr std::array kTerms = {1. / 3,  1. / 5,  1. / 7,  1. / 9,  1. / 11,
                                  1. / 13, 1. / 15, 1. / 17, 1. / 19, 1. / 21};
@@ -143,7 +143,7 @@ MINDAHL_INLINE Sample SampleAt(const RunConstants& run, double displacement) {
   return sample;
 }
 
-/// φ
+/// Returns φ.
 MINDAHL_INLINE double ForceOf(const Sample& sample) {
   const auto [scale, part] = sample.exponential;
   return sample.slips ? 1.0 : (1 - scale) - scale * part;
@@ -259,7 +259,7 @@ MINDAHL_BLOCKS(Avx512, MINDAHL_TARGET_AVX512)
 #undef MINDAHL_BLOCKS
 // NOLINTEND(bugprone-macro-parentheses)
 
-/// The samples from `begin` on; the last is repeated where whole vectors ask for more.
+/// Fills in the samples from `begin` on; the last is repeated where whole vectors ask for more.
 std::size_t Fill(std::span<const double> displacement, std::size_t begin, Block& block) {
   const std::size_t count = std::min(kBlock, displacement.size() - begin);
   std::copy_n(&displacement[begin], count, block.displacement.begin());

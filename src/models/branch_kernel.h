@@ -19,16 +19,16 @@ namespace mindahl::models {
 /// The arithmetic of one instruction set.
 struct BranchKernel;
 
-/// Those that the processor has, the widest last.
+/// Returns those that the processor has, the widest last.
 std::vector<const BranchKernel*> BranchKernels();
 const BranchKernel& WidestBranchKernel();
 
-/// t of the samples of one run, `limit` being the largest |t|.
+/// Computes t of the samples of one run, `limit` being the largest |t|.
 void EvaluateGeneralRun(const ScaledBranch<double>& branch, double shape_exponent, double limit,
                         std::span<const double> displacement, std::span<double> t,
                         const BranchKernel& kernel = WidestBranchKernel());
 
-/// t and its derivatives; a column of `gradient` that is empty is not wanted.
+/// Computes t and its derivatives; a column of `gradient` that is empty is not wanted.
 void DifferentiateGeneralRun(const ScaledBranch<double>& branch,
                              const Differentiation<DirectShape>::BranchGradient& branch_gradient,
                              double shape_exponent, double limit,

@@ -10,7 +10,7 @@
 namespace mindahl::models {
 namespace {
 
-/// In long double: a power of α multiplies the error of its logarithm by α.
+/// Makes a law in long double: a power of α multiplies the error of its logarithm by α.
 BranchLaw Made(long double stiffness, double shape_exponent, long double slip_force) {
   const BranchLaw law{.tangential_stiffness = static_cast<double>(stiffness),
                       .shape_exponent = shape_exponent,

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, 5> kNames = {"sine", "triangle", "growing-sine", "random",
                                                     "nested"};
 
-/// In units of the amplitude, at `phase` in [0, 1).
+/// Returns the wave in units of the amplitude, at `phase` in [0, 1).
 double UnitWave(Waveform waveform, double phase) {
   if (waveform != Waveform::kTriangle) return boost::math::sin_pi(2 * phase);
   if (phase <= 0.25) return 4 * phase;
@@ -24,13 +24,13 @@ double UnitWave(Waveform waveform, double phase) {
   return 4 * phase - 4;
 }
 
-/// Uniform in (0, 1): an odd multiple of 2⁻⁵³. The generator is the same everywhere, the standard
-/// distributions are not.
+/// Draws uniformly in (0, 1): an odd multiple of 2⁻⁵³. The generator is the same everywhere, the
+/// standard distributions are not.
 double UniformDraw(std::mt19937_64& engine) {
   return std::ldexp(static_cast<double>((engine() >> 11) | 1), -53);
 }
 
-/// In units of the amplitude: `count` extremes that are reached, and the one after.
+/// Returns, in units of the amplitude, `count` extremes that are reached, and the one after.
 std::vector<double> RandomExtremes(std::size_t count, std::uint64_t seed) {
   // Complemented, so that noise drawn with the same seed does not repeat these numbers.
   std::mt19937_64 engine(~seed);
@@ -66,12 +66,12 @@ struct UnitSample {
   double envelope;
 };
 
-/// Number of extremes up to a sample.
+/// Returns the number of extremes up to a sample.
 std::size_t ExtremesReached(std::size_t sample, std::size_t per_cycle) {
   return (4 * sample + per_cycle) / (2 * per_cycle);
 }
 
-/// On the half-cosines that join `extremes`.
+/// Returns a sample on the half-cosines that join `extremes`.
 UnitSample JoinExtremes(const std::vector<double>& extremes, std::size_t sample,
                         std::size_t per_cycle) {
   const std::size_t next = ExtremesReached(sample, per_cycle);

@@ -38,7 +38,7 @@ SteadyPeak MasingPeak(double y, double shape_exponent) {
   return {phi.force, phi.elastic, phi.shape_derivative};
 }
 
-/// log cosh x without overflow.
+/// Returns log cosh x without overflow.
 double LogCosh(double x) {
   const double magnitude = std::abs(x);
   if (magnitude < 1) {
@@ -48,7 +48,7 @@ double LogCosh(double x) {
   return magnitude + (std::log1p(std::exp(-2 * magnitude)) - std::numbers::ln2);
 }
 
-/// log(sinh x / x) without overflow.
+/// Returns log(sinh x / x) without overflow.
 double LogSinhRatio(double x) {
   constexpr double kOneExponential = 20.0;  // exp(−2x) < ε/8
   const double magnitude = std::abs(x);
@@ -64,17 +64,17 @@ struct DahlLoop {
 
   [[nodiscard]] double Beta() const { return 1 - shape_exponent; }
 
-  /// log(y(θ)/y)
+  /// Returns log(y(θ)/y).
   [[nodiscard]] double LogRatio(double theta, double y) const {
     return std::log(theta / y) + LogSinhRatio(Beta() * theta) - Beta() * LogCosh(theta);
   }
-  /// d log y/dθ
+  /// Returns d log y/dθ.
   [[nodiscard]] double LogSlope(double theta) const {
     return std::exp(LogCosh(shape_exponent * theta) - LogCosh(theta) -
                     LogSinhRatio(Beta() * theta)) /
            theta;
   }
-  /// ∂ log y/∂β
+  /// Returns ∂ log y/∂β.
   [[nodiscard]] double LogPerBeta(double theta) const {
     const double x = Beta() * theta;
     // coth x − 1/x, by its series where these cancel: 2x⁹/93555 < ε/8 of x/3.
@@ -85,8 +85,8 @@ struct DahlLoop {
   }
 };
 
-/// θ where the loop's amplitude is y, in (0, highest): Newton's rule on ln y(θ), which grows
-/// exponentially for α > 1, and bisection where it leaves the bracket.
+/// Returns θ where the loop's amplitude is y, in (0, highest): Newton's rule on ln y(θ), which
+/// grows exponentially for α > 1, and bisection where it leaves the bracket.
 double SolveAmplitude(const DahlLoop& loop, double y, double highest) {
   constexpr double kTolerance = 2 * std::numeric_limits<double>::epsilon();
   constexpr int kIterations = 500;  // halvings from 20 to 1e-100, where α = 1e100 turns

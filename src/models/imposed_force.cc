@@ -23,7 +23,7 @@ struct CompliantBranch {
   double height = 0.0;        // span·v·Tc [N]
   double rate = 0.0;          // k [1/m]
 
-  /// δ [m]; NaN where rounding leaves nothing between the force and slip.
+  /// Returns δ [m]; NaN where rounding leaves nothing between the force and slip.
   [[nodiscard]] double DisplacementAt(double at_force, double shape_exponent) const {
     // The difference and what its rounding leaves out (Knuth's sum): next to slip all of it counts.
     const double way = at_force - force;

@@ -60,8 +60,8 @@ Real SlipLoadZones(const LoadStep<Real>& step, double stretch, const Share& shar
   return s * step.to.slip_force;
 }
 
-/// The force after a step; the zones, which cover 0 <= h < δc innermost first, are those after it.
-/// docs/theory.md §11 has the rules.
+/// Returns the force after a step; the zones, which cover 0 <= h < δc innermost first, are those
+/// after it. docs/theory.md §11 has the rules.
 template <typename Real, typename Zones, typename Share>
 Real TakeLoadStep(const LoadStep<Real>& step, const Share& share, Zones& zones) {
   const double limit = ValueOf(step.to.slip_displacement);

@@ -63,8 +63,8 @@ LoadedContactState::Rim LoadedContactState::RimUnder(double normal_load) const {
   return {normal_load, {slip.displacement, slip.force}};
 }
 
-/// Straight in (δ, δc) from the present displacement and rim; the zones are those to be changed. If
-/// adding a zone runs out of memory none has been dropped.
+/// Steps straight in (δ, δc) from the present displacement and rim; the zones are those to be
+/// changed. If adding a zone runs out of memory none has been dropped.
 template <typename Zones>
 double LoadedContactState::StepTo(Zones& zones, const Rim& rim, double displacement) const {
   const auto share = [this](double width, double slip_displacement) {

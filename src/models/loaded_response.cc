@@ -117,7 +117,7 @@ void RequireLawUnderLoad(const NormalizedLaw& law, const LoadedHistory& history,
   RequireSameSize("displacement", history.displacement.size(), "response", t.size());
 }
 
-/// The nearest values that never fall, or never grow, from begin to end.
+/// Takes the nearest values that never fall, or never grow, from begin to end.
 void MakeMonotone(std::span<double> values, bool grows, std::vector<double>& means,
                   std::vector<double>& counts) {
   means.clear();

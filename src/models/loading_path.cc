@@ -44,7 +44,7 @@ void RequireAsymmetry(double asymmetry, Memory memory) {
 
 std::int8_t SignOf(double value) { return value < 0 ? std::int8_t{-1} : std::int8_t{1}; }
 
-/// Direction in which the record sets out.
+/// Returns the direction in which the record sets out.
 std::int8_t FirstDirection(std::span<const double> displacement,
                            std::span<const std::size_t> reversals) {
   const double first_extreme =
@@ -86,7 +86,7 @@ class OpenBranches {
           .direction = static_cast<std::int8_t>(-direction_)});
   }
 
-  /// How many of the samples ahead the present branch has before it closes.
+  /// Returns how many of the samples ahead the present branch has before it closes.
   [[nodiscard]] std::size_t SamplesAhead(std::span<const double> displacement) const {
     if (memory_ == Memory::kNone || open_.size() < 2) return displacement.size();
     const double closing = ClosingDisplacement(open_.size(), OriginOf{path_, open_}, asymmetry_);

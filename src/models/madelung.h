@@ -10,8 +10,8 @@
 /// the one before it.
 namespace mindahl::models {
 
-/// Displacement [m] at which the youngest of `open` >= 2 branches closes its loop: the extreme that
-/// it answers, or the mirror image of the first, which the virgin curve answers.
+/// Returns the displacement [m] at which the youngest of `open` >= 2 branches closes its loop: the
+/// extreme that it answers, or the mirror image of the first, which the virgin curve answers.
 /// @param origin_of  origin [m] of the i-th open branch
 /// @param asymmetry  a of slip forces Tc(1 ± a) of a virgin contact: the mirror image is as far on
 ///   the other side as the virgin curve there is larger
@@ -25,8 +25,8 @@ double ClosingDisplacement(std::size_t open, const OriginOf& origin_of, double a
   return unloaded - (extreme - unloaded) * ((1 - side) / (1 + side));
 }
 
-/// How many of `open` branches are left at `displacement`, reached in `direction` ±1. Reaching an
-/// extreme exactly counts as passing it.
+/// Returns how many of `open` branches are left at `displacement`, reached in `direction` ±1.
+/// Reaching an extreme exactly counts as passing it.
 template <typename OriginOf, typename Direction>
 std::size_t StillOpen(std::size_t open, const OriginOf& origin_of, Direction direction,
                       double displacement, double asymmetry = 0.0) {

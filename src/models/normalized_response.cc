@@ -18,7 +18,7 @@ namespace {
 using RigidDifferentiation = Differentiation<DirectShape>;
 using SprungDifferentiation = Differentiation<SprungShape<backbone::GeneralShape<double>>>;
 
-/// Tc = 1: forces and stiffnesses are those over it.
+/// Returns the law with Tc = 1: forces and stiffnesses are those over it.
 BranchLaw LawOf(const NormalizedLaw& law) {
   return {
       .tangential_stiffness = law.rate, .shape_exponent = law.shape_exponent, .slip_force = 1.0};
@@ -31,7 +31,7 @@ void RequireResponseSizes(const LoadingPath& path, std::span<const double> displ
                   path.runs.empty() ? 0 : path.runs.back().end);
 }
 
-/// Forces over Tc of one run.
+/// Computes forces over Tc of one run.
 template <typename ShapeOnBranch>
 void EvaluateResponseRun(const ScaledBranch<double>& branch, const ShapeOnBranch& shape,
                          double limit, std::span<const double> displacement, std::span<double> t) {
@@ -71,9 +71,9 @@ void DifferentiateRun(const DirectShape& shape, const ScaledBranch<double>& bran
   std::ranges::fill(gradient.log_spring_travel, 0.0);
 }
 
-/// ∂t/∂a. A virgin branch of limit l = 1 ± a is t = ±l·Φ(κ|e|/l), so that it is Φ − YΦ′ in either
-/// direction; on every other it is what it was where the branch starts, which a steady contact has
-/// as 1.
+/// Computes ∂t/∂a. A virgin branch of limit l = 1 ± a is t = ±l·Φ(κ|e|/l), so that it is Φ − YΦ′ in
+/// either direction; on every other it is what it was where the branch starts, which a steady
+/// contact has as 1.
 template <typename Shape>
 void DifferentiateByAsymmetry(const Shape& shape, const LoadingPath& path,
                               const ScaledBranches& branches, std::span<const double> displacement,

@@ -20,8 +20,8 @@ inline double ReducedDisplacement(double shape_exponent, double share, double re
   return exponent == 0 ? -log_remaining : -log_remaining * (std::expm1(exponent) / exponent);
 }
 
-/// ∂y/∂α = ln²u·(1 − e^z + z·e^z)/z², z = β·ln u; the last factor by its series, Σ (k+1)·zᵏ/(k+2)!,
-/// where its terms cancel.
+/// Returns ∂y/∂α = ln²u·(1 − e^z + z·e^z)/z², z = β·ln u; the last factor by its series,
+/// Σ (k+1)·zᵏ/(k+2)!, where its terms cancel.
 /// @param log_remaining  ln u
 inline double ReducedDisplacementPerShape(double shape_exponent, double log_remaining) {
   const double z = (1 - shape_exponent) * log_remaining;

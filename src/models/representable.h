@@ -8,7 +8,7 @@
 
 namespace mindahl::models {
 
-/// `value` rounded to double.
+/// Returns `value` rounded to double.
 /// @throws InvalidArgument where it exceeds the largest double
 inline double Representable(std::string_view quantity, long double value) {
   if (!(std::abs(value) <= static_cast<long double>(std::numeric_limits<double>::max()))) {

@@ -52,7 +52,7 @@ class Differentiation {
   Differentiation(const BranchScaling& scaling, const BranchLaw& law, const Shape& shape)
       : scaling_(scaling), shape_(shape), shape_exponent_(law.shape_exponent) {}
 
-  /// Derivatives of every branch of `scaled`, which ScaleBranches made.
+  /// Returns the derivatives of every branch of `scaled`, which ScaleBranches made.
   std::vector<BranchGradient> Differentiate(const LoadingPath& path,
                                             const ScaledBranches& scaled) const {
     std::vector<BranchGradient> gradients;
@@ -69,7 +69,7 @@ class Differentiation {
     }
   }
 
-  /// How a branch changes with the force over Tc at its origin, in the place of ln rate.
+  /// Returns how a branch changes with the force over Tc at its origin, in the place of ln rate.
   [[nodiscard]] BranchGradient DifferentiateByOriginForce(const Branch& branch,
                                                           double origin_force) const {
     const SteadyPeak peak = scaling_.PeakThatScales(branch);
@@ -84,7 +84,7 @@ class Differentiation {
     return result;
   }
 
-  /// ∂t/∂(ln rate, α, δ₀, ln c) at `displacement`, and t itself.
+  /// Returns ∂t/∂(ln rate, α, δ₀, ln c) at `displacement`, and t itself.
   /// @param shape  that of the branch
   template <typename ShapeOnBranch>
   static Gradient DifferentiateSample(const ShapeOnBranch& shape,

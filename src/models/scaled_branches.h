@@ -23,7 +23,7 @@ struct ScaledBranch {
   Real height = 1;  // span·v
   Real rate = 0;    // k [1/m]
 
-  /// rate·|e|, from which φ does not overflow.
+  /// Returns rate·|e|, from which φ does not overflow.
   [[nodiscard]] Real Normalize(Real e) const {
     return rate * std::min(std::abs(e), backbone::Reach(rate));
   }
@@ -133,8 +133,8 @@ class BranchScaling {
   }
 
  private:
-  /// y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The left side
-  /// is increasing and concave, so that Newton's rule rises to the root from below.
+  /// Returns y* of the contact where spring and contact together turn at Y: y + κ·t*(y) = Y. The
+  /// left side is increasing and concave, so that Newton's rule rises to the root from below.
   [[nodiscard]] double ContactAmplitude(double total) const {
     if (series_compliance_ == 0) return total;
     constexpr double kRounding = 4 * std::numeric_limits<double>::epsilon();  // of Y
@@ -149,7 +149,7 @@ class BranchScaling {
     return y;
   }
 
-  /// k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
+  /// Returns k = (σ/Tc)·v^{α−1}/span, at most kSteepest: α in the thousands overflows the power.
   [[nodiscard]] double RateOf(const BranchScale& scale) const {
     constexpr double kSteepest = 1e300;  // [1/m], kept from overflow in products with forces
     if (scale.remaining <= 0) return 0.0;
@@ -232,7 +232,7 @@ void RequireReach(const BranchLaw& law, const ScaledBranches& branches,
   }
 }
 
-/// Forces of one run; the loop has no branch and no call, so that it vectorises where φ does.
+/// Computes the forces of one run; the loop has no branch or call, and vectorises where φ does.
 template <typename Real, typename Shape>
 void EvaluateRun(const ScaledBranch<Real>& branch, const Shape& shape, Real slip_force, Real limit,
                  std::span<const Real> displacement, std::span<Real> force) {

@@ -16,7 +16,7 @@ inline bool IsRigid(const SeriesSpring& rig) {
   return std::isinf(rig.stiffness) && rig.stiffness > 0;
 }
 
-/// c = Tc/k_r [m], the spring's travel at slip.
+/// Returns c = Tc/k_r [m], the spring's travel at slip.
 /// @throws InvalidArgument where the rig cannot be accounted for
 inline double SpringTravel(const FrictionModel& model, const BranchLaw& law,
                            const SeriesSpring& rig) {

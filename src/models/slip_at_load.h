@@ -25,12 +25,12 @@ inline BranchLaw ReferenceLaw(const LoadDependentLaw& law) {
           law.friction_coefficient * law.reference_load};
 }
 
-/// δc(N_ref) [m]
+/// Returns δc(N_ref) [m].
 inline double ReferenceSlipDisplacement(const LoadDependentLaw& law) {
   return GrossSlipDisplacement(ReferenceLaw(law));
 }
 
-/// Tc = μN, δc = δc(N_ref)·(N/N_ref)^{1−α}
+/// Returns Tc = μN, δc = δc(N_ref)·(N/N_ref)^{1−α}.
 inline SlipAtLoad SlipUnder(const LoadDependentLaw& law, double reference_slip_displacement,
                             double normal_load) {
   const double load_ratio = normal_load / law.reference_load;

@@ -12,7 +12,7 @@
 namespace mindahl::models {
 namespace {
 
-/// t* at the amplitude.
+/// Returns t* at the amplitude.
 double Peak(const FrictionModel& model, const BranchLaw& law, double amplitude) {
   const double rate = law.tangential_stiffness / law.slip_force;
   const double y = rate * std::min(amplitude, backbone::Reach(rate));

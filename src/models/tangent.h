@@ -15,14 +15,14 @@ struct Tangent {
   Tangent() = default;
   Tangent(double constant) : value(constant) {}  // NOLINT(google-explicit-constructor): a number
 
-  /// The number itself, which varies as one in a direction.
+  /// Returns the number itself, which varies as one in a direction.
   [[nodiscard]] static Tangent Along(double at, std::size_t direction, double by = 1.0) {
     Tangent result(at);
     result.slope[direction] = by;
     return result;
   }
 
-  /// f(x), from f and f' at x.
+  /// Returns f(x), from f and f' at x.
   [[nodiscard]] Tangent Through(double function, double derivative) const {
     Tangent result(function);
     for (std::size_t k = 0; k < kDirections; ++k) result.slope[k] = derivative * slope[k];
@@ -67,7 +67,7 @@ double ValueOf(const Tangent<kDirections>& x) {
   return x.value;
 }
 
-/// x within ±limit; beyond it the limit, with the limit's derivatives.
+/// Returns x within ±limit; beyond it the limit, with the limit's derivatives.
 template <typename Real>
 Real Within(const Real& x, const Real& limit) {
   if (ValueOf(x) > ValueOf(limit)) return limit;

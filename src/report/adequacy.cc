@@ -88,7 +88,7 @@ constexpr std::array<CauseRow, 26> kCauses = {{
     {"speed_power", "a force that depends on the speed by a power", nullptr,
      "record the time, and compare tests at several speeds"},
     {"force_of_position", "a force that depends on the position", nullptr,
-     "look for a spring, a cable or a tilt beside the contact, and measure it without it"},
+     "look for a spring, a cable or a tilt parallel to the contact, and measure it without it"},
     {"covariate", "a force in proportion to another column of the file, {}", nullptr,
      "name the column with --covariate"},
     {"smoothing", "a force that is averaged over a window in time with a standard deviation of {}",

@@ -15,20 +15,20 @@ inline constexpr const char* kWhyNotJudged =
 /// True if the adequacy was judged: the fit did not fail, and omitted terms were tried.
 bool IsJudged(const Report& report);
 
-/// Why no option takes a cause into account.
+/// Returns why no option takes a cause into account.
 std::string WhyNoOption(const identification::Cause& cause);
 
 /// Puts the causes into the units of the record.
 void AdaptCauses(const Units& units, std::vector<identification::Cause>& causes);
 
-/// A cause in words, without an end of line: what it looks like with its size, how much it
+/// Returns a cause in words, without an end of line: what it looks like with its size, how much it
 /// explains, and the option that takes it into account or, where there is none, what to look at.
 /// @param response  the channel that is fitted
 /// @throws std::logic_error for a code without a row
 std::string Sentence(const identification::Cause& cause,
                      loop::Channel response = loop::Channel::kForce);
 
-/// Every code that has a sentence.
+/// Returns every code that has a sentence.
 std::vector<std::string_view> CauseCodes();
 
 /// False of an inadequate fit: nothing of its parameters is shown.
@@ -38,10 +38,10 @@ bool IsUsable(const Report& report);
 /// how much of it comes back in every stroke.
 std::string MisfitSentence(const Report& report);
 
-/// The verdict in words, with the misfit.
+/// Returns the verdict in words, with the misfit.
 std::string VerdictSentence(const Report& report);
 
-/// The first cause and what to do about it; empty of an adequate fit, or where there is none.
+/// Names the first cause and the remedy; empty of an adequate fit, or where there is none.
 std::string NextStep(const Report& report);
 
 }  // namespace mindahl::report

@@ -18,7 +18,7 @@ const std::vector<Field<Cause>>& CauseFields() {
        WhyNoOption},
       {"delta_aicc", "-", "of the fit with it less that without: negative where it helps",
        [](const Item& item) { return Number(item.delta_aicc); }},
-      {"explains", "-", "share of the residuals' variance",
+      {"explains", "-", "fraction of the residuals' variance",
        [](const Item& item) { return Number(item.explains); }},
       {"size", "of the cause", "how large it is; of several numbers the first",
        [](const Item& item) { return item.unit.empty() ? Missing() : Number(item.size); },

@@ -25,7 +25,7 @@ std::string WithBand(const BandValue& value, std::string_view unit) {
                      value.lower95 / scaled.factor, value.upper95 / scaled.factor);
 }
 
-/// "sigma = 40 N/µm, alpha = 0.333" of what the fit knows.
+/// Returns "sigma = 40 N/µm, alpha = 0.333" of what the fit knows.
 std::string FittedLawText(const identification::FitResult& fit, const Units& units) {
   std::vector<std::string> known;
   const auto add = [&](std::string_view name, double value, std::string_view unit, int digits) {

@@ -87,7 +87,7 @@ std::string LoadLawText(const Report& report) {
   return text;
 }
 
-/// No number of what is not known.
+/// Returns no number of what is not known.
 std::string IfKnown(const UncertainValue& value, std::string_view unit, const FitResult& fit,
                     std::string_view parameter) {
   return fit.Find(parameter)->is_known() ? ValueAndError(value, unit) : "-";

@@ -11,10 +11,10 @@ namespace mindahl::report {
 /// Lists the identified quantities with their formulas, and the inputs that the rest needs.
 std::string ContactText(const Report& report);
 
-/// Besides: what Hertz and Mindlin predict; empty where load, materials or radii are not known.
+/// Lists what Hertz and Mindlin predict; empty where load, materials or radii are not known.
 std::string HertzText(const Report& report);
 
-/// The contact under each load of a series, and the theories of the load's exponent; empty
+/// Returns the contact under each load of a series, and the theories of the load's exponent; empty
 /// without a series.
 std::string LoadSeriesText(const Report& report);
 

@@ -47,7 +47,7 @@ Value::Object Render(const std::vector<Field<Item>>& fields, const Item& item) {
   return object;
 }
 
-/// A list with one entry for each item.
+/// Returns a list with one entry for each item.
 template <typename Item>
 Value List(const std::vector<Field<Item>>& fields, const std::vector<Item>& items) {
   Value::Array array;

@@ -50,7 +50,7 @@ inline constexpr const char* kWhyNoContact =
 inline constexpr const char* kWhyNoSphere =
     "of Hertz's law, σ ∝ N^(1/3), which the load series denies";
 
-/// Why nothing of a fit that failed is there.
+/// Returns why nothing of a fit that failed is there.
 std::string WhyFailed(const Report& report);
 
 }  // namespace mindahl::report

@@ -18,7 +18,7 @@ using loop::ReversalGate;
 
 namespace {
 
-/// The sum over the records of what one of them has.
+/// Returns the sum over the records of what one of them has.
 template <typename Get>
 std::function<Value(const Report&)> Sum(Get get) {
   return [get](const Report& report) {

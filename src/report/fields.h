@@ -20,7 +20,7 @@ struct ContactField {
   std::string (*why_null)(const Report&);
 };
 
-/// In the order of the reports.
+/// Returns them in the order of the reports.
 const std::vector<ContactField>& ContactFields();
 
 /// Describes a field for the documentation.
@@ -30,7 +30,7 @@ struct FieldDescription {
   std::string label;
 };
 
-/// Every field that a report may have.
+/// Returns every field that a report may have.
 std::vector<FieldDescription> DescribeFields();
 
 /// A number, word or flag of a report, with what the documentation says of it.
@@ -43,7 +43,7 @@ struct DescribedValue {
 /// such as "measured.", with their units in the report.
 std::vector<DescribedValue> ValuesUnder(const Report& report, std::string_view prefix);
 
-/// The whole report as keys and values.
+/// Returns the whole report as keys and values.
 Value::Object Document(const Report& report);
 
 }  // namespace mindahl::report

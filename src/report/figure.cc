@@ -20,7 +20,7 @@ using identification::ParameterStatus;
 
 namespace {
 
-/// A parameter by its sign: no number of what is not known.
+/// Returns a parameter by its sign: no number of what is not known.
 std::string ParameterText(const char* sign, const ParameterEstimate& estimate) {
   if (estimate.status == ParameterStatus::kFixed) {
     return fmt::format("{} = {}, held", sign, Quantity(estimate.value, estimate.unit));

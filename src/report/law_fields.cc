@@ -43,7 +43,7 @@ std::string WhyNoChoice(const Report& report) {
     return "the model does not describe the record, nor does the other law better";
   }
   return "Masing's law and Dahl's own are one for alpha = 0 and before the motion turns, and are "
-         "not compared where sigma or slip_force is held or bounded, or beside an asymmetry";
+         "not compared where sigma or slip_force is held or bounded, or with an asymmetry";
 }
 
 std::string WhyNoDifference(const Report& report) {
@@ -54,7 +54,7 @@ std::string WhyNoDifference(const Report& report) {
 }
 
 std::string WhyNotPreferred(const Report& report) {
-  return report.fit.law_choice ? "the record does not tell the two laws apart"
+  return report.fit.law_choice ? "the record does not distinguish the two laws"
                                : WhyNoChoice(report);
 }
 
@@ -82,7 +82,7 @@ Value Alternatives(const Report& report) {
 void AddLawFields(FieldTable& table) {
   table.Add({
       LawRow(
-          "law.decided", "", "whether the record tells Masing's law from Dahl's own",
+          "law.decided", "", "whether the record distinguishes Masing's law from Dahl's own",
           [](const LawChoice& choice) { return Flag(choice.decided); }, WhyNoChoice),
       LawRow(
           "law.preferred", "", "the law that it is of, as --model takes it",

@@ -48,7 +48,7 @@ struct Estimate {
   double normal_quantile = 0.0;  ///< likewise
 };
 
-/// How far an interval reaches beyond quantile·error on either side.
+/// Returns how far an interval reaches beyond quantile·error on either side.
 double Widened(double value, double error, double quantile, std::optional<double> lower,
                std::optional<double> upper) {
   double widened = 0.0;
@@ -164,7 +164,7 @@ std::optional<Interval> IntervalOfModulus(const PropagatedValue& value, const He
   return Interval{*lower, modulus_at(half_width).value_or(std::numeric_limits<double>::infinity())};
 }
 
-/// The contact at the mean load of the series.
+/// Returns the contact at the mean load of the series.
 KnownContact AtMeanLoad(const FitResult& fit, const KnownContact& known) {
   KnownContact at_mean = known;
   const double error = known.normal_load ? known.normal_load->standard_error : 0.0;
@@ -215,7 +215,7 @@ std::optional<ContactShape> ShapeOf(std::string_view hypothesis) {
   return std::nullopt;  // of elements in parallel p = α says it
 }
 
-/// n of the body z ∝ r^n whose p = α = 1/(n + 1); empty where p may be 0 or 1.
+/// Returns n of the body z ∝ r^n whose p = α = 1/(n + 1); empty where p may be 0 or 1.
 std::optional<QuantityUnderLaw> ProfileExponent(const Held& exponent) {
   if (!(exponent.value - exponent.half_width > 0) || !(exponent.value + exponent.half_width < 1)) {
     return std::nullopt;

@@ -6,10 +6,10 @@
 
 namespace mindahl::report {
 
-/// Whether a value that was given is an exponent, as written with three digits.
+/// True if a value that was given is an exponent, as written with three digits.
 bool IsHeldAt(double given, double exponent);
 
-/// The laws of the load that a series does not reject, each held over all loads:
+/// Returns the laws of the load that a series does not reject, each held over all loads:
 ///
 /// p is held by projection. Of θ = (ln σ, p, α) with covariance C, and a theory that is g = cᵀθ − d
 /// = 0, the estimate with it is

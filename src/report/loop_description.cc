@@ -23,7 +23,7 @@ namespace {
 using identification::Identifiability;
 using identification::ParameterEstimate;
 
-/// Mean over the cycles that the facts' energy is of; empty without numbers of cycles.
+/// Returns the mean over the cycles that the facts' energy is of; empty without numbers of cycles.
 std::optional<double> MeanOfSteadyCycles(const loop::LoopFacts& facts,
                                          std::span<const double> of_cycles) {
   double sum = 0.0;

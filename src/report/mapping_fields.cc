@@ -13,7 +13,9 @@ namespace {
 
 const std::vector<Field<identification::BranchShape>>& BranchFields() {
   using Item = identification::BranchShape;
-  const auto why = [](const Item&) { return std::string("this branch alone does not tell it"); };
+  const auto why = [](const Item&) {
+    return std::string("this branch alone does not determine it");
+  };
   static const std::vector<Field<Item>> fields = {
       {"branch", "", "virgin, unloading or reloading",
        [](const Item& item) { return Text(item.branch); }},

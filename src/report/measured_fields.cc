@@ -12,7 +12,7 @@ std::string WhyNotMeasured(const LoopFacts& facts, const char* why) {
   return facts.closed ? why : "the record closes no cycle";
 }
 
-/// A row whose null has one reason, besides that there is no cycle at all.
+/// Returns a row whose null has one reason, besides that there is no cycle at all.
 Field<LoopFacts> Fact(const char* path, const char* unit, const char* label,
                       Field<LoopFacts>::Get get, const char* why = "not a finite number") {
   return {path, unit, label,
@@ -29,7 +29,7 @@ const std::vector<Field<CycleFacts>>& CycleFields() {
   static const std::vector<Field<Item>> fields = {
       {"start", "", "number of the sample at which it starts, from 0",
        [](const Item& item) { return Count(item.start); }},
-      {"amplitude", "m", "X: a quarter of the way of its two strokes",
+      {"amplitude", "m", "X: a quarter of the travel of its two strokes",
        [](const Item& item) { return Number(item.amplitude); }},
       {"peak_force", "N", "T*: half the range of the force",
        [](const Item& item) { return Number(item.peak_force); }},

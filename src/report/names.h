@@ -11,7 +11,7 @@ namespace mindahl::report {
 // How the reports call what the library has as enumerations.
 std::string_view Name(identification::ParameterStatus status);
 std::string_view Name(identification::Identifiability identifiability);
-/// The name with blanks, for people.
+/// Returns the name with blanks, for people.
 std::string Words(identification::Identifiability identifiability);
 std::string_view Name(identification::IntervalSource source);
 std::string_view Name(models::InitialState state);

@@ -36,7 +36,7 @@ bool IsInadequate(const Report& report) {
   return report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
 }
 
-/// No number of what is not known.
+/// False for what is not known, of which no number is shown.
 bool IsShown(const FitResult& fit, std::string_view parameter) {
   const ParameterEstimate* const estimate = fit.Find(parameter);
   return estimate != nullptr &&
@@ -45,7 +45,7 @@ bool IsShown(const FitResult& fit, std::string_view parameter) {
 
 // --- the verdict
 
-/// "identifiable: sigma, alpha": parameters by their verdicts.
+/// Returns "identifiable: sigma, alpha": parameters by their verdicts.
 std::vector<std::string> ParameterVerdicts(const FitResult& fit) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   for (const ParameterEstimate& estimate : fit.parameters) {
@@ -134,7 +134,7 @@ struct NextCommand {
 constexpr std::array kNextCommands = {
     NextCommand{"systematic_residual", "--model auto", "Compares the laws on this record:"},
     NextCommand{"no_model_fits", "--model auto", "Compares the laws on this record:"},
-    NextCommand{"shape_or_rig", "--rig-stiffness fit", "Asks whether the rig gives way:"},
+    NextCommand{"shape_or_rig", "--rig-stiffness fit", "Asks whether the rig is compliant:"},
 };
 
 /// Lists the commands to run next, each after its purpose.
@@ -194,7 +194,7 @@ std::string WarningSection(const Report& report, const Provenance& provenance) {
 
 // --- what needs no model
 
-/// A value as people read it; empty for what is missing.
+/// Returns a value as people read it; empty for what is missing.
 std::string TextOf(const DescribedValue& item) {
   struct Writer {
     std::string_view unit;
@@ -211,7 +211,7 @@ std::string TextOf(const DescribedValue& item) {
   return std::visit(Writer{item.field.unit}, item.value.content);
 }
 
-/// Rows of the report's fields of one subject, named as the JSON names them.
+/// Adds the rows of the report's fields of one subject, named as the JSON names them.
 void AddFields(const Report& report, std::string_view prefix, Table& table,
                const std::vector<std::string_view>& without = {}) {
   for (const DescribedValue& item : ValuesUnder(report, prefix)) {
@@ -273,9 +273,10 @@ std::string FigureSection(const Report& report) {
              "Bars beyond the curve on either side are readings that are far off: look for "
              "disturbances.");
   if (const auto panel = ResidualAutocorrelation(report)) {
-    figures += Figure(*panel, "residual-autocorrelation", "Autocorrelation of the residuals",
-                      "Outside the band residuals know of each other, and samples count for less; "
-                      "a peak a cycle apart is a shape that repeats.");
+    figures +=
+        Figure(*panel, "residual-autocorrelation", "Autocorrelation of the residuals",
+               "Values outside the band mean autocorrelated residuals and fewer effective samples; "
+               "a peak a cycle apart is a shape that repeats.");
   }
   html += Grid(figures);
   Table table("residuals", {"figure", "value", "what it is"});
@@ -290,13 +291,13 @@ std::string LikelihoodSection(const Report& report) {
   if (!panel) return "";
   return Heading("Likelihood") +
          Grid(Figure(*panel, "likelihood", "Likelihood of the slip force",
-                     "Where the curve stays below the line, the record does not tell those slip "
-                     "forces from the best: a side that never rises is open."));
+                     "Where the curve stays below the line, the record does not distinguish "
+                     "those slip forces from the best: a side that never rises is open."));
 }
 
 // --- the model's loop, the contact, the mapping
 
-/// "–" with why where the record leaves it open.
+/// Returns "–" with why where the record leaves it open.
 Cell ValueCell(const UncertainValue& value, std::string_view unit) {
   if (!std::isfinite(value.standard_error)) return Number("not identified");
   return Number(QuantityWithError(value.value, value.standard_error, unit));
@@ -397,7 +398,8 @@ std::string SelectionSection(const Report& report) {
     if (i == selection.chosen) {
       remark = remark.empty() ? "reported" : fmt::format("reported; {}", remark);
     } else if (is_listed) {
-      remark = remark.empty() ? "not told from it" : fmt::format("not told from it; {}", remark);
+      remark = remark.empty() ? "not distinguished from it"
+                              : fmt::format("not distinguished from it; {}", remark);
     }
     table.Row(fmt::format("{}{}", score.model->name, score.rig ? " + rig" : ""),
               {Number(std::to_string(score.free_parameters)),

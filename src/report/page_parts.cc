@@ -15,7 +15,7 @@ namespace {
 
 bool IsLetter(char character) { return std::isalnum(static_cast<unsigned char>(character)) != 0; }
 
-/// Text of which no option of the command line is broken at its hyphens.
+/// Returns the text of which no option of the command line is broken at its hyphens.
 std::string Prose(std::string_view text) {
   std::string html;
   std::size_t said = 0;
@@ -34,7 +34,7 @@ std::string Prose(std::string_view text) {
   return html + io::HtmlText(text.substr(said));
 }
 
-/// A name that a narrow screen breaks at its underscores and points, not within words.
+/// Returns a name that a narrow screen breaks at its underscores and points, not within words.
 std::string HtmlName(std::string_view text) {
   std::string html;
   for (const char character : Prose(text)) {

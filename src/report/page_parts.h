@@ -11,21 +11,21 @@
 // Pieces of a page of HTML. Text is escaped here, and nowhere else.
 namespace mindahl::report {
 
-/// "good", "poor" or "bad": its class of the page's style.
+/// Returns "good", "poor" or "bad": its class of the page's style.
 std::string_view CssClass(Judgement judgement);
 
-/// <p>, with a class where one is given.
+/// Returns <p>, with a class where one is given.
 std::string Paragraph(std::string_view text, std::string_view css_class = {});
 
-/// <h2> that begins a section.
+/// Returns <h2> that begins a section.
 std::string Heading(std::string_view text);
-/// <h3> within one.
+/// Returns <h3> within one.
 std::string SubHeading(std::string_view text);
 
-/// A list of sentences; nothing where there is none.
+/// Returns a list of sentences; nothing where there is none.
 std::string SentenceList(const std::vector<std::string>& sentences);
 
-/// A command to copy.
+/// Returns a command to copy.
 std::string CommandBlock(std::string_view command);
 
 /// A cell of a table.
@@ -45,7 +45,7 @@ class Table {
   Table(std::string_view caption, std::initializer_list<std::string_view> columns);
   void Row(std::string_view name, const std::vector<Cell>& cells);
   [[nodiscard]] bool empty() const { return rows_.empty(); }
-  /// Nothing where there is no row.
+  /// Returns nothing where there is no row.
   [[nodiscard]] std::string Html() const;
 
  private:
@@ -53,11 +53,11 @@ class Table {
   std::string rows_;
 };
 
-/// The first paragraph of a page: a judgement and its colour, "good", "poor" or "bad".
+/// Returns the first paragraph of a page: a judgement and its colour, "good", "poor" or "bad".
 std::string VerdictBlock(std::string_view css_class, std::string_view word,
                          std::string_view sentence);
 
-/// The section that says what it takes to make the result again.
+/// Returns the section that says what it takes to make the result again.
 std::string ReproduceSection(const Provenance& provenance);
 
 }  // namespace mindahl::report

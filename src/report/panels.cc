@@ -27,7 +27,7 @@ namespace {
 constexpr double kDataShade = 0.3;  // of what is measured, where it is of one kind
 constexpr std::size_t kMostGroups = 8;
 
-/// How often the prefixed unit goes into the plain one: 10⁶ of µm, to the last bit.
+/// Returns how often the prefixed unit goes into the plain one: 10⁶ of µm, to the last bit.
 double Per(const ScaledUnit& unit) {
   return unit.factor < 1 ? std::round(1 / unit.factor) : 1 / unit.factor;
 }
@@ -42,7 +42,7 @@ bool Counts(const RecordFit& fit, std::size_t sample) {
   return fit.counts.empty() || fit.counts[sample] != 0;
 }
 
-/// Residuals of the samples of a record that count.
+/// Returns the residuals of the samples of a record that count.
 std::vector<double> CountedResiduals(const RecordFit& fit) {
   std::vector<double> residuals;
   for (std::size_t i = 0; i < fit.residual.size(); ++i) {
@@ -80,8 +80,8 @@ struct Group {
   std::size_t end = 0;
 };
 
-/// Cycles of a record that is alone, as many in a row as make eight groups at most; otherwise its
-/// records. A cycle begins at every second reversal.
+/// Returns the cycles of a record that is alone, as many in a row as make eight groups at most;
+/// otherwise its records. A cycle begins at every second reversal.
 std::vector<Group> GroupsOf(const Report& report, const std::string& what) {
   std::vector<Group> groups;
   const std::size_t records = report.records.size();

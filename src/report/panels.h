@@ -21,7 +21,7 @@ struct PanelUnits {
 /// there is one; forces as they are.
 PanelUnits PlainUnits(const Report& report);
 
-/// Likewise, with forces and residuals in units of their own.
+/// Returns the same, with forces and residuals in units of their own.
 PanelUnits PrefixedUnits(const Report& report);
 
 /// Says how points are distinguished: by record, or, of a record that is alone, those of each of
@@ -32,26 +32,26 @@ enum class LoopColours { kOneARecord, kByCycle };
 /// samples has the fit of its last cycle alone: of all of them a page would draw chords.
 io::PlotPanel LoopPanel(const Report& report, const PanelUnits& units, LoopColours colours);
 
-/// Fitted less measured force, of samples in the load window where there is one.
+/// Returns the fitted less measured force, of samples in the load window where there is one.
 io::PlotPanel ResidualAlongStroke(const Report& report, const PanelUnits& units,
                                   LoopColours colours);
 
 // Plots the residuals of the samples that count.
 io::PlotPanel ResidualInTime(const Report& report, const PanelUnits& units);
-/// How often a residual is how large, in bins of 2·IQR·n^(−1/3) (Freedman & Diaconis 1981), 10 to
-/// 60 of them, out to five standard deviations; and the normal distribution of the same standard
-/// deviation.
+/// Returns how often a residual is how large, in bins of 2·IQR·n^(−1/3) (Freedman & Diaconis 1981),
+/// 10 to 60 of them, out to five standard deviations; and the normal distribution of the same
+/// standard deviation.
 io::PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units);
 /// Correlation of residuals that many samples apart, up to a little over a cycle, with the limits
 /// ±1.96/√n of white noise. Empty for fewer than eight samples, or where nothing is left over.
 std::optional<io::PlotPanel> ResidualAutocorrelation(const Report& report);
 
-/// The likelihood along the slip force. Empty where the fit had no need to look at it, and under a
-/// model that is inadequate.
+/// Returns the likelihood along the slip force. Empty where the fit had no need to look at it, and
+/// under a model that is inadequate.
 std::optional<io::PlotPanel> SlipForceLikelihood(const Report& report);
 
-/// σ and Tc against the load: of the whole series a line where it determines them, of each file
-/// alone an interval. Empty where the records have one load, or determine nothing.
+/// Returns σ and Tc against the load: of the whole series a line where it determines them, of each
+/// file alone an interval. Empty where the records have one load, or determine nothing.
 std::vector<io::PlotPanel> LoadPanels(const Report& report, const PanelUnits& units);
 
 /// The force of first loading without a law, with its band. Empty where it was not asked for.

@@ -15,9 +15,9 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
          return std::string("the record leaves open the parameter that it rests on");
        }},
       {"unit", "", "unit of value and error", [](const Item&) { return Text("-"); }},
-      {"from_fit", "-", "the fit's share of the variance",
+      {"from_fit", "-", "fraction of the variance from the fit",
        [](const Item& item) { return Number(item.FitShare()); }},
-      {"from_inputs", "-", "the inputs' share of the variance",
+      {"from_inputs", "-", "fraction of the variance from the inputs",
        [](const Item& item) { return Number(item.InputShare()); }},
       {"largest_input", "", "the input that contributes most; absent where all are exact",
        [](const Item& item) {
@@ -27,7 +27,7 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   return fields;
 }
 
-/// With the unit of the quantity, which the table does not know.
+/// Returns members with the unit of the quantity, which the table does not know.
 Value::Object PropagatedMembers(const PropagatedValue& value, std::string_view unit) {
   Value::Object object = Render(PropagatedFields(), value);
   Place(object, "unit", Text(unit));

@@ -9,13 +9,13 @@
 
 namespace mindahl::report {
 
-/// Rows of a quantity whose error comes from the fit and from inputs.
+/// Returns the rows of a quantity whose error comes from the fit and from inputs.
 const std::vector<Field<contact::PropagatedValue>>& PropagatedFields();
 
-/// Those rows, with the unit of the quantity, which the table does not know.
+/// Returns those rows, with the unit of the quantity, which the table does not know.
 Value::Object PropagatedMembers(const contact::PropagatedValue& value, std::string_view unit);
 
-/// Likewise, or a null for which the row has the reason.
+/// Returns the same, or a null for which the row has the reason.
 Value Propagated(const std::optional<contact::PropagatedValue>& value, std::string_view unit);
 
 }  // namespace mindahl::report

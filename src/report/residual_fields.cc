@@ -23,7 +23,7 @@ Field<Report> Residual(const char* name, const char* unit, const char* label,
 
 const std::vector<Field<StrokeBin>>& BinFields() {
   static const std::vector<Field<StrokeBin>> fields = {
-      {"position", "-", "middle of the part, as a share of the way between reversals",
+      {"position", "-", "middle of the part, as a fraction of the travel between reversals",
        [](const StrokeBin& bin) { return Number(bin.position); }},
       {"mean", kOfResponse, "mean residual there",
        [](const StrokeBin& bin) { return Number(bin.mean); }},
@@ -51,7 +51,7 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
 
 const std::vector<Field<RecordFit>>& StructureFields() {
   static const std::vector<Field<RecordFit>> fields = {
-      {"repeatable_share", "-", "share of the variance that repeats in every stroke",
+      {"repeatable_share", "-", "fraction of the variance that repeats in every stroke",
        [](const RecordFit& item) { return Number(item.structure.repeatable_share); }},
       {"directions", "", "growing, then falling displacement",
        [](const RecordFit& item) {
@@ -72,7 +72,7 @@ void AddResidualFields(FieldTable& table) {
       Residual("max_abs", kOfResponse, "largest residual", &ResidualStatistics::max_abs),
       Residual("normalized_rms", "-", "rms over Tc, or over Tc/σ of a displacement",
                &ResidualStatistics::normalized_rms),
-      Residual("r_squared", "-", "share of the variance of what is fitted that the fit explains",
+      Residual("r_squared", "-", "fraction of the fitted channel's variance that the fit explains",
                &ResidualStatistics::r_squared),
       Residual("durbin_watson", "-",
                "2 where residuals are white, near 0 where they are autocorrelated",

@@ -50,7 +50,8 @@ const std::vector<Field<identification::ModelSelection>>& SelectionFields() {
   static const std::vector<Field<Item>> fields = {
       {"chosen", "", "the reported one: its place in models",
        [](const Item& item) { return Count(item.chosen); }},
-      {"indistinguishable", "", "those that the record does not tell from it, simplest first",
+      {"indistinguishable", "",
+       "models that the record does not distinguish from it, simplest first",
        [](const Item& item) {
          Value::Array places;
          for (const std::size_t place : item.indistinguishable) places.push_back(Count(place));

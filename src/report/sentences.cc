@@ -36,7 +36,7 @@ double Needed(const Finding& finding, std::string_view name) {
 
 // --- what is wrong with the record
 
-/// "record 2: " of several.
+/// Returns "record 2: " of several.
 std::string WhichRecord(const Finding& finding) {
   const std::optional<double> record = finding.Number("record");
   return record ? fmt::format("record {:.0f}: ", *record) : std::string();
@@ -102,7 +102,7 @@ std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& un
       Quantity(Needed(finding, "rig_stiffness"), units.stiffness, 4), Needed(finding, "alpha"));
 }
 
-/// Did the record itself show a loop that slides? Then no larger amplitude is asked for.
+/// True if the record itself shows a loop that slides: then no larger amplitude is asked for.
 bool Slides(const FitResult& fit) {
   return !fit.records.empty() && loop::Slides(fit.WidestRecord().facts);
 }
@@ -124,7 +124,7 @@ std::string SlipForceBoundedBelow(const Finding& finding, const FitResult& fit,
       Quantity(Needed(finding, "amplitude"), units.displacement, 4));
 }
 
-/// Then a larger amplitude shows less of the branches still.
+/// True if slip is seen: then a larger amplitude shows less of the branches still.
 bool SeesSlip(const FitResult& fit) {
   const identification::ParameterEstimate* slip_force = fit.Find("slip_force");
   return Slides(fit) || (slip_force != nullptr && slip_force->is_known());
@@ -188,7 +188,8 @@ std::string AsymmetryNotIdentifiable(const Finding& finding, const FitResult&, c
   return fmt::format(
       "{}: {:.2g} % of slip_force never slips, and keeps a force that no record of a cycled "
       "contact "
-      "tells; raise the amplitude until the contact slips as a whole, or record from the unloaded "
+      "determines; raise the amplitude until the contact slips as a whole, or record from the "
+      "unloaded "
       "contact on",
       fmt::join(finding.parameters, ", "), 100 * Needed(finding, "never_slips"));
 }
@@ -266,7 +267,7 @@ std::string UnknownPast(const Finding& finding, const FitResult&, const Units&) 
 std::string InitialStateUndecided(const Finding& finding, const FitResult& fit, const Units&) {
   const bool virgin = fit.initial_state == models::InitialState::kVirgin;
   return fmt::format(
-      "{}: the record does not tell whether the contact was unloaded before it or in a steady "
+      "{}: the record does not determine whether the contact was unloaded before it or in a steady "
       "loop, and the two differ: the values are of {}, the intervals cover both; give "
       "--initial-state, or record more cycles",
       fmt::join(finding.parameters, ", "), virgin ? "an unloaded contact" : "a steady loop");
@@ -284,7 +285,7 @@ std::string NameOfLaw(std::string_view model) {
   return model == "dahl" ? "Dahl's own law" : "Masing's law";
 }
 
-/// "sigma = 46 N/µm and slip_force = 15 N" of those that the fit knows; may be empty.
+/// Returns "sigma = 46 N/µm and slip_force = 15 N" of those that the fit knows; may be empty.
 std::string KnownOf(const Finding& finding, const FitResult& fit, const Units& units) {
   const auto is_known = [&](std::string_view name) {
     const identification::ParameterEstimate* estimate = fit.Find(name);
@@ -304,7 +305,8 @@ std::string LawUndecided(const Finding& finding, const FitResult& fit, const Uni
   const std::optional<double> delta_aicc = finding.Number("delta_aicc");
   const std::string known = KnownOf(finding, fit, units);
   return fmt::format(
-      "sigma, slip_force: the record does not tell {} from {} ({}){}; start from an unloaded "
+      "sigma, slip_force: the record does not distinguish {} from {} ({}){}; start from an "
+      "unloaded "
       "contact, or record a second amplitude",
       NameOfLaw(fit.model->name), NameOfLaw(finding.kind),
       delta_aicc ? fmt::format("ΔAICc = {:.3g}", *delta_aicc)

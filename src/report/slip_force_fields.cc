@@ -11,7 +11,7 @@ std::string WhySlipForceOpen(const Report& report) {
                             : "slip_force or asymmetry is not identifiable";
 }
 
-/// Absent of a fit that has one slip force.
+/// Makes a row, absent of a fit that has one slip force.
 template <typename Get>
 Field<Report> SlipForceRow(const std::string& path, const char* label, Get get) {
   return {path, "N", label,

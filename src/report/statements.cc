@@ -27,7 +27,7 @@ using identification::ParameterStatus;
 
 namespace {
 
-/// A trend over the cycles in words, where it is worth any.
+/// Returns a trend over the cycles in words, where it is worth any.
 std::string TrendText(const char* what, const std::optional<loop::Trend>& trend,
                       const std::optional<double>& mean) {
   if (!trend || !mean || !identification::IsWorthSaying(*trend, *mean)) return "";

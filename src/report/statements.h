@@ -12,13 +12,13 @@
 // Makes the statements that text and page share, in words and without an end of line.
 namespace mindahl::report {
 
-/// Several files by the name of the first, without its directory: "loop.csv and 2 more".
+/// Names several files by the name of the first, without its directory: "loop.csv and 2 more".
 std::string NameOf(std::span<const std::string> files);
 
-/// The files and the verdict: "loop.csv: adequate".
+/// Returns the files and the verdict: "loop.csv: adequate".
 std::string TitleOf(const Report& report);
 
-/// "adequate", "doubtful", "inadequate", "not judged", "not converged" or "failed".
+/// Returns "adequate", "doubtful", "inadequate", "not judged", "not converged" or "failed".
 std::string_view VerdictWord(const Report& report);
 
 /// How good what is said is, for its colour.
@@ -36,13 +36,13 @@ enum class Shown {
 };
 Shown WhatIsShown(const identification::ParameterEstimate& estimate);
 
-/// "identifiable, at bound", "fixed" …
+/// Returns "identifiable, at bound", "fixed" …
 std::string VerdictWords(const identification::ParameterEstimate& estimate);
 
-/// "p = 0.012" of two digits; no p-value is 0.
+/// Returns "p = 0.012" of two digits; no p-value is 0.
 std::string ChanceText(double p_value, int digits = 3);
 
-/// Whether a quantity of the contact follows from what the loop determines: of what it leaves open
+/// True if a quantity of the contact follows from what the loop determines: of what it leaves open
 /// nothing follows, whatever the error is.
 bool IsIdentified(const Report& report, const ContactField& field,
                   const contact::PropagatedValue& value);
@@ -51,10 +51,10 @@ bool IsIdentified(const Report& report, const ContactField& field,
 /// the fit alone is uncertain.
 std::string VarianceStatement(const contact::PropagatedValue& value);
 
-/// Whether the contact slips as a whole, and from where on.
+/// Says whether the contact slips as a whole, and from where on.
 std::string SlipStatement(const LoopDescription& loop, const Units& units);
 
-/// Why intervals are far wider than standard errors make them, in a sentence; "" where none is.
+/// Says why intervals are far wider than standard errors make them; "" where none is.
 std::string WideIntervalStatement(const identification::FitResult& fit, const Units& units);
 
 /// Returns the slip forces in either direction of the motion; "" where they are one, or not known.
@@ -63,8 +63,8 @@ std::string SlipForcesStatement(const Report& report);
 /// Describes the significant trends over the cycles.
 std::vector<std::string> TrendStatements(const loop::LoopFacts& facts);
 
-/// Which of the two laws σ and Tc are of, and what the other would make of the contact. Empty where
-/// they are not compared.
+/// States which of the two laws σ and Tc are of, and what the other would make of the contact.
+/// Empty where they are not compared.
 std::string LawStatement(const Report& report);
 
 /// States which memory the record has, whatever the shape of its branches. Empty where that is not
@@ -81,18 +81,18 @@ std::vector<std::string> StiffnessStatements(const StiffnessTest& test);
 /// report has no series.
 std::vector<std::string> LoadLawStatements(const Report& report);
 
-/// The laws of a series that say something of the contact: elements in parallel only where Hertz's
-/// law, of which they are the general case, is not among them.
+/// Returns the laws of a series that say something of the contact: elements in parallel only where
+/// Hertz's law, of which they are the general case, is not among them.
 std::vector<LoadLaw> LawsToShow(const LoadSeries& series);
 
-/// A law of the load and the stiffness with it: "smooth sphere, Hertz (1/3), held over all loads:
-/// σ = 52.11 ± 0.06 N/µm at the mean load".
+/// Returns a law of the load and the stiffness with it: "smooth sphere, Hertz (1/3), held over all
+/// loads: σ = 52.11 ± 0.06 N/µm at the mean load".
 std::string LawHeading(const LoadLaw& law);
 
-/// The 95 % interval of a quantity in its own unit, "49.8 … 50.4 mm"; "open".
+/// Returns the 95 % interval of a quantity in its own unit, "49.8 … 50.4 mm"; "open".
 std::string IntervalWords(const QuantityUnderLaw& quantity);
 
-/// A theory of the load's exponent in words.
+/// Returns a theory of the load's exponent in words.
 std::string WordsOfHypothesis(std::string_view name);
 
 }  // namespace mindahl::report

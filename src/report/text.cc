@@ -109,7 +109,8 @@ std::string SelectionText(const identification::ModelSelection& selection, const
                                        : "-",
                     score.remark.empty() ? "" : "\n      " + score.remark);
   }
-  return text + "  * reported, = not told from it\n" + Wrapped("  " + selection.verdict, 2) + "\n";
+  return text + "  * reported, = not distinguished from it\n" +
+         Wrapped("  " + selection.verdict, 2) + "\n";
 }
 
 /// Returns which terms were added and what each gained, in one line.
@@ -179,21 +180,21 @@ std::string MeasuredText(const Report& report) {
   return Wrapped("measured: " + fmt::format("{}", fmt::join(parts, ", ")), 10);
 }
 
-/// The verdict's own word at the start of its sentence.
+/// Returns the verdict's own word at the start of its sentence.
 std::string Coloured(const std::string& sentence, const Report& report, const Style& style) {
   if (!IsJudged(report)) return sentence;
   const std::string_view word = Name(report.fit.adequacy.verdict);
   return style.Judged(JudgementOf(word), word) + sentence.substr(word.size());
 }
 
-/// The verdict, and what to do next.
+/// Returns the verdict, and what to do next.
 std::string AdequacyText(const Report& report, const Style& style) {
   std::string text = Coloured(Wrapped(VerdictSentence(report), 2), report, style);
   const std::string next = NextStep(report);
   return next.empty() ? text : text + Wrapped("next: " + next, 6);
 }
 
-/// Other causes, which the next step may leave.
+/// Returns the other causes, which the next step may leave.
 std::string OtherCausesText(const Report& report) {
   const std::vector<identification::Cause>& causes = report.fit.adequacy.causes;
   constexpr std::size_t kMost = 3;
@@ -271,7 +272,7 @@ std::string FitText(const Report& report) {
   return text;
 }
 
-/// All of a fit that is not usable, in ten lines: the verdict, the next step, and what stands.
+/// Describes a fit that is not usable in ten lines: the verdict, the next step, and what stands.
 std::string UnusableText(const Report& report, const Style& style) {
   std::string text = AdequacyText(report, style) + MeasuredText(report) +
                      Wrapped("reversals: " + SamplesText(report), 11);

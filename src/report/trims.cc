@@ -71,7 +71,8 @@ Warning NoteOf(const Report& report, std::size_t r) {
       fmt::format("--trim auto leaves out of {}: {}", report.files[r], fmt::join(parts, ", "));
   if (trim.has_first_loading()) {
     text +=
-        "; the first loading is among them, which tells Masing's law from Dahl's own and a virgin "
+        "; the first loading is among them, which distinguishes Masing's law from Dahl's own and a "
+        "virgin "
         "contact from a steady one";
   }
   if (trim.begins_later()) {

@@ -49,7 +49,7 @@ struct NullPlace {
   std::string why;
 };
 
-/// Every null, in order.
+/// Returns every null, in order.
 [[nodiscard]] std::vector<NullPlace> CollectNulls(const Value::Object& object);
 
 }  // namespace mindahl::report

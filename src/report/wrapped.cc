@@ -5,7 +5,7 @@
 namespace mindahl::report {
 namespace {
 
-/// A number, or what stands before one: what comes after it belongs to it.
+/// True for a number, or what stands before one: what comes after it belongs to it.
 bool IsNumber(std::string_view word) {
   if (word == "±" || word == "…" || word == ">" || word == "=") return true;
   return !word.empty() && word.find_first_not_of("0123456789.+-e") == std::string_view::npos &&

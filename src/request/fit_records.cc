@@ -35,7 +35,7 @@ std::string PlaceOf(const std::string& file, const RecordFile& input,
   return fmt::format("{}:{}:{}", file, input.lines[sample], column.number);
 }
 
-/// Half the range of a column in SI units; refuses what is beyond any unit that is meant.
+/// Returns half the range of a column in SI units; refuses what is beyond any unit that is meant.
 double RequireHalfRange(const std::string& file, const RecordFile& input,
                         const io::ChosenColumn& column, const std::vector<double>& values,
                         std::string_view what, std::string_view unit) {
@@ -135,8 +135,8 @@ void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& in
   }
 }
 
-/// One record for each constant load of a file, unless it is said what the loads are, or which
-/// samples of it count; and of a file whose ends are trimmed what is under its constant load.
+/// Returns one record for each constant load of a file, unless it is said what the loads are, or
+/// which samples of it count; and of a file whose ends are trimmed what is under its constant load.
 /// @param names  written: those of the records
 std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
                                    std::vector<std::string>& names) {
@@ -197,7 +197,7 @@ void RequireLoads(const FitRequest& request, const std::optional<Interval>& wind
   }
 }
 
-/// One normal load for all files, or one a file.
+/// Requires one normal load for all files, or one a file.
 void RequireLoadsOfRecords(const FitRequest& request) {
   const std::size_t loads = request.contact.normal_loads.size();
   if (loads <= 1 || loads == request.files.size()) return;
@@ -207,7 +207,7 @@ void RequireLoadsOfRecords(const FitRequest& request) {
                   loads, request.files.size(), request.files.size() > 1 ? "s" : ""));
 }
 
-/// The measured normal load where it was not given: its mean.
+/// Uses the measured normal load where it was not given: its mean.
 void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::FitResult& fit,
                            std::span<const Record> records, const std::optional<Interval>& window,
                            const Tell& note) {
@@ -223,7 +223,7 @@ void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::F
                    *mean));
 }
 
-/// The fit that the request asks for, of the model and terms that it names or leaves to be chosen.
+/// Makes the requested fit, of the model and terms that are named or left to be chosen.
 /// @param selection  written where the model is chosen
 /// @param terms      written where terms are chosen or named together
 identification::FitResult FitAsked(const FitRequest& request, const FitOptions& options,

@@ -41,7 +41,7 @@ double ParseNumber(std::string_view text, std::string_view option, std::string_v
   return value;
 }
 
-/// "left<separator>right"
+/// Returns "left<separator>right".
 std::pair<std::string_view, std::string_view> Split(std::string_view text, char separator,
                                                     std::string_view option,
                                                     std::string_view form) {
@@ -98,7 +98,7 @@ void ApplyCompanions(std::string_view group, std::string_view but, FitOptions& f
   }
 }
 
-/// --slip-position linear or quadratic.
+/// Applies --slip-position linear or quadratic.
 void ApplySlipPosition(std::string_view text, FitOptions& fit) {
   constexpr std::array<std::string_view, 2> kForms = {"linear", "quadratic"};
   RequireOneOf("--slip-position", text, kForms);
@@ -133,7 +133,7 @@ struct CovariateChoice {
   std::optional<double> value;  // empty: fitted
 };
 
-/// COL, COL=fit or COL=C.
+/// Parses COL, COL=fit or COL=C.
 CovariateChoice ParseCovariate(const std::string& text) {
   constexpr std::string_view kForm = "COL[=C|fit], e.g. pressure=50";
   const std::size_t at = text.rfind('=');
@@ -402,7 +402,7 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
   if (request.terms.contains("asymmetry")) {
     throw InputError(
         "--asymmetry is not read by track: where the contact slips as a whole, force_offset of a "
-        "cycle is (Tc+ - Tc-)/2 beside the sensor's own; fit a part of the record with fit");
+        "cycle is (Tc+ - Tc-)/2 plus the sensor's own; fit a part of the record with fit");
   }
   return MakeFitOptions(request);
 }

@@ -24,7 +24,7 @@ constexpr std::array kElements = {4, 16, 64, 256};
 constexpr std::array kIntervals = {16, 64, 256, 1024, 4096};
 constexpr std::array kTolerances = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
 
-/// The resolutions at which a method is tried.
+/// Returns the resolutions at which a method is tried.
 std::vector<Resolution> Resolutions(const Method& method) {
   std::vector<Resolution> resolutions;
   const auto add_steps = [&](const auto& steps) {

@@ -84,8 +84,8 @@ Scene MakeScene(const BranchLaw& law, double lambda, std::size_t cycles) {
   return scene;
 }
 
-/// Errors of each cycle: of the force, the first from the virgin loading on; of the energy, that of
-/// the loop from +X to +X.
+/// Returns the errors of each cycle: of the force, the first from the virgin loading on; of the
+/// energy, that of the loop from +X to +X.
 std::vector<Precision> ErrorsByCycle(const Scene& scene, const methods::Evaluator& evaluate,
                                      std::size_t cycles) {
   const DenseCycles& dense = scene.dense;

@@ -19,7 +19,7 @@ void RequireRecommendOptions(const RecommendOptions& options) {
   if (options.largest_cost) RequirePositive("largest cost [ns/sample]", *options.largest_cost);
 }
 
-/// Sample from which |ΔT| stays within the tolerance, as whole cycles.
+/// Returns the sample from which |ΔT| stays within the tolerance, as whole cycles.
 std::optional<std::size_t> SettlesAfter(const ReferenceResponse& reference,
                                         std::span<const double> force,
                                         std::span<const double> cycles, double tolerance) {
@@ -34,7 +34,7 @@ std::optional<std::size_t> SettlesAfter(const ReferenceResponse& reference,
   return static_cast<std::size_t>(after);
 }
 
-/// The most precise of those within the limit of cost; of equals the cheaper.
+/// Returns the most precise of those within the limit of cost; of equals the cheaper.
 std::optional<std::size_t> MostPrecise(const std::vector<Candidate>& candidates,
                                        Criterion criterion) {
   std::optional<std::size_t> best;

@@ -81,7 +81,7 @@ class Polish {
   }
 
  private:
-  /// Σr² [N²]
+  /// Returns Σr² [N²].
   double Differentiate(const BranchLaw& law) {
     EvaluateForceAndGradient(model_, law, path_, target_.drive.displacement, force_, gradient_);
     double squares = 0.0;
@@ -156,7 +156,7 @@ std::optional<BranchLaw> RefitLimit(const Target& target, const models::LimitLaw
   return Times(law, factor);
 }
 
-/// A rung with a law of its own, where it has one.
+/// Returns a rung with a law of its own, where it has one.
 std::optional<Approximation> Refitted(const Target& target, Approximation rung,
                                       const BranchLaw& law) {
   if (const models::LimitLaw* limit = models::FindLimitLaw(rung.model)) {

@@ -22,7 +22,7 @@ class RememberedExtrema {
  public:
   explicit RememberedExtrema(const BranchLaw& law) : law_(law) {}
 
-  /// Force over Tc at `displacement`.
+  /// Returns the force over Tc at `displacement`.
   long double MoveTo(double displacement) {
     Forget(displacement);
     const long double force = ForceAt(displacement);
@@ -60,7 +60,7 @@ class RememberedExtrema {
     return extrema_.back().force + 2 * Backbone(displacement - extrema_.back().displacement, 0.5L);
   }
 
-  /// φ of a fraction of x, with its sign.
+  /// Returns φ of a fraction of x, with its sign.
   [[nodiscard]] long double Backbone(double x, long double share) const {
     const auto y =
         models::backbone::Normalize(law_.tangential_stiffness, std::abs(x), law_.slip_force);
@@ -77,7 +77,7 @@ class RememberedExtrema {
   long double last_force_ = 0.0L;
 };
 
-/// ∫T dδ [J], trapezoidal.
+/// Returns ∫T dδ [J], trapezoidal.
 double Work(std::span<const double> displacement, std::span<const double> force,
             std::size_t first) {
   long double work = 0.0L;
@@ -88,7 +88,7 @@ double Work(std::span<const double> displacement, std::span<const double> force,
   return static_cast<double>(work);
 }
 
-/// ns a sample; `run` once before, so that memory is warm.
+/// Returns ns a sample; `run` once before, so that memory is warm.
 template <typename Run>
 double CostOfRun(std::size_t samples, Run&& run) {
   using Clock = std::chrono::steady_clock;

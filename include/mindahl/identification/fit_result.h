@@ -187,7 +187,7 @@ struct FitResult {
   /// bounded, under loads that differ or vary or a lag, where branches are no copies of each
   /// other, and in a fit of the displacement.
   std::optional<MemoryTest> memory;
-  /// From Depth::kErrors on; empty where the parabola was good enough.
+  /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined

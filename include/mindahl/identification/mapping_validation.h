@@ -27,7 +27,7 @@ struct ValidationOptions {
 /// Returns the tolerance on relative errors of σ and Tc, and errors of α, of a noise-free loop.
 double NoiseFreeTolerance(double lambda);
 
-/// With noise, the truth may lie this many standard errors from the fit: the square root of twice
+/// Largest distance of truth and fit under noise, in standard errors: the square root of twice
 /// the difference of log-likelihoods, χ² with three degrees of freedom squared; beyond it once in
 /// 10⁷.
 inline constexpr double kStandardErrorsTolerated = 6.0;
@@ -97,7 +97,7 @@ struct ValidationRow {
 
 struct ValidationReport {
   std::vector<ValidationRow> rows;  ///< in order of noise level, then amplitude
-  /// Likewise of Dahl's own law, fitted to each loop from its first extreme on. σ, α and Tc are
+  /// Rows of Dahl's own law, fitted to each loop from its first extreme on. σ, α and Tc are
   /// then those of the Masing law with the same steady loop (models/equivalent_law.h), standard
   /// errors and intervals those of Dahl's law itself.
   std::vector<ValidationRow> dahl_rows;

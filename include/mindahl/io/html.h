@@ -13,7 +13,7 @@ std::string HtmlText(std::string_view text);
 
 /// Describes a figure in words, also for readers who do not see it.
 struct FigureText {
-  std::string id;           ///< of the element; unique in its page, letters, digits and '-'
+  std::string id;           ///< identifies the element in its page, letters, digits and '-'
   std::string title;        ///< above the figure
   std::string description;  ///< how to read it, under the title
 };

@@ -35,8 +35,8 @@ struct ChosenColumn {
 /// Locates a record within a file that holds several constant loads.
 struct LoadPiece {
   double normal_load = 0.0;    ///< [N], the median
-  std::size_t first_line = 0;  ///< of the file, 1-based
-  std::size_t last_line = 0;   ///< likewise
+  std::size_t first_line = 0;  ///< first line in the file, 1-based
+  std::size_t last_line = 0;   ///< last line in the file
   std::size_t left_out = 0;    ///< samples of the file in none of its pieces; with the last piece
   /// True if its load is constant and the file's load ramps to and from it.
   bool is_between_ramps = false;

@@ -42,7 +42,7 @@ enum class Settling {
 
 /// Locates the samples at the ends of a record that are not part of its test.
 struct Trim {
-  std::size_t samples = 0;         ///< of the record
+  std::size_t samples = 0;         ///< number in the record
   std::vector<TrimmedPart> parts;  ///< at the beginning, then at the end, in order of time
   Settling settling = Settling::kFewCycles;
 

@@ -54,7 +54,7 @@ struct BranchRun {
 /// its branches, so origin forces are found in one pass.
 struct LoadingPath {
   std::vector<Branch> branches;
-  std::vector<BranchRun> runs;     ///< contiguous, covering all samples in order
+  std::vector<BranchRun> runs;     ///< contiguous, of all samples in order
   std::vector<std::int32_t> open;  ///< branches still open after the last sample, oldest first
   double asymmetry = 0.0;          ///< asymmetry of the slip forces, as InitialContact's
 };
@@ -77,7 +77,7 @@ struct LoadingPath {
 struct InitialContact {
   InitialState state = InitialState::kVirgin;
   double unloaded_displacement = 0.0;  ///< [m], used when virgin: where T = 0
-  /// a of slip forces Tc(1 + a) where the motion is in the sense of positive displacement and
+  /// a of slip forces Tc(1 + a) where the motion is towards positive displacement and
   /// Tc(1 − a) where it is not, in (−1, 1): elements of those limits are the symmetric ones that
   /// set out with −a of their slip force, under a constant a·Tc (docs/theory.md §5). A steady
   /// contact is one that had slipped as a whole before.

@@ -17,7 +17,7 @@ struct InputFile {
 
 /// Holds what is needed to make a result again.
 struct Provenance {
-  std::string command;            ///< as a shell takes it; "" where there was none
+  std::string command;            ///< command for a shell; "" where there was none
   std::vector<InputFile> inputs;  ///< files that were read
   /// Options with their values, those of a configuration file too.
   std::vector<std::pair<std::string, std::string>> options;

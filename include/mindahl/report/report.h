@@ -23,7 +23,7 @@ namespace mindahl::report {
 /// Holds the inputs of a report.
 struct ReportInput {
   std::vector<std::string> files;       ///< name of each record, as it is to be printed
-  std::vector<io::RecordFile> records;  ///< as they were read, those that were fitted
+  std::vector<io::RecordFile> records;  ///< records that were fitted, as read
   identification::FitResult fit;
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
   /// Normal loads [N] of the samples that counted, as given to the fit.

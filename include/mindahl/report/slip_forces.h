@@ -16,7 +16,7 @@ struct SlipForce {
 };
 
 struct SlipForces {
-  SlipForce positive;  ///< Tc(1 + a) [N], the motion in the sense of positive displacement
+  SlipForce positive;  ///< Tc(1 + a) [N], for motion towards positive displacement
   SlipForce negative;  ///< Tc(1 − a) [N]
 };
 

@@ -25,7 +25,7 @@ struct ContactOptions {
 /// @throws InvalidArgument for one that is not > 0
 void SetNormalLoads(ContactOptions& options, std::span<const contact::UncertainValue> loads);
 
-/// Was any of it given?
+/// True if any of it was given.
 bool IsAnythingGiven(const ContactOptions& options);
 
 /// @throws InvalidArgument naming the option, its value and the rule; InputError for a plane with

@@ -180,7 +180,7 @@ void Order(std::vector<Cause>& causes, const Thresholds& thresholds) {
   });
 }
 
-/// With its number where the option has one, in SI.
+/// Returns the option with its number where it has one, in SI.
 std::string OptionOf(const Problem& problem, const FitOptions& options, const Irregularity& found,
                      double size) {
   const std::string_view option = found.option;

@@ -110,7 +110,7 @@ AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, cons
 
 namespace {
 
-/// Place of a parameter among those that are free, their number where it is not.
+/// Returns the place of a parameter among those that are free, their number where it is not.
 std::size_t PlaceAmongFree(const Problem& problem, std::size_t parameter) {
   const auto& free = problem.parameters.free();
   return static_cast<std::size_t>(std::ranges::find(free, parameter) - free.begin());

@@ -23,9 +23,9 @@ struct LinearStep {
   std::vector<double> error;  // standard errors of these with it
 };
 
-/// Do the residuals of a fit hold more columns than those of its law? Noise is what all columns
-/// together leave, with the autocorrelation that it has: what a law misses is smooth along the loop
-/// and would pass for autocorrelated noise otherwise.
+/// Makes Wald tests for components of a fit's residuals along given columns, orthogonal to those of
+/// its law. Noise is what all columns leave, with its autocorrelation: what a law misses is smooth
+/// along the loop and would pass for autocorrelated noise otherwise.
 class ColumnTest {
  public:
   /// @param law           columns of what is fitted already
@@ -39,7 +39,7 @@ class ColumnTest {
              const Eigen::VectorXd& residual, const ColumnTest* quieter = nullptr,
              bool restores = false);
 
-  /// Has any column something of its own, and is there noise to hold it against?
+  /// True if a column has a part orthogonal to the others, and there is noise to test against.
   [[nodiscard]] bool can_tell() const { return all_.cols() > 0 && variance_ > 0; }
   /// True if the noise is not white, nor drawn errors of the displacement among it: its
   /// autocorrelation is what the columns left of it.

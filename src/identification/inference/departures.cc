@@ -98,7 +98,7 @@ constexpr std::array<Departure, 23> kDepartures = {{
      .term = "viscous",
      .unit_by_sample = "N samples/m"},
     {.code = "plateau_slope",
-     .meaning = "of a spring beside the contact",
+     .meaning = "of a spring parallel to the contact",
      .unit = "N/m",
      .option = "--plateau-slope",
      .term = "plateau_slope"},
@@ -117,7 +117,7 @@ constexpr std::array<Departure, 23> kDepartures = {{
      .unit = "",
      .option = ""},
     {.code = "guide_friction",
-     .meaning = "Coulomb's, beside the contact; it dissipates where positive",
+     .meaning = "Coulomb's, parallel to the contact; it dissipates where positive",
      .unit = "N",
      .option = ""},
     {.code = "rig_in_series",
@@ -172,7 +172,7 @@ constexpr std::array<Departure, 23> kDepartures = {{
      .unit_by_sample = "samples",
      .is_square = true},
     {.code = "held_displacement",
-     .meaning = "share of the motion between two readings of the displacement that is not read",
+     .meaning = "fraction of the motion between two readings of the displacement that is not read",
      .unit = "-",
      .option = ""},
     {.code = "amplitude_dependence",
@@ -304,8 +304,8 @@ void DeriveSmoothly(const ScaledRecord& record, std::span<const double> time,
   }
 }
 
-/// How far the motion has gone since the displacement was last read anew: what is repeated was
-/// read at the first of the repeats, and went straight on to the next reading.
+/// Returns the travel since the displacement was last read anew: what is repeated was read at the
+/// first of the repeats, and went straight on to the next reading.
 std::vector<double> MissedWay(const ScaledRecord& record, std::span<const double> time,
                               std::span<const std::size_t> samples) {
   std::vector<double> missed(record.size());
@@ -324,8 +324,8 @@ std::vector<double> MissedWay(const ScaledRecord& record, std::span<const double
   return missed;
 }
 
-/// Are readings of the displacement repeated often enough that it may be read less often than the
-/// force?
+/// True if so many readings of the displacement are repeated that it may be read less often than
+/// the force?
 bool IsDisplacementRepeated(const ScaledRecords& data, std::span<const Neighbours> neighbours) {
   constexpr double kOften = 0.2;  // of the samples: every fifth would be one
   std::size_t repeated = 0;

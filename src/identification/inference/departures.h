@@ -42,7 +42,7 @@ struct DepartureColumns {
   bool timed = true;                    // else sizes are by sample
 };
 
-/// In the order in which they are given up where a record has few samples.
+/// Returns them in the order in which they are given up where a record has few samples.
 std::span<const Departure> Departures();
 
 /// @param most  columns that are wanted; fewer where the next term's do not fit

@@ -16,7 +16,7 @@ constexpr std::size_t kLeastDraws = 20;
 constexpr std::size_t kMostNumbers = 400'000;
 constexpr std::uint64_t kSeed = 1;
 
-/// In units of the data.
+/// Draws a reading in units of the data.
 std::vector<double> DrawReading(const loop::PreparedRecord& record, double length,
                                 std::span<const double> truth, Draws& draws) {
   const double step = record.encoder_step / length;

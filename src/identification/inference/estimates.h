@@ -43,10 +43,10 @@ class Estimates {
   [[nodiscard]] double WhiteShare(std::size_t parameter) const;
   /// θ of the parabola's least cost where one parameter, which is free, is moved by a step.
   [[nodiscard]] std::vector<double> Beside(std::size_t parameter, double step) const;
-  /// Half width of a 95 % interval in standard errors.
+  /// Returns the half width of an interval of confidence() in standard errors.
   [[nodiscard]] double quantile() const { return quantile_; }
   [[nodiscard]] double confidence() const { return confidence_; }
-  /// The Jacobian by all free parameters at the solution, and the weighted residuals.
+  /// Returns the Jacobian by all free parameters at the solution, and the weighted residuals.
   [[nodiscard]] const Eigen::MatrixXd& jacobian() const { return at_.jacobian; }
   [[nodiscard]] const Eigen::VectorXd& residual() const { return at_.residual; }
   /// Returns the variance of a weighted residual from which errors are computed.

@@ -20,8 +20,8 @@ class Evidence {
   /// sums that are both no less than rounding errors leave.
   [[nodiscard]] double LikelihoodRatio(double held, double free) const;
 
-  /// The same statistic where its distribution is asked for: F = (SS₀ − SS₁)/s²·n_eff/n of one more
-  /// parameter, s² the variance of a residual.
+  /// Returns the same statistic where its distribution is asked for: F = (SS₀ − SS₁)/s²·n_eff/n of
+  /// one more parameter, s² the variance of a residual.
   [[nodiscard]] double FStatistic(double held, double free, double variance) const;
 
   /// Akaike's criterion with its small-sample term (Hurvich & Tsai 1989), for Gaussian residuals of
@@ -47,7 +47,7 @@ double PValueOfChiSquared(double x, double degrees_of_freedom);
 /// P(χ²(k) > x) = chance at x
 double ChiSquaredQuantile(double degrees_of_freedom, double chance);
 
-/// Half width of a two-sided interval of this confidence in standard errors, by Student.
+/// Returns the half width of a two-sided interval of this confidence in standard errors (Student).
 double StudentQuantile(double degrees_of_freedom, double confidence);
 
 }  // namespace mindahl::identification

@@ -18,7 +18,7 @@ enum IrregularityRow : std::size_t { kHeavyTails, kStickSlip, kRipple };
 
 constexpr std::array<Irregularity, 3> kIrregularities = {{
     {.code = "heavy_tails",
-     .meaning = "share of the readings that are far off both their neighbours",
+     .meaning = "fraction of the readings that are far off both their neighbours",
      .unit = "-",
      .option = "--loss huber"},
     {.code = "stick_slip",

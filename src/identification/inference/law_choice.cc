@@ -22,13 +22,13 @@ using models::Memory;
 
 namespace {
 
-/// The law of the other kind; α stays as it is held.
+/// Returns the law of the other kind; α stays as it is held.
 const FrictionModel& OtherModel(const FrictionModel& model) {
   return *models::FindFrictionModel(model.memory == Memory::kReturnPoint ? "dahl" : "mindlin-dahl");
 }
 
-/// Can the two laws have a σ and a Tc of their own? Not before the motion turns; σ and Tc that the
-/// user holds are of one law only.
+/// True if the two laws can have a σ and a Tc of their own: not before the motion turns; σ and Tc
+/// that the user holds are of one law only.
 bool AreComparable(const Problem& problem) {
   // Dahl's own law does not model a load that varies.
   if (problem.data->load_varies) return false;
@@ -44,7 +44,7 @@ bool AreComparable(const Problem& problem) {
   return true;
 }
 
-/// The law whose steady loop at the record's amplitude is the fitted one.
+/// Returns the law whose steady loop at the record's amplitude is the fitted one.
 models::BranchLaw EquivalentOf(const FitResult& result) {
   const double amplitude = models::ContactAmplitude(*result.model, result.law, result.rig,
                                                     result.WidestRecord().measures.amplitude);
@@ -63,7 +63,7 @@ SolverOptions RoughlyAs(const FitOptions& options) {
   return rough;
 }
 
-/// From the law that runs through the same steady loop, and from that of the fit itself, roughly.
+/// Fits the other law roughly, from that of the same steady loop and from the fitted one.
 OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult& result,
                   const models::BranchLaw& equivalent, const RecordStates& state,
                   const FitOptions& options, SearchBuffers& buffers) {

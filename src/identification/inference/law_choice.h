@@ -9,9 +9,9 @@
 
 namespace mindahl::identification {
 
-/// Are all swings of the records as wide as the widest, those to their ends no wider? Then a steady
-/// contact of Masing's law and one of Dahl's own run along one curve, each with a σ and a Tc of its
-/// own (models/equivalent_law.h).
+/// True if all swings of the records are as wide as the widest, those to their ends no wider. Then
+/// a steady contact of Masing's law and one of Dahl's own run along one curve, each with a σ and a
+/// Tc of its own (models/equivalent_law.h).
 bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds);
 
 /// True if the record hardly distinguishes Masing's law from Dahl's own.

@@ -26,7 +26,7 @@ struct LocalUncertainty {
   std::vector<bool> determined;           // of each column: no part in a direction without effect
   std::vector<std::vector<double>> null;  // directions in θ without effect on the residual
 
-  /// Place of a parameter among the columns; columns.size() where it has none.
+  /// Returns the place of a parameter among the columns; columns.size() where it has none.
   [[nodiscard]] std::size_t PlaceOf(std::size_t parameter) const;
 };
 
@@ -41,8 +41,8 @@ struct Linearization {
 Linearization LinearizeAt(const Problem& problem, std::span<const double> theta, Response& response,
                           std::span<const std::size_t> columns);
 
-/// The weighted Jacobian at θ, by columns; of a record whose turning points were fitted too, freed
-/// of what these explain.
+/// Returns the weighted Jacobian at θ, by columns; of a record whose turning points were fitted
+/// too, freed of what these explain.
 Eigen::MatrixXd JacobianAt(const Problem& problem, std::span<const double> theta,
                            Response& response, std::span<const std::size_t> columns,
                            Eigen::VectorXd& residual);
@@ -70,7 +70,7 @@ Autocorrelation AutocorrelationBeside(const ScaledRecords& data, std::span<const
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-/// The same of a solution's residuals. Binds the response to the problem.
+/// Returns the same of a solution's residuals. Binds the response to the problem.
 double EffectiveSamples(const Problem& problem, std::span<const double> theta, Response& response,
                         std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 

@@ -81,7 +81,7 @@ void Include(ProfiledRanges& ranges, const std::vector<double>& theta) {
   include(ranges.stiffness, theta[kStiffness]);
 }
 
-/// The best fit alone.
+/// Returns the best fit alone.
 ProfiledRanges RangesAt(const Solution& best) {
   const auto at = [&](std::size_t p) { return Range{best.theta[p], best.theta[p]}; };
   return {.slip_force = at(kSlipForce), .shape_exponent = at(kShape), .stiffness = at(kStiffness)};

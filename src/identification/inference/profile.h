@@ -50,7 +50,7 @@ std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best,
 /// Gain of F for RatiosAtEnds(), which is then off by a thousandth of the critical F.
 inline constexpr double kLastGainAtEnds = 0.02;
 
-/// May the parabola be wrong along Tc? It is asked where the loop stays away from slip, where Tc is
+/// True if the parabola may be wrong along Tc: where the loop stays away from slip, where Tc is
 /// badly known, and where its likelihood at the ends of the parabola's interval is another one.
 /// @param peak_share  T* of the record over Tc
 bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
@@ -61,7 +61,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
                                   const Estimates& estimates, const FitOptions& options,
                                   SearchBuffers& buffers);
 
-/// Whether a rigid contact, σ a thousand times larger, passes the same test. Not asked where σ is
+/// True if a rigid contact, σ a thousand times larger, passes the same test. Not asked where σ is
 /// known far too well for it.
 bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const Noise& noise,
                           const Estimates& estimates, const FitOptions& options,

@@ -13,7 +13,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// The largest of all records' reversals.
+/// Returns the largest of all records' reversals.
 double LargestOf(double (*overshoot)(const ScaledRecord&, std::size_t), const ScaledRecords& data) {
   double largest = 0.0;
   for (const ScaledRecord& record : data.records) {
@@ -32,8 +32,8 @@ double LargestShift(const Problem& problem, const Solution& best) {
          std::sqrt(best.sum_of_squares);
 }
 
-/// The fit with turning points where the motion has them; empty where that hardly matters, or the
-/// record shows its outermost samples to be better.
+/// Returns the fit with turning points where the motion has them; empty where that hardly matters,
+/// or the record shows its outermost samples to be better.
 std::optional<TurningPointFit> FitTurnedAsTheMotion(const Problem& problem, const Solution& best,
                                                     const FitOptions& options,
                                                     SearchBuffers& buffers) {

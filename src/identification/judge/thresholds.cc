@@ -13,7 +13,7 @@ constexpr std::array kTable = {
                  "from Mindlin's exponent, for a rig to be looked for in its place",
                  "the branches then depart by 1 % of Tc: less is not worth a rig, however sure"},
     ThresholdRow{"indistinguishable", &Thresholds::indistinguishable, "ΔAICc",
-                 "fits less apart are not told from each other",
+                 "fits less apart are not distinguished from each other",
                  "an evidence of e² to 1; noise makes a superfluous parameter look better by more "
                  "with a chance of P(χ²₁ > 6) = 1.4 %"},
     ThresholdRow{"rigid_beside_rig", &Thresholds::rigid_beside_rig, "σ/k",
@@ -22,7 +22,7 @@ constexpr std::array kTable = {
                  "element, whatever α"},
     ThresholdRow{"poor_misfit", &Thresholds::poor_misfit, "rms over half gap or T*",
                  "from here on a repeatable misfit is reported",
-                 "two per cent of the force are visible beside the loop's line in a plot"},
+                 "two per cent of the force are visible next to the loop's line in a plot"},
     ThresholdRow{"quantitative_misfit", &Thresholds::quantitative_misfit,
                  "missed over half gap or T*",
                  "a model that misses more is indicative, not quantitative",
@@ -32,11 +32,11 @@ constexpr std::array kTable = {
                  "where the law carries half of Tc, an error of 0.15 is a third of the force: the "
                  "knee is then somewhere else"},
     ThresholdRow{
-        "repeats_when_poor", &Thresholds::repeats_when_poor, "share of variance",
+        "repeats_when_poor", &Thresholds::repeats_when_poor, "fraction of variance",
         "of a poor misfit, what repeats from stroke to stroke to be called systematic",
         "noise of the same rms leaves 1 − 0.3 of the variance: the systematic part is then "
         "√(0.3/0.7) = 0.65 of it"},
-    ThresholdRow{"repeats_when_failing", &Thresholds::repeats_when_failing, "share of variance",
+    ThresholdRow{"repeats_when_failing", &Thresholds::repeats_when_failing, "fraction of variance",
                  "the same of a failing misfit",
                  "a failing misfit with 10 % that repeat is 3 % of the force by itself: poor"},
     ThresholdRow{"repeat_chance", &Thresholds::repeat_chance, "p",
@@ -97,8 +97,8 @@ constexpr std::array kTable = {
                  "beyond it the likelihood is profiled, not taken for a parabola",
                  "exp(0.1) − 1 departs from 0.1 by a twentieth: the ends of the interval by the "
                  "like"},
-    ThresholdRow{"parabola_departure", &Thresholds::parabola_departure, "share of 2 ln Λ",
-                 "departure from the parabola, at its 95 % ends of Tc, that asks for a profile",
+    ThresholdRow{"parabola_departure", &Thresholds::parabola_departure, "fraction of 2 ln Λ",
+                 "deviation from the parabola, at its 95 % ends of Tc, that asks for a profile",
                  "15 % of 2 ln Λ are 7 % of the interval's width"},
     ThresholdRow{"parabola_mobilised", &Thresholds::parabola_mobilised, "T* over Tc",
                  "a loop that reaches less is always profiled",
@@ -121,7 +121,7 @@ constexpr std::array kTable = {
     ThresholdRow{
         "most_absorbed", &Thresholds::most_absorbed, "of the samples",
         "of autocorrelated noise a fit is taken to absorb no more",
-        "beyond it the residuals no longer tell the noise: its variance is at most doubled"},
+        "beyond it the residuals no longer determine the noise: its variance is at most doubled"},
     ThresholdRow{"redundant_gain", &Thresholds::redundant_gain, "2 ln Λ",
                  "a model that gains less on a simpler one is that one",
                  "ten times what the solver may leave"},
@@ -136,11 +136,11 @@ constexpr std::array kTable = {
                  "residuals that noise alone makes less often are not noise alone",
                  "one adequate loop in two hundred is doubted"},
     ThresholdRow{"cause", &Thresholds::cause, "p",
-                 "a departure that noise alone makes less often is a cause",
+                 "an omitted term that noise alone makes less often is a cause",
                  "of the 23 that are tried, one loop in forty then has one by chance"},
     ThresholdRow{"rival_cause", &Thresholds::rival_cause, "of what the best explains",
                  "a cause that explains so much is one that intervals cover",
-                 "departures are taken to first order: of two imperfect accounts the better need "
+                 "omitted terms are taken to first order: of two imperfect models the better need "
                  "not be the true one"},
     ThresholdRow{
         "simpler_cause", &Thresholds::simpler_cause, "of what the other explains",
@@ -170,7 +170,7 @@ constexpr std::array kTable = {
                  "Masing's loops of two amplitudes and Dahl's with one σ and Tc then part by less "
                  "than 0.3 % of Tc"},
     ThresholdRow{"rival_law", &Thresholds::rival_law, "ΔAICc",
-                 "Masing's law and Dahl's own are not told apart by less",
+                 "Masing's law and Dahl's own are not distinguished by less",
                  "an evidence of e⁵ = 150 to 1, as of the two pasts: what either misses of a real "
                  "loop can be worth less"},
     ThresholdRow{"memory_chance", &Thresholds::memory_chance, "p",
@@ -197,10 +197,11 @@ constexpr std::array kTable = {
                  "the channel to fit",
                  "along the loop's diagonal the force then makes 1/(1 + 5²) = 4 % of the "
                  "residuals' variance"},
-    ThresholdRow{"never_slips", &Thresholds::never_slips, "of Tc",
-                 "a steady loop that leaves more of the slip force unreached tells no asymmetry",
-                 "what never slips keeps a force between its limits, of which nothing is known: it "
-                 "moves the asymmetry by as much"},
+    ThresholdRow{
+        "never_slips", &Thresholds::never_slips, "of Tc",
+        "a steady loop that leaves more of the slip force unreached determines no asymmetry",
+        "what never slips keeps a force between its limits, of which nothing is known: it "
+        "moves the asymmetry by as much"},
 };
 
 }  // namespace

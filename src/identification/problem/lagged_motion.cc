@@ -39,7 +39,7 @@ struct Lags {
   double most = 0.0;
 };
 
-/// Those that the options allow.
+/// Returns the lags that the options allow.
 /// @param first  the first record, whose cycles the bounds are of
 Lags LagsOf(const FitOptions& options, const loop::PreparedRecord& first) {
   const auto fixed = options.fixed.find("lag");

@@ -13,7 +13,7 @@
 /// Forces that are read some time after the displacement: T_file(t) = T(δ(t − lag)).
 namespace mindahl::identification {
 
-/// Have all records a time that goes on, or none a time?
+/// True if all records have a time that increases, or none has a time.
 bool MayHaveClocks(const ScaledRecords& data);
 
 /// Gives every record a clock: its time, and where that stands still or steps back the time evenly

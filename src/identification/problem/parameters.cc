@@ -48,7 +48,7 @@ bool BeginsAtZero(const ScaledRecord& data, const FitOptions& options) {
          std::abs(force) <= kOfForce * data.units.force;
 }
 
-/// A single loading curve looks the same wherever its origin is put: where the contact is unloaded
+/// A single loading curve looks the same from any reference position: where the contact is unloaded
 /// must be said. It is the file's zero where the record begins there; else the first sample, where
 /// the force is then the offset's.
 void HoldOrigin(const ScaledRecord& data, const FitOptions& options, Parameter& parameter) {
@@ -241,7 +241,7 @@ void Parameters::HoldConfoundedAsymmetry() {
   asymmetry.fixed = asymmetry.confounded = true;
 }
 
-/// Under a load that varies slip must be complete at a finite displacement.
+/// Bounds α: under a load that varies slip must be complete at a finite displacement.
 void Parameters::KeepShapeBelowOne(const FitOptions& options) {
   Parameter& shape = parameters_[kShape];
   const double lowest = shape.fixed ? shape.theta : shape.lower;

@@ -66,7 +66,7 @@ inline constexpr std::size_t kLoadExponent = 4;
 /// hundred times Tc/σ, and no record has such a law.
 inline constexpr double kHighestShapeUnderLoad = 0.99;
 
-/// The term of where a contact is unloaded: the offset of the channel that is imposed.
+/// Returns the term of where a contact is unloaded: the offset of the channel that is imposed.
 constexpr std::string_view OriginTerm(loop::Channel excitation) {
   return excitation == loop::Channel::kForce ? "force_offset" : "displacement_offset";
 }
@@ -78,7 +78,7 @@ class Parameters {
   Parameters(const ScaledRecords& data, const FitOptions& options, const RecordStates& state,
              std::pmr::memory_resource* memory);
 
-  /// Those of one record of several, and of the contact, as if it were the only one.
+  /// Takes those of one record of several, and of the contact, as if it were the only one.
   Parameters(const Parameters& all, std::size_t record, std::pmr::memory_resource* memory);
 
   /// A copy in another memory.
@@ -108,14 +108,14 @@ class Parameters {
   }
   /// True if the force's offset of a record is held.
   [[nodiscard]] bool any_zero_is_known() const;
-  /// Are the records under loads that differ?
+  /// True if the records are under loads that differ.
   [[nodiscard]] bool is_load_series() const { return !parameters_[kLoadExponent].absent; }
 
-  /// The name in options and results, numbered where there are several records.
+  /// Returns the name in options and results, numbered where there are several records.
   [[nodiscard]] std::string NameOf(std::size_t i) const;
   void NameOf(std::size_t i, std::string& name) const;
 
-  /// The unit of its value: by sample where `timed` is false, and a column's own.
+  /// Returns the unit of its value: by sample where `timed` is false, and a column's own.
   [[nodiscard]] std::string UnitOf(std::size_t i, bool timed) const;
 
   /// Holds one more parameter at θ.
@@ -136,7 +136,7 @@ class Parameters {
   [[nodiscard]] double LoadExponentAt(std::span<const double> theta) const;
   /// a of slip forces Tc(1 ± a); 0 where it is absent.
   [[nodiscard]] double AsymmetryAt(std::span<const double> theta) const;
-  /// The spring in series with the contact, in SI; rigid where it is absent.
+  /// Returns the spring in series with the contact, in SI; rigid where it is absent.
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:

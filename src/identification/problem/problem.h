@@ -44,7 +44,7 @@ struct LawPoint {
   std::span<const double> theta;
 };
 
-/// The point of the law at θ.
+/// Returns the point of the law at θ.
 LawPoint PointAt(const Problem& problem, std::span<const double> theta);
 
 /// Returns the log of the factor of t: ln Tc, or ln(Tc/σ) of a displacement.
@@ -106,7 +106,7 @@ class Response {
   /// Differentiates one record by its branches' starts, for fits of turning points.
   void DifferentiateByOrigins(const LawPoint& at, std::size_t record,
                               models::OriginSensitivity& sensitivity);
-  /// The loading path of a record of the problem that is bound, of its samples.
+  /// Returns the loading path of a record of the problem that is bound, of its samples.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
@@ -119,10 +119,10 @@ class Response {
                            const ResponseColumns& columns);
   [[nodiscard]] models::InitialContact InitialOf(std::size_t record,
                                                  std::span<const double> theta) const;
-  /// In the scaled time of a record.
+  /// Multiplies t and its derivatives by SlipFactor() at each sample.
   void ScaleBySlipForce(std::size_t record, const LawPoint& at, std::span<double> t,
                         const ResponseColumns& columns) const;
-  /// The slip force at a sample over Tc.
+  /// Returns the slip force at a sample over Tc.
   [[nodiscard]] double SlipFactor(const ScaledRecord& record, const LawPoint& at,
                                   std::size_t sample) const;
   void ScaleSensitivity(std::size_t record, const LawPoint& at,
@@ -164,7 +164,7 @@ class Response {
   models::NormalizedLoadedResponse loaded_response_;
 };
 
-/// The response of the whole model at θ, of every sample [units of the data]; no weight.
+/// Computes the response of the whole model at θ, of every sample [units of the data]; no weight.
 void Predict(const Problem& problem, std::span<const double> theta, Response& response,
              std::span<double> predicted);
 
@@ -191,8 +191,8 @@ bool ShapesColumns(const Problem& problem, std::size_t parameter);
 void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::size_t record,
                             std::span<const double> theta, double factor, std::span<double> to);
 
-/// The weighted residuals, model − measured, and their derivatives by the parameters at `columns`.
-/// The response is bound to the problem.
+/// Computes the weighted residuals, model − measured, and their derivatives by the parameters at
+/// `columns`. The response is bound to the problem.
 /// @param residual  size() values
 /// @param jacobian  column-major, size() × columns.size()
 void Differentiate(const Problem& problem, std::span<const double> theta, Response& response,

@@ -53,7 +53,7 @@ void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRe
     if (rig->second > stiffness) continue;
     ThrowInvalid("rig_stiffness [N/m]", rig->second,
                  fmt::format("must be > {:.4g}, the stiffness that the loop itself has after its "
-                             "reversals: beside a softer rig the contact would give way backwards; "
+                             "reversals: with a softer rig the contact would move backwards; "
                              "measure the rig again, or fit it",
                              stiffness));
   }

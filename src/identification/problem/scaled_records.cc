@@ -167,7 +167,7 @@ MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
   return {mean, std::sqrt(2 * std::max(squares / count - noise, 0.0))};
 }
 
-/// Has the law an account of a load that varies? It is of Masing's kind, its displacement that of
+/// True if the law models a load that varies: it is of Masing's kind, its displacement that of
 /// the contact alone, and read with the force, and slips as easily in either direction.
 bool KnowsVaryingLoads(const FitOptions& options) {
   return options.model->memory == models::Memory::kReturnPoint &&
@@ -237,7 +237,7 @@ const loop::Covariate* FindCovariate(const loop::RecordView& record, std::string
   return found == record.covariates.end() ? nullptr : &*found;
 }
 
-/// Half the largest range that a column has in a record.
+/// Returns half the largest range that a column has in a record.
 double CovariateScale(std::string_view name, const loop::PreparedRecords& records) {
   double scale = 0.0;
   for (std::size_t r = 0; r < records.records.size(); ++r) {

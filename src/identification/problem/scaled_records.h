@@ -66,12 +66,12 @@ struct ScaledRecord {
 
   /// Returns a copy without samples, for a record that has others.
   [[nodiscard]] ScaledRecord WithoutSamples(std::pmr::memory_resource* memory) const;
-  /// Room for so many samples of another record.
+  /// Reserves memory for so many samples of another record.
   void Reserve(const ScaledRecord& from, std::size_t samples);
   /// Appends a sample of another record, in all of the columns that it has; `inserted` is for those
   /// who put samples in.
   void Append(const ScaledRecord& from, std::size_t i) { Append(from, i, i + 1); }
-  /// Likewise from `begin` to before `end`.
+  /// Appends them from `begin` to before `end`.
   void Append(const ScaledRecord& from, std::size_t begin, std::size_t end);
 
   [[nodiscard]] std::span<const double> excitation() const {

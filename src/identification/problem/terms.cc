@@ -99,7 +99,7 @@ constexpr std::array kTerms = {
                  "else it needs --fix force_offset=N"},
     Term{.name = "plateau_slope",
          .unit = "N/m",
-         .meaning = "of a force beside the contact's, slope·δ",
+         .meaning = "of a force in addition to the contact's, slope·δ",
          .entry = Entry::kLinear,
          .presence = Presence::kOnDemand,
          .lowest = -kWidest,
@@ -111,7 +111,7 @@ constexpr std::array kTerms = {
     Term{
         .name = "viscous",
         .unit = "N s/m",
-        .meaning = "C of a force C·dδ/dt beside the contact's",
+        .meaning = "C of a force C·dδ/dt in addition to the contact's",
         .entry = Entry::kLinear,
         .presence = Presence::kOnDemand,
         .lowest = -kWidest,
@@ -281,9 +281,9 @@ constexpr std::array kTerms = {
                  "negative, or fit; samples where there is no time"},
     Term{.name = "covariate",
          .unit = "N/unit",
-         .meaning =
-             "C of a force C·column beside the contact's, one for each column that is named: "
-             "`covariate_COLUMN`",
+         .meaning = "C of a force C·column in addition to the contact's, one for each column that "
+                    "is named: "
+                    "`covariate_COLUMN`",
          .entry = Entry::kLinear,
          .presence = Presence::kOnDemand,
          .lowest = -kWidest,

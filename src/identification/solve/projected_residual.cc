@@ -219,7 +219,7 @@ std::pair<double, double> ProjectedResidual::BoundsOfScale(double log_rate) cons
   return {std::exp(slip_force.lower), std::exp(slip_force.upper)};
 }
 
-/// From t, which is there without weights: projections, its factor and the residual.
+/// Computes, from t, which is there without weights: projections, its factor and the residual.
 /// @returns the sum of squares; infinity where t is that of no displacement
 double ProjectedResidual::Regress(double log_rate, bool is_free, double held_scale) {
   Weigh(response_values_, 1.0, weight_);

@@ -174,7 +174,7 @@ void Descend(Candidate& candidate, const FitOptions& options, SearchBuffers& buf
   best.sum_of_squares = std::numeric_limits<double>::infinity();
   best.converged = false;
   best.report = {};
-  best.report.message = "no starting point has the force's sense";
+  best.report.message = "no starting point has the force's sign";
   if (candidate.starts.empty()) return;
   buffers.solver.Bind(candidate.problem, buffers.response);
   Rivals rivals(options, buffers, best, descents);

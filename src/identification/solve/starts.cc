@@ -294,7 +294,7 @@ void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, d
   }
 }
 
-/// From all guesses: from the second on only where the best look says that it is a better one.
+/// Looks around all guesses: around the second only if the best look is nearly as good there.
 Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
   Looks best;
   LookAround(plane, parameters, 0, hopeless, best);

@@ -62,7 +62,7 @@ class TinySearch {
   [[nodiscard]] bool IsEvaluatedAt(std::span<const double> u) const;
   [[nodiscard]] bool is_predicted() const { return trial_is_predicted_; }
 
-  /// Room for a mark of each coordinate.
+  /// Returns memory for a mark of each coordinate.
   [[nodiscard]] std::vector<unsigned char>& marks() { return clamped_; }
 
  protected:

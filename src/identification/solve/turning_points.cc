@@ -150,13 +150,13 @@ double SmoothOvershoot(std::span<const double> x, std::span<const double> t, std
   return std::abs(evaluate(at)[0] - x[i]);
 }
 
-/// On which side of its outermost sample the motion turns: where the neighbour is the nearer one.
+/// True if the motion turns before its outermost sample, where the neighbour is the nearer one.
 bool TurnsBefore(std::span<const double> x, std::size_t i, double sense) {
   return sense * (x[i - 1] - x[i + 1]) > 0;
 }
 
-/// Beyond x₀ of where the lines through two samples before the turn and two after it meet; empty
-/// where the turn is not sharp.
+/// Returns the overshoot beyond x₀ of where the lines through two samples before the turn and two
+/// after it meet; empty where the turn is not sharp.
 std::optional<double> SharpOvershoot(std::span<const double> x, std::span<const double> t,
                                      std::size_t i, double sense) {
   const std::size_t a = TurnsBefore(x, i, sense) ? i - 1 : i;  // the last before the turn

@@ -26,15 +26,15 @@ struct TurnedRecords {
 std::unique_ptr<TurnedRecords> PutInTurningPoints(const ScaledRecords& data,
                                                   std::span<const double> overshoot);
 
-/// How far the motion turns beyond a reversal's sample, by the samples about it alone: >= 0, at
-/// most the longer of the adjacent steps. It turns where the lines through the two samples before
-/// and the two after meet if its velocity changes there and hardly next to it, as that of a
+/// Returns how far the motion turns beyond a reversal's sample, by the samples about it alone: >=
+/// 0, at most the longer of the adjacent steps. It turns where the lines through the two samples
+/// before and the two after meet if its velocity changes there and hardly next to it, as that of a
 /// triangle does; else at the extremum of the polynomial through the outermost sample and two on
 /// each side (one, where the strokes are short). Of a sine of n samples a cycle that is off by at
 /// most (2π/n)⁶/200 of the amplitude.
 double OvershootOfMotion(const ScaledRecord& record, std::size_t reversal);
 
-/// How far a turning point may lie beyond its sample: the longer of the adjacent steps.
+/// Returns how far a turning point may lie beyond its sample: the longer of the adjacent steps.
 double LongestOvershoot(const ScaledRecord& record, std::size_t reversal);
 
 /// Returns LongestOvershoot() of every reversal of all records.
