@@ -43,7 +43,8 @@ for target in "${targets[@]}"; do
     "$(find "$learnt" -type f | wc -l)" "$count"
   if ((status != 0)); then
     found=1
-    grep -m 3 -E 'ERROR|runtime error|fuzz: violated|SUMMARY' "$log" | sed 's/^/    /' || true
+    (grep -m 3 -E 'ERROR|runtime error|fuzz: violated|SUMMARY' "$log" || tail -3 "$log") |
+      sed 's/^/    /'
   fi
 done
 exit $found

@@ -4,6 +4,7 @@
 #   install-dependencies.sh --checks    also what CI checks the source and the pages with
 #   install-dependencies.sh --packages  also what makes and tries the Debian packages
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
+#   install-dependencies.sh --coverage  also what counts the lines that tests run
 #   install-dependencies.sh --fuzz      also the compiler whose libFuzzer runs tests/fuzz
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
 set -euo pipefail
@@ -25,11 +26,12 @@ for group in "$@"; do
     --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
     --peers) packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts yade) ;;
+    --coverage) packages+=(gcovr) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --workflow) packages+=(snakemake) ;;
     *)
       echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers," \
-        "--fuzz or --workflow" >&2
+        "--coverage, --fuzz or --workflow" >&2
       exit 2
       ;;
   esac

@@ -24,6 +24,7 @@
 #include "cli/commands.h"
 #include "cli/established.h"
 #include "cli/examples.h"
+#include "cli/file_list.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/json_output.h"
@@ -51,6 +52,7 @@ using Json = nlohmann::ordered_json;
 
 struct BatchCommandOptions {
   FitRequest request;
+  FileList list;
   Strictness strict = Strictness::kNone;
   std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::string output;
@@ -423,8 +425,9 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       {"mindahl batch run1.csv run2.csv run3.csv --output table.csv --normal-load 50",
        "mindahl batch run1.csv run2.csv run3.csv --output mindlin.csv --model mindlin --strict"});
   command->add_option("files", options->request.files, "CSV records, each a test of its own")
-      ->type_name("FILE")
-      ->required();
+      ->type_name("FILE");
+  AddFilesFrom(*command, options->list);
+  AddShard(*command, options->list);
   AddFitOptions(*command, options->request, NormalLoads::kOne);
   const std::string group = "Results";
   command->add_option("--output", options->output, "table as CSV, one row a file, in SI units")
@@ -450,7 +453,10 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
       ->group(group);
   AddStrict(*command, options->strict, "a file fails too", group);
-  command->callback([options, command, &console] { RunBatch(*options, *command, console); });
+  command->callback([options, command, &console] {
+    options->request.files = FilesOf(options->request.files, options->list);
+    RunBatch(*options, *command, console);
+  });
 }
 
 }  // namespace mindahl::cli

@@ -19,6 +19,7 @@
 
 #include "cli/commands.h"
 #include "cli/examples.h"
+#include "cli/file_list.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/json_output.h"
@@ -60,6 +61,7 @@ constexpr std::string_view kSharedAlpha = "shared";
 
 struct TrackCommandOptions {
   FitRequest request;
+  FileList list;
   std::optional<double> normal_load;
   std::size_t average = 1;
   std::size_t every = 1;
@@ -122,8 +124,8 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
 /// Returns a word of the options that rows depend on, FNV-1a (Fowler, Noll & Vo 1991) of their
 /// names and values: rows made with others are not gone on with, though the last ones be the same.
 std::uint64_t SeedOf(const CLI::App& command) {
-  constexpr std::array<std::string_view, 8> kOfNoRow = {"help",   "output", "json",      "plot",
-                                                        "report", "resume", "overwrite", "threads"};
+  constexpr std::array<std::string_view, 9> kOfNoRow = {
+      "help", "output", "json", "plot", "report", "resume", "overwrite", "threads", "files-from"};
   std::uint64_t seed = 0xcbf29ce484222325U;
   const auto add = [&seed](std::string_view text) {
     for (const char character : text) {
@@ -628,8 +630,8 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   command
       ->add_option("files", options->request.files,
                    "CSV records of one test, in order; a cycle ends with its file")
-      ->type_name("FILE")
-      ->required();
+      ->type_name("FILE");
+  AddFilesFrom(*command, options->list);
   AddColumnOptions(*command, options->request.columns);
   AddModelOptions(*command, options->request);
   const std::string cycles = "Cycles";
@@ -687,7 +689,10 @@ void AddTrackCommand(CLI::App& app, Console& console) {
       ->group(group);
   command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
       ->group(group);
-  command->callback([options, command, &console] { RunTrack(*options, *command, console); });
+  command->callback([options, command, &console] {
+    options->request.files = FilesOf(options->request.files, options->list);
+    RunTrack(*options, *command, console);
+  });
 }
 
 }  // namespace mindahl::cli

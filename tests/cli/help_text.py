@@ -34,7 +34,7 @@ WIDE_LINES_LEFT = {"mindahl": 13, "fit": 12, "simulate": 6, "contact": 2, "trade
                    "track": 9, "batch": 12}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
-WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
+WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|K/N|LIST|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
 # And these, each with the reason.
 EXEMPT = {
     ("fit", "--start"): "in the unit of the parameter, which --fix lists",
