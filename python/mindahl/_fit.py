@@ -84,6 +84,7 @@ def fit(
     radius_1: Optional[Uncertain] = None, youngs_modulus_2: Optional[Uncertain] = None,
     poisson_2: Optional[Uncertain] = None, radius_2: Optional[Uncertain] = None,
     contact_radius: Optional[Uncertain] = None, compliance: Optional[Uncertain] = None,
+    max_rows: int = 20_000_000, max_memory: Optional[int] = None,
 ) -> FitResult:
     """Fits sigma [N/m], alpha [-] and Tc [N] of a contact to its hysteresis loop.
 
@@ -122,6 +123,9 @@ def fit(
     What counts
         cycles, samples: (first, last), counted from 1. skip_cycles: so many at the start.
         trim: "off", or "auto" to leave out rests, ramps and running-in at the ends, with a note.
+        max_rows: files of more rows, all together, are refused as soon as that shows. max_memory:
+            likewise files of which a fit needs more memory [bytes]; by default what the process may
+            have. Arrays are there already, and not counted.
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.
@@ -167,7 +171,9 @@ def fit(
     arguments = RecordArguments(
         displacement=displacement, force=None, time=time, normal_load_column=normal_load_column,
         displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
-        normal_load_unit=normal_load_unit, covariates=request.covariate_columns())
+        normal_load_unit=normal_load_unit, covariates=request.covariate_columns(),
+        max_rows=count("max_rows", max_rows, 1),
+        max_memory=None if max_memory is None else count("max_memory", max_memory, 1))
     request.columns = _mindahl.RecordColumns(
         _mindahl.ColumnChoice(), _mindahl.ColumnChoice(),
         _mindahl.ColumnChoice(unit=time_unit or ""), _mindahl.ColumnChoice(unit=normal_load_unit or ""),

@@ -60,13 +60,17 @@ class RecordArguments:
         self, *, displacement: Any, force: Any, time: Any, normal_load_column: Any,
         displacement_unit: Optional[str], force_unit: Optional[str], time_unit: Optional[str],
         normal_load_unit: Optional[str], covariates: Sequence[str] = (),
-        covariate_values: Optional[Mapping[str, Any]] = None,
+        covariate_values: Optional[Mapping[str, Any]] = None, max_rows: Optional[int] = None,
+        max_memory: Optional[int] = None,
     ) -> None:
         self.roles = {"displacement": displacement, "force": force, "time": time,
                       "normal_load_column": normal_load_column}
         self.units = {"displacement_unit": displacement_unit, "force_unit": force_unit,
                       "time_unit": time_unit, "normal_load_unit": normal_load_unit}
         self.covariates = list(covariates)
+        self.max_rows = max_rows
+        """Of the files that are still to be read, all together."""
+        self.max_memory = max_memory
         self.assumed: list[str] = []
         """Of the columns and units of files and frames that were read, a sentence each."""
 
@@ -184,7 +188,11 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
         arguments.refuse_choices("a record that is read already")
         return source
     if is_path(source):
-        return _mindahl.read_csv(path_text(source), arguments.columns())
+        record = _mindahl.read_csv(path_text(source), arguments.columns(), arguments.max_rows,
+                                   arguments.max_memory)
+        if arguments.max_rows is not None:
+            arguments.max_rows = max(0, arguments.max_rows - len(record))
+        return record
     if is_frame(source):
         return arguments.of_frame(source, name)
     array(name, source)  # says why it is no array

@@ -1,9 +1,11 @@
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <optional>
 #include <utility>
 
 #include "bindings.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/io/csv_table.h"
 #include "record.h"
 
@@ -15,9 +17,14 @@ using io::RecordColumns;
 
 namespace {
 
-NamedRecord ReadCsv(const std::string& path, const RecordColumns& columns) {
+NamedRecord ReadCsv(const std::string& path, const RecordColumns& columns,
+                    std::optional<std::uint64_t> max_rows,
+                    std::optional<std::uint64_t> max_memory) {
   const py::gil_scoped_release others_may_run;
-  return {path, io::ReadRecord(path, columns)};
+  io::ReadLimits limits;
+  if (max_rows) limits.rows = *max_rows;
+  limits.memory = max_memory.value_or(MemoryOfProcess());
+  return {path, io::ReadRecord(path, columns, limits)};
 }
 
 NamedRecord RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
@@ -102,7 +109,8 @@ void AddRecords(py::module_& module) {
           "notes", [](const NamedRecord& record) { return record.file.notes; },
           "what was assumed, one sentence each")
       .def("__len__", [](const NamedRecord& record) { return record.file.record.size(); });
-  module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("columns"));
+  module.def("read_csv", &ReadCsv, py::arg("path"), py::arg("columns"),
+             py::arg("max_rows") = py::none(), py::arg("max_memory") = py::none());
   module.def("record_of_columns", &RecordOfColumns, py::arg("name"), py::arg("names"),
              py::arg("arrays"), py::arg("columns"));
 }

@@ -317,10 +317,26 @@ def test_every_option_of_the_program_s_fit_is_a_keyword():
     keywords = set(inspect.signature(mindahl.fit).parameters)
     outputs = {"json", "residuals", "backbone", "plot", "strict", "report"}
     general = {"help", "config", "version"}
-    general |= {"max-rows", "max-memory"}  # of files that are read whole; arrays are there already
     missing = {option.replace("-", "_") for option in options - outputs - general} - keywords
     assert len(options) > 30
     assert not missing
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_files_beyond_a_limit_are_refused_and_arrays_are_not_counted(sphere):
+    rows = len(sphere[0])
+    with pytest.raises(mindahl.InputError, match=f"has more than the {rows - 1} rows that max_rows"):
+        mindahl.fit(SPHERE, max_rows=rows - 1)
+    # A line of the header, and a line feed for each row.
+    assert mindahl.fit(SPHERE, max_rows=rows + 1).converged
+    with pytest.raises(mindahl.InputError, match="max_rows"):
+        mindahl.fit([SPHERE, DATA / "far_from_slip.csv"], max_rows=rows + 100)  # all together
+    with pytest.raises(mindahl.InputError, match="max_memory"):
+        mindahl.fit(SPHERE, max_memory=1000)
+    time, displacement, force = sphere
+    assert mindahl.fit(displacement, force, time=time, max_rows=1, max_memory=1).converged
+    with pytest.raises(ValueError, match="max_rows = 0 is invalid"):
+        mindahl.fit(SPHERE, max_rows=0)
 
 
 def test_a_result_is_drawn(sphere):
