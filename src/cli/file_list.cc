@@ -18,7 +18,7 @@
 namespace mindahl::cli {
 namespace {
 
-constexpr const char* kGroup = "Files";
+constexpr const char* kFilesGroup = "Files";
 
 std::optional<std::uint64_t> WholeNumberOf(std::string_view text) {
   std::uint64_t number = 0;
@@ -56,7 +56,7 @@ void AddFilesFrom(CLI::App& command, FileList& options) {
                   "named here; lines that are empty or begin with # are left out, - is\n"
                   "standard input")
       ->type_name("LIST")
-      ->group(kGroup);
+      ->group(kFilesGroup);
 }
 
 void AddShard(CLI::App& command, FileList& options) {
@@ -65,7 +65,7 @@ void AddShard(CLI::App& command, FileList& options) {
                   "takes the K-th of N parts of the files, in their order: the tables of\n"
                   "all parts, one after the other, are that of all files")
       ->type_name("K/N")
-      ->group(kGroup);
+      ->group(kFilesGroup);
 }
 
 std::vector<std::string> FilesOf(const std::vector<std::string>& named, const FileList& options) {
