@@ -298,6 +298,100 @@ std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const So
   return ranges;
 }
 
+namespace {
+
+/// A parabola's minimum beside the fit is a start for steps that are shorter.
+constexpr double kParabolic = 0.5;
+
+/// θ where the likelihood of a parameter reaches the critical one on one side of the best fit; the
+/// bound where it does not before; nothing where it does not for a factor of a thousand.
+/// @param towards  −1 or 1
+std::optional<double> LikelihoodEnd(HeldParameter& held, const Problem& problem,
+                                    std::size_t parameter, const Solution& best,
+                                    const Estimates& estimates, double towards) {
+  constexpr int kMostLooks = 12;
+  constexpr double kClose = 0.01;       // of the root of F over the critical one
+  constexpr double kLeastGrowth = 0.3;  // the next step is at most 1/0.3 times the last
+  const double farthest = std::log(kRigid);
+  const Parameter& of = problem.parameters[parameter];
+  const double fitted = best.theta[parameter];
+  const double limit =
+      towards < 0 ? std::max(of.lower, fitted - farthest) : std::min(of.upper, fitted + farthest);
+  const double critical = estimates.quantile() * estimates.quantile();
+  double step = std::min({estimates.quantile() * estimates.ErrorOfTheta(parameter), kParabolic,
+                          std::abs(limit - fitted)});
+  std::vector<double> start = estimates.Beside(parameter, towards * step);
+  double inside = 0.0;
+  double root_inside = 0.0;
+  std::optional<double> outside;
+  double root_outside = 0.0;
+  for (int look = 0; look < kMostLooks; ++look) {
+    start[parameter] = fitted + towards * step;
+    const double root = std::sqrt(held.At(start[parameter], start) / critical);
+    start = held.solution().theta;
+    if (std::abs(root - 1) < kClose) break;
+    if (root < 1) {
+      inside = step;
+      root_inside = root;
+    } else {
+      outside = step;
+      root_outside = root;
+    }
+    if (outside) {
+      const double fraction = (1 - root_inside) / (root_outside - root_inside);
+      constexpr double kFromEnds = 0.1;  // a kink is not stepped towards for ever
+      step = inside + std::clamp(fraction, kFromEnds, 1 - kFromEnds) * (*outside - inside);
+    } else {
+      if (step >= std::abs(limit - fitted)) {
+        const bool is_bound = limit == (towards < 0 ? of.lower : of.upper);
+        return is_bound ? std::optional(limit) : std::nullopt;
+      }
+      step = std::min(step / std::max(root, kLeastGrowth), std::abs(limit - fitted));
+    }
+  }
+  return fitted + towards * step;
+}
+
+}  // namespace
+
+void ProfileBesideRig(const Problem& problem, const Solution& best, const Noise& noise,
+                      const Estimates& estimates, const FitOptions& options, SearchBuffers& buffers,
+                      FitResult& result) {
+  const Parameter& rig = problem.parameters[kRig];
+  if (rig.absent || rig.fixed || best.side[kRig] != BoundSide::kInside) return;
+  const double half = estimates.quantile() * estimates.ErrorOfTheta(kRig);
+  if (!std::isfinite(half)) return;
+  {
+    HeldParameter held(problem, kRig, best, noise, estimates, SolverOptionsOf(options), buffers);
+    const double critical = estimates.quantile() * estimates.quantile();
+    const bool is_short = half < kParabolic;
+    const bool is_parabola =
+        is_short && std::ranges::all_of(std::array{-half, half}, [&](double step) {
+          const std::vector<double> start = estimates.Beside(kRig, step);
+          return std::abs(held.At(start[kRig], start) / critical - 1) <=
+                 options.thresholds.parabola_departure;
+        });
+    if (is_parabola) return;
+  }
+  for (const std::size_t p : {kRig, kStiffness, kShape, kSlipForce}) {
+    const bool is_inside = best.side[p] == BoundSide::kInside;
+    if (problem.parameters[p].fixed || !is_inside || !std::isfinite(estimates.ErrorOfTheta(p))) {
+      continue;
+    }
+    ParameterEstimate& estimate = FindIn(result, problem.parameters.NameOf(p));
+    if (!estimate.lower95 || !estimate.upper95) continue;
+    HeldParameter held(problem, p, best, noise, estimates, SolverOptionsOf(options), buffers);
+    IntervalPart part{.source = IntervalSource::kProfile};
+    const auto value_of = [&](std::optional<double> theta) {
+      return theta ? std::optional(problem.parameters[p].ToValue(*theta)) : std::nullopt;
+    };
+    part.lower = value_of(LikelihoodEnd(held, problem, p, best, estimates, -1.0));
+    part.upper = value_of(LikelihoodEnd(held, problem, p, best, estimates, 1.0));
+    SetInterval(estimate, part);
+    if (!part.lower || !part.upper) estimate.standard_error.reset();
+  }
+}
+
 void IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges, FitResult& result) {
   const auto include = [&](const char* name, std::size_t p, const Range& range) {
     Include(FindIn(result, name), {.source = IntervalSource::kSmallShape,
@@ -316,6 +410,22 @@ void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double 
   Widen(FindIn(result, "slip_force"), problem.parameters[kSlipForce], ranges.slip_force, quantile);
 }
 
+namespace {
+
+/// The force [N] that the contact is seen to carry: the measured peak has the outermost of the
+/// noise in it, the fitted one the error of the fit.
+double CarriedForce(const Problem& problem, const FitResult& result, double peak_force) {
+  const RecordFit& widest = result.WidestRecord();
+  if (problem.data->is_forced() || widest.fitted_force.empty()) return peak_force;
+  const auto [low, high] = std::ranges::minmax(widest.fitted_force);
+  const double free = static_cast<double>(problem.parameters.free().size());
+  const double error = 2 * widest.response_noise *
+                       std::sqrt(free / std::max(result.residuals.effective_samples, free));
+  return std::min(peak_force, ((high - low) / 2 - error) / widest.load_ratio);
+}
+
+}  // namespace
+
 void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, double quantile,
                     double peak_force, FitResult& result) {
   ParameterEstimate& alpha = FindIn(result, "alpha");
@@ -327,9 +437,10 @@ void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, dou
   // no more where it is the bound of α that ends the valley.
   const bool by_bound = alpha.status == ParameterStatus::kAtUpperBound;
   const double profiled = by_bound ? 0.0 : slip_force.lower95.value_or(0.0);
-  if (peak_force < slip_force.value) {
+  const double carried = CarriedForce(problem, result, peak_force);
+  if (carried < slip_force.value) {
     SetInterval(slip_force,
-                {.source = IntervalSource::kProfile, .lower = std::max(profiled, peak_force)});
+                {.source = IntervalSource::kProfile, .lower = std::max(profiled, carried)});
   }
   if (alpha.status != ParameterStatus::kFixed) OpenAbove(alpha, IntervalSource::kProfile);
 }

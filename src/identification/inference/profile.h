@@ -82,6 +82,14 @@ std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const So
                                                 const Noise& noise, const Estimates& estimates,
                                                 const FitOptions& options, SearchBuffers& buffers);
 
+/// Puts the ends of the likelihood into the intervals of σ, α, Tc and the rig's stiffness, where a
+/// rig is fitted and the likelihood at the ends of the parabola's interval of its stiffness is
+/// another one: σ, α and k_r share one valley, which bends towards the rigid rig. Each end is where
+/// F is the critical one, to a hundredth; one that is not reached is open.
+void ProfileBesideRig(const Problem& problem, const Solution& best, const Noise& noise,
+                      const Estimates& estimates, const FitOptions& options, SearchBuffers& buffers,
+                      FitResult& result);
+
 /// Includes them in the intervals.
 void IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges, FitResult& result);
 
