@@ -96,11 +96,12 @@ Followed Follow(const loop::PreparedRecord& prepared, const FitResult& fit, std:
   followed.reversals.assign(prepared.reversals.begin(), prepared.reversals.end());
   const auto [low, high] = std::ranges::minmax(followed.displacement);
   followed.half_range = (high - low) / 2;
-  const bool is_virgin = fit.initial_state == models::InitialState::kVirgin;
+  const models::InitialState state = fit.records[r].initial_state;
+  const bool is_virgin = state == models::InitialState::kVirgin;
   const double unloaded = is_virgin ? ValueOf(fit, "displacement_offset", r) : 0.0;
-  followed.path = models::MakeLoadingPath(
-      followed.displacement, prepared.reversals, models::Memory::kReturnPoint,
-      {.state = fit.initial_state, .unloaded_displacement = unloaded});
+  followed.path = models::MakeLoadingPath(followed.displacement, prepared.reversals,
+                                          models::Memory::kReturnPoint,
+                                          {.state = state, .unloaded_displacement = unloaded});
   std::vector<double> contact(followed.displacement.size());
   models::EvaluateForce(*fit.model, fit.law, followed.path, followed.displacement, contact,
                         fit.rig);

@@ -14,13 +14,31 @@
 namespace mindahl::identification {
 namespace {
 
-ScaledRecords ScaleAsFit(loop::PreparedRecords& prepared, const FitOptions& options) {
+/// The initial states that a fit found.
+RecordStates StatesOf(const FitResult& fit) {
+  std::vector<models::InitialState> states;
+  for (const RecordFit& record : fit.records) states.push_back(record.initial_state);
+  return RecordStates(std::move(states));
+}
+
+/// Weighs records whose noise differs as the fit does.
+void WeighAsFit(const FitResult& fit, ScaledRecords& data) {
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const double own = fit.records[r].response_noise;
+    if (own == fit.ResponseNoise() || !(own > 0)) continue;
+    for (double& weight : data.records[r].root_weight) weight *= fit.ResponseNoise() / own;
+  }
+}
+
+ScaledRecords ScaleAsFit(loop::PreparedRecords& prepared, const FitOptions& options,
+                         const FitResult& fit) {
   LeaveOutBeyondLags(options, prepared);
   std::pmr::memory_resource* memory = std::pmr::get_default_resource();
   ScaledRecords data = Scale(prepared, options, memory);
   AddCovariates(options.covariates, /*with_others=*/false, prepared, options.offsets, data);
   AddColumnsOfTerms(options, data);
   if (HasTerm(options, "lag")) SetClocks(data);
+  WeighAsFit(fit, data);
   return data;
 }
 
@@ -46,9 +64,9 @@ struct CeresProblem::State {
         double residual_unit)
       : options(given),
         prepared(PrepareAsFit(views, options, fit)),
-        data(ScaleAsFit(prepared, options)),
-        problem{&data, options.model, fit.initial_state,
-                Parameters(data, options, fit.initial_state, std::pmr::get_default_resource())},
+        data(ScaleAsFit(prepared, options, fit)),
+        problem{&data, options.model, StatesOf(fit),
+                Parameters(data, options, StatesOf(fit), std::pmr::get_default_resource())},
         unit(residual_unit / data.response_unit()) {}
 
   FitOptions options;

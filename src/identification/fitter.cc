@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -31,8 +32,10 @@
 #include "identification/inference/memory_test.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/profile.h"
+#include "identification/inference/record_noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/inference/shape_tests.h"
+#include "identification/inference/slope_scatter.h"
 #include "identification/inference/turning_point_test.h"
 #include "identification/intervals.h"
 #include "identification/judge/judge.h"
@@ -108,6 +111,13 @@ void RequireOptions(const FitOptions& options) {
   if (options.starts < 1) ThrowInvalid("starts [-]", 0, "must be >= 1");
 }
 
+void RequireInitialStates(const FitOptions& options, std::size_t records) {
+  const std::size_t states = options.initial_states.size();
+  if (states == 0 || states == records) return;
+  throw InvalidArgument(
+      fmt::format("{} initial states for {} records: give one a record", states, records));
+}
+
 /// Beyond it squares overflow; it is a unit that is meant otherwise.
 void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
   constexpr double kLargest = 1e100;  // in half ranges of the force
@@ -173,8 +183,9 @@ struct Attempt {
   std::pmr::memory_resource* memory;
 };
 
-/// Returns the initial state that the options name; nothing where both have to be tried.
-std::optional<InitialState> GivenState(const Attempt& attempt) {
+/// Returns the initial states that the options name; nothing where both have to be tried.
+std::optional<RecordStates> GivenState(const Attempt& attempt) {
+  if (!attempt.options.initial_states.empty()) return RecordStates(attempt.options.initial_states);
   if (attempt.options.initial_state) return attempt.options.initial_state;
   const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
@@ -186,12 +197,70 @@ std::optional<InitialState> GivenState(const Attempt& attempt) {
   return std::nullopt;
 }
 
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers.
+/// Returns the states of a candidate's records with one of them turned to the other.
+RecordStates Flipped(const Problem& problem, std::size_t record) {
+  std::vector<InitialState> states;
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    states.push_back(problem.state.Of(r));
+  }
+  states[record] =
+      states[record] == InitialState::kVirgin ? InitialState::kSteady : InitialState::kVirgin;
+  return RecordStates(std::move(states));
+}
+
+/// Returns θ of a solution for a problem that holds other origins; one that it has free starts unloaded.
+std::vector<double> ThetaFor(const Problem& problem, const Problem& solved,
+                             const Solution& solution) {
+  std::vector<double> theta = solution.theta;
+  for (std::size_t p = 0; p < theta.size(); ++p) {
+    const Parameter& parameter = problem.parameters[p];
+    if (parameter.fixed) {
+      theta[p] = parameter.theta;
+    } else if (solved.parameters[p].fixed) {
+      theta[p] = problem.data->records[parameter.record].excitation().front();
+    }
+  }
+  return theta;
+}
+
+/// Turns the initial state of one record after the other, as long as one of them is clearly the
+/// better for it; `criterion` is Akaike's of a candidate.
+/// @param solution  of what is returned
+/// @returns nothing where all records stay as they are
+template <typename Criterion>
+std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate& pure,
+                                        const Criterion& criterion, Solution& solution) {
+  std::optional<Candidate> best;
+  Solution trial_solution;
+  constexpr int kMostPasses = 3;
+  bool any = true;
+  for (int pass = 0; pass < kMostPasses && any; ++pass) {
+    any = false;
+    for (std::size_t r = 0; r < attempt.data.records.size(); ++r) {
+      const Candidate& from = best ? *best : pure;
+      Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r), attempt.memory);
+      trial.solution = &trial_solution;
+      const std::vector<double> start = ThetaFor(trial.problem, from.problem, *from.solution);
+      attempt.buffers.solver.Bind(trial.problem, attempt.buffers.response);
+      attempt.buffers.solver.Solve(start, SolverOptionsOf(attempt.options), trial_solution);
+      const double gain = criterion(from) - criterion(trial);
+      if (!(gain > 0) || PastIsUndecided(gain, attempt.options.thresholds)) continue;
+      std::swap(solution, trial_solution);
+      trial.solution = &solution;
+      best.emplace(std::move(trial));
+      any = true;
+    }
+  }
+  return best;
+}
+
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of several
+/// records also some as virgin and some as steady, where all as one does not fit.
 /// @param rival  written: the other initial state, where the criterion hardly prefers either
-Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second,
+Candidate FitBestState(const Attempt& attempt, std::array<Solution, 3>& solutions,
                        std::vector<Descent>* descents, std::optional<Candidate>& rival) {
   const FitOptions& options = attempt.options;
-  const auto make = [&](InitialState state, Solution& solution) {
+  const auto make = [&](const RecordStates& state, Solution& solution) {
     Candidate candidate(attempt.data, options, state, attempt.memory);
     candidate.solution = &solution;
     RequireEnoughSamples(candidate.problem, attempt.prepared, options);
@@ -206,14 +275,14 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
     Descend(candidate, options, attempt.buffers, recorded);
     SearchBesideMinimum(candidate, options, attempt.buffers, recorded);
   };
-  if (const std::optional<InitialState> given = GivenState(attempt)) {
-    Candidate candidate = make(*given, first);
+  if (const std::optional<RecordStates> given = GivenState(attempt)) {
+    Candidate candidate = make(*given, solutions[0]);
     find_starts(candidate);
     descend(candidate, descents);
     return candidate;
   }
-  Candidate virgin = make(InitialState::kVirgin, first);
-  Candidate steady = make(InitialState::kSteady, second);
+  Candidate virgin = make(InitialState::kVirgin, solutions[0]);
+  Candidate steady = make(InitialState::kSteady, solutions[1]);
   const double virgin_cost = find_starts(virgin);
   const double virgin_look =
       virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
@@ -221,10 +290,11 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   // A rms twice as large on the thinned record is not made good on the whole one: its n_eff·ln 4
   // is beyond the parameter that the two differ by, however few samples are left of it.
   constexpr double kClearlyWorse = 4.0;
-  if (steady_cost > kClearlyWorse * virgin_cost) {
+  const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
+  if (is_one && steady_cost > kClearlyWorse * virgin_cost) {
     descend(virgin, descents);
     if (virgin.solution->converged) return virgin;
-  } else if (virgin_cost > kClearlyWorse * steady_cost) {
+  } else if (is_one && virgin_cost > kClearlyWorse * steady_cost) {
     descend(steady, descents);
     if (steady.solution->converged) return steady;
   }
@@ -237,6 +307,7 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
   bool is_virgin = true;
   rival.reset();
   bool is_close = false;
+  std::optional<Candidate> mixed;
   if (std::isfinite(better.solution->sum_of_squares)) {  // else neither was even started
     const Evidence evidence(attempt.data.counted,
                             EffectiveSamples(better.problem, better.solution->theta,
@@ -248,6 +319,17 @@ Candidate FitBestState(const Attempt& attempt, Solution& first, Solution& second
     is_virgin = criterion(virgin) < criterion(steady);
     is_close = PastIsUndecided(criterion(virgin) - criterion(steady), options.thresholds) &&
                virgin.solution->converged && steady.solution->converged;
+    if (!is_one) {
+      mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion, solutions[2]);
+    }
+  }
+  if (mixed) {
+    if (descents != nullptr) {
+      *descents = {{.start = mixed->solution->theta,
+                    .start_cost = mixed->solution->sum_of_squares,
+                    .solution = *mixed->solution}};
+    }
+    return std::move(*mixed);
   }
   if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;
   Candidate& chosen = is_virgin ? virgin : steady;
@@ -339,11 +421,11 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
 /// Fills what the law loses in each cycle where that changes from cycle to cycle.
 void FillLawEnergy(const Attempt& attempt, FitResult& result) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
-  const bool changes = asymmetry != nullptr && asymmetry->value != 0 &&
-                       result.initial_state == InitialState::kVirgin;
+  const bool is_asymmetric = asymmetry != nullptr && asymmetry->value != 0;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     RecordFit& fit = result.records[r];
     fit.law_energy.clear();
+    const bool changes = is_asymmetric && fit.initial_state == InitialState::kVirgin;
     if (!changes || !fit.facts.closed) continue;
     const std::span<const double> displacement = attempt.prepared.records[r].displacement();
     const double first = displacement[fit.facts.cycles.front().start] - displacement.front();
@@ -559,6 +641,7 @@ void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solut
     }
     result.slip_force_profile = std::move(profile.likelihood);
   }
+  ProfileBesideRig(problem, solution, noise, estimates, options, buffers, result);
   if (const auto ranges =
           ProfileSmallShape(problem, solution, noise, estimates, options, buffers)) {
     IncludeSmallShape(problem, *ranges, result);
@@ -655,7 +738,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
     result.findings.push_back(std::move(finding));
   }
-  if (!options.initial_state) {
+  if (!options.initial_state && options.initial_states.empty()) {
     Append(result.findings, FindUnknownPast(problem, solution, options.thresholds));
   }
   Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, options.thresholds));
@@ -700,7 +783,7 @@ void ReportStarts(const Problem& problem, const std::vector<Descent>& descents, 
 FitOptions OptionsAlone(const FitOptions& options, const FitResult& series, std::size_t r) {
   FitOptions alone = options;
   alone.normal_loads = {*series.records[r].normal_load};
-  alone.initial_state = series.initial_state;
+  alone.initial_states = {series.records[r].initial_state};
   alone.preparation.force_sense = series.force_sense;
   alone.preparation.held_out.clear();
   if (r < options.preparation.held_out.size()) {
@@ -782,6 +865,26 @@ bool TellsTheLaw(const FitResult& result) {
   });
 }
 
+/// True if the noise of the records is not one, where it is not known.
+bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
+  const Problem& problem = candidate.problem;
+  const bool is_known = attempt.options.response_noise().has_value();
+  if (is_known || problem.data->records.size() < 2 ||
+      !std::isfinite(candidate.solution->sum_of_squares)) {
+    return false;
+  }
+  std::vector<double> residual(problem.size());
+  EvaluateResidual(problem, candidate.solution->theta, attempt.buffers.response, residual);
+  return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
+}
+
+/// Solves a candidate whose weights or samples have changed, from where it is.
+void SolveAgain(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
+  buffers.solver.Bind(candidate.problem, buffers.response);
+  const std::vector<double> start = candidate.solution->theta;
+  buffers.solver.Solve(start, SolverOptionsOf(options), *candidate.solution);
+}
+
 }  // namespace
 
 struct Fitter::State {
@@ -790,11 +893,17 @@ struct Fitter::State {
   }
 
   void Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given);
-  /// Fits, and once more where the slip force runs away from what was measured.
+  /// Fits, and once more where the slip force runs away from what was measured, and where the
+  /// residuals scatter as noise of the displacement makes them.
   void FitWithin(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
     Fit(records, depth, given);
-    if (const auto within = WithinMeasuredForce(result, given)) Fit(records, depth, *within);
+    std::optional<FitOptions> within = WithinMeasuredForce(result, given);
+    if (within) Fit(records, depth, *within);
+    TryDisplacementNoise(records, depth, within ? std::move(*within) : given);
   }
+  /// Fits with the noise of the displacement that the residuals show, and keeps that where it is
+  /// adequate.
+  void TryDisplacementNoise(std::span<const RecordView> records, Depth depth, FitOptions given);
   void Continue(const RecordView& record, Depth depth);
   [[nodiscard]] bool MayContinue() const;
 
@@ -802,10 +911,10 @@ struct Fitter::State {
   FitOptions continued;  // the same, from where the last fit ended
   Arena arena;
   SearchBuffers buffers;
-  Solution first;
-  Solution second;
+  std::array<Solution, 3> solutions;  // of the pasts that are tried
   std::vector<Descent> descents;
   FitResult result;
+  std::optional<SlopeScatter> scatter;  // of the last fit; looked for from kIntervals on
 };
 
 void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const FitOptions& given) {
@@ -823,6 +932,8 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   fresh.correlation.clear();
   result = std::move(fresh);
   descents.clear();
+  scatter.reset();
+  RequireInitialStates(given, records.size());
 
   loop::PreparedRecords prepared = loop::Prepare(records, given.preparation, &arena);
   LeaveOutBeyondLags(given, prepared);
@@ -847,10 +958,12 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   }
   std::vector<Descent>* const recorded = is_judged ? &descents : nullptr;
   std::optional<Candidate> rival;
-  std::optional<Candidate> best(FitBestState(attempt, first, second, recorded, rival));
+  std::optional<Candidate> best(FitBestState(attempt, solutions, recorded, rival));
   RequireToldAsymmetry(best->problem);
   const DisplacementErrors displacement_errors(prepared, data);
-  const bool is_weighted = given.loss != Loss::kNone || displacement_errors.any();
+  const bool is_plain = given.loss == Loss::kNone && !displacement_errors.any();
+  const bool by_record = RecordsDifferInNoise(attempt, *best);
+  const bool is_weighted = !is_plain || by_record;
   Noise noise;
   bool settled = true;
   std::optional<TurningPointFit> turned;
@@ -858,18 +971,22 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     if (is_weighted) {
       const auto fit_with_weights = [&] {
         settled = FitWithWeights(best->problem, data, given, displacement_errors, buffers.solver,
-                                 buffers.response, SolverOptionsOf(given), *best->solution, noise);
+                                 buffers.response, SolverOptionsOf(given), *best->solution, noise,
+                                 by_record);
       };
       fit_with_weights();
-      // Outliers may have hidden the initial state: once more from all starts, as weighted.
-      if (given.loss != Loss::kNone) {
+      // Outliers, or the noisiest of the records, may have hidden the past and the valley: once
+      // more from all starts, as weighted.
+      if (given.loss != Loss::kNone || by_record) {
         ThinnedRecords weighted_thin(data, &arena);
         const Attempt weighted{given, prepared, data, weighted_thin, buffers, &arena};
         descents.clear();
-        best.emplace(FitBestState(weighted, first, second, recorded, rival));
+        best.emplace(FitBestState(weighted, solutions, recorded, rival));
         fit_with_weights();
+        if (rival && by_record) SolveAgain(*rival, given, buffers);
       }
-    } else {
+    }
+    if (is_plain) {
       // A gate means noise in the displacement: its outermost samples are the noisiest, and say
       // nothing of where the motion turned.
       const bool gated = std::ranges::any_of(
@@ -887,19 +1004,31 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
         *best->solution = turned->solution;
         if (rival && !best->problem.data->turns_are_fitted) {
           rival->problem.data = &turned->records->data;
-          buffers.solver.Bind(rival->problem, buffers.response);
-          const std::vector<double> start = rival->solution->theta;
-          buffers.solver.Solve(start, SolverOptionsOf(given), *rival->solution);
+          SolveAgain(*rival, given, buffers);
+        }
+        // By what is left where the turning points are where the motion has them.
+        if (by_record && !best->problem.data->turns_are_fitted) {
+          settled = FitWithWeights(best->problem, turned->records->data, given, displacement_errors,
+                                   buffers.solver, buffers.response, SolverOptionsOf(given),
+                                   *best->solution, noise, by_record);
         }
       }
+      std::vector<double> of_records = std::move(noise.of_records);
       noise = PlainNoise(
           *best->problem.data, given, best->solution->sum_of_squares,
           best->problem.parameters.free().size() +
               (best->problem.data->turns_are_fitted ? turned->records->overshoot.size() : 0));
+      noise.of_records = std::move(of_records);
     }
   }
   const Solution& solution = *best->solution;
-  result.initial_state = best->problem.state;
+  const bool any_virgin = best->problem.state.Any(InitialState::kVirgin);
+  result.initial_state = any_virgin ? InitialState::kVirgin : InitialState::kSteady;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const double own = noise.of_records.empty() ? noise.force : noise.of_records[r];
+    result.records[r].initial_state = best->problem.state.Of(r);
+    result.records[r].response_noise = own * data.response_unit();
+  }
   result.solver = solution.report;
   const double unit_squared = data.response_unit() * data.response_unit();
   result.solver.initial_cost *= unit_squared;
@@ -954,6 +1083,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     }
     result.findings.push_back(FoundTurningPoints(longest));
   }
+  if (is_judged && !given.preparation.displacement_noise && noise.force > kOnlyRounding) {
+    scatter = FindSlopeScatter(prepared, best->problem, solution.theta,
+                               {at.residual.data(), best->problem.size()}, buffers.response);
+  }
   if (is_judged) {
     Infer(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
           rival && !fits_turns ? &*rival : nullptr,
@@ -963,6 +1096,24 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
                 result);
   }
   if (depth >= Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
+}
+
+void Fitter::State::TryDisplacementNoise(std::span<const RecordView> records, Depth depth,
+                                         FitOptions given) {
+  if (!scatter || !result.converged) return;
+  const bool is_doubted = result.adequacy.verdict != AdequacyVerdict::kAdequate;
+  given.preparation.displacement_noise = NoiseToTry(*scatter, is_doubted, given.thresholds);
+  if (!given.preparation.displacement_noise) return;
+  const SlopeScatter found = *scatter;
+  FitResult plain = result;
+  Fit(records, depth, given);
+  if (!result.converged || result.adequacy.verdict != AdequacyVerdict::kAdequate) {
+    result = std::move(plain);
+    return;
+  }
+  result.findings.push_back(
+      {.code = "displacement_noise_estimated",
+       .numbers = {{"deviation", *given.preparation.displacement_noise}, {"p", found.p_value}}});
 }
 
 /// True if the next fit may start at the last one's end: a single minimum, not at a bound.

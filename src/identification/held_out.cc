@@ -76,9 +76,16 @@ std::vector<Part> Strokes(const FitResult& fit, const SampleMask& mask, std::siz
   return PartsOf(fit, mask, skip_cycles, 1, 4);
 }
 
+void HoldInitialStates(const FitResult& fit, FitOptions& options) {
+  options.initial_states.clear();
+  for (const RecordFit& record : fit.records) {
+    options.initial_states.push_back(record.initial_state);
+  }
+}
+
 FitOptions ContinuedFrom(const FitResult& fit, FitOptions options) {
   options.model = fit.model;
-  options.initial_state = fit.initial_state;
+  HoldInitialStates(fit, options);
   options.preparation.force_sense = fit.force_sense;
   options.starts = 1;
   for (const ParameterEstimate& parameter : fit.parameters) {

@@ -49,6 +49,9 @@ std::vector<Part> ClosedCycles(const FitResult& fit, const SampleMask& mask,
 /// Strokes from one reversal to the next, likewise; at least four of a record.
 std::vector<Part> Strokes(const FitResult& fit, const SampleMask& mask, std::size_t skip_cycles);
 
+/// Gives the options the initial states that a fit found.
+void HoldInitialStates(const FitResult& fit, FitOptions& options);
+
 /// Returns options under which the fit is found again from where it is.
 FitOptions ContinuedFrom(const FitResult& fit, FitOptions options);
 

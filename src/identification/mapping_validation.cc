@@ -284,7 +284,9 @@ void JudgeCoverage(ValidationReport& report) {
   for (const bool by_dahl : {false, true}) {
     const std::vector<ValidationRow>& rows = by_dahl ? report.dahl_rows : report.rows;
     for (std::size_t k = 0; k < kValidatedParameters.size(); ++k) {
-      CoverageVerdict verdict{.parameter = kValidatedParameters[k], .by_dahl = by_dahl};
+      CoverageVerdict verdict;
+      verdict.parameter = kValidatedParameters[k];
+      verdict.by_dahl = by_dahl;
       for (const ValidationRow& row : rows) {
         if (!has_noise(row)) continue;
         const IntervalCount& count = row.intervals[k];

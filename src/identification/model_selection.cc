@@ -82,6 +82,22 @@ double Rms(const FitResult& fit, const SampleMask& mask) {
   return std::sqrt(sum / count);
 }
 
+/// The rms by which fits are compared: of records whose noise differs the mean of the logarithms
+/// over the samples, so that each counts by its own noise.
+double LikelihoodRms(const FitResult& fit, const SampleMask& mask) {
+  double logarithms = 0.0;
+  double count = 0.0;
+  for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
+    if (series.empty()) continue;
+    double sum = 0.0;
+    for (const double residual : series) sum += residual * residual;
+    const auto samples = static_cast<double>(series.size());
+    logarithms += samples * std::log(sum / samples) / 2;
+    count += samples;
+  }
+  return std::exp(logarithms / count);
+}
+
 double ScoredRobustScale(const FitResult& fit, const SampleMask& mask) {
   std::vector<double> residuals;
   for (const std::vector<double>& series : ScoredResiduals(fit, mask)) {
@@ -170,16 +186,18 @@ void RemarkOnFit(ModelScore& score, const FitResult& fit, const Thresholds& thre
 }
 
 /// Marks candidates that are simpler ones in disguise.
+/// @param squares  by which they are compared, one a candidate
 void FindRedundant(std::vector<ModelScore>& scores, std::span<const FitResult> fits,
-                   const Evidence& evidence, const ScoredSamples& samples,
+                   const Evidence& evidence, std::span<const double> squares,
                    const Thresholds& thresholds) {
   const auto gains_nothing_on = [&](const ModelScore& score, std::string_view model, bool rig) {
     const auto simpler = std::ranges::find_if(scores, [&](const ModelScore& other) {
       return other.model->name == model && other.rig == rig && other.converged;
     });
     return simpler != scores.end() &&
-           evidence.LikelihoodRatio(SumOfSquares(simpler->rms, samples),
-                                    SumOfSquares(score.rms, samples)) < thresholds.redundant_gain;
+           evidence.LikelihoodRatio(squares[static_cast<std::size_t>(simpler - scores.begin())],
+                                    squares[static_cast<std::size_t>(&score - scores.data())]) <
+               thresholds.redundant_gain;
   };
   for (std::size_t i = 0; i < scores.size(); ++i) {
     ModelScore& score = scores[i];
@@ -299,18 +317,20 @@ ModelSelection SelectModel(std::span<const RecordView> records, const FitOptions
   ScoredSamples samples = CountedSamples(fits.front(), records);
   if (options.loss != Loss::kNone) LeaveOutOutliers(samples, fits);
   const FitResult& best_fit =
-      Best(fits, [&](const FitResult& fit) { return Rms(fit, samples.mask); });
+      Best(fits, [&](const FitResult& fit) { return LikelihoodRms(fit, samples.mask); });
   result.effective_samples =
       std::min(best_fit.residuals.effective_samples, static_cast<double>(samples.count));
   const Evidence evidence(samples.count, result.effective_samples);
+  std::vector<double> squares(fits.size(), std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < fits.size(); ++i) {
     ModelScore& score = result.scores[i];
     if (!IsFitted(fits[i])) continue;
     score.rms = Rms(fits[i], samples.mask);
-    score.aicc = evidence.Aicc(SumOfSquares(score.rms, samples), score.free_parameters);
+    squares[i] = SumOfSquares(LikelihoodRms(fits[i], samples.mask), samples);
+    score.aicc = evidence.Aicc(squares[i], score.free_parameters);
   }
   WeighCandidates(result.scores);
-  FindRedundant(result.scores, fits, evidence, samples, options.thresholds);
+  FindRedundant(result.scores, fits, evidence, squares, options.thresholds);
 
   const std::vector<Part> cycles =
       ClosedCycles(best_fit, samples.mask, options.preparation.skip_cycles);

@@ -229,7 +229,7 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base,
   CandidateModel model;
   model.options = candidate != nullptr ? With(*candidate, base.options) : base.options;
   FitOptions options = model.options;
-  options.initial_state = base.fit.initial_state;
+  HoldInitialStates(base.fit, options);
   options.preparation.force_sense = base.fit.force_sense;
   options.preparation.held_out = held_out_;
   options.starts = 1;

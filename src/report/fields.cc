@@ -147,6 +147,17 @@ void AddInputFields(FieldTable& table) {
        OneARecord([](const RecordFit& record) { return record.gate.gate; })},
       {"input.displacement_noise", "m", "one a file: standard deviation, given or estimated",
        OneARecord([](const RecordFit& record) { return record.displacement_noise; })},
+      {"input.initial_state", "", "one a file: virgin or steady",
+       [](const Report& report) {
+         Value::Array array;
+         for (const RecordFit& record : report.fit.records) {
+           array.push_back(Text(Name(record.initial_state)));
+         }
+         return Value{std::move(array)};
+       }},
+      {"input.response_noise", kOfResponse,
+       "one a file: standard deviation of the noise of what is fitted, given or estimated",
+       OneARecord([](const RecordFit& record) { return record.response_noise; })},
       {"input.force_sign", "",
        "same or opposite: the sign of the force for that of the displacement",
        [](const Report& report) { return Text(report.fit.force_sense > 0 ? "same" : "opposite"); }},

@@ -109,8 +109,8 @@ std::string ParameterSection(const Report& report) {
                               Words(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
   }
   const FitResult& fit = report.fit;
-  std::string about =
-      fmt::format("{}; initial state {}", fit.model->title, Name(fit.initial_state));
+  std::string about = fmt::format("{}; initial state {}", fit.model->title,
+                                  fit.has_mixed_states() ? "mixed" : Name(fit.initial_state));
   if (fit.normal_load && fit.is_load_series()) {
     about += fmt::format("; sigma and slip_force are those at the mean of the loads, {}",
                          Quantity(*fit.normal_load, "N"));

@@ -128,8 +128,11 @@ void AddParameterFields(FieldTable& table) {
   table.Add({
       {"model", "", "name of the model",
        [](const Report& report) { return Text(report.fit.model->name); }},
-      {"initial_state", "", "virgin or steady: the contact before the record",
-       [](const Report& report) { return Text(Name(report.fit.initial_state)); }},
+      {"initial_state", "",
+       "virgin or steady: the contact before the record; mixed where records differ",
+       [](const Report& report) {
+         return Text(report.fit.has_mixed_states() ? "mixed" : Name(report.fit.initial_state));
+       }},
       {"confidence", "-", "of every interval",
        [](const Report& report) { return Number(report.fit.confidence); }},
       {"parameters", "", "one member a parameter, by name", Parameters},

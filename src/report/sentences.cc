@@ -443,6 +443,16 @@ std::string NoiseInDisplacement(const Finding& finding, const FitResult&, const 
       100 * Needed(finding, "of_displacement"), 100 * Needed(finding, "of_force"));
 }
 
+std::string DisplacementNoiseEstimated(const Finding& finding, const FitResult&,
+                                       const Units& units) {
+  return fmt::format(
+      "the residuals are as a noise of {} of the displacement's readings makes them, large where "
+      "the loop is steep, and it is taken into account; --displacement-noise gives another one, "
+      "and 0 takes the "
+      "readings as exact",
+      Quantity(Needed(finding, "deviation"), units.displacement, 2));
+}
+
 std::string AlphaLimitedByLoad(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "alpha would be {:.3g} or more, which the law of a varying load cannot be: slip is complete "
@@ -475,6 +485,7 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"load_followed", LoadFollowed},
     {"load_not_followed", LoadNotFollowed},
     {"noise_in_displacement", NoiseInDisplacement},
+    {"displacement_noise_estimated", DisplacementNoiseEstimated},
     {"turning_points_between_samples", TurningPoints},
     {"undetermined_parameter", UndeterminedParameter},
     {"undetermined_combination", UndeterminedCombination},

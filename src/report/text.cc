@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "mindahl/report/quantity.h"
 #include "report/adequacy.h"
@@ -248,12 +249,22 @@ std::string SamplesText(const Report& report) {
       Quantity(gate.gate, report.units.excitation, 3), totals.cycles);
 }
 
+/// Returns the initial state, of each file where they differ.
+std::string InitialStates(const FitResult& fit) {
+  if (!fit.has_mixed_states()) return std::string(Name(fit.initial_state));
+  std::vector<std::string_view> names;
+  for (const identification::RecordFit& record : fit.records) {
+    names.push_back(Name(record.initial_state));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// Describes what was fitted: model, initial state and samples.
 std::string FitText(const Report& report) {
   const FitResult& fit = report.fit;
   std::string text = Wrapped(
       fmt::format("{}, {} initial state: {}; {}, {} of force and displacement", fit.model->title,
-                  Name(fit.initial_state), fit.converged ? "converged" : "NOT CONVERGED",
+                  InitialStates(fit), fit.converged ? "converged" : "NOT CONVERGED",
                   SamplesText(report), fit.force_sense > 0 ? "same sign" : "opposite signs"),
       2);
   if (!fit.converged) text += Wrapped("not converged: " + fit.solver.message, 2);

@@ -21,7 +21,9 @@
 #include "identification/inference/law_choice.h"
 #include "identification/inference/memory_test.h"
 #include "identification/inference/profile.h"
+#include "identification/inference/record_noise.h"
 #include "identification/inference/shape_tests.h"
+#include "identification/inference/slope_scatter.h"
 #include "identification/inference/turning_point_test.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
@@ -405,6 +407,37 @@ bool TurnsAreTried(const Thresholds& thresholds, double shift) {
   return largest_shift(noise, thresholds).second;
 }
 
+/// Has each of two records a noise of its own, where noise of one variance makes theirs so unlike
+/// with that chance?
+bool NoiseDiffersAt(const Thresholds& thresholds, double chance) {
+  const auto records = [](double ratio) {
+    Generator generator(5);
+    const Record loop = LoopOf(kMindlin, Cycling(Wave::kSine, kGrossSlip, 2.0, 100));
+    return std::vector<Record>{WithForceNoise(loop, 0.4, generator),
+                               WithForceNoise(loop, 0.4 * ratio, generator)};
+  };
+  const auto chance_of = [&](double ratio) {
+    Stages stages(records(ratio), Virgin());
+    const Solution best = stages.Solve();
+    const Eigen::VectorXd residual = stages.ResidualsAt(best.theta);
+    return ChanceOfOneNoise(stages.problem, {residual.data(), stages.problem.size()});
+  };
+  // From where the second is the louder one.
+  const double ratio =
+      ZeroOf(1.1, 4.0, [&](double trial) { return std::log(chance_of(trial) / chance); });
+  FitOptions options = Virgin(thresholds);
+  options.thresholds.turning_point_shift = 1e9;  // they stay at the samples, as in the stages
+  const FitResult fit = Fit(records(ratio), options);
+  return fit.records[0].response_noise != fit.records[1].response_noise;
+}
+
+/// Is noise of the displacement tried where noise of the force makes the residuals scatter so along
+/// the slope with that chance?
+bool ScatterIsOfDisplacement(const Thresholds& thresholds, double chance) {
+  const SlopeScatter scatter{.deviation = 1e-9, .p_value = chance, .of_readings = 1e-9};
+  return NoiseToTry(scatter, /*is_doubted=*/false, thresholds).has_value();
+}
+
 bool TurnsByChance(const Thresholds& thresholds, double chance) {
   static std::map<double, double> sizes;
   if (!sizes.contains(chance)) {
@@ -714,6 +747,15 @@ const std::map<std::string_view, Case>& Cases() {
       {"repeat_chance",
        [](const Thresholds& t) {
          return RepeatsByChance(t, kBelow * 1e-3) && !RepeatsByChance(t, kAbove * 1e-3);
+       }},
+      {"noise_differs",
+       [](const Thresholds& t) {
+         return NoiseDiffersAt(t, kBelow * 0.01) && !NoiseDiffersAt(t, kAbove * 0.01);
+       }},
+      {"slope_scatter",
+       [](const Thresholds& t) {
+         return ScatterIsOfDisplacement(t, kBelow * 1e-3) &&
+                !ScatterIsOfDisplacement(t, kAbove * 1e-3);
        }},
       {"main_stroke",
        [](const Thresholds& t) {

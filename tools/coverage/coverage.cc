@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <span>
 #include <string_view>
@@ -44,6 +45,11 @@ BranchLaw LawOf(const Scenario& scenario, double load = 1.0) {
 
 constexpr double kMeanLoad = 50.0;  // [N]
 
+models::SeriesSpring RigOf(const Scenario& scenario) {
+  if (!(scenario.rig > 0)) return {};
+  return {scenario.rig * LawOf(scenario).tangential_stiffness};
+}
+
 /// Off centre in both channels, so that offsets are to be found.
 constexpr double kForceOffset = 3.0;
 constexpr double kDisplacementOffset = 2e-7;
@@ -52,12 +58,12 @@ constexpr double kFrequency = 1.0;  // [Hz]
 constexpr double kTwoPi = 6.283185307179586;
 
 std::vector<double> ForceOn(const BranchLaw& law, std::span<const double> displacement,
-                            double asymmetry = 0.0) {
+                            double asymmetry = 0.0, const models::SeriesSpring& rig = {}) {
   const models::FrictionModel& model = *models::FindFrictionModel("mindlin-dahl");
   std::vector<double> force(displacement.size());
   const models::LoadingPath path = models::MakeLoadingPath(
       displacement, loop::FindReversals(displacement, 0.0), model.memory, {.asymmetry = asymmetry});
-  models::EvaluateForce(model, law, path, displacement, force);
+  models::EvaluateForce(model, law, path, displacement, force, rig);
   return force;
 }
 
@@ -100,6 +106,25 @@ void AddBeside(const Scenario& scenario, Record& record) {
   if (scenario.beside == Beside::kCovariate) record.covariates.push_back(std::move(column));
 }
 
+/// The force of a motion that goes on between the readings, 1.5 readings late where that is asked
+/// for; before the record the contact was at rest.
+Record ReadApart(const Scenario& scenario, const BranchLaw& law) {
+  const std::size_t steps = scenario.steps_a_reading;
+  const std::vector<double> motion =
+      models::MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
+                              .cycles = static_cast<double>(scenario.cycles),
+                              .samples_per_cycle = scenario.samples_per_cycle * steps})
+          .displacement;
+  const std::vector<double> force = ForceOn(law, motion, scenario.asymmetry, RigOf(scenario));
+  const std::size_t late = scenario.beside == Beside::kLag ? 3 * steps / 2 : 0;
+  Record record;
+  for (std::size_t i = 0; i < motion.size(); i += steps) {
+    record.displacement.push_back(motion[i]);
+    record.force.push_back(i < late ? 0.0 : force[i - late]);
+  }
+  return record;
+}
+
 bool IsForced(const Scenario& scenario) { return scenario.peak_share > 0; }
 
 void LeaveOutFirstCycle(const Scenario& scenario, Record& record) {
@@ -124,8 +149,9 @@ Record ForcedRecord(const Scenario& scenario) {
   return record;
 }
 
-Record DrivenRecord(const Scenario& scenario, double load) {
+Record DrivenRecord(const Scenario& scenario, double load, bool is_steady) {
   const BranchLaw law = LawOf(scenario, load);
+  if (scenario.steps_a_reading > 1) return ReadApart(scenario, law);
   Record record;
   record.displacement =
       models::MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
@@ -150,15 +176,16 @@ Record DrivenRecord(const Scenario& scenario, double load) {
                                     .shape_exponent = law.shape_exponent},
                                    record.displacement, record.normal_load, record.force);
   } else {
-    record.force = ForceOn(law, record.displacement, scenario.asymmetry);
+    record.force = ForceOn(law, record.displacement, scenario.asymmetry, RigOf(scenario));
   }
-  if (scenario.is_steady) LeaveOutFirstCycle(scenario, record);
+  if (is_steady) LeaveOutFirstCycle(scenario, record);
   if (scenario.beside != Beside::kNothing) AddBeside(scenario, record);
   return record;
 }
 
-Record CleanRecord(const Scenario& scenario, double load) {
-  Record record = IsForced(scenario) ? ForcedRecord(scenario) : DrivenRecord(scenario, load);
+Record CleanRecord(const Scenario& scenario, double load, bool is_steady) {
+  Record record =
+      IsForced(scenario) ? ForcedRecord(scenario) : DrivenRecord(scenario, load, is_steady);
   for (double& force : record.force) force += kForceOffset;
   for (double& displacement : record.displacement) displacement += kDisplacementOffset;
   return record;
@@ -166,7 +193,10 @@ Record CleanRecord(const Scenario& scenario, double load) {
 
 std::vector<Record> CleanRecords(const Scenario& scenario) {
   std::vector<Record> records;
-  for (const double load : scenario.loads) records.push_back(CleanRecord(scenario, load));
+  for (const double load : scenario.loads) {
+    const bool is_later = scenario.first_is_virgin && !records.empty();
+    records.push_back(CleanRecord(scenario, load, scenario.is_steady || is_later));
+  }
   return records;
 }
 
@@ -179,18 +209,25 @@ double Amplitude(const Scenario& scenario) {
   return (high - low) / 2;
 }
 
-double ForceNoise(const Scenario& scenario) {
+/// Of one record [N].
+double ForceNoise(const Scenario& scenario, double load = 1.0) {
   if (IsForced(scenario)) return 0.0;
   const BranchLaw law = LawOf(scenario);
-  return scenario.force_noise *
+  const double of_load = scenario.noise_follows_load ? load : 1.0;
+  return of_load * scenario.force_noise *
          models::SteadyPeakForce(*models::FindFrictionModel("mindlin-dahl"), law,
                                  scenario.lambda * GrossSlipDisplacement(law));
 }
 
-Record NoisyRecord(const Scenario& scenario, const Record& clean, Normal& normal) {
+Record NoisyRecord(const Scenario& scenario, double load, const Record& clean, Normal& normal) {
   constexpr double kCorrelation = 0.9;
   Record record = clean;
-  const double force_noise = ForceNoise(scenario);
+  const double force_noise = ForceNoise(scenario, load);
+  constexpr std::size_t kAveraged = 5;
+  std::array<double, kAveraged> recent{};  // of a moving average
+  for (double& value : recent) {
+    if (scenario.noise == Noise::kMovingAverage) value = force_noise * normal();
+  }
   const double displacement_noise = scenario.displacement_noise * Amplitude(scenario);
   double correlated = force_noise * normal();
   double error = 0.0;                     // of the displacement
@@ -200,6 +237,10 @@ Record NoisyRecord(const Scenario& scenario, const Record& clean, Normal& normal
     if (scenario.noise == Noise::kAutoregressive) {
       record.force[i] += correlated;
       correlated = kCorrelation * correlated + std::sqrt(1 - kCorrelation * kCorrelation) * white;
+    } else if (scenario.noise == Noise::kMovingAverage) {
+      recent[i % kAveraged] = white;
+      const double sum = std::accumulate(recent.begin(), recent.end(), 0.0);
+      record.force[i] += sum / std::sqrt(static_cast<double>(kAveraged));
     } else {
       record.force[i] += white;
     }
@@ -221,6 +262,7 @@ FitOptions OptionsOf(const Scenario& scenario) {
   FitOptions options;
   options.initial_state =
       scenario.is_steady ? models::InitialState::kSteady : models::InitialState::kVirgin;
+  if (scenario.finds_state) options.initial_state.reset();
   options.model = models::FindFrictionModel(scenario.model);
   if (IsForced(scenario) && !scenario.fits_force) {
     options.preparation.excitation = loop::Channel::kForce;
@@ -234,6 +276,7 @@ FitOptions OptionsOf(const Scenario& scenario) {
   if (scenario.asymmetry != 0) options.terms.emplace_back("asymmetry");
   // Of a contact that was cycled before it is told by the force's zero alone.
   if (scenario.asymmetry != 0 && scenario.is_steady) options.fixed["force_offset"] = kForceOffset;
+  if (scenario.rig > 0) options.terms.emplace_back("rig_stiffness");
   if (scenario.beside == Beside::kLag) options.terms.emplace_back("lag");
   if (scenario.beside == Beside::kViscous) options.terms.emplace_back("viscous");
   if (scenario.beside == Beside::kCovariate) options.covariates.emplace_back("pressure");
@@ -358,6 +401,42 @@ std::vector<Scenario> Scenarios() {
        .highest_coverage = kWhiteHigh,
        .asymmetry = 0.2,
        .is_steady = true},
+      {.name = "four loads, 1 to 2.5 to 5 to 10, noise 1 % of each T*",
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .loads = {8.0 / 37, 20.0 / 37, 40.0 / 37, 80.0 / 37},
+       .noise_follows_load = true},
+      {.name = "virgin test and three steady ones, states not told",
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .loads = {1.0, 1.0, 1.0, 1.0},
+       .first_is_virgin = true,
+       .finds_state = true},
+      {.name = "rig of 3 sigma fitted, lambda 1.5", .lambda = 1.5, .rig = 3.0},
+      {.name = "30 samples a cycle, late by 1.5 samples: lag fitted",
+       .samples_per_cycle = 30,
+       .steps_a_reading = 20,
+       .beside = Beside::kLag},
+      {.name = "moving average of 5, 1 %", .noise = Noise::kMovingAverage},
+      {.name = "alpha 0.02", .shape_exponent = 0.02},
+      {.name = "displacement noise 0.1 %, not told, 24 samples a cycle",
+       .samples_per_cycle = 24,
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.001,
+       .displacement_noise = 0.001,
+       .noise_is_known = false},
+      {.name = "displacement noise 0.3 %, not told, 24 samples a cycle",
+       .samples_per_cycle = 24,
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.001,
+       .displacement_noise = 0.003,
+       .noise_is_known = false},
+      {.name = "displacement noise 0.2 %, not told, 60 samples a cycle",
+       .samples_per_cycle = 60,
+       .noise = Noise::kDisplacement,
+       .force_noise = 0.001,
+       .displacement_noise = 0.002,
+       .noise_is_known = false},
       {.name = "imposed force to 0.95 Tc, displacement noise 1 %",
        .noise = Noise::kAnswer,
        .displacement_noise = 0.01,
@@ -414,7 +493,9 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   const bool is_asymmetric = scenario.asymmetry != 0;
   const std::array<double, Coverage::kParameters> truth = {
       law.tangential_stiffness, law.shape_exponent, law.slip_force,
-      is_asymmetric ? scenario.asymmetry : scenario.load_exponent};
+      is_asymmetric      ? scenario.asymmetry
+      : scenario.rig > 0 ? RigOf(scenario).stiffness
+                         : scenario.load_exponent};
   const std::array<std::string_view, Coverage::kParameters> names = {"sigma", "alpha", "slip_force",
                                                                      scenario.FourthParameter()};
   const std::size_t parameters = names.back().empty() ? truth.size() - 1 : truth.size();
@@ -446,8 +527,12 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   for (std::size_t i = 0; i < loops; ++i) {
     Normal normal(first_seed + i);
     std::vector<Record> records;
-    for (const Record& record : clean) records.push_back(NoisyRecord(scenario, record, normal));
+    for (std::size_t r = 0; r < clean.size(); ++r) {
+      records.push_back(NoisyRecord(scenario, scenario.loads[r], clean[r], normal));
+    }
     const identification::FitResult fit = identification::Fit(records, options);
+    const bool is_adequate = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
+    coverage.doubted += is_adequate ? 0.0 : 1 / static_cast<double>(loops);
     for (std::size_t k = 0; k < parameters; ++k) {
       const identification::ParameterEstimate& estimate = *fit.Find(names[k]);
       const bool covers = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&

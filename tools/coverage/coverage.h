@@ -16,6 +16,7 @@ namespace mindahl::coverage {
 enum class Noise {
   kWhite,           ///< of the force
   kAutoregressive,  ///< of the force, AR(1) with ρ = 0.9
+  kMovingAverage,   ///< of the force, the mean of five white values in a row
   kDisplacement,    ///< of both channels
   kQuantised,       ///< the displacement by an encoder, the force white
   kAnswer,          ///< white, of the displacement that answers an imposed force, which is exact
@@ -39,6 +40,9 @@ struct Scenario {
   double lambda = 1.2;  ///< amplitude over the gross-slip displacement
   std::size_t cycles = 3;
   std::size_t samples_per_cycle = 200;
+  /// Points of the motion from one reading to the next: of more than one the contact turns, and a
+  /// late force is, where the motion has it and not where a reading is. Of kLag and kNothing.
+  std::size_t steps_a_reading = 1;
   Noise noise = Noise::kWhite;
   double force_noise = 0.01;        ///< of T*
   double displacement_noise = 0.0;  ///< of the amplitude; the encoder's step where quantised
@@ -51,6 +55,10 @@ struct Scenario {
   /// driven to λ at its own load.
   std::vector<double> loads = {1.0};
   double load_exponent = 1.0 / 3;
+  bool noise_follows_load = false;  ///< of the force, of each record's own T*
+  bool first_is_virgin = false;     ///< of the records; the others have no first cycle
+  bool finds_state = false;         ///< is the initial state left to the fit?
+  double rig = 0.0;                 ///< stiffness in series over σ, which is fitted; 0: rigid
   double asymmetry = 0.0;   ///< of the slip forces in the two senses, for which the fit has a term
   double load_swing = 0.0;  ///< of the load about its mean, at twice the drive's frequency
   double peak_share = 0.0;  ///< T*/Tc where the force is imposed, in the place of λ
@@ -61,15 +69,16 @@ struct Scenario {
   /// The fourth parameter whose intervals are counted; empty of three.
   [[nodiscard]] std::string_view FourthParameter() const {
     if (asymmetry != 0) return "asymmetry";
-    return loads.size() > 1 ? "load_exponent" : "";
+    if (rig > 0) return "rig_stiffness";
+    return loads.size() > 1 && !first_is_virgin ? "load_exponent" : "";
   }
 };
 
 /// The scenarios of docs/coverage.md.
 std::vector<Scenario> Scenarios();
 
-/// Of σ, α, Tc and, of several loads, load_exponent, or of slip forces that differ, asymmetry, in
-/// this order.
+/// Of σ, α, Tc and, of several loads, load_exponent, of slip forces that differ, asymmetry, or of a
+/// rig its stiffness, in this order.
 struct Coverage {
   static constexpr std::size_t kParameters = 4;
   std::size_t loops = 0;
@@ -79,6 +88,7 @@ struct Coverage {
       error_ratio{};                             ///< root mean square stated error over the scatter
   std::array<double, kParameters> efficiency{};  ///< Cramér–Rao bound over the scatter, squared
   std::array<double, kParameters> bias{};        ///< mean error over the scatter
+  double doubted = 0.0;  ///< fraction of the fits whose model is not called adequate
 };
 
 /// @param loops  seeds first, first + 1, …

@@ -28,6 +28,10 @@ struct FitOptions {
   /// Empty: both are fitted and the smaller AICc on effective samples is kept.
   std::optional<models::InitialState> initial_state;
 
+  /// The state of each record, in the place of initial_state; empty: that of all. Where neither is
+  /// given, records that differ are found.
+  std::vector<models::InitialState> initial_states;
+
   /// How the records are read, and which samples count.
   loop::PreparationOptions preparation;
 
@@ -49,8 +53,9 @@ struct FitOptions {
   /// mean of the records' loads.
   std::vector<double> normal_loads;
 
-  /// Known standard deviation of the force noise [N]; empty: from the residuals. Not of a force
-  /// that is imposed, which is taken as exact.
+  /// Known standard deviation of the force noise [N] of all records; empty: from the residuals,
+  /// of each record by itself where they differ in it. Not of a force that is imposed, which is
+  /// taken as exact.
   std::optional<double> force_noise;
 
   /// Of every interval, in (0, 1): what a fraction of such intervals contains.

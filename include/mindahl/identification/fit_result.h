@@ -129,6 +129,10 @@ struct RecordFit {
   loop::LoopMeasures measures;      ///< with the force's sign that of the displacement
   loop::LoopFacts facts;            ///< likewise, cycle by cycle; from depth kErrors on
   double displacement_noise = 0.0;  ///< [m] of the readings; 0 where they count as exact
+  models::InitialState initial_state = models::InitialState::kVirgin;
+  /// Standard deviation of the noise of what is fitted [N or m], known or estimated: that of all
+  /// records unless they differ in it.
+  double response_noise = 0.0;
   /// [m], in a fit of the displacement: where the law has the contact under the force that was
   /// measured, offsets included; else empty.
   std::vector<double> fitted_displacement;
@@ -160,6 +164,7 @@ struct FitResult {
   const models::FrictionModel* model = nullptr;
   /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
   loop::Channel response = loop::Channel::kForce;
+  /// Of the records; where they differ, kVirgin.
   models::InitialState initial_state = models::InitialState::kVirgin;
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc
@@ -169,7 +174,8 @@ struct FitResult {
   std::optional<double> normal_load;
   double load_exponent = 1.0;  ///< p of σ ∝ N^p; 1, and nothing's, where the records have one load
   double rms = 0.0;            ///< [N or m] of the residuals that count, unweighted
-  double force_noise = 0.0;    ///< [N], known or estimated; 0 in a fit of the displacement
+  double force_noise = 0.0;    ///< [N], known or estimated, of all records; 0 in a fit of the
+                               ///< displacement
   std::size_t outliers = 0;    ///< samples that a robust loss gives less than half their weight
   std::optional<MindlinTest> mindlin_test;  ///< empty where α is held or not determined
   std::vector<BranchShape> branch_shapes;  ///< α of each branch on its own; empty where it is held
@@ -200,6 +206,9 @@ struct FitResult {
 
   /// Returns nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
+
+  /// True if the initial state is not the same in all records.
+  [[nodiscard]] bool has_mixed_states() const;
 
   /// Returns the record with the largest amplitude, in a load series over N^{1−p}, to which the
   /// gross-slip displacement is in proportion: the one that comes nearest to gross slip.

@@ -19,6 +19,8 @@ struct Thresholds {
   double repeats_when_poor = 0.3;
   double repeats_when_failing = 0.1;
   double repeat_chance = 1e-3;
+  double noise_differs = 0.01;
+  double slope_scatter = 1e-3;
   double main_stroke = 0.75;
   double same_directions = 0.6;
   double early_in_stroke = 0.25;

@@ -44,7 +44,7 @@ bool MayBeAsymmetric(const Problem& problem) {
 
 /// An asymmetry is identifiable where the offset is known, or if the contact started unloaded.
 bool TellsAsymmetry(const Problem& problem) {
-  return problem.state == models::InitialState::kVirgin || problem.parameters.any_zero_is_known();
+  return problem.state.Any(models::InitialState::kVirgin) || problem.parameters.any_zero_is_known();
 }
 
 bool IsAccepted(const Problem& problem, std::string_view option) {

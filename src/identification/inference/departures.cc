@@ -526,7 +526,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   const Clock clock = ClockOf(*problem.data, neighbours);
   const bool is_repeated = IsDisplacementRepeated(*problem.data, neighbours);
   const std::vector<std::vector<double>> amplitudes = AmplitudeScale(*problem.data);
-  const bool tells_asymmetry = problem.state == models::InitialState::kVirgin &&
+  const bool tells_asymmetry = problem.state.Any(models::InitialState::kVirgin) &&
                                problem.model->memory == models::Memory::kReturnPoint &&
                                !problem.data->load_varies;
   DepartureColumns result;
@@ -611,7 +611,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
       places[i].asymmetry = by_asymmetry[begin + i];
     }
     const models::LoadingPath& path = response.PathOf(r, theta);
-    const ForcePlace extreme = problem.state == models::InitialState::kSteady
+    const ForcePlace extreme = problem.state.Of(r) == models::InitialState::kSteady
                                    ? SteadyExtreme<ForcePlace>(problem, point, record)
                                    : ForcePlace{};
     const std::vector<ForcePlace> origins =

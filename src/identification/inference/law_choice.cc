@@ -65,11 +65,10 @@ SolverOptions RoughlyAs(const FitOptions& options) {
 
 /// From the law that runs through the same steady loop, and from that of the fit itself, roughly.
 OtherFit FitOther(const Problem& problem, const Solution& best, const FitResult& result,
-                  const models::BranchLaw& equivalent, InitialState state,
+                  const models::BranchLaw& equivalent, const RecordStates& state,
                   const FitOptions& options, SearchBuffers& buffers) {
   FitOptions others = options;
   others.model = &OtherModel(*problem.model);
-  others.initial_state = state;
   others.start.clear();
   if (problem.parameters[kShape].fixed) others.fixed["alpha"] = result.law.shape_exponent;
   OtherFit other{
@@ -160,22 +159,23 @@ LawComparison CompareLaws(const Problem& problem, const Solution& best, const Fi
   choice.law = equivalent;
   // On a steady loop the other law is the same curve; a record that may be virgin is tried as such.
   const bool same_curve =
-      problem.state == InitialState::kSteady && HasOneAmplitude(problem, options.thresholds);
-  const bool maybe_virgin = problem.state == InitialState::kSteady && !options.initial_state &&
+      problem.state.AreAll(InitialState::kSteady) && HasOneAmplitude(problem, options.thresholds);
+  const bool is_open = !options.initial_state && options.initial_states.empty();
+  const bool maybe_virgin = problem.state.AreAll(InitialState::kSteady) && is_open &&
                             std::ranges::any_of(problem.data->records, StartsInside);
-  std::vector<InitialState> states;
+  std::vector<RecordStates> states;
   if (!same_curve) states.push_back(problem.state);
-  if (maybe_virgin) states.push_back(InitialState::kVirgin);
+  if (maybe_virgin) states.emplace_back(InitialState::kVirgin);
   // A record that starts at an extreme passes for virgin as well, without a virgin branch.
   const bool is_origin_given = std::ranges::any_of(options.fixed, [&](const auto& fixed) {
     return fixed.first.starts_with(OriginTerm(problem.data->excitation));
   });
-  if (problem.state == InitialState::kVirgin && !options.initial_state && !is_origin_given) {
-    states.push_back(InitialState::kSteady);
+  if (problem.state.AreAll(InitialState::kVirgin) && is_open && !is_origin_given) {
+    states.emplace_back(InitialState::kSteady);
   }
   const double samples_of_best =
       states.empty() ? 0.0 : EffectiveSamples(problem, best.theta, buffers.response);
-  for (const InitialState state : states) {
+  for (const RecordStates& state : states) {
     OtherFit other = FitOther(problem, best, result, equivalent, state, options, buffers);
     const auto evidence_of = [&] {
       const bool is_better = other.solution.sum_of_squares < best.sum_of_squares;
@@ -197,7 +197,7 @@ LawComparison CompareLaws(const Problem& problem, const Solution& best, const Fi
     }
     if (!other.solution.converged) continue;
     // If the laws are one curve, a virgin start counts only if it is better.
-    if (state != problem.state && same_curve &&
+    if (!(state == problem.state) && same_curve &&
         (delta > 0 || LawIsUndecided(delta, options.thresholds))) {
       continue;
     }

@@ -300,7 +300,7 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
         BranchPlacesOf(record, std::span(force).subspan(begin, record.size()), sensitivity);
     const models::LoadingPath& path = response.PathOf(r, theta);
     BranchPlace extreme;
-    if (problem.state == models::InitialState::kSteady) {
+    if (problem.state.Of(r) == models::InitialState::kSteady) {
       extreme = SteadyExtreme<BranchPlace>(problem, point, record);
     }
     std::vector<BranchPlace> origins =
@@ -315,7 +315,7 @@ MemoryColumns ColumnsOfMemory(const Problem& problem, std::span<const double> th
           std::span<const BranchPlace>(origins),
           {result.shape.col(static_cast<Eigen::Index>(j)).data() + begin, record.size()});
     }
-    const std::vector<double> since = WaySinceReturn(record, problem.state, extent.stroke);
+    const std::vector<double> since = WaySinceReturn(record, problem.state.Of(r), extent.stroke);
     samples.places.insert(samples.places.end(), places.begin(), places.end());
     samples.way_since_return.insert(samples.way_since_return.end(), since.begin(), since.end());
     begin += record.size();

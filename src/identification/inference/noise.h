@@ -39,9 +39,10 @@ Autocorrelation EstimateAutocorrelation(std::span<const std::span<const double>>
 /// The one account of the noise of a fit, in units of the data: whoever states an error, compares
 /// two fits or counts samples asks it.
 struct Noise {
-  double variance = 0.0;  // of a weighted residual
-  bool is_known = false;  // it was given, not estimated
-  double force = 0.0;     // standard deviation of the force's own
+  double variance = 0.0;           // of a weighted residual
+  bool is_known = false;           // it was given, not estimated
+  double force = 0.0;              // standard deviation of the force's own, of all records
+  std::vector<double> of_records;  // of each record's own, where they differ in it; else empty
   Autocorrelation autocorrelation;
   double repeating = 1.0;           // by how much a repeatable residual widens a variance
   std::vector<double> force_share;  // σ_F/√(σ_F² + σ_T²) of each sample; empty where δ is exact

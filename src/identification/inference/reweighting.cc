@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "identification/inference/record_noise.h"
 #include "identification/solve/robust_search.h"
 
 namespace mindahl::identification {
@@ -54,8 +55,12 @@ double DegreesOfFreedom(const ScaledRecords& data, std::size_t parameters) {
 class Weighting {
  public:
   Weighting(const Problem& problem, ScaledRecords& data, const FitOptions& options,
-            const DisplacementErrors& displacement_errors)
-      : problem_(problem), data_(data), options_(options), errors_(displacement_errors) {
+            const DisplacementErrors& displacement_errors, bool by_record)
+      : problem_(problem),
+        data_(data),
+        options_(options),
+        errors_(displacement_errors),
+        by_record_(by_record) {
     for (const ScaledRecord& record : data.records) {
       counts_.insert(counts_.end(), record.counts.begin(), record.counts.end());
     }
@@ -83,16 +88,27 @@ class Weighting {
     noise.samples = data_.counted;
     const std::optional<double> known = options_.response_noise();
     noise.is_known = known.has_value();
-    noise.force =
-        known ? *known / data_.response_unit() : ForceNoise(residual, from_displacement, loss);
+    if (by_record_ && !known) {
+      SetNoiseOfRecords(residual, from_displacement, loss, noise);
+    } else {
+      noise.force = known ? *known / data_.response_unit()
+                          : ForceNoise(residual, from_displacement, loss, {0, residual.size()},
+                                       static_cast<double>(data_.counted) / degrees_);
+    }
     // Weighted residuals have the variance of those where the loop is flat.
     const double unit = std::max(noise.force, kRoundingRms);
     std::vector<double> standardised;
-    for (std::size_t k = 0; k < residual.size(); ++k) {
-      const double deviation = std::sqrt(unit * unit + from_displacement[k]);
-      residual[k] /= deviation;
-      from_displacement[k] = unit / deviation;  // root weight by noise
-      if (counts_[k] != 0) standardised.push_back(residual[k]);
+    std::vector<double> share(errors_.any() ? residual.size() : 0);
+    std::size_t k = 0;
+    for (std::size_t r = 0; r < data_.records.size(); ++r) {
+      const double own = noise.of_records.empty() ? unit : noise.of_records[r];
+      for (const std::size_t end = k + data_.records[r].size(); k < end; ++k) {
+        const double deviation = std::sqrt(own * own + from_displacement[k]);
+        residual[k] /= deviation;
+        from_displacement[k] = unit / deviation;  // root weight by noise
+        if (!share.empty()) share[k] = own / deviation;
+        if (counts_[k] != 0) standardised.push_back(residual[k]);
+      }
     }
     // If more than half of the samples are met to the last bit, rounding is their noise.
     const double scale = loss == Loss::kNone || known
@@ -101,7 +117,7 @@ class Weighting {
     SetWeights(residual, from_displacement, scale, loss, unit, noise);
     scale_ = unit * scale;
     without_loss_ = from_displacement;
-    if (errors_.any()) noise.force_share = from_displacement;
+    noise.force_share = std::move(share);
     return noise;
   }
 
@@ -140,15 +156,53 @@ class Weighting {
   [[nodiscard]] bool is_lost() const { return is_lost_; }
 
  private:
+  /// σ_F of each record, none below a thousandth of the largest, and of all of them.
+  void SetNoiseOfRecords(const std::vector<double>& residual,
+                         const std::vector<double>& from_displacement, Loss loss,
+                         Noise& noise) const {
+    constexpr double kLeast = 1e-3;
+    double largest = kRoundingRms;
+    std::vector<double> samples;
+    std::size_t begin = 0;
+    for (std::size_t r = 0; r < data_.records.size(); ++r) {
+      const std::size_t end = begin + data_.records[r].size();
+      samples.push_back(
+          static_cast<double>(std::count_if(counts_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                            counts_.begin() + static_cast<std::ptrdiff_t>(end),
+                                            [](unsigned char counts) { return counts != 0; })));
+      const double left = std::max(samples.back() - ParametersOfRecord(problem_, r), 1.0);
+      noise.of_records.push_back(
+          samples.back() > 0
+              ? ForceNoise(residual, from_displacement, loss, {begin, end}, samples.back() / left)
+              : 0.0);
+      largest = std::max(largest, noise.of_records.back());
+      begin = end;
+    }
+    double squares = 0.0;
+    for (std::size_t r = 0; r < samples.size(); ++r) {
+      double& own = noise.of_records[r];
+      own = std::max(own, kLeast * largest);
+      squares += samples[r] * own * own;
+    }
+    noise.force = std::sqrt(squares / static_cast<double>(data_.counted));
+  }
+
+  struct SampleRange {
+    std::size_t begin;
+    std::size_t end;
+  };
+
   /// The likeliest σ_F, Σ (r²/s − 1)/s = 0 with s = σ_F² + σ_T²: samples with little noise from the
   /// displacement determine it. Where outliers are expected, that for which the standardised
   /// residuals have the median of normal ones. Bisection.
+  /// @param samples_a_degree  samples over degrees of freedom
   [[nodiscard]] double ForceNoise(const std::vector<double>& residual,
-                                  const std::vector<double>& from_displacement, Loss loss) const {
+                                  const std::vector<double>& from_displacement, Loss loss,
+                                  SampleRange range, double samples_a_degree) const {
     std::vector<double> standardised;
     const auto excess = [&](double variance) {
       standardised.clear();
-      for (std::size_t i = 0; i < residual.size(); ++i) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
         if (counts_[i] != 0) {
           standardised.push_back(residual[i] / std::sqrt(variance + from_displacement[i]));
         }
@@ -157,17 +211,19 @@ class Weighting {
       double squares = 0.0;
       double precisions = 0.0;
       std::size_t k = 0;
-      for (std::size_t i = 0; i < residual.size(); ++i) {
+      for (std::size_t i = range.begin; i < range.end; ++i) {
         if (counts_[i] == 0) continue;
         const double precision = 1 / (variance + from_displacement[i]);
         squares += standardised[k] * standardised[k] * precision;
         precisions += precision;
         ++k;
       }
-      return static_cast<double>(standardised.size()) / degrees_ * squares / precisions - 1;
+      return samples_a_degree * squares / precisions - 1;
     };
     double high = kRoundingRms * kRoundingRms;
-    for (const double r : residual) high = std::max(high, 2 * r * r);
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      high = std::max(high, 2 * residual[i] * residual[i]);
+    }
     double low = kRoundingRms * kRoundingRms;
     if (!(excess(low) > 0)) return std::sqrt(low);
     constexpr int kBisections = 60;
@@ -219,6 +275,7 @@ class Weighting {
   ScaledRecords& data_;
   const FitOptions& options_;
   const DisplacementErrors& errors_;
+  bool by_record_;
   std::vector<unsigned char> counts_;
   std::vector<double> without_loss_;  // root weights
   double scale_ = 1.0;
@@ -260,8 +317,8 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
                     const DisplacementErrors& displacement_errors, Solver& solver,
                     Response& response, const SolverOptions& solver_options, Solution& solution,
-                    Noise& noise) {
-  Weighting weighting(problem, data, options, displacement_errors);
+                    Noise& noise, bool by_record) {
+  Weighting weighting(problem, data, options, displacement_errors, by_record);
   // Tukey's loss has several minima: it starts from Huber's, which has one.
   constexpr int kHuberRounds = 10;
   std::vector<double> last_force(problem.size());

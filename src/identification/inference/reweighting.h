@@ -30,12 +30,15 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 ///   the minimum are those of the errors
 /// @param problem   of `data`
 /// @param data      its weights are written
+/// - records that differ in their noise (record_noise.h) each have its own σ_F, and weigh by it:
+///   w = σ²/σ_r², σ² the mean of all samples' variances
 /// @param solution  refitted from where it is
-/// @param noise     what the weights stand for
+/// @param noise      what the weights stand for
+/// @param by_record  do the records differ in their noise?
 /// @returns whether they settled
 bool FitWithWeights(const Problem& problem, ScaledRecords& data, const FitOptions& options,
                     const DisplacementErrors& displacement_errors, Solver& solver,
                     Response& response, const SolverOptions& solver_options, Solution& solution,
-                    Noise& noise);
+                    Noise& noise, bool by_record = false);
 
 }  // namespace mindahl::identification

@@ -42,6 +42,16 @@ constexpr std::array kTable = {
     ThresholdRow{"repeat_chance", &Thresholds::repeat_chance, "p",
                  "chance at which white noise passes for repeatable",
                  "one loop in a thousand, since its standard errors are then widened for nothing"},
+    ThresholdRow{"noise_differs", &Thresholds::noise_differs, "p",
+                 "records whose residuals' variances noise makes so unlike less often have a noise "
+                 "of their own each",
+                 "of records of one noise one set in a hundred is weighed by variances that it "
+                 "has by chance, which costs it nothing that is seen"},
+    ThresholdRow{"slope_scatter", &Thresholds::slope_scatter, "p",
+                 "residuals whose scatter noise of the force makes less often as large where the "
+                 "loop is steep are tried with noise of the displacement",
+                 "what is found must also be no more than the readings themselves scatter, and "
+                 "the fit with it adequate"},
     ThresholdRow{"main_stroke", &Thresholds::main_stroke, "of the longest",
                  "strokes at least so long are compared with each other",
                  "shorter ones are nested loops, run-in or run-out; the same as for X and T*"},

@@ -145,7 +145,7 @@ bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
-                       models::InitialState state, std::pmr::memory_resource* memory)
+                       const RecordStates& state, std::pmr::memory_resource* memory)
     : parameters_(memory),
       free_(memory),
       reported_(memory),
@@ -169,14 +169,14 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     for (const Term& term : terms) {
       if (term.scope != Scope::kRecord) continue;
       Parameter& parameter = parameters_.emplace_back(MakeParameter(term, r, data, options));
-      if (term.name == origin_term_ && state == models::InitialState::kSteady) {
+      if (term.name == origin_term_ && state.Of(r) == models::InitialState::kSteady) {
         Hold(parameter, parameter.reference);  // the centre of the loop
       }
     }
   }
   ApplyOptions(options);
   RequireShapedColumns();
-  if (state == models::InitialState::kSteady) HoldConfoundedAsymmetry();
+  if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
   if (data.load_varies) KeepShapeBelowOne(options);
   for (const Parameter& parameter : parameters_) {
     if (parameter.absent || !parameter.term->needs_time) continue;
@@ -195,7 +195,7 @@ Parameters::Parameters(const Parameters& all, std::size_t record, std::pmr::memo
       free_(memory),
       reported_(memory),
       origin_term_(all.origin_term_),
-      state_(all.state_) {
+      state_(all.state_.Of(record)) {
   for (const Parameter& parameter : all) {
     const bool is_own = parameter.term->scope == Scope::kRecord;
     if (is_own && parameter.record != record) continue;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "identification/problem/record_states.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/terms.h"
@@ -74,7 +75,7 @@ constexpr std::string_view OriginTerm(loop::Channel excitation) {
 class Parameters {
  public:
   /// @throws InvalidArgument for names, values and bounds of `options` that break a rule
-  Parameters(const ScaledRecords& data, const FitOptions& options, models::InitialState state,
+  Parameters(const ScaledRecords& data, const FitOptions& options, const RecordStates& state,
              std::pmr::memory_resource* memory);
 
   /// Those of one record of several, and of the contact, as if it were the only one.
@@ -152,7 +153,7 @@ class Parameters {
   std::pmr::vector<std::size_t> reported_;
   std::size_t records_ = 1;
   std::string_view origin_term_;
-  models::InitialState state_;
+  RecordStates state_;
 };
 
 }  // namespace mindahl::identification

@@ -102,7 +102,7 @@ void Response::Bind(const Problem& problem) {
     const ScaledRecord& record = problem.data->records[r];
     if (record.load_ratio.empty()) continue;
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
-                              problem.state, histories_[r]);
+                              problem.state.Of(r), histories_[r]);
   }
   asymmetry_ = problem.parameters.PositionOf("asymmetry", 0);
   slip_slope_ = problem.parameters.PositionOf("slip_slope", 0);
@@ -120,8 +120,9 @@ void Response::Bind(const Problem& problem) {
 }
 
 models::InitialContact Response::InitialOf(std::size_t r, std::span<const double> theta) const {
-  const bool virgin = problem_->state == models::InitialState::kVirgin;
-  return {.state = problem_->state,
+  const models::InitialState state = problem_->state.Of(r);
+  const bool virgin = state == models::InitialState::kVirgin;
+  return {.state = state,
           .unloaded_displacement = virgin ? theta[unloaded_[r]] : 0.0,
           .asymmetry = theta[asymmetry_]};
 }

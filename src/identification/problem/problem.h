@@ -8,6 +8,7 @@
 
 #include "identification/problem/lagged_motion.h"
 #include "identification/problem/parameters.h"
+#include "identification/problem/record_states.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loaded_response.h"
@@ -22,7 +23,7 @@ namespace mindahl::identification {
 struct Problem {
   const ScaledRecords* data;
   const models::FrictionModel* model;
-  models::InitialState state;
+  RecordStates state;
   Parameters parameters;
 
   [[nodiscard]] std::size_t size() const { return data->samples(); }

@@ -24,14 +24,14 @@ void GrowTo(std::size_t size, std::vector<double>& buffer) {
 /// Returns ln of the largest force of a steady loop about its middle, below which Tc has no loop.
 double LeastLogSlipForce(const Problem& problem) {
   constexpr double kShortOfSlip = 1e-9;
-  if (problem.state != models::InitialState::kSteady)
-    return -std::numeric_limits<double>::infinity();
   double largest = 0.0;
-  for (const ScaledRecord& record : problem.data->records) {
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    if (problem.state.Of(r) != models::InitialState::kSteady) continue;
+    const ScaledRecord& record = problem.data->records[r];
     const auto [low, high] = std::ranges::minmax(record.excitation());
     largest = std::max(largest, (high - low) / 2);
   }
-  return std::log(largest) + kShortOfSlip;
+  return std::log(largest) + kShortOfSlip;  // −∞ where none is steady
 }
 
 /// True if a coordinate's derivative is one column of t for all samples.

@@ -30,7 +30,7 @@ struct Descent {
 
 /// A problem, its best solution, and from where that was found.
 struct Candidate {
-  Candidate(const ScaledRecords& data, const FitOptions& options, models::InitialState state,
+  Candidate(const ScaledRecords& data, const FitOptions& options, const RecordStates& state,
             std::pmr::memory_resource* memory)
       : problem{&data, options.model, state, Parameters(data, options, state, memory)},
         starts(memory) {}

@@ -68,7 +68,7 @@ class SampleCost final : public ceres::CostFunction {
 
 UnprojectedRecord::UnprojectedRecord(const Problem& problem, std::size_t record, double unit)
     : data_(DataOfRecord(*problem.data, record)),
-      problem_{&data_, problem.model, problem.state,
+      problem_{&data_, problem.model, problem.state.Of(record),
                Parameters(problem.parameters, record, std::pmr::get_default_resource())},
       unit_(unit) {
   const std::size_t origin = problem.parameters.PositionOfOrigin(record);
@@ -76,7 +76,7 @@ UnprojectedRecord::UnprojectedRecord(const Problem& problem, std::size_t record,
   for (const std::size_t p : problem.parameters.reported()) {
     const Parameter& parameter = problem.parameters[p];
     if (parameter.term->scope == Scope::kRecord && parameter.record != record) continue;
-    if (p == origin && problem.state == models::InitialState::kSteady) continue;
+    if (p == origin && problem.state.Of(record) == models::InitialState::kSteady) continue;
     blocks_.push_back(p);
     own_.push_back(parameter.term->scope == Scope::kContact
                        ? p
