@@ -70,6 +70,7 @@ Finding Complete(FindingCode code, std::string_view kind = "") {
                      {"strokes", 2.5},
                      {"of_displacement", 0.045},
                      {"of_force", 0.005},
+                     {"deviation", 2.4e-9},
                      {"p_value", 0.0035},
                      {"dahl_p_value", 0.25},
                      {"never_slips", 0.12}};
@@ -149,6 +150,7 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"rig_not_tried", "", {"alpha = 0.0625", "--load-window"}},
       {"rig_not_tried", "imposed_force", {"alpha = 0.0625", "take its part off"}},
       {"noise_in_displacement", "", {"4.5 % of X", "0.5 % of T*", "--noise-in displacement"}},
+      {"displacement_noise_estimated", "", {"2.4 nm", "--displacement-noise"}},
       {"load_followed", "", {"record 2: ", "±5.5 %", "the law follows it"}},
       {"load_not_followed", "", {"record 2: ", "±5.5 %", "jenkins", "--load-window"}},
       {"alpha_limited_by_load", "", {"0.99 or more", "--load-window"}},

@@ -106,6 +106,11 @@ void AddBeside(const Scenario& scenario, Record& record) {
   if (scenario.beside == Beside::kCovariate) record.covariates.push_back(std::move(column));
 }
 
+/// Time from one reading to the next [s].
+double StepOf(const Scenario& scenario) {
+  return 1 / (kFrequency * static_cast<double>(scenario.samples_per_cycle));
+}
+
 /// The force of a motion that goes on between the readings, 1.5 readings late where that is asked
 /// for; before the record the contact was at rest.
 Record ReadApart(const Scenario& scenario, const BranchLaw& law) {
@@ -121,6 +126,7 @@ Record ReadApart(const Scenario& scenario, const BranchLaw& law) {
   for (std::size_t i = 0; i < motion.size(); i += steps) {
     record.displacement.push_back(motion[i]);
     record.force.push_back(i < late ? 0.0 : force[i - late]);
+    record.time.push_back(static_cast<double>(i / steps) * StepOf(scenario));
   }
   return record;
 }
@@ -493,9 +499,10 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   const bool is_asymmetric = scenario.asymmetry != 0;
   const std::array<double, Coverage::kParameters> truth = {
       law.tangential_stiffness, law.shape_exponent, law.slip_force,
-      is_asymmetric      ? scenario.asymmetry
-      : scenario.rig > 0 ? RigOf(scenario).stiffness
-                         : scenario.load_exponent};
+      is_asymmetric                     ? scenario.asymmetry
+      : scenario.rig > 0                ? RigOf(scenario).stiffness
+      : scenario.beside == Beside::kLag ? 1.5 * StepOf(scenario)
+                                        : scenario.load_exponent};
   const std::array<std::string_view, Coverage::kParameters> names = {"sigma", "alpha", "slip_force",
                                                                      scenario.FourthParameter()};
   const std::size_t parameters = names.back().empty() ? truth.size() - 1 : truth.size();
@@ -533,6 +540,7 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
     const identification::FitResult fit = identification::Fit(records, options);
     const bool is_adequate = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
     coverage.doubted += is_adequate ? 0.0 : 1 / static_cast<double>(loops);
+    coverage.rejected += fit.adequacy.p_value < 0.05 ? 1 / static_cast<double>(loops) : 0.0;
     for (std::size_t k = 0; k < parameters; ++k) {
       const identification::ParameterEstimate& estimate = *fit.Find(names[k]);
       const bool covers = (!estimate.lower95 || *estimate.lower95 <= truth[k]) &&

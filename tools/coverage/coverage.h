@@ -70,6 +70,7 @@ struct Scenario {
   [[nodiscard]] std::string_view FourthParameter() const {
     if (asymmetry != 0) return "asymmetry";
     if (rig > 0) return "rig_stiffness";
+    if (beside == Beside::kLag) return "lag";
     return loads.size() > 1 && !first_is_virgin ? "load_exponent" : "";
   }
 };
@@ -77,8 +78,8 @@ struct Scenario {
 /// The scenarios of docs/coverage.md.
 std::vector<Scenario> Scenarios();
 
-/// Of σ, α, Tc and, of several loads, load_exponent, of slip forces that differ, asymmetry, or of a
-/// rig its stiffness, in this order.
+/// Of σ, α, Tc and, of several loads, load_exponent, of slip forces that differ, asymmetry, of a
+/// rig its stiffness, or a lag, in this order.
 struct Coverage {
   static constexpr std::size_t kParameters = 4;
   std::size_t loops = 0;
@@ -88,7 +89,8 @@ struct Coverage {
       error_ratio{};                             ///< root mean square stated error over the scatter
   std::array<double, kParameters> efficiency{};  ///< Cramér–Rao bound over the scatter, squared
   std::array<double, kParameters> bias{};        ///< mean error over the scatter
-  double doubted = 0.0;  ///< fraction of the fits whose model is not called adequate
+  double doubted = 0.0;   ///< fraction of the fits whose model is not called adequate
+  double rejected = 0.0;  ///< fraction of those whose chance that noise looks so is below 5 %
 };
 
 /// @param loops  seeds first, first + 1, …

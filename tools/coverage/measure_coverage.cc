@@ -28,12 +28,12 @@ std::optional<std::size_t> ReadCount(std::string_view text) {
 void PrintHead(std::size_t loops) {
   fmt::print(
       "| {} loops each | interval covers the truth | | | stated error / scatter | | | "
-      "efficiency | | | bias / scatter | | | doubted |\n|---|",
+      "efficiency | | | bias / scatter | | | doubted | p < 5 % |\n|---|",
       loops);
-  for (int i = 0; i < 13; ++i) fmt::print("---|");
+  for (int i = 0; i < 14; ++i) fmt::print("---|");
   fmt::print("\n| |");
   for (int i = 0; i < 4; ++i) fmt::print(" σ | α | Tc |");
-  fmt::print(" |\n");
+  fmt::print(" | |\n");
 }
 
 void PrintRow(const Scenario& scenario, const Coverage& coverage) {
@@ -48,7 +48,8 @@ void PrintRow(const Scenario& scenario, const Coverage& coverage) {
     cells(coverage.error_ratio, [](double ratio) { fmt::print(" {:.2f} |", ratio); });
     cells(coverage.efficiency, [](double efficiency) { fmt::print(" {:.2f} |", efficiency); });
     cells(coverage.bias, [](double bias) { fmt::print(" {:+.2f} |", bias); });
-    if (begin == 0) fmt::print(" {:.1f} % |", 100 * coverage.doubted);
+    if (begin == 0)
+      fmt::print(" {:.1f} % | {:.1f} % |", 100 * coverage.doubted, 100 * coverage.rejected);
     fmt::print("\n");
   };
   print(scenario.name, 0, 3);

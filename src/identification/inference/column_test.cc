@@ -51,6 +51,14 @@ Eigen::MatrixXd ProductsOf(const Eigen::MatrixXd& columns) {
   return products;
 }
 
+/// Orthonormal columns that span both.
+Eigen::MatrixXd OrthonormalOf(const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
+  Eigen::MatrixXd both(one.rows(), one.cols() + other.cols());
+  both << one, other;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(both);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(both.rows(), qr.rank());
+}
+
 /// AᵀRA of noise that is not white.
 Eigen::MatrixXd CorrelatedProducts(const ScaledRecords& data, const Noise& noise,
                                    const Autocorrelation& autocorrelation,
@@ -66,7 +74,7 @@ Eigen::MatrixXd CorrelatedProducts(const ScaledRecords& data, const Noise& noise
 ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
                        const DisplacementEffect& displacement, const Eigen::MatrixXd& law,
                        const Eigen::MatrixXd& others, const Eigen::VectorXd& residual,
-                       const ColumnTest* quieter)
+                       const ColumnTest* quieter, bool restores)
     : law_(law.cols()),
       samples_(static_cast<double>(problem.data->counted)),
       sum_of_squares_(residual.squaredNorm()) {
@@ -102,9 +110,16 @@ ColumnTest::ColumnTest(const Problem& problem, const Noise& noise,
   for (Eigen::Index j = 0; j < columns.cols(); ++j) {
     AddMultiple({rest.data(), problem.size()}, -in_columns[j], ColumnValues(columns, j));
   }
-  autocorrelation_ = quieter != nullptr
-                         ? quieter->autocorrelation_
-                         : AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
+  has_drawn_ = displacement.residuals.size() > 0;
+  if (quieter != nullptr) {
+    autocorrelation_ = quieter->autocorrelation_;
+  } else if (restores) {
+    autocorrelation_ = AutocorrelationBeside(
+        *problem.data, {rest.data(), problem.size()},
+        OrthonormalOf(columns.leftCols(law_), columns.rightCols(others.cols()) * all_));
+  } else {
+    autocorrelation_ = AutocorrelationOf(*problem.data, {rest.data(), problem.size()});
+  }
   is_white_ = autocorrelation_.order == 0 && displacement.residuals.size() == 0;
   correlated_ =
       is_white_ ? plain_

@@ -33,12 +33,17 @@ class ColumnTest {
   /// @param residual      weighted
   /// @param displacement  what drawn errors of the displacement do to the residuals: noise too
   /// @param quieter       of the same samples by another law, whose noise it is; null: its own
+  /// @param restores      does the noise get back what the columns took up of its autocorrelation?
   ColumnTest(const Problem& problem, const Noise& noise, const DisplacementEffect& displacement,
              const Eigen::MatrixXd& law, const Eigen::MatrixXd& others,
-             const Eigen::VectorXd& residual, const ColumnTest* quieter = nullptr);
+             const Eigen::VectorXd& residual, const ColumnTest* quieter = nullptr,
+             bool restores = false);
 
   /// Has any column something of its own, and is there noise to hold it against?
   [[nodiscard]] bool can_tell() const { return all_.cols() > 0 && variance_ > 0; }
+  /// True if the noise is not white, nor drawn errors of the displacement among it: its
+  /// autocorrelation is what the columns left of it.
+  [[nodiscard]] bool is_correlated() const { return autocorrelation_.order > 0 && !has_drawn_; }
   /// Returns the variance of a weighted residual.
   [[nodiscard]] double variance() const { return variance_; }
   [[nodiscard]] double degrees_of_freedom() const { return degrees_of_freedom_; }
@@ -73,6 +78,7 @@ class ColumnTest {
   Eigen::VectorXd norms_;
   Eigen::MatrixXd plain_;       // AᵀA
   bool is_white_ = true;        // R = 1
+  bool has_drawn_ = false;      // are drawn errors of the displacement among the noise?
   Eigen::MatrixXd correlated_;  // AᵀRA
   Eigen::VectorXd residual_;    // Aᵀr
   Eigen::MatrixXd inverse_of_law_;

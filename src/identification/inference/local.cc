@@ -123,6 +123,19 @@ Autocorrelation AutocorrelationOf(const ScaledRecords& data, std::span<const dou
   return EstimateAutocorrelation(series, counts);
 }
 
+Autocorrelation AutocorrelationBeside(const ScaledRecords& data, std::span<const double> residual,
+                                      const Eigen::MatrixXd& columns) {
+  std::vector<std::span<const double>> series;
+  std::vector<std::span<const unsigned char>> counts;
+  std::size_t begin = 0;
+  for (const ScaledRecord& record : data.records) {
+    series.push_back(residual.subspan(begin, record.size()));
+    counts.emplace_back(record.counts);
+    begin += record.size();
+  }
+  return EstimateAutocorrelationBeside(series, counts, columns);
+}
+
 double EffectiveSamples(const ScaledRecords& data, std::span<const double> residual,
                         std::pmr::memory_resource* memory) {
   return static_cast<double>(data.counted) /

@@ -55,23 +55,30 @@ Autocovariances EstimateAutocovariances(std::span<const Series> residuals,
 
 }  // namespace
 
-Autocorrelation EstimateAutocorrelation(std::span<const Series> residuals,
-                                        std::span<const Mask> counts) {
-  Autocorrelation best;
+namespace {
+
+std::size_t CountOf(std::span<const Mask> counts) {
   std::size_t count = 0;
   for (const Mask mask : counts) {
     count += mask.size() - static_cast<std::size_t>(std::ranges::count(mask, 0));
   }
-  const std::size_t highest = std::min(kHighestOrder, count / kSamplesPerOrder);
-  const Autocovariances covariance = EstimateAutocovariances(residuals, counts, highest);
-  if (!(covariance[0] > 0)) return best;
+  return count;
+}
 
-  // Levinson and Durbin: each order from the one before.
+std::size_t HighestOrderOf(std::size_t count) {
+  return std::min(kHighestOrder, count / kSamplesPerOrder);
+}
+
+/// By Levinson and Durbin: each order from the one before.
+/// @param count  samples that the covariances are of
+Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) {
+  Autocorrelation best;
+  if (!(covariance[0] > 0)) return best;
   const auto samples = static_cast<double>(count);
   std::array<double, kHighestOrder> coefficients{};
   double variance = covariance[0];
   double best_criterion = 0.0;  // of order 0, by how much others are better
-  for (std::size_t order = 1; order <= highest; ++order) {
+  for (std::size_t order = 1; order <= HighestOrderOf(count); ++order) {
     double numerator = covariance[order];
     for (std::size_t k = 1; k < order; ++k) {
       numerator -= coefficients[k - 1] * covariance[order - k];
@@ -99,6 +106,73 @@ Autocorrelation EstimateAutocorrelation(std::span<const Series> residuals,
     best.correlations[lag] = covariance[lag] / covariance[0];
   }
   return best;
+}
+
+/// What columns take off the sums of products of residuals at each lag, of noise with a process and
+/// a variance.
+Autocovariances TakenUp(const Autocorrelation& process, double variance,
+                        std::span<const Series> residuals, const Eigen::MatrixXd& columns,
+                        std::size_t highest) {
+  Eigen::MatrixXd correlated(columns.rows(), columns.cols());
+  Eigen::Index begin = 0;
+  for (const Series series : residuals) {
+    const auto size = static_cast<Eigen::Index>(series.size());
+    correlated.middleRows(begin, size) = process.Apply(columns.middleRows(begin, size));
+    begin += size;
+  }
+  const Eigen::MatrixXd mixed = columns.transpose() * correlated;
+  const Eigen::MatrixXd other = correlated - columns * mixed;
+  Autocovariances taken{};
+  const auto samples = static_cast<double>(columns.rows());
+  for (std::size_t lag = 0; lag <= highest; ++lag) {
+    begin = 0;
+    for (const Series series : residuals) {
+      const auto size = static_cast<Eigen::Index>(series.size());
+      const Eigen::Index left = size - std::min(size, static_cast<Eigen::Index>(lag));
+      const Eigen::Index later = begin + size - left;
+      taken[lag] +=
+          columns.middleRows(begin, left).cwiseProduct(correlated.middleRows(later, left)).sum() +
+          other.middleRows(begin, left).cwiseProduct(columns.middleRows(later, left)).sum();
+      begin += size;
+    }
+    taken[lag] *= variance / samples;
+  }
+  return taken;
+}
+
+}  // namespace
+
+Autocorrelation EstimateAutocorrelation(std::span<const Series> residuals,
+                                        std::span<const Mask> counts) {
+  const std::size_t count = CountOf(counts);
+  return ProcessOf(EstimateAutocovariances(residuals, counts, HighestOrderOf(count)), count);
+}
+
+Autocorrelation EstimateAutocorrelationBeside(std::span<const Series> residuals,
+                                              std::span<const Mask> counts,
+                                              const Eigen::MatrixXd& columns) {
+  constexpr int kRounds = 15;
+  constexpr double kSettled = 2e-3;  // of the variance
+  // What is left of an autocovariance says nothing where less than that is left.
+  constexpr double kMostTaken = 0.9;
+  const std::size_t count = CountOf(counts);
+  const std::size_t highest = HighestOrderOf(count);
+  const Autocovariances measured = EstimateAutocovariances(residuals, counts, highest);
+  Autocovariances covariance = measured;
+  Autocorrelation process = ProcessOf(covariance, count);
+  for (int round = 0; round < kRounds && process.order > 0; ++round) {
+    const Autocovariances taken = TakenUp(process, covariance[0], residuals, columns, highest);
+    if (!(taken[0] < kMostTaken * covariance[0])) break;
+    double change = 0.0;
+    for (std::size_t lag = 0; lag <= highest; ++lag) {
+      const double next = measured[lag] + taken[lag];
+      change = std::max(change, std::abs(next - covariance[lag]) / covariance[0]);
+      covariance[lag] = next;
+    }
+    process = ProcessOf(covariance, count);
+    if (change < kSettled) break;
+  }
+  return process;
 }
 
 double Autocorrelation::SquaredCorrelations() const {
@@ -154,6 +228,42 @@ Eigen::MatrixXd Autocorrelation::Quadratic(const Eigen::Ref<const Eigen::MatrixX
   product.selfadjointView<Eigen::Lower>().rankUpdate(filtered.leftCols(i), innovation_share);
   product.triangularView<Eigen::StrictlyUpper>() = product.transpose();
   return product;
+}
+
+Eigen::MatrixXd Autocorrelation::Apply(const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  if (order == 0 || columns.cols() == 0) return columns;
+  const Eigen::Index rows = columns.rows();
+  const auto depth = static_cast<Eigen::Index>(order);
+  // A column a sample; the latest first, on into the past until all has died away.
+  Eigen::MatrixXd filtered(columns.cols(), rows + 64);
+  double largest = 0.0;
+  Eigen::Index count = 0;
+  for (; count < rows + static_cast<Eigen::Index>(kLongest); ++count) {
+    if (count == filtered.cols()) filtered.conservativeResize(Eigen::NoChange, 2 * count);
+    auto out = filtered.col(count);
+    if (count < rows) {
+      out = columns.row(rows - 1 - count).transpose();
+    } else {
+      out.setZero();
+    }
+    for (Eigen::Index k = 0; k < std::min(depth, count); ++k) {
+      out += coefficients[static_cast<std::size_t>(k)] * filtered.col(count - 1 - k);
+    }
+    largest = std::max(largest, out.cwiseAbs().maxCoeff());
+    if (count < rows) continue;
+    const Eigen::Index recent = std::min(depth, count + 1);
+    if (filtered.middleCols(count + 1 - recent, recent).cwiseAbs().maxCoeff() <
+        kForgotten * largest) {
+      ++count;
+      break;
+    }
+  }
+  for (Eigen::Index i = count - 1; i >= 0; --i) {
+    for (Eigen::Index k = 0; k < std::min(depth, count - 1 - i); ++k) {
+      filtered.col(i) += coefficients[static_cast<std::size_t>(k)] * filtered.col(i + 1 + k);
+    }
+  }
+  return innovation_share * filtered.leftCols(rows).rowwise().reverse().transpose();
 }
 
 double Noise::effective_samples() const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "identification/intervals.h"
+#include "mindahl/loop/displacement_noise.h"
 
 namespace mindahl::identification {
 namespace {
@@ -412,16 +413,22 @@ void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double 
 
 namespace {
 
-/// The force [N] that the contact is seen to carry: the measured peak has the outermost of the
-/// noise in it, the fitted one the error of the fit.
+/// The force [N] that the contact is seen to carry, the more of two: the fitted one less twice the
+/// error of the fit, and the measured peak less a standard deviation of its white noise: half the
+/// distance between the medians of a few ends is known to about half of that.
 double CarriedForce(const Problem& problem, const FitResult& result, double peak_force) {
+  if (problem.data->is_forced() || result.records.empty()) return peak_force;
   const RecordFit& widest = result.WidestRecord();
-  if (problem.data->is_forced() || widest.fitted_force.empty()) return peak_force;
+  if (widest.fitted_force.empty()) return peak_force;
   const auto [low, high] = std::ranges::minmax(widest.fitted_force);
   const double free = static_cast<double>(problem.parameters.free().size());
   const double error = 2 * widest.response_noise *
                        std::sqrt(free / std::max(result.residuals.effective_samples, free));
-  return std::min(peak_force, ((high - low) / 2 - error) / widest.load_ratio);
+  std::vector<double> measured = widest.fitted_force;
+  for (std::size_t i = 0; i < measured.size(); ++i) measured[i] -= widest.residual[i];
+  const double white = loop::EstimateDisplacementNoise(measured);
+  const double carried = std::max((high - low) / 2 - error, widest.measures.peak_force - white);
+  return std::min(peak_force, carried / widest.load_ratio);
 }
 
 }  // namespace
