@@ -208,7 +208,8 @@ RecordStates Flipped(const Problem& problem, std::size_t record) {
   return RecordStates(std::move(states));
 }
 
-/// Returns θ of a solution for a problem that holds other origins; one that it has free starts unloaded.
+/// Returns θ of a solution for a problem that holds other origins; one that it has free starts
+/// unloaded.
 std::vector<double> ThetaFor(const Problem& problem, const Problem& solved,
                              const Solution& solution) {
   std::vector<double> theta = solution.theta;
@@ -254,8 +255,8 @@ std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate&
   return best;
 }
 
-/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of several
-/// records also some as virgin and some as steady, where all as one does not fit.
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
+/// several records also some as virgin and some as steady, where all as one does not fit.
 /// @param rival  written: the other initial state, where the criterion hardly prefers either
 Candidate FitBestState(const Attempt& attempt, std::array<Solution, 3>& solutions,
                        std::vector<Descent>* descents, std::optional<Candidate>& rival) {
