@@ -207,7 +207,7 @@ struct FitResult {
   /// Returns nullptr when nothing of the kind was found.
   [[nodiscard]] const Finding* FindFinding(FindingCode code) const;
 
-  /// Returns true if the contact had another initial state in some records than in others.
+  /// True if the initial state is not the same in all records.
   [[nodiscard]] bool has_mixed_states() const;
 
   /// Returns the record with the largest amplitude, in a load series over N^{1−p}, to which the

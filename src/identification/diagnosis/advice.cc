@@ -80,7 +80,7 @@ std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
   }
   // Another term may let the steady loop win, with which an asymmetry is refused.
   if (!accepted.empty() && has_asymmetry && !options.initial_state &&
-      !problem.parameters.any_zero_is_known()) {
+      options.initial_states.empty() && !problem.parameters.any_zero_is_known()) {
     accepted += " --initial-state virgin";
   }
   return accepted;

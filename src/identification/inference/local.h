@@ -61,7 +61,7 @@ Autocorrelation AutocorrelationOf(
     std::span<const unsigned char> tells = {},
     std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-/// Returns the same of noise of which the residuals are what orthonormal columns leave.
+/// Returns the autocorrelation of noise of which the residuals are what orthonormal columns leave.
 Autocorrelation AutocorrelationBeside(const ScaledRecords& data, std::span<const double> residual,
                                       const Eigen::MatrixXd& columns);
 
