@@ -70,6 +70,7 @@ def fit(
     asymmetry: Optional[Asked] = None, drift: bool = False,
     speed_exponent: Optional[Asked] = None, inertia: Optional[Asked] = None,
     slip_position: Optional[str] = None, slip_speed: Optional[Asked] = None,
+    slip_trend: Optional[Asked] = None,
     ripple: Optional[Asked] = None,
     terms: Union[str, Sequence[str]] = "none",
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
@@ -109,7 +110,8 @@ def fit(
             slip_force·(1 ± asymmetry): a known value, or "fit".
         speed_exponent [-], of a force C·sgn(v)|v|^m in place of the viscous one, inertia [kg],
             ripple: period [m] of a force over the position; likewise.
-        slip_speed [-]: exponent of a slip force that depends on the speed.
+        slip_speed [-]: exponent of a slip force that depends on the speed. slip_trend [-]: k of
+            one that changes with time, Tc(1 + k·τ), τ from -1 to 1 over the record.
         slip_position: "linear" or "quadratic", a slip force that depends on position, differently
             in the two directions.
         plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
@@ -144,7 +146,8 @@ def fit(
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
                "lag": lag, "asymmetry": asymmetry, "drift": drift,
                "speed_exponent": speed_exponent, "inertia": inertia,
-               "slip_position": slip_position, "slip_speed": slip_speed, "ripple": ripple},
+               "slip_position": slip_position, "slip_speed": slip_speed, "slip_trend": slip_trend,
+               "ripple": ripple},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate, term_choice=terms,
