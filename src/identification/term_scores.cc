@@ -107,10 +107,12 @@ void TermScores::StepFrom(const FitResult& fit, const FitOptions& options,
   const Problem problem = ProblemOf(options);
   const std::vector<double> theta = ThetaOf(problem);
   std::vector<std::size_t> inside;
+  names_.clear();
   for (const std::size_t p : problem.parameters.free()) {
     if (!free_.contains(problem.parameters.NameOf(p))) continue;
     if (SideOf(problem.parameters[p], theta[p]) == BoundSide::kInside) inside.push_back(p);
   }
+  for (const std::size_t p : inside) names_.push_back(problem.parameters.NameOf(p));
   columns_ = JacobianAt(problem, theta, response_, inside, residual_);
 }
 
@@ -158,6 +160,10 @@ std::optional<TermScore> TermScores::Of(const FitOptions& with) {
     TermScore score = Solve(columns, step);
     score.p_value = TestEffects(columns.rightCols(more));
     if (!best || score.rms < best->rms) {
+      for (const std::string_view name : {"sigma", "alpha", "slip_force"}) {
+        const auto place = std::ranges::find(names_, name) - names_.begin();
+        if (place < columns_.cols()) score.law.emplace(name, step(place));
+      }
       for (const std::size_t p : added) score.values[parameters.NameOf(p)] = theta[p];
       for (Eigen::Index c = 0; c < more; ++c) {
         const std::size_t p =

@@ -27,6 +27,7 @@ struct TermScore {
   /// few.
   std::optional<double> p_value;
   std::map<std::string, double> values;  // of the terms' parameters, for a search to begin with
+  std::map<std::string, double> law;     // by how much θ of σ, α and Tc moves
 };
 
 /// Scores terms by one Gauss-Newton step from a fit that does not have them: the residuals are
@@ -77,7 +78,8 @@ class TermScores {
   std::map<std::string, double> values_;  // of its parameters
   std::set<std::string> free_;            // of these
   models::InitialState state_ = models::InitialState::kSteady;
-  Eigen::MatrixXd columns_;  // of those that are inside their bounds
+  Eigen::MatrixXd columns_;         // of those that are inside their bounds
+  std::vector<std::string> names_;  // of these
   Eigen::VectorXd residual_;
   std::span<const Part> parts_;
   std::size_t folds_ = 0;

@@ -9,9 +9,13 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/grade.h"
 #include "identification/free_parameters.h"
 #include "identification/held_out.h"
 #include "identification/inference/evidence.h"
+#include "identification/intervals.h"
+#include "identification/judge/judge.h"
 #include "identification/problem/parameters.h"
 #include "identification/term_scores.h"
 #include "mindahl/core/error.h"
@@ -196,6 +200,43 @@ bool IsUnphysical(const TermScore& score) {
   });
 }
 
+/// What another candidate of a round, in place of the one that was added, would make of the law.
+struct Alternative {
+  std::string name;
+  std::map<std::string, double> law;  // differences of θ of σ, α and Tc
+};
+
+/// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
+/// slides has carried.
+void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
+                         FitResult& fit) {
+  constexpr double kFarthest = 3.0;  // of a linear step: a factor of e³
+  const loop::LoopFacts& facts = fit.WidestRecord().facts;
+  const bool slides = SlidesOverMostOfStroke(facts, thresholds);
+  for (const Alternative& alternative : alternatives) {
+    for (const auto& [name, difference] : alternative.law) {
+      const auto estimate = std::ranges::find(fit.parameters, name, &ParameterEstimate::name);
+      if (estimate == fit.parameters.end() || !estimate->lower95 || !estimate->upper95) continue;
+      const double step = std::clamp(difference, -kFarthest, kFarthest);
+      const bool is_shape = name == "alpha";
+      double value =
+          is_shape ? std::max(0.0, estimate->value + step) : estimate->value * std::exp(step);
+      if (name == "slip_force" && slides) {
+        const double ratio = fit.WidestRecord().load_ratio;
+        value = std::clamp(value, std::min(*facts.half_gap / ratio, estimate->value),
+                           std::max(facts.peak_force / ratio, estimate->value));
+      }
+      Include(*estimate, {.source = IntervalSource::kOmittedTerms, .lower = value, .upper = value});
+    }
+  }
+  for (Finding& finding : FindWideIntervals(fit, thresholds)) {
+    const bool is_there = std::ranges::any_of(
+        fit.findings, [&](const Finding& other) { return other.code == finding.code; });
+    if (!is_there) fit.findings.push_back(std::move(finding));
+  }
+  Judge(fit.parameters, fit.findings);
+}
+
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -227,6 +268,7 @@ class Selection {
                                             std::span<const TermTrial> trials) const;
   bool Round(std::vector<TermCandidate>& candidates, CandidateModel& base, FitResult& judged);
   bool Accept(CandidateModel& model, FitResult& judged);
+  void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
   [[nodiscard]] double SquaresOf(double rms) const { return SumOfSquares(rms, samples_); }
   [[nodiscard]] bool MayFit(std::size_t more) const {
     return result_.estimates + more <= selection_.most_fits;
@@ -236,6 +278,7 @@ class Selection {
   const TermSelectionOptions& selection_;
   TermSelection& result_;
   std::optional<TermScores> scores_;
+  std::vector<Alternative> alternatives_;
   ScoredSamples samples_;
   std::vector<Part> parts_;
   std::size_t folds_ = 0;
@@ -416,6 +459,25 @@ std::vector<const Selection::TermTrial*> Selection::WithSimpler(
   return all;
 }
 
+/// Keeps what candidates that gain at least half as much as the one that is added would make of the
+/// law: the record may have been made by them.
+void Selection::KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials,
+                                 double chance) {
+  constexpr double kOfGain = 0.5;
+  for (const TermTrial& other : trials) {
+    const ConsideredTerm& considered = other.candidate->considered;
+    const bool explains = considered.p_value < chance &&
+                          considered.gain >= kOfGain * added.candidate->considered.gain;
+    if (&other == &added || !explains || !other.candidate->covariate.empty()) continue;
+    if (considered.obstacle == "unphysical") continue;
+    Alternative& alternative = alternatives_.emplace_back(Alternative{considered.name, {}});
+    for (const auto& [name, step] : other.score.law) {
+      const auto of_added = added.score.law.find(name);
+      if (of_added != added.score.law.end()) alternative.law.emplace(name, step - of_added->second);
+    }
+  }
+}
+
 /// Moves to the model with the best candidate that is no chance; false where there is none.
 bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
                       FitResult& judged) {
@@ -453,6 +515,7 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
         considered.obstacle = "confounded";
         continue;
       }
+      KeepAlternatives(*trial, trials, chance);
       considered.gain = gain;
       considered.added = true;
       result_.added.push_back(considered.name);
@@ -479,7 +542,10 @@ void Selection::Run(const FitOptions& options) {
   Fitter first(options);
   result_.options = options;
   result_.fit = first.Fit(records_, Depth::kThorough);
-  const bool is_described = result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
+  const Adequacy& adequacy = result_.fit.adequacy;
+  const bool is_described =
+      adequacy.verdict == AdequacyVerdict::kAdequate ||
+      (selection_.keeps_quantitative_law && adequacy.use == Use::kQuantitative);
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
 
   std::vector<TermCandidate> candidates = ListTermCandidates(records_, options, result_.fit);
@@ -515,6 +581,12 @@ void Selection::Run(const FitOptions& options) {
   ++result_.estimates;
   Fitter last(from_here);
   result_.fit = last.Fit(records_, Depth::kThorough);
+  std::erase_if(alternatives_, [&](const Alternative& alternative) {
+    return std::ranges::find(result_.added, alternative.name) != result_.added.end();
+  });
+  if (IsFitted(result_.fit)) {
+    IncludeAlternatives(alternatives_, base.options.thresholds, result_.fit);
+  }
 }
 
 }  // namespace

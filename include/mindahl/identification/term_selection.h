@@ -25,6 +25,8 @@ struct TermSelectionOptions {
   double smallest_gain = 0.03;
   std::size_t most_terms = 5;  ///< that are added
   std::size_t most_fits = 15;  ///< in all
+  /// Adds none to a law that misses so little that it is of quantitative use.
+  bool keeps_quantitative_law = false;
 };
 
 /// A term, or a few that are one, that a record may require.
