@@ -543,9 +543,8 @@ void Selection::Run(const FitOptions& options) {
   result_.options = options;
   result_.fit = first.Fit(records_, Depth::kThorough);
   const Adequacy& adequacy = result_.fit.adequacy;
-  const bool is_described =
-      adequacy.verdict == AdequacyVerdict::kAdequate ||
-      (selection_.keeps_quantitative_law && adequacy.use == Use::kQuantitative);
+  const bool is_described = adequacy.verdict == AdequacyVerdict::kAdequate ||
+                            (selection_.only_for_use && adequacy.use == Use::kQuantitative);
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
 
   std::vector<TermCandidate> candidates = ListTermCandidates(records_, options, result_.fit);
@@ -570,6 +569,10 @@ void Selection::Run(const FitOptions& options) {
     return std::ranges::find(result_.added, term.name) - result_.added.begin();
   };
   std::ranges::stable_sort(result_.considered, {}, place);
+  if (selection_.only_for_use && judged.adequacy.use == Use::kNone) {
+    for (ConsideredTerm& term : result_.considered) term.added = false;
+    result_.added.clear();
+  }
   if (result_.added.empty()) return;
   result_.options = base.options;
   FitOptions from_here = base.options;

@@ -242,8 +242,7 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
       if (chosen.rig) of_terms.terms.emplace_back("rig_stiffness");
     }
     if (chooses_terms) {
-      terms =
-          identification::SelectTerms(records, of_terms, {.keeps_quantitative_law = by_default});
+      terms = identification::SelectTerms(records, of_terms, {.only_for_use = by_default});
       identification::FitResult fit = std::move(terms->fit);
       // A law that is enough is reported as without a choice.
       if (by_default && terms->considered.empty()) terms.reset();

@@ -25,8 +25,9 @@ struct TermSelectionOptions {
   double smallest_gain = 0.03;
   std::size_t most_terms = 5;  ///< that are added
   std::size_t most_fits = 15;  ///< in all
-  /// Adds none to a law that misses so little that it is of quantitative use.
-  bool keeps_quantitative_law = false;
+  /// Adds none to a law that is of quantitative use by itself, nor where the law is of no use with
+  /// them either.
+  bool only_for_use = false;
 };
 
 /// A term, or a few that are one, that a record may require.
