@@ -27,7 +27,7 @@ def request_of(
     *, model: str, initial_state: str, force_sign: str, offsets: Union[bool, str],
     terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
     starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
-    noise_in: str = "force", term_choice: Union[str, Sequence[str]] = "none",
+    noise_in: str = "force", term_choice: Union[None, str, Sequence[str]] = None,
     confidence: float = 0.95,
 ) -> _mindahl.FitRequest:
     request = _mindahl.FitRequest()
@@ -40,7 +40,8 @@ def request_of(
     request.fix = assignments("fix", fix)
     request.start = assignments("start", start)
     request.bound = bounds(bound)
-    request.term_choice = term_choice if isinstance(term_choice, str) else ",".join(term_choice)
+    if term_choice is not None:
+        request.term_choice = term_choice if isinstance(term_choice, str) else ",".join(term_choice)
     request.loss = loss
     request.starts = count("starts", starts, 1)
     request.seed = count("seed", seed, 0)
@@ -70,8 +71,9 @@ def fit(
     asymmetry: Optional[Asked] = None, drift: bool = False,
     speed_exponent: Optional[Asked] = None, inertia: Optional[Asked] = None,
     slip_position: Optional[str] = None, slip_speed: Optional[Asked] = None,
+    slip_trend: Optional[Asked] = None,
     ripple: Optional[Asked] = None,
-    terms: Union[str, Sequence[str]] = "none",
+    terms: Union[None, str, Sequence[str]] = None,
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
     bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
@@ -110,12 +112,14 @@ def fit(
             slip_force·(1 ± asymmetry): a known value, or "fit".
         speed_exponent [-], of a force C·sgn(v)|v|^m in place of the viscous one, inertia [kg],
             ripple: period [m] of a force over the position; likewise.
-        slip_speed [-]: exponent of a slip force that depends on the speed.
+        slip_speed [-]: exponent of a slip force that depends on the speed. slip_trend [-]: k of
+            one that changes with time, Tc(1 + k·τ), τ from -1 to 1 over the record.
         slip_position: "linear" or "quadratic", a slip force that depends on position, differently
             in the two directions.
         plateau_slope [N/m], drift [N/s], of a fitted displacement [m/s]: fitted where True.
         terms: "auto" adds those that the record requires, one at a time by predicting cycles
-            held out of the fit; "none"; or names of what is fitted.
+            held out of the fit; "none"; or names of what is fitted. None: "auto" for one record
+            that the law follows to no better than 5 % of the half gap, where no term is given.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
         fix, start: parameter to value; bound: parameter to (low, high); SI units.
@@ -148,7 +152,8 @@ def fit(
         terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
                "lag": lag, "asymmetry": asymmetry, "drift": drift,
                "speed_exponent": speed_exponent, "inertia": inertia,
-               "slip_position": slip_position, "slip_speed": slip_speed, "ripple": ripple},
+               "slip_position": slip_position, "slip_speed": slip_speed, "slip_trend": slip_trend,
+               "ripple": ripple},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate, term_choice=terms,

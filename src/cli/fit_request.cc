@@ -222,8 +222,9 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       .add_option("--terms", options.term_choice,
                   "auto adds the terms that the record requires, one at a time by\n"
                   "cycles held out of the fit; NAME,NAME,... fits these:\n" +
-                      InLines(TermGroupNames(), 4))
-      ->capture_default_str()
+                      InLines(TermGroupNames(), 4) +
+                      "\nnot given: as auto, of one record that the law follows to no better\n"
+                      "than 5 % and without options for terms, else none; of track none")
       ->type_name("auto|none|NAME,...")
       ->group(group);
   command

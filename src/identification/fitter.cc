@@ -664,6 +664,7 @@ void InferErrors(const Attempt& attempt, const Problem& problem, const Solution&
                             std::move(at));
   FillErrors(problem, estimates, result);
   WidenByProfiles(attempt, problem, solution, noise, estimates, result);
+  CoverSlipFactor(problem, solution, result);
   KeepAboveCarriedForce(result);
   Append(result.findings, FindSearchLimit(problem, solution));
   Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
@@ -734,6 +735,7 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
     break;  // one says it
   }
   ConsiderDepartures(problem, solution, noise, displacement, estimates, options, buffers, result);
+  CoverSlipFactor(problem, solution, result);
   KeepAboveCarriedForce(result);
   Append(result.findings, FindUnseenLoop(result, options.thresholds));
   for (Finding& finding : FindWideIntervals(result, options.thresholds)) {

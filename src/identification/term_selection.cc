@@ -2,14 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "core/extremes.h"
+#include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/grade.h"
 #include "identification/free_parameters.h"
 #include "identification/held_out.h"
 #include "identification/inference/evidence.h"
+#include "identification/intervals.h"
+#include "identification/judge/judge.h"
 #include "identification/problem/parameters.h"
+#include "identification/term_scores.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
 
@@ -27,7 +35,6 @@ struct TermCandidate {
   ConsideredTerm considered;
   std::vector<std::string> terms;
   std::string covariate;  // the column; empty where it is none
-  bool is_given_up = false;
 
   [[nodiscard]] std::size_t size() const { return terms.size() + (covariate.empty() ? 0 : 1); }
   [[nodiscard]] bool is_lag() const { return considered.name == "lag"; }
@@ -43,7 +50,6 @@ struct CandidateModel {
   FitOptions options;  // as the user gives them, with terms
   FitResult fit;
   double sum_of_squares = std::numeric_limits<double>::infinity();  // in units of rounding
-  std::vector<double> predictions;  // mean squares [N²] of the parts; empty until they are made
 };
 
 /// Correlation of two columns of one size; 0 where one is constant.
@@ -146,22 +152,23 @@ std::vector<TermCandidate> ListTermCandidates(std::span<const RecordView> record
   return candidates;
 }
 
-/// Returns the initial value for the search of a term that is not linear.
-/// @param law  the fit without it
-std::optional<double> FirstGuess(std::string_view term, const FitResult& law) {
+/// Where the search for the terms of a candidate begins: where its linear step ends, but for a rig,
+/// which is infinitely far from none.
+/// @param law  the fit without them
+std::map<std::string, double> StartsOf(const TermScore& score, const FitResult& law) {
   constexpr double kHardlyCompliant = 10.0;  // times the contact's stiffness
-  if (term == "lag" || term == "asymmetry") return 0.0;
-  if (term == "rig_stiffness") return kHardlyCompliant * law.law.tangential_stiffness;
-  return std::nullopt;
+  std::map<std::string, double> starts = score.values;
+  const auto rig = starts.find("rig_stiffness");
+  if (rig != starts.end()) rig->second = kHardlyCompliant * law.law.tangential_stiffness;
+  return starts;
 }
 
 /// True if a fit has a slip force that another one has lost: the interval that was closed is open,
-/// or, of a loop that mostly slides, Tc left the half gap that was measured by more than half of
-/// it.
+/// or, of a loop that mostly slides, Tc left the half gap that was measured by more than a quarter.
 /// @param widest_ratio  of the ends of an interval that is closed
 bool LosesSlipForce(const FitResult& without, const FitResult& with, double widest_ratio) {
   constexpr double kMostlySlides = 0.5;  // energy ratio
-  constexpr double kRunsAway = 1.5;      // times the half gap
+  constexpr double kRunsAway = 1.25;     // times the half gap
   const auto is_closed = [&](const FitResult& fit) {
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
     return slip_force.lower95 && slip_force.upper95 &&
@@ -177,12 +184,57 @@ bool LosesSlipForce(const FitResult& without, const FitResult& with, double wide
   return is_that_of_the_gap(without) && !is_that_of_the_gap(with);
 }
 
-/// True if a mass or a damping is negative: the term stands for something else.
+/// True if a term cannot be negative: a mass or a damping that is stands for something else.
+bool IsPositiveTerm(std::string_view name) { return name == "inertia" || name == "viscous"; }
+
 bool IsUnphysical(const FitResult& fit) {
   return std::ranges::any_of(fit.parameters, [](const ParameterEstimate& estimate) {
-    const bool is_positive = estimate.name == "inertia" || estimate.name == "viscous";
-    return is_positive && estimate.status != ParameterStatus::kFixed && estimate.value < 0;
+    return IsPositiveTerm(estimate.name) && estimate.status != ParameterStatus::kFixed &&
+           estimate.value < 0;
   });
+}
+
+bool IsUnphysical(const TermScore& score) {
+  return std::ranges::any_of(score.values, [](const auto& value) {
+    return IsPositiveTerm(value.first) && value.second < 0;
+  });
+}
+
+/// What another candidate of a round, in place of the one that was added, would make of the law.
+struct Alternative {
+  std::string name;
+  std::map<std::string, double> law;  // differences of θ of σ, α and Tc
+};
+
+/// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
+/// slides has carried.
+void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresholds& thresholds,
+                         FitResult& fit) {
+  constexpr double kFarthest = 3.0;  // of a linear step: a factor of e³
+  const loop::LoopFacts& facts = fit.WidestRecord().facts;
+  const bool slides = SlidesOverMostOfStroke(facts, thresholds);
+  for (const Alternative& alternative : alternatives) {
+    for (const auto& [name, difference] : alternative.law) {
+      const auto estimate = std::ranges::find(fit.parameters, name, &ParameterEstimate::name);
+      if (estimate == fit.parameters.end() || !estimate->lower95 || !estimate->upper95) continue;
+      const double step = std::clamp(difference, -kFarthest, kFarthest);
+      const bool is_shape = name == "alpha";
+      double value =
+          is_shape ? std::max(0.0, estimate->value + step) : estimate->value * std::exp(step);
+      if (name == "slip_force" && slides) {
+        const double ratio = fit.WidestRecord().load_ratio;
+        value = std::clamp(value, std::min(*facts.half_gap / ratio, estimate->value),
+                           std::max(facts.peak_force / ratio, estimate->value));
+      }
+      Include(*estimate, {.source = IntervalSource::kOmittedTerms, .lower = value, .upper = value});
+    }
+  }
+  for (Finding& finding : FindWideIntervals(fit, thresholds)) {
+    const bool is_there = std::ranges::any_of(
+        fit.findings, [&](const Finding& other) { return other.code == finding.code; });
+    if (!is_there) fit.findings.push_back(std::move(finding));
+  }
+  Judge(fit.parameters, fit.findings);
 }
 
 class Selection {
@@ -194,21 +246,39 @@ class Selection {
   void Run(const FitOptions& options);
 
  private:
+  /// A candidate that was scored in a round.
+  struct TermTrial {
+    TermCandidate* candidate;
+    TermScore score;
+    double sum_of_squares;  // in units of rounding, after the linear step
+    double rank;            // ln of the rms of prediction; or ΔAICc
+  };
+
   [[nodiscard]] FitOptions With(const TermCandidate& candidate, FitOptions options) const;
-  std::optional<CandidateModel> FitFrom(const CandidateModel& base, const TermCandidate* candidate);
-  std::optional<CandidateModel> FitAnew(const FitOptions& options);
-  void KeepToSamplesOfLag(const FitOptions& options);
+  std::optional<CandidateModel> FitFrom(const CandidateModel& base, FitOptions options,
+                                        const std::map<std::string, double>& starts);
+  void MakeScores(const FitOptions& options, const FitResult& law,
+                  std::span<const TermCandidate> candidates);
   void DivideIntoParts(const FitResult& fit);
-  bool Predict(CandidateModel& model);
-  void Judge(const CandidateModel& base, const CandidateModel& trial,
-             ConsideredTerm& considered) const;
+  void Judge(const TermScore& base, const TermScore& trial, ConsideredTerm& considered) const;
+  std::vector<TermTrial> ScoreCandidates(std::vector<TermCandidate>& candidates,
+                                         const CandidateModel& base, const FitResult& judged);
+  bool IsRefused(const TermTrial& trial, std::span<const TermTrial> trials) const;
+  std::vector<const TermTrial*> WithSimpler(const TermTrial& trial,
+                                            std::span<const TermTrial> trials) const;
   bool Round(std::vector<TermCandidate>& candidates, CandidateModel& base, FitResult& judged);
   bool Accept(CandidateModel& model, FitResult& judged);
-  [[nodiscard]] double SquaresOf(const FitResult& fit) const;
+  void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
+  [[nodiscard]] double SquaresOf(double rms) const { return SumOfSquares(rms, samples_); }
+  [[nodiscard]] bool MayFit(std::size_t more) const {
+    return result_.estimates + more <= selection_.most_fits;
+  }
 
   std::span<const RecordView> records_;
   const TermSelectionOptions& selection_;
   TermSelection& result_;
+  std::optional<TermScores> scores_;
+  std::vector<Alternative> alternatives_;
   ScoredSamples samples_;
   std::vector<Part> parts_;
   std::size_t folds_ = 0;
@@ -221,14 +291,13 @@ FitOptions Selection::With(const TermCandidate& candidate, FitOptions options) c
   return options;
 }
 
-double Selection::SquaresOf(const FitResult& fit) const { return SumOfSquares(fit.rms, samples_); }
-
 /// Fits from the solution of a smaller model; nothing where the data are not enough, or it fails.
-std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base,
-                                                 const TermCandidate* candidate) {
+/// @param options  with the terms of the larger one
+/// @param starts   of these
+std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, FitOptions options,
+                                                 const std::map<std::string, double>& starts) {
   CandidateModel model;
-  model.options = candidate != nullptr ? With(*candidate, base.options) : base.options;
-  FitOptions options = model.options;
+  model.options = options;
   HoldInitialStates(base.fit, options);
   options.preparation.force_sense = base.fit.force_sense;
   options.preparation.held_out = held_out_;
@@ -238,54 +307,38 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base,
     if (parameter.status != ParameterStatus::kFixed)
       options.start[parameter.name] = parameter.value;
   }
-  for (const std::string& term : candidate != nullptr ? candidate->terms : base.options.terms) {
-    const std::optional<double> start = FirstGuess(term, base.fit);
-    if (start) options.start.emplace(term, *start);
-  }
+  for (const auto& [name, value] : starts) options.start[name] = value;
   try {
     ++result_.estimates;
     Fitter fitter(options);
     model.fit = fitter.Fit(records_, Depth::kEstimate);
   } catch (const InvalidArgument&) {
-    return std::nullopt;  // it is confounded with the others here, or the rig is softer than the
-                          // loop
+    return std::nullopt;  // not identifiable here, or the rig is softer than the loop
   }
   if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;
-  model.sum_of_squares = SquaresOf(model.fit);
+  model.sum_of_squares = SquaresOf(model.fit.rms);
   return model;
 }
 
-/// Fits from the data alone.
-std::optional<CandidateModel> Selection::FitAnew(const FitOptions& options) {
-  CandidateModel model;
-  model.options = options;
-  FitOptions whole = options;
-  whole.preparation.held_out = held_out_;
-  ++result_.estimates;
-  Fitter fitter(whole);
-  model.fit = fitter.Fit(records_, Depth::kEstimate);
-  if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;
-  model.sum_of_squares = SquaresOf(model.fit);
-  return model;
-}
-
-/// Leaves out for all what a lag would leave out: else fits would be compared on other samples.
-void Selection::KeepToSamplesOfLag(const FitOptions& options) {
-  FitOptions with_lag = options;
-  if (!HasTerm(options, "lag")) with_lag.fixed.emplace("lag", 0.0);
-  Fitter fitter(with_lag);
+/// Prepares the records for all candidates at once. What a lag leaves out is left out for all: else
+/// fits would be compared on other samples.
+void Selection::MakeScores(const FitOptions& options, const FitResult& law,
+                           std::span<const TermCandidate> candidates) {
+  std::vector<std::string> terms;
+  std::vector<std::string> covariates = options.covariates;
+  for (const TermCandidate& candidate : candidates) {
+    terms.insert(terms.end(), candidate.terms.begin(), candidate.terms.end());
+    if (!candidate.covariate.empty()) covariates.push_back(candidate.covariate);
+  }
+  FitOptions as_fitted = options;
+  as_fitted.preparation.force_sense = law.force_sense;
   try {
-    const FitResult& fit = fitter.Fit(records_, Depth::kEstimate);
-    held_out_.resize(records_.size());
-    for (std::size_t r = 0; r < records_.size(); ++r) {
-      held_out_[r].assign(records_[r].size(), false);
-      for (std::size_t i = 0; i < records_[r].size(); ++i) {
-        held_out_[r][i] = fit.records[r].counts[i] == 0;
-      }
-    }
+    scores_.emplace(records_, as_fitted, terms, covariates);
   } catch (const InvalidArgument&) {
-    held_out_ = options.preparation.held_out;  // no time that goes on: no lag either
+    std::erase(terms, "lag");  // no time that goes on
+    scores_.emplace(records_, as_fitted, terms, covariates);
   }
+  held_out_ = scores_->LeftOut();
 }
 
 /// Into cycles where there are four, else into strokes.
@@ -298,20 +351,10 @@ void Selection::DivideIntoParts(const FitResult& fit) {
   result_.held_out_parts = parts_.size();
 }
 
-/// Fills the predictions of the parts; false where a fit without some of them failed.
-bool Selection::Predict(CandidateModel& model) {
-  if (!model.predictions.empty() || parts_.empty()) return true;
-  FitOptions options = ContinuedFrom(model.fit, model.options);
-  options.preparation.held_out = held_out_;
-  result_.estimates += folds_;
-  model.predictions = PredictParts(records_, std::move(options), CountFreeParameters(model.fit),
-                                   samples_, parts_, folds_);
-  return !model.predictions.empty();
-}
-
-/// The gain of prediction and its probability by chance: by the logarithms of the ratios of errors,
-/// part by part, which a few parts with large errors do not make or hide.
-void Selection::Judge(const CandidateModel& base, const CandidateModel& trial,
+/// The gain of prediction, by the logarithms of the ratios of errors, part by part, which a few
+/// parts with large errors do not make or hide; and its probability by chance, by the terms'
+/// effects on the parts or, of few parts, by these logarithms.
+void Selection::Judge(const TermScore& base, const TermScore& trial,
                       ConsideredTerm& considered) const {
   const double rounding = samples_.rounding * samples_.rounding;
   std::vector<double> log_ratio(parts_.size());
@@ -321,108 +364,171 @@ void Selection::Judge(const CandidateModel& base, const CandidateModel& trial,
                    2;
   }
   const MeanOverParts gain = Mean(log_ratio, parts_, folds_);
-  considered.is_predicted = true;
   considered.gain = 1 - std::exp(-gain.mean);
+  if (trial.p_value) {
+    considered.p_value = *trial.p_value;
+    return;
+  }
   const double t = gain.standard_error > 0 ? gain.mean / gain.standard_error : 0.0;
   const double beyond = PValueOfF(t * t, static_cast<double>(parts_.size() - 1)) / 2;
   considered.p_value = t > 0 ? beyond : 1 - beyond;
 }
 
+/// Scores every candidate that is left by a linear step; the best first.
+std::vector<Selection::TermTrial> Selection::ScoreCandidates(std::vector<TermCandidate>& candidates,
+                                                             const CandidateModel& base,
+                                                             const FitResult& judged) {
+  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
+                                                   static_cast<double>(samples_.count)));
+  const std::size_t free = CountFreeParameters(base.fit);
+  scores_->StepFrom(base.fit, base.options, parts_, folds_);
+  const TermScore before = scores_->OfFit();
+  std::vector<TermTrial> trials;
+  for (TermCandidate& candidate : candidates) {
+    ConsideredTerm& considered = candidate.considered;
+    if (considered.added) continue;
+    std::erase_if(candidate.terms,
+                  [&](const std::string& term) { return HasTerm(base.options, term); });
+    if (candidate.size() == 0) {  // another one that was added has it all
+      considered.gain = 0.0;
+      considered.p_value = 1.0;
+      continue;
+    }
+    std::optional<TermScore> score;
+    try {
+      score = scores_->Of(With(candidate, base.options));
+    } catch (const InvalidArgument&) {
+      continue;  // no lag where time does not go on
+    }
+    if (!score) continue;
+    considered.is_predicted = !parts_.empty();
+    if (considered.obstacle != "confounded") considered.obstacle = "";
+    TermTrial trial{&candidate, std::move(*score), 0.0, 0.0};
+    trial.sum_of_squares = SquaresOf(trial.score.rms);
+    if (considered.is_predicted) {
+      Judge(before, trial.score, considered);
+      trial.rank = -considered.gain;
+    } else {
+      const double squares = SquaresOf(before.rms);
+      const double ratio = evidence.LikelihoodRatio(squares, trial.sum_of_squares);
+      considered.gain = 1 - std::min(trial.score.rms / before.rms, 1.0);
+      considered.p_value =
+          ratio > 0 ? PValueOfChiSquared(ratio, static_cast<double>(candidate.size())) : 1.0;
+      trial.rank = evidence.Aicc(trial.sum_of_squares, free + candidate.size()) -
+                   evidence.Aicc(squares, free);
+    }
+    trials.push_back(std::move(trial));
+  }
+  std::ranges::stable_sort(trials, {}, &TermTrial::rank);
+  return trials;
+}
+
+/// True if a candidate that gains is not to be added, and says why where that is to be reported.
+bool Selection::IsRefused(const TermTrial& trial, std::span<const TermTrial> trials) const {
+  ConsideredTerm& considered = trial.candidate->considered;
+  if (considered.obstacle == "confounded") return true;
+  const bool is_of_knee =
+      trial.candidate->is_lag() && std::ranges::any_of(trials, [&](const TermTrial& other) {
+        return other.candidate->is_of_speed() && other.sum_of_squares < 2 * trial.sum_of_squares;
+      });
+  if (is_of_knee) considered.obstacle = "rate_dependent";
+  if (IsUnphysical(trial.score)) considered.obstacle = "unphysical";
+  return !considered.obstacle.empty();
+}
+
+/// Returns the candidates that have some of a candidate's terms and at least half its gain, the
+/// simplest first, and the candidate itself.
+std::vector<const Selection::TermTrial*> Selection::WithSimpler(
+    const TermTrial& trial, std::span<const TermTrial> trials) const {
+  constexpr double kOfGain = 0.5;
+  std::vector<const TermTrial*> all;
+  for (const TermTrial& other : trials) {
+    const std::vector<std::string>& terms = trial.candidate->terms;
+    const auto is_of_trial = [&](const std::string& term) {
+      return std::ranges::find(terms, term) != terms.end();
+    };
+    const bool is_simpler = other.candidate->covariate.empty() &&
+                            other.candidate->terms.size() < terms.size() &&
+                            std::ranges::all_of(other.candidate->terms, is_of_trial);
+    const bool gains =
+        other.candidate->considered.gain >= kOfGain * trial.candidate->considered.gain;
+    if (is_simpler && gains && !IsRefused(other, trials)) all.push_back(&other);
+  }
+  std::ranges::stable_sort(all, {}, [](const TermTrial* one) { return one->candidate->size(); });
+  all.push_back(&trial);
+  return all;
+}
+
+/// Keeps what candidates that gain at least half as much as the one that is added would make of the
+/// law: the record may have been made by them.
+void Selection::KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials,
+                                 double chance) {
+  constexpr double kOfGain = 0.5;
+  for (const TermTrial& other : trials) {
+    const ConsideredTerm& considered = other.candidate->considered;
+    const bool explains = considered.p_value < chance &&
+                          considered.gain >= kOfGain * added.candidate->considered.gain;
+    if (&other == &added || !explains || !other.candidate->covariate.empty()) continue;
+    if (considered.obstacle == "unphysical") continue;
+    Alternative& alternative = alternatives_.emplace_back(Alternative{considered.name, {}});
+    for (const auto& [name, step] : other.score.law) {
+      const auto of_added = added.score.law.find(name);
+      if (of_added != added.score.law.end()) alternative.law.emplace(name, step - of_added->second);
+    }
+  }
+}
+
 /// Moves to the model with the best candidate that is no chance; false where there is none.
 bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
                       FitResult& judged) {
-  constexpr std::size_t kPredicted = 4;
-  constexpr double kHopelessGain = 0.1;  // of the least gain: not tried again in later rounds
-  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
-                                                   static_cast<double>(samples_.count)));
-  const double before = evidence.Aicc(base.sum_of_squares, CountFreeParameters(base.fit));
-  struct TermTrial {
-    TermCandidate* candidate;
-    CandidateModel model;
-    double delta_aicc;
-    double rank;  // ln of the rms with each parameter taken for worth the least gain; or ΔAICc
-  };
-  std::vector<TermTrial> trials;
-  double least_of_speed = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kMostTried = 3;  // fits a round
+  const std::vector<TermTrial> trials = ScoreCandidates(candidates, base, judged);
+  const double chance =
+      selection_.chance / static_cast<double>(std::max<std::size_t>(trials.size(), 1));
+  // A simpler candidate is taken where a larger one would not leave that much less.
+  const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
   std::size_t tried = 0;
-  for (TermCandidate& candidate : candidates) {
-    ConsideredTerm& considered = candidate.considered;
-    if (considered.added || candidate.is_given_up) continue;
-    std::optional<CandidateModel> model = FitFrom(base, &candidate);
-    if (!model) continue;
-    ++tried;
-    const double ratio = evidence.LikelihoodRatio(base.sum_of_squares, model->sum_of_squares);
-    considered.gain = 1 - std::sqrt(std::min(model->sum_of_squares / base.sum_of_squares, 1.0));
-    considered.p_value =
-        ratio > 0 ? PValueOfChiSquared(ratio, static_cast<double>(candidate.size())) : 1.0;
-    considered.is_predicted = false;
-    if (considered.obstacle != "confounded") considered.obstacle = "";
-    candidate.is_given_up =
-        !result_.added.empty() && considered.gain < kHopelessGain * selection_.smallest_gain;
-    if (candidate.is_of_speed()) least_of_speed = std::min(least_of_speed, model->sum_of_squares);
-    const double delta =
-        evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) - before;
-    const double rank = parts_.empty()
-                            ? delta
-                            : std::log(model->sum_of_squares) / 2 +
-                                  selection_.smallest_gain * static_cast<double>(candidate.size());
-    trials.push_back({&candidate, std::move(*model), delta, rank});
-  }
-  std::ranges::stable_sort(trials, {}, &TermTrial::rank);
-  const double chance = selection_.chance / static_cast<double>(std::max<std::size_t>(tried, 1));
-  // True if a candidate with only some of these terms explains nearly as much.
-  const auto simpler_does = [&](const TermTrial& trial) {
-    const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
-    return std::ranges::any_of(trials, [&](const TermTrial& other) {
-      return other.candidate->terms.size() < trial.candidate->terms.size() &&
-             other.candidate->covariate.empty() &&
-             std::ranges::all_of(other.candidate->terms,
-                                 [&](const std::string& term) {
-                                   return std::ranges::find(trial.candidate->terms, term) !=
-                                          trial.candidate->terms.end();
-                                 }) &&
-             other.model.sum_of_squares <= nearly * trial.model.sum_of_squares;
-    });
-  };
-  std::size_t predicted = 0;
-  for (TermTrial& trial : trials) {
-    ConsideredTerm& considered = trial.candidate->considered;
-    if (simpler_does(trial)) continue;
-    if (parts_.empty() && !(trial.delta_aicc < 0)) continue;
-    if (considered.gain < selection_.smallest_gain) continue;
-    if (considered.obstacle == "confounded") continue;
-    if (trial.candidate->is_lag() && trial.model.sum_of_squares > least_of_speed / 2) {
-      considered.obstacle = "rate_dependent";
-      continue;
+  std::vector<const TermCandidate*> fitted;
+  for (const TermTrial& best : trials) {
+    const ConsideredTerm& wanted = best.candidate->considered;
+    if (parts_.empty() && !(best.rank < 0)) continue;
+    if (!(wanted.p_value < chance) || wanted.gain < selection_.smallest_gain) continue;
+    if (IsRefused(best, trials)) continue;
+    for (const TermTrial* trial : WithSimpler(best, trials)) {
+      if (std::ranges::find(fitted, trial->candidate) != fitted.end()) continue;
+      constexpr std::size_t kOfCandidate = 2;  // fits: of it, and with intervals
+      if (tried == kMostTried || !MayFit(kOfCandidate + 1)) return false;
+      ++tried;
+      fitted.push_back(trial->candidate);
+      ConsideredTerm& considered = trial->candidate->considered;
+      std::optional<CandidateModel> model =
+          FitFrom(base, With(*trial->candidate, base.options), StartsOf(trial->score, base.fit));
+      if (!model || !(model->sum_of_squares < base.sum_of_squares)) continue;
+      if (trial != &best && model->sum_of_squares > nearly * best.sum_of_squares) continue;
+      const double gain = 1 - std::sqrt(model->sum_of_squares / base.sum_of_squares);
+      if (gain < selection_.smallest_gain) continue;
+      if (IsUnphysical(model->fit)) {
+        considered.obstacle = "unphysical";
+        continue;
+      }
+      if (!Accept(*model, judged)) {
+        considered.obstacle = "confounded";
+        continue;
+      }
+      KeepAlternatives(*trial, trials, chance);
+      considered.gain = gain;
+      considered.added = true;
+      result_.added.push_back(considered.name);
+      base = std::move(*model);
+      return true;
     }
-    if (IsUnphysical(trial.model.fit)) {
-      considered.obstacle = "unphysical";
-      continue;
-    }
-    if (predicted == kPredicted) break;
-    ++predicted;
-    if (!parts_.empty()) {
-      if (!Predict(base) || !Predict(trial.model)) continue;
-      Judge(base, trial.model, considered);
-    }
-    if (!(considered.p_value < chance) || considered.gain < selection_.smallest_gain) continue;
-    if (!Accept(trial.model, judged)) {
-      considered.obstacle = "confounded";
-      continue;
-    }
-    considered.added = true;
-    result_.added.push_back(considered.name);
-    base = std::move(trial.model);
-    return true;
   }
   return false;
 }
 
 /// True if a larger model keeps the slip force of the one that was judged, which it then replaces.
 bool Selection::Accept(CandidateModel& model, FitResult& judged) {
-  // Its minimum may be elsewhere.
-  std::optional<CandidateModel> anew = FitAnew(model.options);
-  if (anew && anew->sum_of_squares < model.sum_of_squares) model = std::move(*anew);
+  ++result_.estimates;
   Fitter fitter(ContinuedFrom(model.fit, model.options));
   const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
   if (!IsFitted(now) || IsUnphysical(now)) return false;
@@ -432,24 +538,26 @@ bool Selection::Accept(CandidateModel& model, FitResult& judged) {
 }
 
 void Selection::Run(const FitOptions& options) {
+  ++result_.estimates;
   Fitter first(options);
   result_.options = options;
   result_.fit = first.Fit(records_, Depth::kThorough);
-  const bool is_described = result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
+  const Adequacy& adequacy = result_.fit.adequacy;
+  const bool is_described = adequacy.verdict == AdequacyVerdict::kAdequate ||
+                            (selection_.only_for_use && adequacy.use == Use::kQuantitative);
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
 
-  KeepToSamplesOfLag(options);
+  std::vector<TermCandidate> candidates = ListTermCandidates(records_, options, result_.fit);
+  MakeScores(options, result_.fit, candidates);
   CandidateModel base;
-  base.options = options;
   base.fit = result_.fit;
-  std::optional<CandidateModel> start = FitFrom(base, nullptr);
+  std::optional<CandidateModel> start = FitFrom(base, options, {});
   if (!start) return;
   base = std::move(*start);
   samples_ = CountedSamples(base.fit, records_);
-  base.sum_of_squares = SquaresOf(base.fit);
+  base.sum_of_squares = SquaresOf(base.fit.rms);
   DivideIntoParts(base.fit);
 
-  std::vector<TermCandidate> candidates = ListTermCandidates(records_, options, result_.fit);
   FitResult judged = result_.fit;
   while (result_.added.size() < selection_.most_terms && Round(candidates, base, judged)) {
     if (judged.adequacy.verdict == AdequacyVerdict::kAdequate) break;
@@ -461,6 +569,10 @@ void Selection::Run(const FitOptions& options) {
     return std::ranges::find(result_.added, term.name) - result_.added.begin();
   };
   std::ranges::stable_sort(result_.considered, {}, place);
+  if (selection_.only_for_use && judged.adequacy.use == Use::kNone) {
+    for (ConsideredTerm& term : result_.considered) term.added = false;
+    result_.added.clear();
+  }
   if (result_.added.empty()) return;
   result_.options = base.options;
   FitOptions from_here = base.options;
@@ -469,8 +581,15 @@ void Selection::Run(const FitOptions& options) {
       from_here.start[parameter.name] = parameter.value;
     }
   }
+  ++result_.estimates;
   Fitter last(from_here);
   result_.fit = last.Fit(records_, Depth::kThorough);
+  std::erase_if(alternatives_, [&](const Alternative& alternative) {
+    return std::ranges::find(result_.added, alternative.name) != result_.added.end();
+  });
+  if (IsFitted(result_.fit)) {
+    IncludeAlternatives(alternatives_, base.options.thresholds, result_.fit);
+  }
 }
 
 }  // namespace
@@ -482,6 +601,7 @@ std::span<const TermGroup> TermGroups() {
       {"inertia", {"inertia"}},
       {"plateau_slope", {"plateau_slope"}},
       {"slip_speed", {"slip_speed", "slip_speed_exponent"}},
+      {"slip_trend", {"slip_trend"}},
       {"slip_position", {"slip_slope", "plateau_slope"}},
       {"slip_position_quadratic",
        {"slip_slope", "slip_curvature", "plateau_slope", "plateau_curvature"}},

@@ -73,7 +73,9 @@ const std::vector<Field<identification::ConsideredTerm>>& ConsideredTermFields()
   using Item = identification::ConsideredTerm;
   static const std::vector<Field<Item>> fields = {
       {"name", "", "of the term", [](const Item& item) { return Text(item.name); }},
-      {"gain", "-", "fraction by which the rms error of prediction falls with it",
+      {"gain", "-",
+       "fraction by which the rms error of prediction falls with it to first order; of one that is "
+       "added, by which the rms of the fit fell",
        [](const Item& item) { return Number(item.gain); }},
       {"p", "-", "probability that the gain is chance",
        [](const Item& item) { return Number(item.p_value); }},
@@ -101,6 +103,8 @@ const std::vector<Field<identification::TermSelection>>& TermSelectionFields() {
        }},
       {"held_out_parts", "", "cycles or strokes held out, each predicted once",
        [](const Item& item) { return Count(item.held_out_parts); }},
+      {"fits", "", "fits that were made, the first and the last included; at most 15",
+       [](const Item& item) { return Count(item.estimates); }},
   };
   return fields;
 }

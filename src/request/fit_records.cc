@@ -231,7 +231,8 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
                                    std::optional<identification::ModelSelection>& selection,
                                    std::optional<identification::TermSelection>& terms) {
   try {
-    const bool chooses_terms = request.term_choice == kAutomatic;
+    const bool by_default = ChoosesTermsByDefault(request) && records.size() == 1;
+    const bool chooses_terms = by_default || request.term_choice == kAutomatic;
     FitOptions of_terms = options;
     if (request.model == kAutomatic) {
       selection = identification::SelectModel(records, options);
@@ -241,8 +242,11 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
       if (chosen.rig) of_terms.terms.emplace_back("rig_stiffness");
     }
     if (chooses_terms) {
-      terms = identification::SelectTerms(records, of_terms);
-      return terms->fit;
+      terms = identification::SelectTerms(records, of_terms, {.only_for_use = by_default});
+      identification::FitResult fit = std::move(terms->fit);
+      // A law that is enough is reported as without a choice.
+      if (by_default && terms->considered.empty()) terms.reset();
+      return fit;
     }
     return identification::Fit(records, options, identification::Depth::kThorough);
   } catch (const identification::TooFewSamples& error) {

@@ -166,7 +166,10 @@ void ApplyCovariates(const std::vector<std::string>& texts, FitOptions& fit) {
 
 /// Names of groups of terms, each of which is fitted; nothing where they are chosen or none.
 void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
-  if (request.term_choice == kNoTerms || request.term_choice == kAutomatic) return;
+  if (request.term_choice.empty() || request.term_choice == kNoTerms ||
+      request.term_choice == kAutomatic) {
+    return;
+  }
   std::vector<std::string_view> names = {kAutomatic, kNoTerms};
   for (const identification::TermGroup& group : identification::TermGroups()) {
     names.push_back(group.name);
@@ -219,7 +222,7 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
     if (name != kDriftOfForce) refuse(identification::FindTerm(name)->option, kBeside);
   }
   if (!request.covariates.empty()) refuse("--covariate", kBeside);
-  if (request.term_choice != kNoTerms) refuse("--terms", kBeside);
+  if (!request.term_choice.empty() && request.term_choice != kNoTerms) refuse("--terms", kBeside);
   if (request.model == kAutomatic) {
     refuse("--model auto", "models are chosen by fits of the force; name one");
   }
@@ -316,6 +319,18 @@ std::vector<std::string_view> ModelNames() {
   }
   names.push_back(kAutomatic);
   return names;
+}
+
+bool ChoosesTermsByDefault(const FitRequest& request) {
+  const auto is_of_term = [](const std::string& assignment) {
+    const std::string name = assignment.substr(0, assignment.find('='));
+    const Term* term = identification::FindTerm(identification::TermNameOf(name));
+    return term != nullptr && term->presence == identification::Presence::kOnDemand;
+  };
+  return request.term_choice.empty() && request.files.size() <= 1 && request.terms.empty() &&
+         request.covariates.empty() && std::ranges::none_of(request.fix, is_of_term) &&
+         request.model != kAutomatic && request.loss == kLosses.front() &&
+         request.noise_in == kNoiseIn.front();
 }
 
 FitOptions MakeFitOptions(const FitRequest& options) {

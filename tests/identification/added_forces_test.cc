@@ -142,14 +142,15 @@ TEST(AddedForces, SlipForceOfTheSpeedIsRecoveredAtTheSpeedInTheMiddle) {
   constexpr double kExponent = 0.5;
   const std::vector<double> velocity = Velocity(record);
   double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < record.size(); ++i) {
+  double path = 0.0;
+  for (std::size_t i = 1; i < record.size(); ++i) {
     if (std::abs(record.displacement[i]) > kReach / 3) continue;
-    sum += std::abs(velocity[i]);
-    ++count;
+    const double step = std::abs(record.displacement[i] - record.displacement[i - 1]);
+    sum += step * std::abs(velocity[i]);
+    path += step;
   }
   for (std::size_t i = 0; i < record.size(); ++i) {
-    const double ratio = std::abs(velocity[i]) / (sum / count);
+    const double ratio = std::abs(velocity[i]) / (sum / path);
     record.force[i] *= 1 + kOfSpeed * (std::pow(ratio, kExponent) - 1);
   }
   FitOptions options;
@@ -160,6 +161,43 @@ TEST(AddedForces, SlipForceOfTheSpeedIsRecoveredAtTheSpeedInTheMiddle) {
   constexpr double kAtRest = 1e-3;
   EXPECT_NEAR(ValueOf(fit, "slip_speed"), kOfSpeed, kAtRest);
   EXPECT_NEAR(ValueOf(fit, "slip_speed_exponent"), kExponent, kAtRest);
+}
+
+TEST(AddedForces, RestInTheMiddleDoesNotChangeTheSpeedOfTheSlipForce) {
+  Record record = Loop();
+  const std::vector<double> velocity = Velocity(record);
+  const double fastest = *std::ranges::max_element(velocity);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] *= std::sqrt(std::abs(velocity[i]) / fastest);
+  }
+  FitOptions options;
+  options.terms = {"slip_speed", "slip_speed_exponent"};
+  const double without = FitOne(record, options).law.slip_force;
+  // It rests at the end for as long as it has moved, where it is.
+  const double step = record.time[1] - record.time[0];
+  for (std::size_t i = record.size(); i > 0; --i) {
+    record.time.push_back(record.time.back() + step);
+    record.displacement.push_back(record.displacement.back());
+    record.force.push_back(record.force.back());
+  }
+  const double with_rest = FitOne(record, options).law.slip_force;
+  constexpr double kLittle = 0.05;  // a mean over time would be half, and Tc 0.7 of it
+  EXPECT_NEAR(with_rest, without, kLittle * without);
+}
+
+TEST(AddedForces, SlipForceThatChangesWithTimeIsRecovered) {
+  Record record = Loop();
+  constexpr double kTrend = -0.12;
+  const double middle = (record.time.front() + record.time.back()) / 2;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double time = (record.time[i] - middle) / (record.time.back() - middle);
+    record.force[i] *= 1 + kTrend * time;
+  }
+  FitOptions options;
+  options.terms = {"slip_trend"};
+  const FitResult fit = FitOne(record, options);
+  ExpectLaw(fit);
+  EXPECT_NEAR(ValueOf(fit, "slip_trend"), kTrend, -10 * kRecovered * kTrend);
 }
 
 TEST(AddedForces, RippleWithAPhaseForEachDirectionIsRecovered) {
@@ -205,20 +243,10 @@ TEST(AddedForces, MassIsRecovered) {
 
 FitOptions AllOfThem() {
   FitOptions options;
-  options.terms = {"slip_speed",
-                   "slip_speed_exponent",
-                   "viscous",
-                   "speed_exponent",
-                   "inertia",
-                   "slip_slope",
-                   "slip_curvature",
-                   "plateau_slope",
-                   "plateau_curvature",
-                   "ripple_period",
-                   "ripple_cosine_up",
-                   "ripple_sine_up",
-                   "ripple_cosine_down",
-                   "ripple_sine_down"};
+  options.terms = {"slip_speed",     "slip_speed_exponent", "viscous",         "speed_exponent",
+                   "inertia",        "slip_slope",          "slip_curvature",  "slip_trend",
+                   "plateau_slope",  "plateau_curvature",   "ripple_period",   "ripple_cosine_up",
+                   "ripple_sine_up", "ripple_cosine_down",  "ripple_sine_down"};
   return options;
 }
 

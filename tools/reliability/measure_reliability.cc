@@ -29,6 +29,7 @@ struct Options {
   std::string half;
   bool details = false;
   bool small = false;
+  bool adds_terms = false;
   ApartOptions apart;
   std::vector<std::string> write;  // kind, level, seed, file
 };
@@ -107,7 +108,8 @@ int Measure(const Options& options) {
   const std::vector<Case> cases = CasesOf(kinds, options.small ? kSmallLoops : options.loops,
                                           options.small ? kSmallSeed : options.seed);
   const std::vector<Result> results =
-      Run(cases, options.apart, [&](std::size_t done) { ShowProgress(done, cases.size()); });
+      Run(cases, options.adds_terms, options.apart,
+          [&](std::size_t done) { ShowProgress(done, cases.size()); });
   PrintTables(stdout, cases, results);
   if (options.details) PrintDetails(stdout, cases, results);
   if (!options.small) return kKept;
@@ -129,6 +131,8 @@ int Main(int argc, char** argv) {
   auto* kind = app.add_option("--kind", options.kind, "kinds with this in their name");
   auto* half = app.add_option("--half", options.half, "kinds of one half")
                    ->check(CLI::IsMember({"development", "held-out", "clean"}));
+  app.add_flag("--add-terms", options.adds_terms,
+               "fit with the terms that each record requires, as fit --terms auto");
   app.add_flag("--details", options.details,
                "print every fit that was silent, warned or failed or gave a false limit, and clean "
                "ones that alarmed or missed");

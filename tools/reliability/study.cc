@@ -47,12 +47,13 @@ std::vector<Case> CasesOf(const std::vector<Kind>& kinds, std::size_t loops, std
   return cases;
 }
 
-std::vector<Result> Run(const std::vector<Case>& cases, const ApartOptions& options,
+std::vector<Result> Run(const std::vector<Case>& cases, bool adds_terms,
+                        const ApartOptions& options,
                         const std::function<void(std::size_t)>& progress) {
   std::vector<Result> results(cases.size());
   std::size_t done = 0;
   const auto work = [&](std::size_t i) {
-    return Packed(Try(*cases[i].kind, cases[i].level, cases[i].seed));
+    return Packed(Try(*cases[i].kind, cases[i].level, cases[i].seed, adds_terms));
   };
   RunApart(cases.size(), options, work, [&](std::size_t i, const Ending& ending) {
     results[i].seconds = ending.seconds;

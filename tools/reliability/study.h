@@ -27,8 +27,10 @@ struct Result {
   double seconds = 0.0;  ///< of processor time: making the loop, and the fit
 };
 
+/// @param adds_terms  as Try() takes it
 /// @param progress  called with the number of fits done; may be empty
-std::vector<Result> Run(const std::vector<Case>& cases, const ApartOptions& options,
+std::vector<Result> Run(const std::vector<Case>& cases, bool adds_terms,
+                        const ApartOptions& options,
                         const std::function<void(std::size_t)>& progress = {});
 
 struct Tally {

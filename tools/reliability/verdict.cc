@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "mindahl/core/error.h"
+#include "mindahl/identification/term_selection.h"
 #include "report/names.h"
 
 namespace mindahl::reliability {
@@ -191,10 +192,13 @@ Judgement Judge(const FitResult& fit, const Expected& expected) {
   return judgement;
 }
 
-Judgement Try(const Kind& kind, std::size_t level, std::uint64_t seed) {
+Judgement Try(const Kind& kind, std::size_t level, std::uint64_t seed, bool adds_terms) {
   const Loop loop = MakeLoop(kind, level, seed);
   try {
-    return Judge(identification::Fit({&loop.record, 1}), loop.expected);
+    const std::span<const mindahl::loop::Record> record(&loop.record, 1);
+    return Judge(adds_terms ? identification::SelectTerms(record, {}, {.only_for_use = true}).fit
+                            : identification::Fit(record),
+                 loop.expected);
   } catch (const InvalidArgument& refusal) {
     return {.outcome = Outcome::kUndecided,
             .alarms = true,

@@ -54,6 +54,7 @@ struct Judgement {
 Judgement Judge(const identification::FitResult& fit, const Expected& expected);
 
 /// Makes a loop, fits it in full and judges the fit. One that is refused has no answer.
-Judgement Try(const Kind& kind, std::size_t level, std::uint64_t seed);
+/// @param adds_terms  fits as with `--terms auto`, else as with `--terms none`
+Judgement Try(const Kind& kind, std::size_t level, std::uint64_t seed, bool adds_terms);
 
 }  // namespace mindahl::reliability

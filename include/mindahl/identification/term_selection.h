@@ -19,11 +19,15 @@ struct TermSelectionOptions {
   std::size_t folds = 5;
   /// Largest probability with which the gain of a term that is added is chance, over all candidates
   /// of a round (Bonferroni).
-  double chance = 0.01;
+  double chance = 0.05;
   /// Least fraction by which the error of prediction falls with a term that is added, unless the
   /// model is adequate with it.
-  double smallest_gain = 0.05;
-  std::size_t most_terms = 5;  ///< largest number added
+  double smallest_gain = 0.03;
+  std::size_t most_terms = 5;  ///< that are added
+  std::size_t most_fits = 15;  ///< in all
+  /// Adds none to a law that is of quantitative use by itself, nor where the law is of no use with
+  /// them either.
+  bool only_for_use = false;
 };
 
 /// A term, or a few that are one, that a record may require.
@@ -40,11 +44,11 @@ const TermGroup* FindTermGroup(std::string_view name);
 
 /// A candidate and what it gained in the last round in which it was tried.
 struct ConsideredTerm {
-  std::string name;  ///< name of the group, or NameOfCovariate()
-  /// Fraction by which the rms error of predicted cycles falls, of fitted samples where
-  /// `is_predicted` is false [–].
+  std::string name;  ///< of the group, or NameOfCovariate()
+  /// Fraction by which the rms error of predicted cycles would fall to first order, of fitted
+  /// samples where `is_predicted` is false; of a term that is added that of the fit falls [–].
   double gain = 0.0;
-  double p_value = 1.0;  ///< probability that the gain is chance
+  double p_value = 1.0;  ///< that the gain to first order is chance
   bool is_predicted = false;
   bool added = false;
   /// Why it was not added though it gains: "" or "confounded", "rate_dependent", "unphysical".
@@ -57,7 +61,7 @@ struct TermSelection {
       considered;  ///< those added first, in their order; then by their gain
   std::vector<std::string> added;
   std::size_t held_out_parts = 0;  ///< cycles or strokes, each predicted once; 0: AICc decided
-  std::size_t estimates = 0;       ///< fits at Depth::kEstimate that were made
+  std::size_t estimates = 0;       ///< fits that were made, at any depth
   FitOptions options;              ///< with the terms that were added
   FitResult fit;                   ///< with them, at Depth::kThorough
 };
@@ -65,13 +69,14 @@ struct TermSelection {
 /// Fits a record with the terms that it requires and no others (forward selection).
 ///
 /// A record that the law describes adequately gets none: its fit is Fit()'s to the last digit.
-/// Otherwise each candidate for which there are data is fitted from the solution without it. In the
-/// order of their rms, each parameter being worth `smallest_gain` of it, up to four are judged on
-/// cycles held out of the fit, or on strokes where there are fewer than four cycles; where there
-/// are fewer than four strokes AICc decides. One is added where the paired gain of prediction is no
-/// chance (one-sided t of the logarithms of the ratios of errors, with the correlation of folds,
-/// Nadeau & Bengio 2003) and worth `smallest_gain`, and where the slip force is not lost by it. The
-/// rounds end when none is added or the model is adequate.
+/// Otherwise every candidate for which there are data is scored by one Gauss-Newton step from the
+/// present solution: on cycles held out of that step, on strokes where there are fewer than four
+/// cycles; where there are fewer than four strokes AICc decides. In the order of their scores, up
+/// to two are fitted, where the paired gain of prediction is no chance (one-sided t of the
+/// logarithms of the ratios of errors, with the correlation of folds, Nadeau & Bengio 2003) and
+/// worth `smallest_gain`. The first is added that lowers the rms by as much, and by which the slip
+/// force is not lost. The rounds end when none is added, the model is adequate, or `most_fits` are
+/// made.
 ///
 /// *Confounded terms.* A covariate is not added where it is a copy of a channel that is fitted, of
 /// a candidate before it or of the velocity, or where it follows the contact's force, |r| > 0.3:

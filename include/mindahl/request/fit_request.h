@@ -50,7 +50,8 @@ struct FitRequest {
   std::string noise_in = "force";
   std::string offsets = "on";
   std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
-  std::string term_choice{kNoTerms};              // or kAutomatic, or names of what is fitted
+  /// kAutomatic, kNoTerms or names of what is fitted; empty: as ChoosesTermsByDefault() says.
+  std::string term_choice;
   std::vector<std::string> covariates;
   std::string load_window;
   std::string cycles;
@@ -69,6 +70,11 @@ struct FitRequest {
   std::optional<double> reversal_gate;
   ContactOptions contact;
 };
+
+/// True if terms are added, where --terms is not given, to a law that is of no quantitative use by
+/// itself: of one record, where neither a term or a column is asked for, nor a choice of models, a
+/// robust loss or a fit of the displacement.
+bool ChoosesTermsByDefault(const FitRequest& request);
 
 /// @throws InvalidArgument or InputError naming the option that breaks a rule, or two that
 /// contradict each other

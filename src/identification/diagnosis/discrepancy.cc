@@ -303,4 +303,31 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
                 [](const Finding& finding) { return finding.code == "slip_force_bounded_below"; });
 }
 
+void CoverSlipFactor(const Problem& problem, const Solution& solution, FitResult& result) {
+  const Parameters& parameters = problem.parameters;
+  const auto theta_of = [&](std::string_view name) {
+    return solution.theta[parameters.PositionOf(name, 0)];
+  };
+  const double of_speed = theta_of("slip_speed");
+  GrowingRange factors{1.0, 1.0};
+  for (const ScaledRecord& record : problem.data->records) {
+    for (const std::size_t i : record.reversals) {
+      const double position = record.displacement[i];
+      double factor = 1 +
+                      position * (theta_of("slip_slope") + theta_of("slip_curvature") * position) +
+                      theta_of("slip_trend") * record.time[i];
+      if (of_speed != 0) {
+        const double log_ratio = record.log_speed[i] - std::log(record.units.reference_speed);
+        factor += of_speed * std::expm1(theta_of("slip_speed_exponent") * log_ratio);
+      }
+      factors.Include(factor);
+    }
+  }
+  ParameterEstimate& stiffness = result.parameters[kStiffness];
+  if (factors.lower == factors.upper || !stiffness.lower95 || !stiffness.upper95) return;
+  Include(stiffness, {.source = IntervalSource::kDiscrepancy,
+                      .lower = std::max(factors.lower, 0.0) * *stiffness.lower95,
+                      .upper = factors.upper * *stiffness.upper95});
+}
+
 }  // namespace mindahl::identification

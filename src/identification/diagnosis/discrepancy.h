@@ -52,4 +52,9 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
                       std::span<const ParameterEstimate> plain, const Thresholds& thresholds,
                       FitResult& result);
 
+/// Extends the interval of σ by what it is at the reversals, where a slip force depends on
+/// position, speed or time: such a force multiplies that of the contact, and with it the stiffness
+/// after a reversal, at rest and at the ends of the stroke.
+void CoverSlipFactor(const Problem& problem, const Solution& solution, FitResult& result);
+
 }  // namespace mindahl::identification

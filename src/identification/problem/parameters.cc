@@ -141,7 +141,11 @@ BoundSide SideOf(double theta, double lower, double upper) {
 
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
-  return parameter.term->name != "alpha" || side == BoundSide::kUpper;
+  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed.
+  const std::string_view name = parameter.term->name;
+  if (name == "alpha" || name == "slip_speed_exponent") return side == BoundSide::kUpper;
+  if (name == "slip_speed") return side == BoundSide::kLower;
+  return true;
 }
 
 Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,

@@ -48,6 +48,7 @@ constexpr std::array kLawRows = {
     LawRow{"slip_curvature", &ResponseColumns::slip_curvature, 0.25},
     LawRow{"slip_speed", &ResponseColumns::slip_speed, 0.25},
     LawRow{"slip_speed_exponent", &ResponseColumns::slip_speed_exponent, 0.25},
+    LawRow{"slip_trend", &ResponseColumns::slip_trend, 0.25},
 };
 
 }  // namespace
@@ -110,8 +111,10 @@ void Response::Bind(const Problem& problem) {
   slip_speed_ = problem.parameters.PositionOf("slip_speed", 0);
   slip_speed_exponent_ = problem.parameters.PositionOf("slip_speed_exponent", 0);
   slip_goes_by_speed_ = !problem.parameters[slip_speed_].absent;
+  slip_trend_ = problem.parameters.PositionOf("slip_trend", 0);
   slip_varies_ = slip_goes_by_speed_ || !problem.parameters[slip_slope_].absent ||
-                 !problem.parameters[slip_curvature_].absent;
+                 !problem.parameters[slip_curvature_].absent ||
+                 !problem.parameters[slip_trend_].absent;
   lag_ = problem.parameters.PositionOf("lag", 0);
   has_lag_ = problem.parameters.has_lag();
   if (!has_lag_) return;
@@ -308,7 +311,8 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
                                 .slip_slope = part(columns.slip_slope),
                                 .slip_curvature = part(columns.slip_curvature),
                                 .slip_speed = part(columns.slip_speed),
-                                .slip_speed_exponent = part(columns.slip_speed_exponent)};
+                                .slip_speed_exponent = part(columns.slip_speed_exponent),
+                                .slip_trend = part(columns.slip_trend)};
     const std::span<double> values = part(t);
     if (has_lag_) {
       DifferentiateLagged(at, r, values, parts);
@@ -320,7 +324,7 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
       for (const std::span<double> column :
            {values, parts.log_rate, parts.shape_exponent, parts.unloaded, parts.log_spring_travel,
             parts.lag, parts.asymmetry, parts.slip_slope, parts.slip_curvature, parts.slip_speed,
-            parts.slip_speed_exponent}) {
+            parts.slip_speed_exponent, parts.slip_trend}) {
         for (double& value : column) value *= record.load;
       }
     }
@@ -332,9 +336,7 @@ namespace {
 
 /// ln(v/v₀) of a sample; far below zero, and finite, where it does not move.
 double LogSpeedRatio(const ScaledRecord& record, std::size_t sample) {
-  constexpr double kStandstill = 1e-12;
-  const double speed = std::hypot(record.velocity[sample], record.units.speed_resolution);
-  return std::log(std::max(speed / record.units.reference_speed, kStandstill));
+  return record.log_speed[sample] - std::log(record.units.reference_speed);
 }
 
 }  // namespace
@@ -342,7 +344,8 @@ double LogSpeedRatio(const ScaledRecord& record, std::size_t sample) {
 double Response::SlipFactor(const ScaledRecord& record, const LawPoint& at,
                             std::size_t sample) const {
   const double position = record.displacement[sample];
-  double factor = 1 + position * (at.theta[slip_slope_] + at.theta[slip_curvature_] * position);
+  double factor = 1 + position * (at.theta[slip_slope_] + at.theta[slip_curvature_] * position) +
+                  at.theta[slip_trend_] * record.time[sample];
   if (slip_goes_by_speed_) {
     factor += at.theta[slip_speed_] *
               std::expm1(at.theta[slip_speed_exponent_] * LogSpeedRatio(record, sample));
@@ -357,6 +360,7 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
   const double curvature = at.theta[slip_curvature_];
   const double of_speed = at.theta[slip_speed_];
   const double exponent = at.theta[slip_speed_exponent_];
+  const double trend = at.theta[slip_trend_];
   const std::array scaled = {t,
                              columns.log_rate,
                              columns.shape_exponent,
@@ -366,9 +370,10 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
                              columns.asymmetry};
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double position = record.displacement[i];
-    double factor = 1 + position * (slope + curvature * position);
+    double factor = 1 + position * (slope + curvature * position) + trend * record.time[i];
     if (!columns.slip_slope.empty()) columns.slip_slope[i] = t[i] * position;
     if (!columns.slip_curvature.empty()) columns.slip_curvature[i] = t[i] * position * position;
+    if (!columns.slip_trend.empty()) columns.slip_trend[i] = t[i] * record.time[i];
     if (slip_goes_by_speed_) {
       const double log_ratio = LogSpeedRatio(record, i);
       const double change = std::expm1(exponent * log_ratio);
@@ -391,20 +396,20 @@ namespace {
 /// which is v for m = 1, C·sgn(v)|v|^m far above the resolution, and smooth below it.
 struct SpeedPower {
   double exponent = 1.0;
-  double unit = 1.0;
-  double resolution = 0.0;
+  double log_unit = 0.0;
+  const ScaledRecord& record;
 
-  /// ln of the speed [m/s]; 0 where there is none.
-  [[nodiscard]] double LogSpeed(double velocity) const {
-    const double speed = std::hypot(velocity, resolution) * unit;
-    return speed > 0 ? std::log(speed) : 0.0;
+  /// ln of the speed [m/s].
+  [[nodiscard]] double LogSpeed(std::size_t sample) const {
+    return record.log_speed[sample] + log_unit;
   }
-  [[nodiscard]] double At(double velocity) const {
-    return exponent == 1 ? velocity : velocity * std::exp((exponent - 1) * LogSpeed(velocity));
+  [[nodiscard]] double At(std::size_t sample) const {
+    const double velocity = record.velocity[sample];
+    return exponent == 1 ? velocity : velocity * std::exp((exponent - 1) * LogSpeed(sample));
   }
   /// ∂φ/∂m
-  [[nodiscard]] double Derivative(double velocity) const {
-    return At(velocity) * LogSpeed(velocity);
+  [[nodiscard]] double Derivative(std::size_t sample) const {
+    return At(sample) * LogSpeed(sample);
   }
 };
 
@@ -413,8 +418,8 @@ SpeedPower SpeedPowerOf(const Problem& problem, const ScaledRecord& record,
   const std::size_t p = problem.parameters.PositionOf("speed_exponent", 0);
   const bool is_there = p < problem.parameters.size() && !problem.parameters[p].absent;
   return {.exponent = is_there ? theta[p] : 1.0,
-          .unit = record.units.speed,
-          .resolution = record.units.speed_resolution};
+          .log_unit = std::log(record.units.speed),
+          .record = record};
 }
 
 /// cos or sin of 2πδ/λ in the strokes of one direction, and its derivative by ln λ.
@@ -474,7 +479,7 @@ void AddColumn(const Problem& problem, std::size_t parameter, std::size_t r,
   } else if (kind == Regressor::kVelocity) {
     const SpeedPower power = SpeedPowerOf(problem, record, theta);
     for (std::size_t i = 0; i < record.velocity.size(); ++i) {
-      to[i] += factor * power.At(record.velocity[i]);
+      to[i] += factor * power.At(i);
     }
   } else {
     const std::span<const double> column = record.ColumnOf(kind, linear.column);
@@ -505,7 +510,7 @@ void AddDerivativeOfColumns(const Problem& problem, std::size_t parameter, std::
     } else {
       const SpeedPower power = SpeedPowerOf(problem, record, theta);
       for (std::size_t i = 0; i < record.velocity.size(); ++i) {
-        to[i] += size * power.Derivative(record.velocity[i]);
+        to[i] += size * power.Derivative(i);
       }
     }
   }

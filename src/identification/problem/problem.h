@@ -66,6 +66,7 @@ struct ResponseColumns {
   std::span<double> slip_curvature;
   std::span<double> slip_speed;
   std::span<double> slip_speed_exponent;
+  std::span<double> slip_trend;
 };
 
 /// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where no column stands for t itself.
@@ -152,7 +153,8 @@ class Response {
   std::size_t slip_curvature_ = 0;
   std::size_t slip_speed_ = 0;
   std::size_t slip_speed_exponent_ = 0;
-  bool slip_varies_ = false;  // over the positions or speeds
+  std::size_t slip_trend_ = 0;
+  bool slip_varies_ = false;  // over positions, speeds or time
   bool slip_goes_by_speed_ = false;
   // For a problem with a lag:
   std::size_t lag_ = 0;  // its position

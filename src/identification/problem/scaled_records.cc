@@ -107,20 +107,34 @@ double ResolutionOf(std::span<const double> velocity) {
   return *middle / (kMedianOfNormal * kOfFourthDifference);
 }
 
-/// Mean speed in the middle third of the range of the positions, of all records; 1 where there is
-/// none.
+/// ln of the speeds with their resolution; far below any speed, and finite, where there is none.
+void FillLogSpeed(ScaledRecord& record) {
+  const double resolution = record.units.speed_resolution;
+  const auto [lowest, highest] = ExtremesOf(record.velocity);
+  constexpr double kStandstill = 1e-12;  // of the largest speed
+  const double fastest = std::max(-lowest, highest);
+  const double least = fastest > 0 ? kStandstill * fastest : 1.0;
+  record.log_speed.resize(record.size());
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.log_speed[i] = std::log(std::max(std::hypot(record.velocity[i], resolution), least));
+  }
+}
+
+/// Mean speed over the path in the middle third of the range of the positions, of all records; 1
+/// where there is none. A mean over time would count rests.
 double SpeedInTheMiddle(const ScaledRecords& data) {
   constexpr double kMiddle = 1.0 / 3;
   double sum = 0.0;
-  double count = 0.0;
+  double path = 0.0;
   for (const ScaledRecord& record : data.records) {
-    for (std::size_t i = 0; i < record.velocity.size(); ++i) {
+    for (std::size_t i = 1; i < record.velocity.size(); ++i) {
       if (record.counts[i] == 0 || std::abs(record.displacement[i]) > kMiddle) continue;
-      sum += std::abs(record.velocity[i]);
-      ++count;
+      const double step = std::abs(record.displacement[i] - record.displacement[i - 1]);
+      sum += step * std::abs(record.velocity[i]);
+      path += step;
     }
   }
-  return sum > 0 ? sum / count : 1.0;
+  return sum > 0 ? sum / path : 1.0;
 }
 
 /// True if a sample counts for the load of a record; cycles that are only held out do.
@@ -264,6 +278,7 @@ void ForEachColumn(ScaledRecord& to, const ScaledRecord& from, Visit visit) {
   visit(to.velocity, from.velocity);
   visit(to.acceleration, from.acceleration);
   visit(to.direction, from.direction);
+  visit(to.log_speed, from.log_speed);
   visit(to.load_ratio, from.load_ratio);
   visit(to.load_change, from.load_change);
   visit(to.root_weight, from.root_weight);
@@ -435,7 +450,10 @@ void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
       std::ranges::any_of(options.fixed, [&](const auto& fixed) { return is_ripple(fixed.first); });
   const double unit = data.records.front().units.half_duration;
   for (ScaledRecord& record : data.records) {
-    if (asks_power) record.units.speed_resolution = ResolutionOf(record.velocity);
+    if (asks_power && !record.velocity.empty()) {
+      record.units.speed_resolution = ResolutionOf(record.velocity);
+      FillLogSpeed(record);
+    }
     if (asks_acceleration && !record.velocity.empty()) FillAcceleration(record, unit);
     if (asks_direction) FillDirection(record);
   }

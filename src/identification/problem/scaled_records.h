@@ -23,6 +23,7 @@ struct ScaledRecord {
         velocity(memory),
         acceleration(memory),
         direction(memory),
+        log_speed(memory),
         load_ratio(memory),
         load_change(memory),
         root_weight(memory),
@@ -38,6 +39,8 @@ struct ScaledRecord {
   std::pmr::vector<double> acceleration;  // likewise; empty unless a term asks for it
   /// +1 in strokes of growing displacement, −1 in others; empty unless a term asks for it.
   std::pmr::vector<double> direction;
+  /// ln of the speed, in units of `velocity`, with its resolution; empty unless a term asks for it.
+  std::pmr::vector<double> log_speed;
   /// N over its mean, where the law knows that it varies: empty where it is taken as constant.
   std::pmr::vector<double> load_ratio;
   std::pmr::vector<double> load_change;  // N over its mean less 1, where it varies and is not known

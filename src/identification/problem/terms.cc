@@ -23,11 +23,13 @@ constexpr double kLargestLoadExponent = 5.0;
 
 // Below the least exponent the force is as good as a slip force.
 constexpr double kLeastSpeedExponent = 0.2;
+// Of a slip force: below, (v/v₀)^m − 1 is m·ln(v/v₀) to a tenth over two decades of speed.
+constexpr double kLeastSlipSpeedExponent = 0.05;
 // With both the slip force stays positive over the whole stroke.
 constexpr double kLargestSlipChange = 0.5;
-// Largest part of the slip force that depends on the speed: the rest is positive.
-constexpr double kLargestSlipBySpeed = 0.95;
-// Periods in half ranges of the displacement: a stroke has two.
+// Of the slip force at v₀: at 1 there is none at rest. Below −1 it would more than halve by v₀.
+constexpr double kLargestSlipBySpeed = 1.0;
+// Of a period, in half ranges of the displacement: two in a stroke.
 constexpr double kShortestPeriod = 0.01;
 constexpr double kLongestPeriod = 1.0;
 
@@ -193,7 +195,7 @@ constexpr std::array kTerms = {
          .unit = "-",
          .meaning = "m, likewise",
          .presence = Presence::kOnDemand,
-         .lowest = kLeastSpeedExponent,
+         .lowest = kLeastSlipSpeedExponent,
          .highest = 1.0,
          .scale = One,
          .needs_time = true,
@@ -202,8 +204,21 @@ constexpr std::array kTerms = {
          .option = "--slip-speed",
          .argument = "M|fit",
          .help = "fit a slip force Tc(1 + c((v/v₀)^M − 1)) that depends on the speed,\n"
-                 "Tc at its mean v₀ in the middle of the strokes; M [-] from 0.2\n"
+                 "Tc at its mean v₀ in the middle of the strokes; M [-] from 0.05\n"
                  "to 1, or fit"},
+    Term{.name = "slip_trend",
+         .unit = "-",
+         .meaning = "k of a slip force Tc(1 + kτ), τ the time, −1 at the record's beginning and 1 "
+                    "at its end; the sample's number where there is no time",
+         .presence = Presence::kOnDemand,
+         .lowest = -kLargestSlipChange,
+         .highest = kLargestSlipChange,
+         .scale = One,
+         .has_start = true,
+         .option = "--slip-trend",
+         .argument = "K|fit",
+         .help = "slip force Tc(1 + K·τ) that changes with time, τ from −1 at the\n"
+                 "record's beginning to 1 at its end, K [-], or fit"},
     Term{
         .name = "plateau_curvature",
         .unit = "N/m²",

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstddef>
+#include <map>
+#include <memory_resource>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "identification/held_out.h"
+#include "identification/problem/problem.h"
+#include "mindahl/core/arena.h"
+#include "mindahl/identification/fit.h"
+#include "mindahl/loop/preparation.h"
+
+namespace mindahl::identification {
+
+/// What a fit would become with some more terms, to first order.
+struct TermScore {
+  double rms = 0.0;                 // of the samples that count [N]
+  std::vector<double> predictions;  // mean squares [N²] of the parts, each predicted by the others
+  /// That the terms' effects on the parts have no mean but by chance; empty where parts are too
+  /// few.
+  std::optional<double> p_value;
+  std::map<std::string, double> values;  // of the terms' parameters, for a search to begin with
+  std::map<std::string, double> law;     // by how much θ of σ, α and Tc moves
+};
+
+/// Scores terms by one Gauss-Newton step from a fit that does not have them: the residuals are
+/// regressed on the Jacobian of the fit and the derivatives by the terms' parameters, of all
+/// samples and, for the predictions, of all but those of a fold. Exact for terms that are linear;
+/// the cost is that of one Jacobian, whatever the number of folds.
+class TermScores {
+ public:
+  /// @param options     of the fits, with the sign of the force that was found
+  /// @param terms       all that will be asked for
+  /// @param covariates  likewise
+  /// @throws InvalidArgument as a fit with them would
+  TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
+             std::span<const std::string> terms, std::span<const std::string> covariates);
+
+  /// Returns the samples that do not count under any of the terms.
+  [[nodiscard]] std::vector<std::vector<bool>> LeftOut() const;
+
+  /// Takes a fit to step from.
+  /// @param options  of that fit
+  /// @param parts    that are predicted, dealt in turn to the folds; may be none
+  void StepFrom(const FitResult& fit, const FitOptions& options, std::span<const Part> parts,
+                std::size_t folds);
+
+  /// Returns the score of the fit itself, with a step of its own.
+  [[nodiscard]] TermScore OfFit() const;
+
+  /// Returns the score with more terms; nothing where they have no effect here.
+  /// @param with  the options of StepFrom() with the terms
+  [[nodiscard]] std::optional<TermScore> Of(const FitOptions& with);
+
+ private:
+  TermScores(std::span<const loop::RecordView> records, const FitOptions& options,
+             const FitOptions& with_all, std::vector<std::string> covariates);
+  [[nodiscard]] Problem ProblemOf(const FitOptions& options) const;
+  [[nodiscard]] std::vector<double> ThetaOf(const Problem& problem) const;
+  [[nodiscard]] TermScore Solve(const Eigen::MatrixXd& columns, Eigen::VectorXd& step) const;
+  [[nodiscard]] std::optional<double> TestEffects(const Eigen::MatrixXd& added) const;
+  /// Returns the first row and the number of rows of each part.
+  [[nodiscard]] std::vector<std::pair<Eigen::Index, Eigen::Index>> RowsOfParts() const;
+
+  Arena arena_;
+  std::vector<std::string> covariates_;
+  loop::PreparedRecords prepared_;
+  ScaledRecords data_;
+  Response response_;
+  // Of the fit that is stepped from:
+  std::map<std::string, double> values_;  // of its parameters
+  std::set<std::string> free_;            // of these
+  models::InitialState state_ = models::InitialState::kSteady;
+  Eigen::MatrixXd columns_;         // of those that are inside their bounds
+  std::vector<std::string> names_;  // of these
+  Eigen::VectorXd residual_;
+  std::span<const Part> parts_;
+  std::size_t folds_ = 0;
+};
+
+}  // namespace mindahl::identification
