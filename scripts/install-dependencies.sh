@@ -25,7 +25,7 @@ for group in "$@"; do
       ;;
     --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
-    --peers) packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts yade) ;;
+    --peers) packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts) ;;
     --coverage) packages+=(gcovr) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --workflow) packages+=(snakemake) ;;

@@ -876,7 +876,7 @@ bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
       !std::isfinite(candidate.solution->sum_of_squares)) {
     return false;
   }
-  std::vector<double> residual(problem.size());
+  std::pmr::vector<double> residual(problem.size(), attempt.memory);
   EvaluateResidual(problem, candidate.solution->theta, attempt.buffers.response, residual);
   return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
 }
@@ -902,11 +902,12 @@ struct Fitter::State {
     Fit(records, depth, given);
     std::optional<FitOptions> within = WithinMeasuredForce(result, given);
     if (within) Fit(records, depth, *within);
-    TryDisplacementNoise(records, depth, within ? std::move(*within) : given);
+    TryDisplacementNoise(records, depth, within ? *within : given);
   }
   /// Fits with the noise of the displacement that the residuals show, and keeps that where it is
   /// adequate.
-  void TryDisplacementNoise(std::span<const RecordView> records, Depth depth, FitOptions given);
+  void TryDisplacementNoise(std::span<const RecordView> records, Depth depth,
+                            const FitOptions& given);
   void Continue(const RecordView& record, Depth depth);
   [[nodiscard]] bool MayContinue() const;
 
@@ -1102,21 +1103,22 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
 }
 
 void Fitter::State::TryDisplacementNoise(std::span<const RecordView> records, Depth depth,
-                                         FitOptions given) {
+                                         const FitOptions& given) {
   if (!scatter || !result.converged) return;
   const bool is_doubted = result.adequacy.verdict != AdequacyVerdict::kAdequate;
-  given.preparation.displacement_noise = NoiseToTry(*scatter, is_doubted, given.thresholds);
-  if (!given.preparation.displacement_noise) return;
+  const std::optional<double> noise = NoiseToTry(*scatter, is_doubted, given.thresholds);
+  if (!noise) return;
+  FitOptions with_noise = given;
+  with_noise.preparation.displacement_noise = noise;
   const SlopeScatter found = *scatter;
   FitResult plain = result;
-  Fit(records, depth, given);
+  Fit(records, depth, with_noise);
   if (!result.converged || result.adequacy.verdict != AdequacyVerdict::kAdequate) {
     result = std::move(plain);
     return;
   }
-  result.findings.push_back(
-      {.code = "displacement_noise_estimated",
-       .numbers = {{"deviation", *given.preparation.displacement_noise}, {"p", found.p_value}}});
+  result.findings.push_back({.code = "displacement_noise_estimated",
+                             .numbers = {{"deviation", *noise}, {"p", found.p_value}}});
 }
 
 /// True if the next fit may start at the last one's end: a single minimum, not at a bound.

@@ -335,7 +335,8 @@ def schema_paths(schema, root, path=""):
     if schema.get("type") in ("array", ["array", "null"]):
         if schema.get("minItems") == schema.get("maxItems") == 2 and path.endswith("ci95"):
             yield from (f"{path}[{place}]" for place in (0, 1))
-        elif schema["items"].get("type") not in ("string", "integer", "number", ["number", "null"]):
+        elif schema["items"].get("type") not in ("string", "integer", "number", ["number", "null"],
+                                                ["string", "null"]):
             yield from schema_paths(schema["items"], root, f"{path}[]")
 
 

@@ -282,7 +282,7 @@ TEST(FitOptions, WrongForceSenseIsAFailedFitAndNotACrash) {
   const FitResult fit = FitOne(Loop(), options);
   EXPECT_FALSE(fit.converged);
   EXPECT_TRUE(fit.parameters.empty());
-  EXPECT_THAT(fit.solver.message, HasSubstr("sense"));
+  EXPECT_THAT(fit.solver.message, HasSubstr("sign"));
 }
 
 TEST(FitOptions, DefaultResultHasNotConverged) { EXPECT_FALSE(FitResult{}.converged); }

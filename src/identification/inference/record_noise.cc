@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "identification/inference/evidence.h"
 #include "identification/inference/noise.h"
@@ -57,31 +56,29 @@ double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual
   constexpr double kFewest = 8.0;  // degrees of freedom: a variance that is known to one half
   const std::size_t records = problem.data->records.size();
   if (records < 2) return 1.0;
-  std::vector<RecordVariance> variances;
+  double count = 0.0;
   double degrees = 0.0;
   double pooled = 0.0;
+  double logarithms = 0.0;
+  double reciprocals = 0.0;
   std::size_t begin = 0;
   for (std::size_t r = 0; r < records; ++r) {
     const std::size_t size = problem.data->records[r].size();
     const RecordVariance of = VarianceOf(problem, r, residual.subspan(begin, size));
     begin += size;
     if (of.degrees_of_freedom < kFewest) continue;
-    variances.push_back(of);
+    ++count;
     degrees += of.degrees_of_freedom;
     pooled += of.degrees_of_freedom * of.variance;
-  }
-  constexpr double kRounding = 10 * kRoundingRms;
-  if (variances.size() < 2 || pooled < degrees * kRounding * kRounding) return 1.0;
-  pooled /= degrees;
-  double statistic = 0.0;
-  double reciprocals = -1 / degrees;
-  for (const RecordVariance& of : variances) {
-    const double variance = std::max(of.variance, kRoundingRms * kRoundingRms);
-    statistic += of.degrees_of_freedom * std::log(pooled / variance);
+    logarithms +=
+        of.degrees_of_freedom * std::log(std::max(of.variance, kRoundingRms * kRoundingRms));
     reciprocals += 1 / of.degrees_of_freedom;
   }
-  const auto free = static_cast<double>(variances.size() - 1);
-  return PValueOfChiSquared(statistic / (1 + reciprocals / (3 * free)), free);
+  constexpr double kRounding = 10 * kRoundingRms;
+  if (count < 2 || pooled < degrees * kRounding * kRounding) return 1.0;
+  const double statistic = degrees * std::log(pooled / degrees) - logarithms;
+  const double correction = 1 + (reciprocals - 1 / degrees) / (3 * (count - 1));
+  return PValueOfChiSquared(statistic / correction, count - 1);
 }
 
 }  // namespace mindahl::identification
