@@ -423,7 +423,8 @@ std::vector<Sample> Rippled(std::vector<Sample> loop, double height) {
 TEST_F(FitTerms, ForceOfPositionIsCalledSystematic) {
   // rms 0.06/√2 = 4 % of Tc.
   const json fit =
-      Fit(Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.06 * kSlipForce));
+      Fit(Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.06 * kSlipForce),
+          {"--terms", "none"});
   EXPECT_TRUE(Warns(fit, "systematic_residual"));
   EXPECT_FALSE(Warns(fit, "no_model_fits"));
   EXPECT_GT(fit["residual_structure"][0]["repeatable_share"], 0.5);
@@ -433,8 +434,8 @@ TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThatOnBothStreams) {
   // rms 0.3/√2 = 21 % of Tc, beyond the 15 % of the half gap to which a fit is of use.
   const std::vector<Sample> loop =
       Rippled(Simulate({"--cycles", "4", "--noise-force", "0.1"}), 0.3 * kSlipForce);
-  EXPECT_EQ(Fit(loop)["adequacy"]["use"], "none");
-  const Outcome outcome = RunCommand({"fit", Write(loop)});
+  EXPECT_EQ(Fit(loop, {"--terms", "none"})["adequacy"]["use"], "none");
+  const Outcome outcome = RunCommand({"fit", Write(loop), "--terms", "none"});
   EXPECT_THAT(outcome.err, HasSubstr("leaves a repeatable residual"));
   EXPECT_THAT(outcome.out, HasSubstr("no parameter is to be used"));
 }

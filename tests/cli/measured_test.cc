@@ -24,8 +24,9 @@ using Words = std::vector<std::string>;
 
 class MeasuredRecord : public ::testing::Test {
  protected:
+  /// Fits the law alone, as the references do.
   json Fit(const std::string& file, Words options) {
-    options.insert(options.begin(), {"fit", MeasuredPath(file), "--json", "-"});
+    options.insert(options.begin(), {"fit", MeasuredPath(file), "--terms", "none", "--json", "-"});
     const Outcome outcome = RunCommand(options);
     EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;
     return outcome.Json();
