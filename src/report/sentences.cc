@@ -275,7 +275,7 @@ std::string InitialStateUndecided(const Finding& finding, const FitResult& fit, 
 
 std::string SeveralMinima(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "{}: the sum of squares has another minimum that the noise cannot tell from this one, where "
+      "{}: the sum of squares has another minimum that the noise does not exclude, where "
       "they lie elsewhere: the intervals cover both; record more samples about where slip begins, "
       "or a larger amplitude",
       fmt::join(finding.parameters, ", "));
