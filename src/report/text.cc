@@ -254,6 +254,7 @@ std::string SamplesText(const Report& report) {
 std::string InitialStates(const FitResult& fit) {
   if (!fit.has_mixed_states()) return std::string(Name(fit.initial_state));
   std::vector<std::string_view> names;
+  names.reserve(fit.records.size());
   for (const identification::RecordFit& record : fit.records) {
     names.push_back(Name(record.initial_state));
   }
