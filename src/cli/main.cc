@@ -34,7 +34,7 @@ void KeepFreedMemory() {
 #endif
 }
 
-const std::terminate_handler default_end = std::get_terminate();
+const std::terminate_handler kDefaultEnd = std::get_terminate();
 
 /// Ends a program whose memory ran out where no exception may leave, as in the destructor of a JSON
 /// value, as it ends otherwise for want of memory; anything else as std::terminate() does.
@@ -48,7 +48,7 @@ const std::terminate_handler default_end = std::get_terminate();
     ::_exit(mindahl::cli::kBadInput);
   } catch (...) {  // NOLINT(bugprone-empty-catch): ends below
   }
-  default_end();
+  kDefaultEnd();
   std::abort();
 }
 

@@ -17,6 +17,7 @@ namespace {
 /// The initial states that a fit found.
 RecordStates StatesOf(const FitResult& fit) {
   std::vector<models::InitialState> states;
+  states.reserve(fit.records.size());
   for (const RecordFit& record : fit.records) states.push_back(record.initial_state);
   return RecordStates(std::move(states));
 }

@@ -200,6 +200,7 @@ std::optional<RecordStates> GivenState(const Attempt& attempt) {
 /// Returns the states of a candidate's records with one of them turned to the other.
 RecordStates Flipped(const Problem& problem, std::size_t record) {
   std::vector<InitialState> states;
+  states.reserve(problem.data->records.size());
   for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
     states.push_back(problem.state.Of(r));
   }

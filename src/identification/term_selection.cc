@@ -230,8 +230,9 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
     }
   }
   for (Finding& finding : FindWideIntervals(fit, thresholds)) {
-    const bool is_there = std::ranges::any_of(
-        fit.findings, [&](const Finding& other) { return other.code == finding.code; });
+    const bool is_there = std::ranges::any_of(fit.findings, [&](const Finding& other) {
+      return std::string_view(other.code) == std::string_view(finding.code);
+    });
     if (!is_there) fit.findings.push_back(std::move(finding));
   }
   Judge(fit.parameters, fit.findings);

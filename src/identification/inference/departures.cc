@@ -65,7 +65,7 @@ enum DepartureRow : std::size_t {
   kMeasuredLoad,
   kShapeOfLaw,
   kGuide,
-  kRig,
+  kCompliantRig,
   kBacklash,
   kSensor,
   kInertia,
@@ -227,7 +227,7 @@ constexpr std::array<ForceColumn, 32> kForceColumns = {{
     {kShapeOfLaw, Along::kBranch, Bulge<2>},
     {kShapeOfLaw, Along::kBranch, Bulge<3>},
     {kGuide, Along::kForce, [](const ForcePlace& at) { return at.direction; }},
-    {kRig, Along::kBranch,
+    {kCompliantRig, Along::kBranch,
      [](const ForcePlace& at) { return -at.slope * (at.response - at.origin_response); }},
     {kBacklash, Along::kBranch,
      [](const ForcePlace& at) { return at.sets_out ? 0.0 : -at.slope * at.direction; }},
@@ -447,7 +447,7 @@ double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock
       return data.sense * newton / clock;
     case kGuide:
       return newton;
-    case kRig:
+    case kCompliantRig:
       return data.length / (newton * slip_force * slip_force);
     case kBacklash:
       return data.length / slip_force;

@@ -42,7 +42,7 @@ double LargestNoise(std::span<const double> readings) {
 }
 
 /// A difference of residuals: its square, and the mean square slope of what it is made of.
-struct Difference {
+struct SlopeDifference {
   double square = 0.0;
   double slope_square = 0.0;
 };
@@ -50,7 +50,7 @@ struct Difference {
 /// Second differences within the strokes.
 /// @param slope  of every sample of the record
 void AddDifferences(const ScaledRecord& record, std::span<const double> slope,
-                    std::span<const double> residual, std::vector<Difference>& differences) {
+                    std::span<const double> residual, std::vector<SlopeDifference>& differences) {
   const auto turns = [&](std::size_t i) { return std::ranges::binary_search(record.reversals, i); };
   for (std::size_t i = 1; i + 1 < record.size(); ++i) {
     bool is_within = !turns(i) && !turns(i - 1);
@@ -67,10 +67,10 @@ void AddDifferences(const ScaledRecord& record, std::span<const double> slope,
 }
 
 /// −2 ln L of the differences over their number.
-double DevianceAt(std::span<const Difference> differences, double of_force,
+double DevianceAt(std::span<const SlopeDifference> differences, double of_force,
                   double of_displacement) {
   double sum = 0.0;
-  for (const Difference& difference : differences) {
+  for (const SlopeDifference& difference : differences) {
     const double variance = of_force + of_displacement * difference.slope_square;
     sum += std::log(variance) + difference.square / variance;
   }
@@ -79,9 +79,9 @@ double DevianceAt(std::span<const Difference> differences, double of_force,
 
 /// The variance of the force's noise that is likeliest with so much of the displacement's for each
 /// of its own.
-double ForceVarianceAt(std::span<const Difference> differences, double ratio) {
+double ForceVarianceAt(std::span<const SlopeDifference> differences, double ratio) {
   double squares = 0.0;
-  for (const Difference& difference : differences) {
+  for (const SlopeDifference& difference : differences) {
     squares += difference.square / (1 + ratio * difference.slope_square);
   }
   return squares / static_cast<double>(differences.size());
@@ -137,7 +137,7 @@ std::optional<SlopeScatter> FindSlopeScatter(const loop::PreparedRecords& prepar
   response.Bind(problem);
   const LawPoint point = PointAt(problem, theta);
   const double scale = std::exp(LogScaleAt(problem, theta));
-  std::vector<Difference> differences;
+  std::vector<SlopeDifference> differences;
   models::OriginSensitivity sensitivity;
   double largest = 0.0;
   std::size_t begin = 0;
@@ -151,7 +151,7 @@ std::optional<SlopeScatter> FindSlopeScatter(const loop::PreparedRecords& prepar
     AddDifferences(record, slope, residual.subspan(begin, record.size()), differences);
     begin += record.size();
   }
-  for (const Difference& difference : differences) {
+  for (const SlopeDifference& difference : differences) {
     largest = std::max(largest, difference.slope_square);
   }
   constexpr std::size_t kFewest = 20;
