@@ -46,6 +46,19 @@ double ForceRateOfTheFile(const TermUnits& units) {
   return units.force_sense * units.force / units.half_duration;
 }
 
+/// Makes one of the four factors of a ripple, which differ in their column.
+constexpr Term FactorOfRipple(std::string_view name, std::string_view meaning, Regressor column) {
+  return {.name = name,
+          .unit = "N",
+          .meaning = meaning,
+          .entry = Entry::kLinear,
+          .presence = Presence::kOnDemand,
+          .lowest = -kWidest,
+          .highest = kWidest,
+          .scale = Force,
+          .column = column};
+}
+
 constexpr std::array kTerms = {
     Term{.name = "sigma",
          .unit = "N/m",
@@ -244,43 +257,15 @@ constexpr std::array kTerms = {
          .argument = "PERIOD|fit",
          .help = "fit a force that is periodic in the position, as of a drive screw,\n"
                  "with this period [m], or fit"},
-    Term{.name = "ripple_cosine_up",
-         .unit = "N",
-         .meaning = "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "
-                    "first record",
-         .entry = Entry::kLinear,
-         .presence = Presence::kOnDemand,
-         .lowest = -kWidest,
-         .highest = kWidest,
-         .scale = Force,
-         .column = Regressor::kRippleCosineUp},
-    Term{.name = "ripple_sine_up",
-         .unit = "N",
-         .meaning = "factor of sin(2πδ/λ), likewise",
-         .entry = Entry::kLinear,
-         .presence = Presence::kOnDemand,
-         .lowest = -kWidest,
-         .highest = kWidest,
-         .scale = Force,
-         .column = Regressor::kRippleSineUp},
-    Term{.name = "ripple_cosine_down",
-         .unit = "N",
-         .meaning = "factor of cos(2πδ/λ) where the displacement falls",
-         .entry = Entry::kLinear,
-         .presence = Presence::kOnDemand,
-         .lowest = -kWidest,
-         .highest = kWidest,
-         .scale = Force,
-         .column = Regressor::kRippleCosineDown},
-    Term{.name = "ripple_sine_down",
-         .unit = "N",
-         .meaning = "factor of sin(2πδ/λ), likewise",
-         .entry = Entry::kLinear,
-         .presence = Presence::kOnDemand,
-         .lowest = -kWidest,
-         .highest = kWidest,
-         .scale = Force,
-         .column = Regressor::kRippleSineDown},
+    FactorOfRipple("ripple_cosine_up",
+                   "factor of cos(2πδ/λ) where the displacement grows, δ from the middle of the "
+                   "first record",
+                   Regressor::kRippleCosineUp),
+    FactorOfRipple("ripple_sine_up", "factor of sin(2πδ/λ), likewise", Regressor::kRippleSineUp),
+    FactorOfRipple("ripple_cosine_down", "factor of cos(2πδ/λ) where the displacement falls",
+                   Regressor::kRippleCosineDown),
+    FactorOfRipple("ripple_sine_down", "factor of sin(2πδ/λ), likewise",
+                   Regressor::kRippleSineDown),
     Term{.name = "lag",
          .unit = "s",
          .meaning = "by which the contact's force is read after the displacement; in samples where "
