@@ -14,7 +14,7 @@
 namespace mindahl::identification {
 namespace {
 
-/// The initial states that a fit found.
+/// Returns the initial states that a fit found.
 RecordStates StatesOf(const FitResult& fit) {
   std::vector<models::InitialState> states;
   states.reserve(fit.records.size());

@@ -17,12 +17,12 @@ namespace {
 constexpr double kOwnSquare = 1e-9;
 /// Exponents at which the columns that they shape are tried.
 constexpr std::array kTriedExponents = {0.25, 0.5, 1.0};
-/// Of the way to its bound: a search does not begin nearer.
+/// Fraction of the distance to a bound beyond which no search begins.
 constexpr double kOfBound = 0.9;
 
 bool IsExponent(const Parameter& parameter) { return parameter.term->name.ends_with("_exponent"); }
 
-/// θ at which a term has no effect; of an exponent that of a force that is linear.
+/// Returns the θ at which a term has no effect; for an exponent that of a linear force.
 double ThetaWithoutEffect(const Parameters& parameters, std::size_t p) {
   const Parameter& parameter = parameters[p];
   if (p == kRig) return parameter.upper;
@@ -37,7 +37,7 @@ FitOptions WithTerms(FitOptions options, std::span<const std::string> terms) {
   return options;
 }
 
-/// The records with what does not count under any of the terms left out.
+/// Prepares the records, less the samples that do not count under one of the terms.
 loop::PreparedRecords PreparedFor(std::span<const loop::RecordView> records,
                                   const FitOptions& options, Arena& arena) {
   loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &arena);

@@ -19,7 +19,7 @@
 
 namespace mindahl::identification {
 
-/// What a fit would become with some more terms, to first order.
+/// Predicts, to first order, a fit with some more terms.
 struct TermScore {
   double rms = 0.0;                 // of the samples that count [N]
   std::vector<double> predictions;  // mean squares [N²] of the parts, each predicted by the others

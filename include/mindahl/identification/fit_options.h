@@ -58,7 +58,7 @@ struct FitOptions {
   /// taken as exact.
   std::optional<double> force_noise;
 
-  /// Of every interval, in (0, 1): what a fraction of such intervals contains.
+  /// Fraction of such intervals, in (0, 1), that contain the true value.
   double confidence = 0.95;
 
   /// Its scale comes from the residuals, or is the known noise.

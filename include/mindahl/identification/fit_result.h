@@ -164,7 +164,7 @@ struct FitResult {
   const models::FrictionModel* model = nullptr;
   /// The channel that was fitted: residuals, their rms and the misfit are in its unit, N or m.
   loop::Channel response = loop::Channel::kForce;
-  /// Of the records; where they differ, kVirgin.
+  /// Initial state of the records; kVirgin if they differ.
   models::InitialState initial_state = models::InitialState::kVirgin;
   int force_sense = 1;
   models::BranchLaw law;     ///< the fitted σ, α, Tc

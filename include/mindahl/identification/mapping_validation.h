@@ -105,7 +105,7 @@ struct ValidationReport {
   std::size_t failures = 0;
   std::vector<std::string> failed_cases;  ///< description of each failed case with its error
   std::vector<CoverageVerdict> coverage;  ///< in order of law, then parameter; empty without noise
-  /// Which coverages are incompatible with what is promised, of `coverage` and of single rows.
+  /// Coverages that contradict the stated confidence, of `coverage` and of single rows.
   std::vector<std::string> failed_coverages;
 
   [[nodiscard]] bool passed() const { return failures == 0 && failed_coverages.empty(); }

@@ -25,7 +25,7 @@ Eigen::MatrixXd WithoutBounds(const Problem& problem, const Solution& solution,
   return jacobian;
 }
 
-/// What the columns of all departures say together, and those of each.
+/// Tests the columns of all omitted terms together, and those of each.
 AdequacyTest Ask(const Problem& problem, const ColumnTest& columns,
                  const DepartureColumns& departures, double before, const Thresholds& thresholds) {
   AdequacyTest test;

@@ -69,7 +69,7 @@ std::size_t HighestOrderOf(std::size_t count) {
   return std::min(kHighestOrder, count / kSamplesPerOrder);
 }
 
-/// By Levinson and Durbin: each order from the one before.
+/// Solves by Levinson and Durbin: each order from the one before.
 /// @param count  samples that the covariances are of
 Autocorrelation ProcessOf(const Autocovariances& covariance, std::size_t count) {
   Autocorrelation best;
