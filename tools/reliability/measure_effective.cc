@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <string>
 
 #include "other_laws.h"
+#include "program.h"
 
 namespace mindahl::reliability {
 namespace {
@@ -63,10 +63,6 @@ int Main(int argc, char** argv) {
 /// Prints a table of docs/reliability.md. Exit status 1 for an internal error, 2 for options that
 /// are none.
 int main(int argc, char** argv) {
-  try {
-    return mindahl::reliability::Main(argc, argv);
-  } catch (const std::exception& fault) {
-    fmt::print(stderr, "measure_effective: {}\n", fault.what());
-    return 1;
-  }
+  return mindahl::reliability::RunProgram("measure_effective", &mindahl::reliability::Main, argc,
+                                          argv);
 }

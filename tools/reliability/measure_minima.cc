@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 
 #include "minima.h"
+#include "program.h"
 
 namespace mindahl::reliability {
 namespace {
@@ -60,10 +61,6 @@ int Main(int argc, char** argv) {
 /// worse, or one that is called identifiable by more than noise hides; 1 for an internal error, 2
 /// for options that are none.
 int main(int argc, char** argv) {
-  try {
-    return mindahl::reliability::Main(argc, argv);
-  } catch (const std::exception& fault) {
-    fmt::print(stderr, "measure_minima: {}\n", fault.what());
-    return 1;
-  }
+  return mindahl::reliability::RunProgram("measure_minima", &mindahl::reliability::Main, argc,
+                                          argv);
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <exception>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 
 #include "mindahl/io/atomic_file.h"
 #include "mindahl/io/csv_writer.h"
+#include "program.h"
 #include "small_run.h"
 #include "study.h"
 #include "table.h"
@@ -164,10 +164,6 @@ int Main(int argc, char** argv) {
 /// limits, or nothing could be run or written; 2 for options that are none and for a kind that
 /// there is not.
 int main(int argc, char** argv) {
-  try {
-    return mindahl::reliability::Main(argc, argv);
-  } catch (const std::exception& fault) {
-    fmt::print(stderr, "measure_reliability: {}\n", fault.what());
-    return 1;
-  }
+  return mindahl::reliability::RunProgram("measure_reliability", &mindahl::reliability::Main, argc,
+                                          argv);
 }
