@@ -18,7 +18,7 @@
 #include "cli/text_output.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/backbone_estimate.h"
-#include "mindahl/io/atomic_file.h"
+#include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/report/backbone.h"
 #include "mindahl/report/figure.h"

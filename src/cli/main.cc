@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "cli/app.h"
-#include "mindahl/io/atomic_file.h"
+#include "mindahl/io/output_file.h"
 
 namespace {
 

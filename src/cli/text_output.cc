@@ -1,6 +1,6 @@
 #include "cli/text_output.h"
 
-#include "mindahl/io/atomic_file.h"
+#include "mindahl/io/output_file.h"
 
 namespace mindahl::cli {
 

@@ -21,7 +21,7 @@
 #include "cli/progress.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
-#include "mindahl/io/atomic_file.h"
+#include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/models/excitation.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contact/in_range.h"
+#include "contact/requirements.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {

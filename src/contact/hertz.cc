@@ -5,8 +5,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "contact/body_requirements.h"
-#include "contact/in_range.h"
+#include "contact/requirements.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {

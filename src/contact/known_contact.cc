@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "contact/body_requirements.h"
+#include "contact/requirements.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {

@@ -8,7 +8,7 @@
 #include "convert/jenkins_refit.h"
 #include "convert/refit.h"
 #include "mindahl/core/error.h"
-#include "mindahl/models/equivalent_law.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::convert {
 

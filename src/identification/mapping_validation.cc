@@ -14,8 +14,8 @@
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/branch_law.h"
-#include "mindahl/models/equivalent_law.h"
 #include "mindahl/models/excitation.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
 

@@ -13,7 +13,7 @@
 
 #include "identification/held_out.h"
 #include "identification/problem/problem.h"
-#include "mindahl/core/arena.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/preparation.h"
 

@@ -12,7 +12,6 @@
 #include <system_error>
 #include <utility>
 
-#include "io/cell_fault.h"
 #include "io/csv_layout.h"
 #include "io/csv_tokenizer.h"
 #include "io/input_file.h"

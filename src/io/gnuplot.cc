@@ -16,7 +16,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "io/temporary_names.h"
+#include "io/unfinished_output.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::io {

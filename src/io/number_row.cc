@@ -5,7 +5,6 @@
 #include <system_error>
 #include <utility>
 
-#include "io/cell_fault.h"
 #include "io/number_cell.h"
 
 namespace mindahl::io {

@@ -16,7 +16,7 @@
 #include "io/power_of_ten.h"
 #include "io/thinning.h"
 #include "mindahl/core/error.h"
-#include "mindahl/io/atomic_file.h"
+#include "mindahl/io/output_file.h"
 
 namespace mindahl::io {
 namespace {

@@ -14,7 +14,6 @@
 
 #include "io/csv_layout.h"
 #include "io/input_file.h"
-#include "io/line_pieces.h"
 #include "io/number_row.h"
 #include "io/record_columns.h"
 #include "mindahl/core/error.h"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/averages.h"
 #include "loop/scratch.h"
+#include "loop/statistics.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
 

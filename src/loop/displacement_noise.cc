@@ -8,7 +8,7 @@
 
 #include "core/extremes.h"
 #include "loop/scratch.h"
-#include "loop/smallest_step.h"
+#include "loop/statistics.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "loop/averages.h"
-#include "loop/line.h"
+#include "loop/statistics.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/mending.h"
+#include "loop/scratch.h"
 
 namespace mindahl::loop {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "loop/averages.h"
-#include "loop/load_step_rules.h"
+#include "loop/rules.h"
+#include "loop/statistics.h"
 #include "mindahl/loop/reversals.h"
 
 namespace mindahl::loop {

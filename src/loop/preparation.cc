@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/extremes.h"
-#include "loop/mending.h"
 #include "loop/scratch.h"
 #include "mindahl/core/error.h"
 

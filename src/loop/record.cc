@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/magnitudes.h"
+#include "core/extremes.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::loop {

@@ -1,11 +1,18 @@
 #include "mindahl/loop/reversals.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "loop/excursions.h"
+#include "loop/rules.h"
 #include "loop/scratch.h"
+#include "loop/statistics.h"
 #include "mindahl/core/error.h"
+#include "mindahl/loop/displacement_noise.h"
 
 namespace mindahl::loop {
+
 std::vector<std::size_t> FindReversals(std::span<const double> displacement, double gate) {
   std::pmr::vector<std::size_t> reversals;
   FindReversals(displacement, gate, reversals);
@@ -20,6 +27,279 @@ void FindReversals(std::span<const double> displacement, double gate,
   for (const double x : displacement) {
     if (const std::optional<std::size_t> reversal = finder.Add(x)) reversals.push_back(*reversal);
   }
+}
+
+namespace {
+
+/// Returns the extremes, with the record's ends.
+std::pmr::vector<std::size_t> LocalExtremes(std::span<const double> displacement,
+                                            std::pmr::memory_resource* scratch) {
+  std::pmr::vector<std::size_t> points(scratch);
+  FindReversals(displacement, 0.0, points);
+  if (displacement.empty()) return points;
+  points.insert(points.begin(), 0);
+  points.push_back(displacement.size() - 1);
+  return points;
+}
+
+}  // namespace
+
+std::pmr::vector<Excursion> FindExcursions(std::span<const double> displacement,
+                                           std::pmr::memory_resource* scratch) {
+  // Points that are still open are kept in front of those not yet visited.
+  std::pmr::vector<std::size_t> points = LocalExtremes(displacement, scratch);
+  std::pmr::vector<Excursion> excursions(scratch);
+  excursions.reserve(points.size());
+  std::size_t open = 0;
+  const auto excursion = [&](std::size_t i, std::size_t reversals) {
+    return Excursion{std::abs(displacement[points[i + 1]] - displacement[points[i]]), points[i],
+                     points[i + 1], reversals};
+  };
+  for (const std::size_t point : points) {
+    points[open++] = point;
+    while (open >= 4) {
+      const Excursion inner = excursion(open - 3, 2);
+      if (inner.range > excursion(open - 4, 1).range ||
+          inner.range > excursion(open - 2, 1).range) {
+        break;
+      }
+      excursions.push_back(inner);
+      points[open - 3] = points[open - 1];
+      open -= 2;
+    }
+  }
+  for (std::size_t i = 0; i + 1 < open; ++i) excursions.push_back(excursion(i, 1));
+  std::ranges::sort(excursions, [](const Excursion& one, const Excursion& other) {
+    return one.range != other.range ? one.range < other.range : one.first < other.first;
+  });
+  return excursions;
+}
+
+std::size_t CountReversals(std::span<const Excursion> excursions, double gate) {
+  std::size_t ends = 0;
+  for (const Excursion& excursion : excursions) {
+    if (excursion.range > gate) ends += excursion.reversals;
+  }
+  return ends == 0 ? 0 : ends - 1;  // one stroke is left, with a reversal at neither end
+}
+
+namespace {
+
+using Excursions = std::span<const Excursion>;
+
+/// Returns the median duration [samples] of the strokes at least half as wide as the widest.
+double MainDuration(Excursions excursions, std::pmr::memory_resource* scratch) {
+  std::pmr::vector<std::size_t> durations(scratch);
+  durations.reserve(excursions.size());
+  for (const Excursion& excursion : excursions) {
+    if (excursion.range >= excursions.back().range / 2) durations.push_back(excursion.duration());
+  }
+  return static_cast<double>(UpperMedian(durations));
+}
+
+/// Returns the widest excursion [m] that white noise or an encoder's last digit makes.
+double ReachOfNoise(std::span<const double> displacement, double full_range,
+                    const ReversalRules& rules, std::pmr::memory_resource* scratch) {
+  const double noise = EstimateDisplacementNoise(displacement, scratch);
+  if (noise > rules.rough * full_range) return 0.0;
+  // Normal noise of n samples reaches √(2 ln n) standard deviations to either side.
+  return rules.beyond * 2 * noise *
+         std::sqrt(2 * std::log(static_cast<double>(displacement.size())));
+}
+
+/// True if one step makes much of the excursion; false for long ones, which no jump makes.
+bool Jumps(std::span<const double> displacement, const Excursion& excursion, double share) {
+  constexpr std::size_t kLongest = 64;  // [samples]
+  if (excursion.duration() > kLongest) return false;
+  double largest = 0.0;
+  for (std::size_t i = excursion.first + 1; i <= excursion.last; ++i) {
+    largest = std::max(largest, std::abs(displacement[i] - displacement[i - 1]));
+  }
+  return largest >= share * excursion.range;
+}
+
+/// Classifies an excursion by itself.
+enum class Look : unsigned char {
+  kNoise,
+  kUnclear,  // noise that takes its time, or a record cut just after it turned
+  kOdd,      // neither: brief and smooth
+  kDrive,
+};
+
+/// Looks at excursions one by one.
+class Judge {
+ public:
+  Judge(std::span<const double> displacement, Excursions excursions, const ReversalRules& rules,
+        std::pmr::memory_resource* scratch)
+      : displacement_(displacement),
+        rules_(rules),
+        main_duration_(MainDuration(excursions, scratch)),
+        main_range_(excursions.back().range / 2) {
+    // Without a brief one there is no noise to be estimated.
+    if (std::ranges::any_of(excursions, [&](const Excursion& one) { return IsBrief(one); })) {
+      reach_ = ReachOfNoise(displacement, excursions.back().range, rules, scratch);
+      any_brief_ = true;
+    }
+  }
+
+  [[nodiscard]] bool any_brief() const { return any_brief_; }
+  [[nodiscard]] bool IsBrief(const Excursion& excursion) const {
+    return LastsAtMost(excursion, rules_.brief);
+  }
+
+  [[nodiscard]] Look LookAt(const Excursion& excursion) const {
+    if (excursion.range >= main_range_) return Look::kDrive;
+    const bool at_an_end = excursion.reversals == 1;
+    if (excursion.range <= reach_) {
+      return IsBrief(excursion) && !at_an_end ? Look::kNoise : Look::kUnclear;
+    }
+    if (LastsAtMost(excursion, rules_.sudden) && Jumps(displacement_, excursion, rules_.jump)) {
+      return at_an_end ? Look::kUnclear : Look::kNoise;
+    }
+    return IsBrief(excursion) && !at_an_end ? Look::kOdd : Look::kDrive;
+  }
+
+ private:
+  [[nodiscard]] bool LastsAtMost(const Excursion& excursion, double share) const {
+    return excursion.range < main_range_ &&
+           static_cast<double>(excursion.duration()) <= share * main_duration_;
+  }
+
+  std::span<const double> displacement_;
+  const ReversalRules& rules_;
+  double main_duration_;  // [samples]
+  double main_range_;     // [m]
+  double reach_ = 0.0;    // [m]
+  bool any_brief_ = false;
+};
+
+/// Marks as unclear what would be a turn just before an end of the record, were there not many
+/// disturbances that are as brief and wider: the record may as well end within one of those.
+void DoubtEnds(Excursions excursions, const Judge& judge, const ReversalRules& rules,
+               std::span<Look> looks) {
+  std::size_t wider = 0;
+  for (std::size_t i = excursions.size(); i-- > 0;) {
+    if (looks[i] == Look::kOdd) ++wider;
+    const bool ends = excursions[i].reversals == 1 && judge.IsBrief(excursions[i]);
+    if (ends && looks[i] == Look::kDrive && wider >= rules.many) looks[i] = Look::kUnclear;
+  }
+}
+
+/// A range of gates [m] under which the count is the same.
+struct Plateau {
+  double lower = 0.0;
+  double upper = 0.0;
+  std::size_t below = 0;       // excursions that are taken for noise
+  std::size_t exceptions = 0;  // that look otherwise than they are taken
+
+  [[nodiscard]] double width() const { return lower > 0 ? std::log(upper / lower) : 0.0; }
+  /// Returns a gate well above what it rejects, but not at the small strokes.
+  [[nodiscard]] double gate() const { return std::min(2 * lower, std::sqrt(lower * upper)); }
+};
+
+/// Calls visit(plateau) for each plateau between two ranges, from the lowest, up to the first
+/// stroke of the drive.
+template <typename Visit>
+void ForEachPlateau(Excursions excursions, std::span<const Look> looks, Visit visit) {
+  Plateau plateau{.exceptions = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise))};
+  for (std::size_t i = 0; i + 1 < excursions.size() && looks[i] != Look::kDrive; ++i) {
+    plateau.lower = excursions[i].range;
+    plateau.upper = excursions[i + 1].range;
+    plateau.below = i + 1;
+    if (looks[i] == Look::kNoise) --plateau.exceptions;
+    if (looks[i] == Look::kOdd) ++plateau.exceptions;
+    if (plateau.upper > plateau.lower) visit(plateau);
+  }
+}
+
+/// Returns the widest, and the next widest, of the plateaus nearly as good as the best.
+std::pair<Plateau, Plateau> WidestPlateaus(Excursions excursions, std::span<const Look> looks,
+                                           const ReversalRules& rules) {
+  const auto noise = static_cast<std::size_t>(std::ranges::count(looks, Look::kNoise));
+  if (noise == 0) return {};
+  std::size_t fewest = noise;  // under no gate
+  ForEachPlateau(excursions, looks,
+                 [&](const Plateau& plateau) { fewest = std::min(fewest, plateau.exceptions); });
+  const double allowed =
+      static_cast<double>(fewest) + rules.exceptions * static_cast<double>(noise);
+  Plateau widest;
+  Plateau next;
+  ForEachPlateau(excursions, looks, [&](const Plateau& plateau) {
+    if (static_cast<double>(plateau.exceptions) > allowed) return;
+    if (plateau.width() > widest.width()) {
+      next = widest;
+      widest = plateau;
+    } else if (plateau.width() > next.width()) {
+      next = plateau;
+    }
+  });
+  return {widest, next};
+}
+
+/// Returns a far wider plateau above many brief excursions that lie as densely as those of noise,
+/// though none of them looks like it: vibration, or noise that a filter has made smooth.
+Plateau AboveSmoothDisturbances(Excursions excursions, const Judge& judge,
+                                const ReversalRules& rules) {
+  Plateau widest;
+  double least = 0.0;  // of the brief excursions, since the last gap
+  std::size_t count = 0;
+  for (std::size_t i = 0; i + 1 < excursions.size() && judge.IsBrief(excursions[i]); ++i) {
+    const double range = excursions[i].range;
+    if (i == 0 || range > rules.clear * excursions[i - 1].range) {
+      least = range;
+      count = 0;
+    }
+    ++count;
+    const double upper = excursions[i + 1].range;
+    if (count >= rules.many && range >= rules.spread * least && upper >= rules.far * range) {
+      widest = {.lower = range, .upper = upper, .below = i + 1};
+    }
+  }
+  return widest;
+}
+
+ReversalGate Under(Excursions excursions, double gate) {
+  const std::size_t count = CountReversals(excursions, gate);
+  return {.gate = gate, .count = count, .other_count = count, .other_gate = gate};
+}
+
+ReversalGate Doubted(Excursions excursions, double gate, double other_gate) {
+  ReversalGate chosen = Under(excursions, gate);
+  chosen.certain = false;
+  chosen.other_gate = other_gate;
+  chosen.other_count = CountReversals(excursions, other_gate);
+  return chosen;
+}
+
+}  // namespace
+
+ReversalGate ChooseReversalGate(std::span<const double> displacement) {
+  return ChooseReversalGate(displacement, {}, std::pmr::get_default_resource());
+}
+
+ReversalGate ChooseReversalGate(std::span<const double> displacement, const ReversalRules& rules,
+                                std::pmr::memory_resource* scratch) {
+  const std::pmr::vector<Excursion> excursions = FindExcursions(displacement, scratch);
+  if (excursions.size() < 2) return Under(excursions, 0.0);
+  const Judge judge(displacement, excursions, rules, scratch);
+  if (!judge.any_brief()) return Under(excursions, 0.0);
+  std::pmr::vector<Look> looks(scratch);
+  looks.reserve(excursions.size());
+  for (const Excursion& excursion : excursions) looks.push_back(judge.LookAt(excursion));
+  DoubtEnds(excursions, judge, rules, looks);
+  const auto [chosen, rival] = WidestPlateaus(excursions, looks, rules);
+  const Plateau smooth = AboveSmoothDisturbances(excursions, judge, rules);
+  if (smooth.below > chosen.below) return Doubted(excursions, smooth.gate(), chosen.gate());
+  if (chosen.below == 0) return Under(excursions, 0.0);
+  const bool is_narrow = chosen.upper < rules.clear * chosen.lower;
+  const auto kept = static_cast<double>(excursions.size() - chosen.below);
+  if (is_narrow && static_cast<double>(chosen.below) < rules.outnumber * kept) {
+    return Doubted(excursions, 0.0, chosen.gate());
+  }
+  if (is_narrow) return Doubted(excursions, chosen.gate(), 0.0);
+  const bool is_rivalled = rival.width() > rules.rival * chosen.width();
+  return is_rivalled ? Doubted(excursions, chosen.gate(), rival.gate())
+                     : Under(excursions, chosen.gate());
 }
 
 }  // namespace mindahl::loop

@@ -5,15 +5,17 @@
 #include <span>
 #include <vector>
 
-#include "loop/reversal_rules.h"
+#include "loop/rules.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/displacement_noise.h"
+#include "mindahl/loop/glitches.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 
+namespace mindahl::loop {
+
 /// The public functions of this module with their scratch, and what they return, in a memory that
 /// the caller gives: for stages that are run again and again. The record is valid.
-namespace mindahl::loop {
 
 void FindReversals(std::span<const double> displacement, double gate,
                    std::pmr::vector<std::size_t>& reversals);
@@ -28,5 +30,21 @@ int ForceSense(const RecordView& record, std::span<const std::size_t> reversals,
 
 /// Returns the measures of the record whose force has its sign changed, for a sign of −1.
 LoopMeasures InSense(LoopMeasures measures, int force_sense);
+
+/// A record without its glitches: lines over the samples that are left out. All empty where there
+/// is no glitch; a channel is also empty where there is none in it.
+struct Mended {
+  explicit Mended(std::pmr::memory_resource* memory)
+      : glitches(memory), displacement(memory), force(memory) {}
+
+  std::pmr::vector<Glitch> glitches;
+  std::pmr::vector<double> displacement;  // [m]
+  std::pmr::vector<double> force;         // [N]
+};
+
+/// Returns the glitches of FindGlitches, and what is left.
+/// @param memory  of the result and of scratch
+Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
+                   std::pmr::memory_resource* memory);
 
 }  // namespace mindahl::loop

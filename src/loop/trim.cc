@@ -10,10 +10,9 @@
 #include <span>
 #include <utility>
 
-#include "loop/averages.h"
-#include "loop/line.h"
+#include "loop/rules.h"
+#include "loop/statistics.h"
 #include "loop/strokes.h"
-#include "loop/trim_rules.h"
 #include "mindahl/loop/facts.h"
 
 namespace mindahl::loop {

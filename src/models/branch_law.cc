@@ -6,7 +6,7 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/backbone_integrals.h"
-#include "models/representable.h"
+#include "models/requirements.h"
 
 namespace mindahl::models {
 

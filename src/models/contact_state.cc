@@ -4,9 +4,9 @@
 
 #include "mindahl/core/error.h"
 #include "models/madelung.h"
+#include "models/requirements.h"
 #include "models/scaled_branches.h"
 #include "models/series_spring.h"
-#include "models/within_reach.h"
 
 namespace mindahl::models {
 

@@ -2,8 +2,7 @@
 
 #include "mindahl/core/error.h"
 #include "models/load_zones.h"
-#include "models/slip_at_load.h"
-#include "models/within_reach.h"
+#include "models/requirements.h"
 
 namespace mindahl::models {
 

@@ -6,10 +6,9 @@
 #include <cmath>
 
 #include "core/extremes.h"
-#include "core/magnitudes.h"
 #include "mindahl/core/error.h"
 #include "models/madelung.h"
-#include "models/within_reach.h"
+#include "models/requirements.h"
 
 namespace mindahl::models {
 namespace {

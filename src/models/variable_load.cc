@@ -9,8 +9,8 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/loaded_contact_state.h"
 #include "mindahl/models/loading_path.h"
-#include "models/slip_at_load.h"
-#include "models/within_reach.h"
+#include "models/load_zones.h"
+#include "models/requirements.h"
 
 namespace mindahl::models {
 namespace {

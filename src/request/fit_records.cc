@@ -15,8 +15,7 @@
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/too_few_samples.h"
-#include "mindahl/io/load_pieces.h"
-#include "mindahl/io/time_window.h"
+#include "mindahl/io/record_parts.h"
 #include "mindahl/report/contact.h"
 
 namespace mindahl::request {

@@ -12,7 +12,7 @@
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
-#include "mindahl/models/equivalent_law.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::cli::convert_command_test {
 namespace {

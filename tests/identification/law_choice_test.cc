@@ -10,7 +10,6 @@
 
 #include "identification/inference/law_choice.h"
 #include "identification/stages.h"
-#include "mindahl/models/equivalent_law.h"
 #include "mindahl/models/steady_loop.h"
 
 // Which of the two laws a record is of.

@@ -1,5 +1,3 @@
-#include "mindahl/io/atomic_file.h"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -9,6 +7,7 @@
 #include <thread>
 
 #include "mindahl/core/error.h"
+#include "mindahl/io/output_file.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::atomic_file_test {

@@ -1,10 +1,10 @@
-#include "mindahl/io/load_pieces.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "mindahl/io/record_parts.h"
 
 namespace mindahl::io::load_pieces_test {
 namespace {

@@ -1,5 +1,3 @@
-#include "io/temporary_names.h"
-
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,7 +6,8 @@
 #include <cerrno>
 #include <csignal>
 
-#include "mindahl/io/atomic_file.h"
+#include "io/unfinished_output.h"
+#include "mindahl/io/output_file.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::temporary_names_test {

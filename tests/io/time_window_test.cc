@@ -1,11 +1,10 @@
-#include "mindahl/io/time_window.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "mindahl/core/error.h"
+#include "mindahl/io/record_parts.h"
 
 namespace mindahl::io::time_window_test {
 namespace {

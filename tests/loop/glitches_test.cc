@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "loop/mending.h"
+#include "loop/scratch.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"

@@ -1,5 +1,3 @@
-#include "loop/reversal_rules.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "loop/excursions.h"
+#include "loop/rules.h"
 #include "loop/scratch.h"
 #include "mindahl/loop/displacement_noise.h"
 #include "support/histories.h"

@@ -1,5 +1,3 @@
-#include "mindahl/models/equivalent_law.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

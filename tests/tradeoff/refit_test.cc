@@ -11,7 +11,7 @@
 
 #include "../methods/responses.h"
 #include "mindahl/core/error.h"
-#include "mindahl/models/equivalent_law.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::tradeoff::refit_test {
 namespace {

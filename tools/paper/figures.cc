@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "mindahl/io/atomic_file.h"
 #include "mindahl/io/csv_writer.h"
+#include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "responses.h"
 

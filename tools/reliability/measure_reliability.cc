@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "mindahl/io/atomic_file.h"
 #include "mindahl/io/csv_writer.h"
+#include "mindahl/io/output_file.h"
 #include "program.h"
 #include "small_run.h"
 #include "study.h"

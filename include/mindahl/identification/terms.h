@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "mindahl/loop/channel.h"
+#include "mindahl/loop/record.h"
 
 namespace mindahl::identification {
 

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "mindahl/loop/channel.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/displacement_noise.h"
 #include "mindahl/loop/glitches.h"

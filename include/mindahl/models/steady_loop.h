@@ -51,4 +51,29 @@ double GrossSlipEnergyRatio(const FrictionModel& model, const BranchLaw& law,
 /// for α >= 1, where slip is only approached. Relative error below 1 ε.
 double GrossSlipEnergyRatio(double shape_exponent);
 
+/// Masing's law (Mindlin's, Full-Dahl) and Dahl's own law (eq. 10) on a steady loop of one
+/// amplitude: they are one curve there, each with a σ and a Tc of its own (docs/theory.md §6).
+
+/// Returns Dahl's own law on whose steady loop between ±amplitude a Masing law runs:
+///   α' = α      σ' = σ·(1 − T*/(2Tc))^α = σ·((1+u)/2)^α      Tc' = 2Tc − T* = Tc·(1+u)
+/// with T* = f(X) and u = 1 − T*/Tc; in gross slip σ' = 2^{−α}·σ and Tc' = Tc, for X = 0, which is
+/// a straight line, σ' = σ and Tc' = 2Tc. Peyret et al. (2017) eq. 20 is eq. 10 of these:
+/// 1 − (T* + sT)/(2Tc) = (1 − T*/(2Tc))·(1 − sT/(2Tc − T*)).
+/// @param masing     any valid law
+/// @param amplitude  X [m] of the contact, without a rig's share (ContactAmplitude), finite, >= 0
+/// @throws InvalidArgument for an invalid law or amplitude, and where σ' and Tc' make no valid law:
+///   2Tc overflows
+/// Relative error below (2 + α) ε of σ', below 2 ε of Tc'.
+BranchLaw DahlEquivalent(const BranchLaw& masing, double amplitude);
+
+/// Returns the Masing law that runs through the steady loop of Dahl's own law between ±amplitude:
+///   α = α'      σ = σ'·(1 + T*/Tc')^α      Tc = (Tc' + T*)/2
+/// the inverse of DahlEquivalent(). σ is eq. 12's slope after a reversal at T*, where a Masing
+/// branch starts with the virgin stiffness.
+/// @param dahl       any valid law
+/// @param amplitude  as above
+/// @throws InvalidArgument likewise
+/// Relative error below (2 + 16α) ε of σ, below 12 ε of Tc: those of T* (SteadyPeakForce).
+BranchLaw MasingEquivalent(const BranchLaw& dahl, double amplitude);
+
 }  // namespace mindahl::models

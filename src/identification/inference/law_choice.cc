@@ -11,7 +11,6 @@
 
 #include "identification/inference/evidence.h"
 #include "identification/inference/local.h"
-#include "mindahl/models/equivalent_law.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {

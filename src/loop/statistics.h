@@ -2,12 +2,28 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <boost/math/statistics/univariate_statistics.hpp>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 #include <span>
 
 namespace mindahl::loop {
+
+/// A least-squares line through values against numbers that are not all the same.
+struct Line {
+  double mean = 0.0;  // of the values
+  double slope = 0.0;
+  double slope_error = 0.0;
+  double deviation = 0.0;  // standard, of the values from it
+  double degrees_of_freedom = 0.0;
+};
+
+/// @param values  three or more
+Line LineThrough(std::span<const double> numbers, std::span<const double> values);
 
 /// Returns the mean of at least one value, in four parallel sums that do not wait for each other.
 inline double Mean(std::span<const double> values) {
@@ -33,6 +49,18 @@ auto UpperMedian(Values&& values) {
 template <typename Values>
 double Median(Values&& values) {
   return boost::math::statistics::median(values.begin(), values.end());
+}
+
+/// Returns the least distance [m] between neighbours that differ; 0 where none do.
+inline double SmallestStep(std::span<const double> displacement) {
+  // Magnitudes are in the order of their bits, and of one less those of no step come last.
+  constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t smallest = kNone;
+  for (std::size_t i = 1; i < displacement.size(); ++i) {
+    const double step = std::abs(displacement[i] - displacement[i - 1]);
+    smallest = std::min(smallest, std::bit_cast<std::uint64_t>(step) - 1);
+  }
+  return smallest == kNone ? 0.0 : std::bit_cast<double>(smallest + 1);
 }
 
 }  // namespace mindahl::loop

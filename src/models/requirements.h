@@ -5,8 +5,27 @@
 #include <string_view>
 
 #include "mindahl/core/error.h"
+#include "mindahl/models/branch_law.h"
+#include "mindahl/models/loading_path.h"
 
 namespace mindahl::models {
+
+/// @throws InvalidArgument naming what is wrong of either
+inline void RequireLawAndAmplitude(const BranchLaw& law, double amplitude) {
+  Validate(law);
+  RequireNonNegative("amplitude [m]", amplitude);
+}
+
+[[nodiscard]] inline bool IsWithinReach(double displacement) {
+  return std::abs(displacement) <= kLargestPathDisplacement;
+}
+
+/// @throws InvalidArgument unless the displacement can be part of a path
+inline void RequireWithinReach(std::string_view quantity, double displacement) {
+  if (!IsWithinReach(displacement)) {
+    ThrowInvalid(quantity, displacement, "must be finite and within +-1e307 m");
+  }
+}
 
 /// Returns `value` rounded to double.
 /// @throws InvalidArgument where it exceeds the largest double

@@ -1,9 +1,7 @@
-#include "loop/line.h"
-
 #include <cmath>
 #include <cstddef>
 
-#include "loop/averages.h"
+#include "loop/statistics.h"
 
 namespace mindahl::loop {
 

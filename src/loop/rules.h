@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstddef>
+
+namespace mindahl::loop {
+
+/// Sets when an excursion of the displacement looks like noise, and when a gate is certain.
+struct ReversalRules {
+  /// [of the main strokes' duration] Longest noise; a nested loop of few samples is not shorter.
+  double brief = 1.0 / 3;
+  /// [of the main strokes' duration] Longest jump of the gauge beyond the white noise: an inner
+  /// loop that the drive makes on its way may last longer.
+  double sudden = 1.0 / 8;
+  /// [of the excursion's range] Least fraction in one step between samples of a jump: a drive that
+  /// turns twice takes more samples to do so.
+  double jump = 0.4;
+  /// [-] Over the likely reach of n samples' normal noise, 2√(2 ln n) standard deviations, which a
+  /// twentieth of records exceed, and whose deviation is an estimate.
+  double beyond = 1.25;
+  /// [of the full range] Largest noise; more is a rough drive, a sequence of unrelated places.
+  double rough = 0.05;
+  /// [of the excursions that look like noise] Largest fraction classified otherwise.
+  double exceptions = 0.05;
+  /// [-] Ratio of a plateau's ends below which it is narrow.
+  double clear = 2.5;
+  /// [-] Under a narrow plateau the noise is believed where there is so much more of it than of the
+  /// drive: of random walks, whose excursions are of all ranges, it is not.
+  double outnumber = 20.0;
+  /// [of the plateau's width in log(gate)] Least width of a second plateau that competes.
+  double rival = 0.5;
+  /// Smooth disturbances are distinguished from nested loops by their number,
+  std::size_t many = 8;
+  /// [-] the ratio of their ranges, which lie as densely as those of noise,
+  double spread = 10.0;
+  /// [-] and the ratio of the plateau's ends above them.
+  double far = 10.0;
+};
+
+/// Sets the limits beyond which a sample is a glitch.
+struct GlitchRules {
+  /// [steps about it and of the record] Least height of a spike over both neighbours. Noise of
+  /// standard deviation s has steps of 2.2 s at the third of 24 and would have to stand out by 6.6.
+  double spike = 3.0;
+  /// [samples] Longer ones are as well a pulse of the drive or an inner loop.
+  std::size_t longest_spike = 3;
+  /// [samples] So many to either side of a spike are looked at: the edges of a square wave of six
+  /// samples a cycle come often enough within them to be distinguished from spikes.
+  std::size_t about = 12;
+  /// [usual steps] Least distance of 0 from the range of a dropout's neighbours.
+  double dropout = 2.0;
+  /// [usual steps of the displacement] The same at an end: a record may begin at 0 and 0.
+  double end_dropout = 4.0;
+  /// [samples] Fewer equal readings are common where a file has few digits.
+  std::size_t shortest_held = 5;
+  /// [steps about it and of the record] Least jump from a held value to the next, and there and
+  /// back of a dropout of one channel.
+  double held_jump = 3.0;
+  /// [of the samples] Largest fraction that may be glitches; more of them are the record.
+  double most = 0.25;
+};
+
+/// Sets the limits within which a normal load is a series of constant ones.
+struct LoadStepRules {
+  /// [of the load] Largest deviation of a constant load, which a fit hardly sees.
+  double constant = 0.01;
+  /// [standard deviations of the readings' white noise] The same by noise: of 10⁵ readings the
+  /// widest is 4.4 off.
+  double noise = 5.0;
+  /// [of the smaller] Least difference of loads with a step between; a smaller one may be a drift.
+  double step = 0.05;
+  /// [of the step next to it] Largest range of a constant load: the top of a wave is not flat.
+  double flat = 0.1;
+  /// [of the samples] Least fraction under a constant load: a wave is at its tops for less.
+  double share = 0.6;
+  /// [turning points] After the second, from which a piece begins, a constant load has a cycle.
+  std::size_t turns = 4;
+};
+
+/// Sets the limits by which the ends of a record are not part of its test.
+struct TrimRules {
+  /// [of half the range] Largest change of a resting displacement: elastic creep of a rig at rest.
+  double rest = 0.01;
+  /// [usual strokes] It rests for longer: a dwell at a turning point is a part of the motion, and a
+  /// sine is within `rest` of its extreme for 0.05 of a stroke to either side.
+  double longest_dwell = 0.5;
+  /// [of the widest amplitude] Largest step back of a ramp: alternating amplitudes are no ramp.
+  double step_back = 0.05;
+  /// [of the cycles] Least fraction of the test's amplitude, or there is no test but the ramp.
+  double share = 0.6;
+  /// [of the level] Largest distance of a settled fact: less is not worth cycles, as identification
+  /// reports no smaller trend.
+  double settled = 0.01;
+  /// [-] Chance at which the scatter of the cycles makes a fact seem unsettled: of two
+  /// facts one record in five hundred.
+  double chance = 0.001;
+  /// [-] A slope of the last half of the cycles is none where chance makes it more often: as
+  /// identification's trend.
+  double trend_chance = 0.01;
+  /// [cycles] Fewer have no last half to determine level, slope and scatter: four are the least
+  /// about whose line there is a scatter that two do not make zero.
+  std::size_t fewest = 8;
+};
+
+}  // namespace mindahl::loop
