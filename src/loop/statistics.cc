@@ -1,7 +1,7 @@
+#include "loop/statistics.h"
+
 #include <cmath>
 #include <cstddef>
-
-#include "loop/statistics.h"
 
 namespace mindahl::loop {
 
