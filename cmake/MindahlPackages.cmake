@@ -27,7 +27,7 @@ endif()
 set(CPACK_DEBIAN_TOOL_PACKAGE_NAME mindahl)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOL_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot")
+set(CPACK_DEBIAN_TOOL_PACKAGE_RECOMMENDS "librsvg2-bin")
 set(CPACK_DEBIAN_TOOL_DESCRIPTION
     "friction parameters of a contact from its hysteresis loop
 From the measured tangential displacement and force of a contact to its

@@ -12,7 +12,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libceres-dev libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev libssl-dev
-  gnuplot-nox jq python3
+  librsvg2-bin jq python3
 )
 for group in "$@"; do
   case $group in
@@ -25,7 +25,7 @@ for group in "$@"; do
       ;;
     --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
-    --peers) packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts) ;;
+    --peers) packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts gnuplot-nox) ;;
     --coverage) packages+=(gcovr) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --workflow) packages+=(snakemake) ;;

@@ -1,58 +1,48 @@
 #include "mindahl/io/plot.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <iterator>
-#include <limits>
+#include <span>
+#include <stdexcept>
 #include <string_view>
-#include <utility>
 
-#include "io/gnuplot.h"
-#include "io/plot_rules.h"
-#include "io/power_of_ten.h"
-#include "io/thinning.h"
+#include "io/panel_drawing.h"
+#include "io/unfinished_output.h"
 #include "mindahl/core/error.h"
+#include "mindahl/io/html.h"
 #include "mindahl/io/output_file.h"
 
 namespace mindahl::io {
 namespace {
 
-constexpr std::size_t kMostPoints = 20'000;
+constexpr std::size_t kMostPointsOfPlot = 20'000;
 
-// Colours of different lightness, distinct in grey and for colour-blind readers too.
-constexpr std::array<std::string_view, 6> kColours = {"#4878a8", "#d1495b", "#3a9d6e",
-                                                      "#8d6bb1", "#e09f3e", "#5f6b76"};
-
-// Shades for a sequence of series: from early, dark, to late.
-constexpr std::array<std::string_view, 8> kShades = {"#440154", "#46327e", "#365c8d", "#277f8e",
-                                                     "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
-
-// gnuplot's point types, one a colour: filled at first, then open and on another colour than
-// before.
-constexpr std::array<int, 12> kMarkerShapes = {7, 5, 9, 13, 11, 15, 8, 12, 6, 4, 14, 10};
-// For the first six lines, the next six and so on.
-constexpr std::array<std::string_view, 3> kDashes = {"", " dt (10,5)", " dt (3,4)"};
-constexpr int kDot = 7;
-constexpr int kCross = 2;
-
-// Margins [px]
-constexpr double kLeft = 95;
-constexpr double kRight = 25;
-constexpr double kTitle = 40;
-constexpr double kSubtitle = 22;
-constexpr double kLegend = 30;  // above each panel
-constexpr double kBelow = 58;   // tics and x label under each panel
+// Of a panel [px].
+constexpr double kTitleHeight = 40;     // of the whole plot
+constexpr double kSubtitleHeight = 22;  // under it
+constexpr double kHeading = 26;         // title and legend of a panel, above its drawing
 constexpr double kEdge = 8;
 
-// A legend entry [px]: its sample, and a character of its text, as wide as most fonts draw it.
-constexpr double kSample = 60;
-constexpr double kCharacter = 8;
+// A legend entry [px]: its symbol, and a character of its text, as wide as most fonts draw it.
+constexpr double kSymbol = 34;
+constexpr double kBetweenEntries = 14;
+constexpr double kCharacter = 7.5;
+constexpr double kEntryHeight = 20;
 constexpr std::size_t kMostAbove = 4;
-constexpr double kLargestLegendShare = 0.4;  // of a column's width
+constexpr double kLargestLegend = 0.4;  // of a column's width
 
 void Validate(const Plot& plot) {
   if (plot.panels.empty()) throw InvalidArgument("number of panels = 0 is invalid: must be >= 1");
@@ -64,103 +54,36 @@ void Validate(const Plot& plot) {
   }
 }
 
-/// Quotes a text: in single quotes gnuplot interprets nothing but the quote itself; the terminal is
-/// told to leave the text alone too. A string ends with its line.
-std::string Quoted(std::string_view text) {
-  std::string quoted = "'";
-  for (const char character : text) {
-    if (character == '\'') quoted += '\'';
-    quoted += static_cast<unsigned char>(character) < 0x20 ? ' ' : character;
-  }
-  return quoted + "'";
-}
-
-std::string_view ColourOf(const PlotSeries& curve, std::size_t series) {
-  if (!curve.shade) return kColours[series % kColours.size()];
-  const auto shade = static_cast<std::size_t>(std::lround(*curve.shade * (kShades.size() - 1)));
-  return kShades[std::min(shade, kShades.size() - 1)];
-}
-
-/// Returns how a series is drawn. Beyond the first six, colours repeat with dashes, crosses or
-/// other markers.
-/// @param series     its place in the panel
-/// @param in_legend  there the dots of a dense series would be too small to see
-std::string StyleCommand(const PlotSeries& curve, std::size_t series, bool in_legend) {
-  const PlotStyle style = curve.style;
-  const std::size_t round = series / kColours.size();
-  const std::string dashes(kDashes[round % kDashes.size()]);
-  const int marker = kMarkerShapes[series % kMarkerShapes.size()];
-  std::string command;
-  switch (style) {
-    case PlotStyle::kLine:
-      command = "lines lw 2" + dashes;
-      break;
-    case PlotStyle::kPoints:
-      command =
-          fmt::format("points pt {} ps {}", round % 2 == 0 ? kDot : kCross, in_legend ? 0.9 : 0.35);
-      break;
-    case PlotStyle::kMarkers:
-      command = fmt::format("points pt {} ps 0.9", marker);
-      break;
-    case PlotStyle::kIntervals:
-      // A key has no errors to draw.
-      command = fmt::format("{} pt {} ps 0.9 lw 1.5", in_legend ? "points" : "yerrorbars", marker);
-      break;
-    case PlotStyle::kLineAndPoints:
-      command = fmt::format("linespoints lw 1.5 pt {} ps 0.9{}", marker, dashes);
-      break;
-    case PlotStyle::kBand:
-      command = "lines lw 1.5" + dashes;
-      break;
-    case PlotStyle::kBars:
-      command = "boxes fill transparent solid 0.4";
-      break;
-  }
-  return command + fmt::format(" lc rgb '{}'", ColourOf(curve, series));
-}
-
-/// Powers of ten between two labels of a logarithmic axis.
-int LabelStep(int powers) {
-  constexpr int kMostLabels = 7;
-  for (const int step : {1, 2, 3, 5, 10, 20, 50}) {
-    if (powers <= kMostLabels * step) return step;
-  }
-  return 100;
-}
-
-/// Tics of a logarithmic axis, for `set xtics`. Labels are at powers of ten; where there are not
-/// two of them, at other multiples too.
-std::string LogTics(double from, double to) {
-  const int first = static_cast<int>(std::floor(std::log10(from)));
-  const int last = static_cast<int>(std::ceil(std::log10(to)));
-  const int step = LabelStep(last - first);
-  const bool has_powers = std::floor(std::log10(to)) - std::ceil(std::log10(from)) >= 1;
-  const bool is_short = !has_powers && from >= 1e-3 && to <= 1e4;  // 0.02 rather than 2·10⁻²
-  std::vector<std::string> tics;
-  for (int exponent = first; exponent <= last; ++exponent) {
-    for (int multiple = 1; multiple <= (step == 1 ? 9 : 1); ++multiple) {
-      const double at = multiple * std::pow(10.0, exponent);
-      if (at < from || at > to) continue;
-      const bool is_whole = multiple == 1 || multiple == 2 || multiple == 3 || multiple == 5;
-      const bool is_labelled = has_powers ? multiple == 1 && exponent % step == 0 : is_whole;
-      if (is_labelled) {
-        std::string label = PowerOfTen(exponent);
-        if (multiple > 1) label = fmt::format("{}·{}", multiple, label);
-        if (is_short) label = fmt::format("{:.9g}", at);
-        tics.push_back(fmt::format("'{}' {:.9g} 0", label, at));
-      } else if (step < 10) {
-        tics.push_back(fmt::format("'' {:.9g} 1", at));
-      }
+/// Returns the rules of style of a drawing by itself, on white, without variables, which programs
+/// that convert SVG do not know.
+std::string StyleOfPlot() {
+  // Of different lightness, distinct in grey and for colour-blind readers too; of shades from
+  // early, dark, to late.
+  constexpr std::array<std::string_view, 6> kColours = {"#4878a8", "#d1495b", "#3a9d6e",
+                                                        "#8d6bb1", "#e09f3e", "#5f6b76"};
+  constexpr std::array<std::string_view, 8> kShades = {"#440154", "#46327e", "#365c8d", "#277f8e",
+                                                       "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
+  std::string rules =
+      "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
+      ".grid,.axis,.mark,.line,.dots{fill:none}.grid{stroke:#e4e4e4}"
+      ".axis{stroke:#444;stroke-width:1.2}"
+      ".mark{stroke:#444;stroke-width:1.3;stroke-dasharray:5 4}"
+      ".line{stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}"
+      ".dots{stroke-width:3.2;stroke-linecap:round}.marker{fill:#fff;stroke-width:1.8}"
+      ".area{fill-opacity:.22;stroke:none}.bars{fill-opacity:.35;stroke-width:.8}"
+      ".d1{stroke-dasharray:10 5}.d2{stroke-dasharray:3 4}";
+  const auto add = [&](char kind, std::span<const std::string_view> colours) {
+    for (std::size_t k = 0; k < colours.size(); ++k) {
+      rules += fmt::format(
+          ".{0}{1}.line,.{0}{1}.dots,.{0}{1}.marker,.{0}{1}.bars{{stroke:{2}}}"
+          ".{0}{1}.area,.{0}{1}.bars,.{0}{1}.full{{fill:{2}}}",
+          kind, k, colours[k]);
     }
-  }
-  return fmt::format("({})", fmt::join(tics, ", "));
+  };
+  add('s', kColours);
+  add('h', kShades);
+  return rules;
 }
-
-/// Legend entries of a panel.
-struct Legend {
-  std::size_t entries = 0;
-  double longest = 0.0;  ///< [px]
-};
 
 /// About how wide a text is [px].
 double TextWidth(std::string_view text) {
@@ -170,37 +93,35 @@ double TextWidth(std::string_view text) {
   return kCharacter * static_cast<double>(characters);
 }
 
+/// Legend entries of a panel.
+struct Legend {
+  std::size_t entries = 0;
+  double longest = 0.0;  // [px]
+  double row = 0.0;      // [px], all in one row
+};
+
 Legend LegendOf(const PlotPanel& panel) {
   Legend legend;
   for (const PlotSeries& series : panel.series) {
     if (series.label.empty()) continue;
+    const double width = kSymbol + TextWidth(series.label) + kBetweenEntries;
     ++legend.entries;
-    legend.longest = std::max(legend.longest, kSample + TextWidth(series.label));
+    legend.longest = std::max(legend.longest, width);
+    legend.row += width;
   }
   return legend;
 }
 
-/// Holds the place of a panel's axes, from the top left of the page [px].
-struct PanelFrame {
-  double left;
-  double right;
-  double top;
-  double bottom;
-};
-
-class Script {
+class Page {
  public:
-  Script(const Plot& plot, std::string_view terminal) : plot_(plot) {
-    Add("set encoding utf8\n");
-    Add("set terminal {} size {},{} noenhanced background '#ffffff'\n", terminal, plot.width,
-        plot.height);
-    Add("set border 3 lc rgb '#444444'\nset tics nomirror scale 0.6\n");
-    Add("set grid back lc rgb '#e4e4e4' lw 1 lt 1\n");
-    Add("set xlabel offset 0,0.3\n");
-    AddData();
-    Add("set multiplot\n");
+  explicit Page(const Plot& plot) : plot_(plot) {
+    Add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+        "viewBox=\"0 0 {0} {1}\">\n<style>{2}</style>\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+        plot.width, plot.height, StyleOfPlot());
     AddPanels();
-    Add("unset multiplot\n");
+    Add("</svg>\n");
   }
 
   std::string Text() && { return std::move(text_); }
@@ -211,62 +132,31 @@ class Script {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
   }
 
-  void AddData() {
-    for (std::size_t panel = 0; panel < plot_.panels.size(); ++panel) {
-      const std::vector<PlotSeries>& all = plot_.panels[panel].series;
-      for (std::size_t series = 0; series < all.size(); ++series) {
-        Add("$data_{}_{} << END\n", panel, series);
-        for (const std::size_t point : Thinned(all[series], kMostPoints)) {
-          Add("{:.9g} {:.9g}", all[series].x[point], all[series].y[point]);
-          if (HasEnds(all[series].style)) {
-            Add(" {:.9g} {:.9g}", all[series].lower[point], all[series].upper[point]);
-          }
-          Add("\n");
-        }
-        Add("END\n");
-      }
-    }
+  void AddText(double x, double y, std::string_view attributes, std::string_view text) {
+    Add("<text x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", x, y, attributes, HtmlText(text));
   }
 
   std::size_t Columns() const { return static_cast<std::size_t>(plot_.columns); }
 
-  bool IsLegendBeside(const PlotPanel& panel) const {
+  bool IsLegendAtSide(const PlotPanel& panel) const {
     const Legend legend = LegendOf(panel);
-    const double room = plot_.width / static_cast<double>(plot_.columns) - kLeft - kRight;
-    // Entries in a row are all as wide as the longest.
-    const double row =
-        TextWidth(panel.title) + static_cast<double>(legend.entries) * legend.longest;
-    return legend.entries > kMostAbove || row > room;
+    const double room = plot_.width / static_cast<double>(plot_.columns) - 2 * kEdge;
+    return legend.entries > kMostAbove || TextWidth(panel.title) + kEdge + legend.row > room;
   }
 
   /// Returns the room for the legends on the right of each column [px]. One that stands where a
   /// panel is missing from the last row needs none.
   std::vector<double> LegendWidths() const {
     std::vector<double> widths(Columns(), 0.0);
-    const double largest = kLargestLegendShare * plot_.width / plot_.columns;
+    const double largest = kLargestLegend * plot_.width / plot_.columns;
     for (std::size_t panel = 0; panel < plot_.panels.size(); ++panel) {
       const std::size_t column = panel % Columns();
       const bool is_room_free = panel + 1 == plot_.panels.size() && column + 1 < Columns();
-      if (is_room_free || !IsLegendBeside(plot_.panels[panel])) continue;
+      if (is_room_free || !IsLegendAtSide(plot_.panels[panel])) continue;
       widths[column] =
           std::max(widths[column], std::min(LegendOf(plot_.panels[panel]).longest, largest));
     }
     return widths;
-  }
-
-  /// Left and right ends of the axes in each column [px]; all are equally wide.
-  std::vector<std::pair<double, double>> ColumnFrames() const {
-    const std::vector<double> legends = LegendWidths();
-    double around = (kLeft + kRight) * plot_.columns;
-    for (const double legend : legends) around += legend;
-    const double axes = std::max((plot_.width - around) / plot_.columns, 1.0);
-    std::vector<std::pair<double, double>> frames;
-    double left = 0.0;
-    for (const double legend : legends) {
-      frames.emplace_back(left + kLeft, left + kLeft + axes);
-      left += kLeft + axes + kRight + legend;
-    }
-    return frames;
   }
 
   void AddPanels() {
@@ -275,169 +165,147 @@ class Script {
       double& row = rows[panel / Columns()];
       row = std::max(row, plot_.panels[panel].height);
     }
-    double shares = 0.0;
-    for (const double row : rows) shares += row;
-    const double subtitle = plot_.subtitle.empty() ? 0.0 : kSubtitle;
-    const double title = (plot_.title.empty() ? kEdge : kTitle) + subtitle;
-    const double around = (kLegend + kBelow) * static_cast<double>(rows.size());
+    double heights = 0.0;
+    for (const double row : rows) heights += row;
+    const double subtitle = plot_.subtitle.empty() ? 0.0 : kSubtitleHeight;
+    double top = (plot_.title.empty() ? kEdge : kTitleHeight) + subtitle;
+    const double around = (kHeading + kAboveAxes + kBelowAxes) * static_cast<double>(rows.size());
     // A page too small for its margins still gets axes one pixel high.
-    const double drawable = std::max(plot_.height - title - around - kEdge, shares);
+    const double drawable = std::max(plot_.height - top - around - kEdge, heights);
+    constexpr std::string_view kCentred = " text-anchor=\"middle\"";
     if (!plot_.title.empty()) {
-      Add("set label 1 {} at screen 0.5, screen {:.6f} center font ',15'\n", Quoted(plot_.title),
-          FromBottom(kTitle / 2));
+      AddText(plot_.width / 2.0, 0.65 * kTitleHeight,
+              " text-anchor=\"middle\" style=\"font-size:17px\"", plot_.title);
     }
-    if (!plot_.subtitle.empty()) {
-      Add("set label 3 {} at screen 0.5, screen {:.6f} center\n", Quoted(plot_.subtitle),
-          FromBottom(title - subtitle / 2));
-    }
-    const std::vector<std::pair<double, double>> columns = ColumnFrames();
-    double top = title;
+    if (subtitle > 0) AddText(plot_.width / 2.0, top - 0.4 * subtitle, kCentred, plot_.subtitle);
+    const std::vector<double> legends = LegendWidths();
+    double legends_width = 0.0;
+    for (const double legend : legends) legends_width += legend;
+    const double width = std::max((plot_.width - legends_width) / plot_.columns - kEdge, 1.0);
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      top += kLegend;
-      const double bottom = top + drawable * rows[row] / shares;
+      const double axes = drawable * rows[row] / heights;
+      double left = kEdge / 2;
       for (std::size_t column = 0; column < Columns(); ++column) {
         const std::size_t panel = row * Columns() + column;
         if (panel >= plot_.panels.size()) break;
-        AddPanel(panel, {columns[column].first, columns[column].second, top, bottom});
+        AddPanel(plot_.panels[panel], left, top, width, axes);
+        left += width + legends[column] + kEdge;
       }
-      top = bottom + kBelow;
+      top += kHeading + kAboveAxes + axes + kBelowAxes;
     }
   }
 
-  double FromLeft(double pixels) const { return pixels / plot_.width; }
-  double FromBottom(double pixels_from_top) const { return 1.0 - pixels_from_top / plot_.height; }
-
-  /// Range and tics of one axis.
-  /// @param name    "x" or "y"
-  /// @param values  which of a series it shows
-  /// @param margin  on either side of the data, a fraction of the axis
-  void AddAxis(const PlotPanel& panel, char name, bool logarithmic,
-               std::vector<double> PlotSeries::*values, double margin) {
-    if (!logarithmic) {
-      Add("unset logscale {0}\nset {0}range [*:*] noextend\nset {0}tics autofreq\n", name);
-      return;
-    }
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = 0.0;
-    for (const PlotSeries& series : panel.series) {
-      const auto [low, high] = std::ranges::minmax(series.*values);
-      least = std::min(least, low);
-      greatest = std::max(greatest, high);
-      if (name == 'x' || !HasEnds(series.style)) continue;
-      least = std::min(least, std::ranges::min(series.lower));
-      greatest = std::max(greatest, std::ranges::max(series.upper));
-    }
-    // Half a decade at least, so that there are tics to read.
-    constexpr double kLeastSpan = 0.5;
-    const double span = std::log10(greatest) - std::log10(least);
-    const double around = std::pow(10.0, std::max(margin * span, (kLeastSpan - span) / 2));
-    const double from = std::max(least / around, std::numeric_limits<double>::min());
-    const double to = std::min(greatest * around, std::numeric_limits<double>::max());
-    Add("set logscale {0}\nset {0}range [{1:.9g}:{2:.9g}]\nset {0}tics {3}\n", name, from, to,
-        LogTics(from, to));
-  }
-
-  /// Above the axes in a row that ends with them, or next to them in a column.
-  void AddKey(const PlotPanel& panel, const PanelFrame& frame) {
-    if (IsLegendBeside(panel)) {
-      Add("set key at screen {:.6f}, screen {:.6f} left top vertical Left reverse samplen 3\n",
-          FromLeft(frame.right + kRight / 2), FromBottom(frame.top));
-    } else {
-      Add("set key at graph 1, screen {:.6f} right center horizontal Right noreverse samplen 2\n",
-          FromBottom(frame.top - kLegend / 2));
-    }
-  }
-
-  /// Labels that would meet stand one under the other, and those that would leave the panel on the
-  /// left of their line.
-  void AddMarks(const PlotPanel& panel, const PanelFrame& frame) {
-    const auto along = [&](double x) { return panel.log_x ? std::log10(x) : x; };
-    double least = std::numeric_limits<double>::infinity();
-    double greatest = -least;
-    for (const PlotSeries& series : panel.series) {
-      for (const double x : series.x) {
-        least = std::min(least, along(x));
-        greatest = std::max(greatest, along(x));
+  /// @param left, top  of the panel with its heading [px]
+  void AddPanel(const PlotPanel& panel, double left, double top, double width, double axes) {
+    const double heading = top + 0.7 * kHeading;
+    if (!panel.title.empty()) AddText(left + kEdge, heading, "", panel.title);
+    const bool at_side = IsLegendAtSide(panel);
+    double x = at_side ? left + width + kEdge : left + width - LegendOf(panel).row;
+    double y = at_side ? top + kHeading + kAboveAxes : heading;
+    const std::vector<SeriesLook> looks = LooksOf(panel);
+    for (std::size_t k = 0; k < panel.series.size(); ++k) {
+      const PlotSeries& series = panel.series[k];
+      if (series.label.empty()) continue;
+      Add("<g transform=\"translate({:.1f},{:.1f})\">{}</g>", x, y - 11,
+          LegendSymbol(series.style, looks[k]));
+      AddText(x + kSymbol, y, "", series.label);
+      if (at_side) {
+        y += kEntryHeight;
+      } else {
+        x += kSymbol + TextWidth(series.label) + kBetweenEntries;
       }
     }
-    const double scale = (frame.right - frame.left) / std::max(greatest - least, 1e-300);
-    std::vector<double> ends;  // [px] of the last label of each line
-    for (const PlotMark& mark : panel.marks) {
-      Add("set arrow from first {0:.9g}, graph 0 to first {0:.9g}, graph 1 nohead dt (4,4) lw 1.5 "
-          "lc rgb '#444444'\n",
-          mark.x);
-      if (mark.label.empty()) continue;
-      const double at = (along(mark.x) - least) * scale;
-      const double width = kCharacter + TextWidth(mark.label);
-      const bool is_left = at + width > frame.right - frame.left && at > width;
-      const double begin = is_left ? at - width : at;
-      const auto is_free = [&](double end) { return end <= begin; };
-      const auto line = std::ranges::find_if(ends, is_free) - ends.begin();
-      if (static_cast<std::size_t>(line) == ends.size()) ends.emplace_back();
-      ends[static_cast<std::size_t>(line)] = begin + width;
-      Add("set label {} at first {:.9g}, graph 0.97 {} offset {},{} font ',10'\n",
-          Quoted(mark.label), mark.x, is_left ? "right" : "left", is_left ? -0.5 : 0.5, -line);
-    }
-  }
-
-  void AddPanel(std::size_t index, const PanelFrame& frame) {
-    const PlotPanel& panel = plot_.panels[index];
-    Add("set lmargin at screen {:.6f}\nset rmargin at screen {:.6f}\n", FromLeft(frame.left),
-        FromLeft(frame.right));
-    Add("set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n", FromBottom(frame.top),
-        FromBottom(frame.bottom));
-    Add("set xlabel {}\nset ylabel {}\n", Quoted(panel.x_label), Quoted(panel.y_label));
-    constexpr double kMarginX = 0.02;
-    constexpr double kMarginY = 0.05;
-    AddAxis(panel, 'x', panel.log_x, &PlotSeries::x, kMarginX);
-    AddAxis(panel, 'y', panel.log_y, &PlotSeries::y, kMarginY);
-    // On a linear axis gnuplot adds the margin itself.
-    const double x = panel.log_x ? 0.0 : kMarginX;
-    const double y = panel.log_y ? 0.0 : kMarginY;
-    Add("set offsets graph {0}, graph {0}, graph {1}, graph {1}\n", x, y);
-    if (!panel.title.empty()) {
-      Add("set label 2 {} at graph 0, screen {:.6f} left\n", Quoted(panel.title),
-          FromBottom(frame.top - kLegend / 2));
-    }
-    AddKey(panel, frame);
-    AddMarks(panel, frame);
-    Add("plot ");
-    std::size_t look = 0;  // a line without a label goes on with that of the series before
-    for (std::size_t series = 0; series < panel.series.size(); ++series) {
-      const PlotSeries& curve = panel.series[series];
-      if (!curve.label.empty() || curve.style != PlotStyle::kLine) look = series;
-      const bool has_ends = curve.style == PlotStyle::kIntervals;
-      Add("{}", series == 0 ? "" : ", ");
-      if (curve.style == PlotStyle::kBand) {
-        Add("$data_{}_{} using 1:3:4 with filledcurves fill transparent solid 0.2 noborder "
-            "lc rgb '{}' notitle, ",
-            index, series, ColourOf(curve, look));
-      }
-      Add("$data_{}_{} using {} with {} notitle", index, series, has_ends ? "1:2:3:4" : "1:2",
-          StyleCommand(curve, look, false));
-      if (curve.label.empty()) continue;
-      Add(", keyentry with {} title {}", StyleCommand(curve, look, true), Quoted(curve.label));
-    }
-    Add("\nunset label\nunset arrow\n");
+    Add("<g transform=\"translate({:.1f},{:.1f})\">{}</g>\n", left, top + kHeading,
+        DrawPanel(panel, width, axes, kMostPointsOfPlot * panel.series.size()));
   }
 
   const Plot& plot_;
   std::string text_;
 };
 
-/// A format that gnuplot writes.
-struct Format {
-  std::string_view terminal;
-  std::string_view end;  ///< last bytes of every whole file of this format, but for line feeds
-};
+std::string Content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// Runs `rsvg-convert --format=png --output=PNG SVG`, with no shell, and returns its wait status.
+int SpawnAndWait(const std::string& svg, const std::string& png, const std::string& messages) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  std::array<std::string, 4> words = {"rsvg-convert", "--format=png", "--output=" + png, svg};
+  const std::array<char*, 5> arguments = {words[0].data(), words[1].data(), words[2].data(),
+                                          words[3].data(), nullptr};
+  // Ends it where its file may not grow.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  sigaddset(&defaults, SIGXFSZ);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  pid_t child = 0;
+  const int error =
+      ::posix_spawnp(&child, words[0].c_str(), &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error == ENOENT) {
+    throw InputError(
+        "pictures in PNG need rsvg-convert, which is not on PATH: install it (Debian: "
+        "librsvg2-bin), or give a name that ends in .svg");
+  }
+  if (error != 0) {
+    throw InputError(fmt::format("cannot start rsvg-convert: {}", std::strerror(error)));
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) {
+      throw std::runtime_error(
+          fmt::format("cannot wait for rsvg-convert: {}", std::strerror(errno)));
+    }
+  }
+  return status;
+}
+
+/// Returns the picture of an SVG file as PNG.
+std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
+  std::string pattern = (std::filesystem::temp_directory_path() / "mindahl-plot-XXXXXX").string();
+  if (::mkdtemp(pattern.data()) == nullptr) {
+    throw InputError(
+        fmt::format("cannot make the directory '{}': {}", pattern, std::strerror(errno)));
+  }
+  const TemporaryName scratch(pattern);
+  const TemporaryName drawing(pattern + "/plot.svg");
+  const TemporaryName picture(pattern + "/plot.png");
+  const TemporaryName messages(pattern + "/messages");
+  if (!(std::ofstream(drawing.name(), std::ios::binary) << svg).flush()) {
+    throw InputError(fmt::format("cannot write '{}': is the disk full?", drawing.name()));
+  }
+  const int status = SpawnAndWait(drawing.name(), picture.name(), messages.name());
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    throw std::runtime_error(fmt::format("rsvg-convert failed: {}", Content(messages.name())));
+  }
+  const std::string png = Content(picture.name());
+  // A disk that is full may end the file, and not the program.
+  if (!png.ends_with("IEND\xAE\x42\x60\x82")) {
+    throw InputError(
+        fmt::format("cannot draw '{}': rsvg-convert wrote only a part of it; is the disk full?",
+                    path.string()));
+  }
+  return png;
+}
+
+enum class Format { kSvg, kPng };
 
 Format FormatOf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char character) {
     return static_cast<char>(std::tolower(character));
   });
-  if (extension == ".svg") return {"svg font 'sans-serif,14'", "</svg>"};
-  if (extension == ".png") return {"pngcairo font 'sans,11'", "IEND\xAE\x42\x60\x82"};
+  if (extension == ".svg") return Format::kSvg;
+  if (extension == ".png") return Format::kPng;
   throw InputError(
       fmt::format("cannot draw '{}': its name must end in .svg or .png", path.string()));
 }
@@ -449,13 +317,8 @@ void RequirePlotName(const std::filesystem::path& path) { FormatOf(path); }
 void WritePlot(const Plot& plot, const std::filesystem::path& path) {
   Validate(plot);
   const Format format = FormatOf(path);
-  const std::string drawn = RunGnuplot(Script(plot, format.terminal).Text());
-  // A disk that is full ends what gnuplot writes, and not gnuplot.
-  const std::size_t size = drawn.find_last_not_of('\n') + 1;
-  if (!std::string_view(drawn).substr(0, size).ends_with(format.end)) {
-    throw InputError(fmt::format(
-        "cannot draw '{}': gnuplot wrote only a part of it; is the disk full?", path.string()));
-  }
+  std::string drawn = Page(plot).Text();
+  if (format == Format::kPng) drawn = ToPng(drawn, path);
   WriteFileAtomically(path, drawn);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "io/plot_rules.h"
+#include "io/panel_drawing.h"
 
 namespace mindahl::io {
 

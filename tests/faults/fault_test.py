@@ -47,7 +47,7 @@ COMMANDS = [
     Command("simulate", ["simulate", *CONTACT, "--cycles", "2", "-o", "out.csv"], ["out.csv"]),
     Command("fit", ["fit", "a.csv", "--json", "out.json", "--residuals", "out.csv", "--report",
                     "out.html"], ["out.json", "out.csv", "out.html"]),
-    Command("plot", ["fit", "a.csv", "--plot", "out.svg"], ["out.svg"]),
+    Command("plot", ["fit", "a.csv", "--plot", "out.png"], ["out.png"]),
     Command("batch", ["batch", "a.csv", "b.csv", "--output", "out.csv", "--json", "out.json",
                       "--report", "pages", "--threads", "2", "--overwrite"],
             ["out.csv", "out.json", "pages/a.html", "pages/b.html", "pages/index.html"]),
@@ -212,7 +212,7 @@ def main():
         for command in COMMANDS:
             if options.only and command.name != options.only:
                 continue
-            if command.name == "plot" and shutil.which("gnuplot") is None:
+            if command.name == "plot" and shutil.which("rsvg-convert") is None:
                 continue
             reference = harness.reference(command)
             tasks = []

@@ -58,17 +58,17 @@ struct Plot {
 /// @throws InputError when WritePlot() has no format for a file of that name
 void RequirePlotName(const std::filesystem::path& path);
 
-/// Draws a plot with gnuplot into an SVG or PNG file, by the extension of its name, atomically.
+/// Draws a plot into an SVG or PNG file, by the extension of its name, atomically.
 ///
-/// Labels are plain UTF-8 text: nothing in them is markup or command. A series of more than 20 000
+/// Labels are plain UTF-8 text: nothing in them is markup. A series of more than 20 000
 /// points is drawn through fewer: it is cut into 5000 runs of consecutive points, and of each run
 /// the points with the least and greatest x and y are kept, in order; no peak is lost and the curve
 /// moves by less than one run.
-/// @throws InputError when the extension is another, gnuplot is not installed or the file cannot be
-///   written
+/// @throws InputError when the extension is another, the file cannot be written, or for PNG the
+///   program rsvg-convert is not installed
 /// @throws InvalidArgument naming the panel and series when a value is not finite, or not > 0 on a
 ///   logarithmic axis, x and y differ in length, or there is nothing to draw
-/// @throws std::runtime_error with gnuplot's own words when it fails
+/// @throws std::runtime_error with the words of rsvg-convert when it fails
 void WritePlot(const Plot& plot, const std::filesystem::path& path);
 
 }  // namespace mindahl::io

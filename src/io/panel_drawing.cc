@@ -1,70 +1,51 @@
+#include "io/panel_drawing.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <span>
-#include <string>
-#include <string_view>
-#include <vector>
+#include <utility>
 
-#include "io/plot_rules.h"
-#include "io/power_of_ten.h"
 #include "io/thinning.h"
+#include "mindahl/core/error.h"
 #include "mindahl/io/html.h"
 
 namespace mindahl::io {
 namespace {
 
-constexpr std::size_t kMostPointsOnPage = 6000;
-constexpr std::size_t kLeastPoints = 64;   // of each of many series
-constexpr std::size_t kColourClasses = 6;  // classes s0 … s5
-constexpr std::size_t kShadeClasses = 8;   // classes h0 … h7
+constexpr std::size_t kLeastPoints = 64;  // of each of many series
+constexpr std::size_t kColours = 6;       // classes s0 … s5
+constexpr std::size_t kShades = 8;        // classes h0 … h7
+constexpr double kRightMargin = 16;       // [px]
+constexpr double kTicCharacter = 9.6;  // [px] of a tic on a narrow screen, where letters are larger
 
-// The drawing [px], where it is not scaled to the page.
-constexpr double kWidth = 560;
-constexpr double kTop = 30;     // the label of the vertical axis
-constexpr double kBottom = 52;  // tics and the label of the horizontal axis
-constexpr double kRightMargin = 16;
-constexpr double kTicCharacter = 9.6;  // of a tic on a narrow screen, where letters are larger
+void RequireNumbers(const std::string& name, const std::vector<double>& values, bool logarithmic) {
+  for (const double value : values) {
+    RequireFinite(name, value);
+    if (logarithmic && value <= 0) ThrowInvalid(name, value, "must be > 0 on a logarithmic axis");
+  }
+}
 
-constexpr std::string_view kStyle = R"css(
-:root{color-scheme:light dark;--paper:#fff;--panel:#f5f6f8;--ink:#1b1f24;--faint:#57606a;--grid:#d8dde3;
- --accent:#0b5cad;--good:#1a6b3c;--poor:#8a5300;--bad:#b3202e;
- --s0:#c2334a;--s1:#2f6ea5;--s2:#2b7f57;--s3:#7a55a3;--s4:#a86700;--s5:#5f6b76;
- --h0:#440154;--h1:#46327e;--h2:#365c8d;--h3:#277f8e;--h4:#1b8f74;--h5:#3d9a4b;--h6:#6b9a1f;--h7:#a07a00}
-@media (prefers-color-scheme:dark){:root{--paper:#14171a;--panel:#1d2226;--ink:#e8eaed;--faint:#a8b1ba;
- --grid:#363d44;--accent:#7cb7ff;--good:#62d394;--poor:#f0b34c;--bad:#ff8a93;
- --s0:#ff7b8e;--s1:#6db3f2;--s2:#5fd19a;--s3:#c39bf0;--s4:#f2b34c;--s5:#a9b4bf;
- --h0:#9a8cff;--h1:#6fa8ff;--h2:#4fc3e8;--h3:#3fd6c1;--h4:#5fe08f;--h5:#a2e05f;--h6:#dcd94f;--h7:#ffcf4a}}
-@media print{:root{color-scheme:light;--paper:#fff;--panel:#fff;--ink:#000;--faint:#444;--grid:#ccc;--accent:#000;
- --good:#1a6b3c;--poor:#8a5300;--bad:#b3202e;
- --s0:#c2334a;--s1:#2f6ea5;--s2:#2b7f57;--s3:#7a55a3;--s4:#a86700;--s5:#5f6b76;
- --h0:#440154;--h1:#46327e;--h2:#365c8d;--h3:#277f8e;--h4:#1b8f74;--h5:#3d9a4b;--h6:#6b9a1f;--h7:#a07a00}}
-.s0{--c:var(--s0)}.s1{--c:var(--s1)}.s2{--c:var(--s2)}.s3{--c:var(--s3)}.s4{--c:var(--s4)}.s5{--c:var(--s5)}
-.h0{--c:var(--h0)}.h1{--c:var(--h1)}.h2{--c:var(--h2)}.h3{--c:var(--h3)}
-.h4{--c:var(--h4)}.h5{--c:var(--h5)}.h6{--c:var(--h6)}.h7{--c:var(--h7)}
-figure{margin:0;min-width:0}
-figure h3{margin:.2rem 0}
-figure p{margin:.1rem 0 .3rem;color:var(--faint);font-size:.9rem}
-figure svg.plot{display:block;width:100%;height:auto;max-width:52rem}
-svg text{font:13px system-ui,-apple-system,"Segoe UI",Roboto,"Noto Sans",sans-serif;fill:var(--ink)}
-@media (max-width:600px){svg text{font-size:17px}}
-.grid{stroke:var(--grid);stroke-width:1;fill:none}
-.axis{stroke:var(--faint);stroke-width:1.2;fill:none}
-.mark{stroke:var(--ink);stroke-width:1.3;stroke-dasharray:5 4;fill:none}
-.line{fill:none;stroke:var(--c);stroke-width:1.7;stroke-linejoin:round;stroke-linecap:round}
-.dots{fill:none;stroke:var(--c);stroke-width:3.2;stroke-linecap:round}
-.marker{fill:var(--paper);stroke:var(--c);stroke-width:1.8}
-.area{fill:var(--c);fill-opacity:.22;stroke:none}
-.bars{fill:var(--c);fill-opacity:.35;stroke:var(--c);stroke-width:.8}
-.legend{list-style:none;display:flex;flex-wrap:wrap;gap:.1rem 1.1rem;padding:0;margin:.1rem 0;font-size:.9rem}
-.legend li{margin:0;overflow-wrap:anywhere}
-.legend svg{width:26px;height:12px;margin-right:.35rem;vertical-align:-1px}
-)css";
+/// Returns 10ⁿ in plain text, of which labels are made.
+std::string PowerOfTen(int exponent) {
+  constexpr std::array<std::string_view, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
+                                                        "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = "10";
+  for (const char character : std::to_string(exponent)) {
+    text += character == '-' ? "⁻" : kDigits[static_cast<std::size_t>(character - '0')];
+  }
+  return text;
+}
+
+/// Returns the number of characters of a text in UTF-8.
+std::size_t Characters(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }));
+}
 
 /// One axis: data to pixels, and where its tics are.
 class Axis {
@@ -103,10 +84,6 @@ class Axis {
 
  private:
   [[nodiscard]] double At(double value) const { return logarithmic_ ? std::log10(value) : value; }
-  static std::size_t Characters(std::string_view text) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }));
-  }
   void PlaceTics();
 
   bool logarithmic_;
@@ -124,7 +101,12 @@ void Axis::PlaceTics() {
   const double span = to_ - from_;
   if (logarithmic_ && span > 0.6) {
     const bool has_multiples = span < 2.5;
+    constexpr std::array<int, 8> kPowers = {1, 2, 3, 5, 10, 20, 50, 100};
+    constexpr double kMostPowers = 8;
+    const auto* const step =
+        std::ranges::find_if(kPowers, [&](int powers) { return span <= kMostPowers * powers; });
     for (int power = static_cast<int>(std::floor(from_)); power <= std::ceil(to_); ++power) {
+      if (power % *step != 0) continue;
       for (const double multiple : {1.0, 2.0, 5.0}) {
         const double tic = multiple * std::pow(10.0, power);
         if ((multiple > 1 && !has_multiples) || !Shows(tic)) continue;
@@ -149,10 +131,12 @@ std::string Axis::Label(double tic) const {
   double largest = std::abs(tic);
   for (const double other : tics_) largest = std::max(largest, std::abs(other));
   const double size = step_ > 0 ? largest : std::abs(tic);
-  if (size >= 1e5 || size < 1e-3) {
+  const auto is_far = [](double value) { return std::abs(value) >= 1e5 || std::abs(value) < 1e-3; };
+  if (is_far(size) || (step_ == 0 && std::ranges::any_of(tics_, is_far))) {
     const int power = static_cast<int>(std::floor(std::log10(size) + 1e-9));
-    return fmt::format("{}{:.4g}·{}", tic < 0 ? "−" : "", std::abs(tic) / std::pow(10.0, power),
-                       PowerOfTen(power));
+    const std::string factor = fmt::format("{:.4g}", std::abs(tic) / std::pow(10.0, power));
+    return (tic < 0 ? "−" : "") + (factor == "1" && step_ == 0 ? "" : factor + "·") +
+           PowerOfTen(power);
   }
   if (step_ == 0) return fmt::format("{:.6g}", tic);
   const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step_) - 1e-9)));
@@ -206,80 +190,50 @@ std::string Coordinate(double pixel) {
   return text == "-0" ? "0" : text;
 }
 
+/// Classes of a series' line: its colour, and dashes beyond the first six.
+std::string LineClass(const SeriesLook& look) {
+  return look.round == 0 ? look.colour : fmt::format("{} d{}", look.colour, look.round);
+}
+
+/// A circle, square, diamond, triangle up or down, or pentagon of about the same area.
+std::string Marker(double x, double y, const SeriesLook& look) {
+  constexpr std::array<std::string_view, 6> kShapes = {
+      "",
+      "m-3.3-3.3h6.6v6.6h-6.6z",
+      "m0-4.6l4.6 4.6l-4.6 4.6l-4.6-4.6z",
+      "m0-4.8l4.6 7.8h-9.2z",
+      "m0 4.8l4.6-7.8h-9.2z",
+      "m0-4.2l4 2.9l-1.5 4.7h-5l-1.5-4.7z",
+  };
+  const std::string classes =
+      fmt::format("marker {}{}", look.colour, look.round == 1 ? " full" : "");
+  if (look.shape == 0) {
+    return fmt::format("<circle class=\"{}\" cx=\"{}\" cy=\"{}\" r=\"3.6\"/>", classes,
+                       Coordinate(x), Coordinate(y));
+  }
+  return fmt::format("<path class=\"{}\" d=\"M{} {}{}\"/>", classes, Coordinate(x), Coordinate(y),
+                     kShapes[look.shape]);
+}
+
 class Drawing {
  public:
-  Drawing(const PlotPanel& panel, const Frame& frame) : frame_(frame) {
+  Drawing(const PlotPanel& panel, const Frame& frame, double width, std::size_t most_points)
+      : frame_(frame), width_(width) {
     AddAxes(panel);
-    const std::size_t most = std::max(kLeastPoints, kMostPointsOnPage / panel.series.size());
-    const std::vector<std::string> colours = Colours(panel);
+    const std::size_t most = std::max(kLeastPoints, most_points / panel.series.size());
+    const std::vector<SeriesLook> looks = LooksOf(panel);
     for (std::size_t k = 0; k < panel.series.size(); ++k) {
-      AddSeries(panel.series[k], colours[k], most);
+      AddSeries(panel.series[k], looks[k], most);
     }
     AddMarks(panel);
   }
 
   std::string Text() && { return std::move(text_); }
 
-  /// The classes that colour the series of a panel. One without a label goes on with the colour of
-  /// the one before it.
-  static std::vector<std::string> Colours(const PlotPanel& panel) {
-    std::vector<std::string> colours;
-    std::size_t without_shade = 0;
-    for (const PlotSeries& series : panel.series) {
-      if (series.shade) {
-        const double shade = std::clamp(*series.shade, 0.0, 1.0) * (kShadeClasses - 1);
-        colours.push_back(fmt::format("h{}", std::lround(shade)));
-      } else {
-        if (!series.label.empty() || without_shade == 0) ++without_shade;
-        colours.push_back(fmt::format("s{}", (without_shade - 1) % kColourClasses));
-      }
-    }
-    return colours;
-  }
-
-  /// Draws the symbol of a series in the legend.
-  static std::string Key(PlotStyle style, std::string_view colour) {
-    std::string drawn;
-    switch (style) {
-      case PlotStyle::kLine:
-        drawn = fmt::format("<path class=\"line {}\" d=\"M1 6H25\"/>", colour);
-        break;
-      case PlotStyle::kPoints:
-        drawn = fmt::format("<path class=\"dots {}\" d=\"M5 6h0M13 6h0M21 6h0\"/>", colour);
-        break;
-      case PlotStyle::kMarkers:
-        drawn = Marker(13, 6, colour);
-        break;
-      case PlotStyle::kIntervals:
-        drawn = fmt::format("<path class=\"line {}\" d=\"M13 0V12\"/>{}", colour,
-                            Marker(13, 6, colour));
-        break;
-      case PlotStyle::kLineAndPoints:
-        drawn =
-            fmt::format("<path class=\"line {}\" d=\"M1 6H25\"/>{}", colour, Marker(13, 6, colour));
-        break;
-      case PlotStyle::kBand:
-        drawn = fmt::format(
-            "<path class=\"area {0}\" d=\"M1 1H25V11H1Z\"/><path class=\"line {0}\" d=\"M1 "
-            "6H25\"/>",
-            colour);
-        break;
-      case PlotStyle::kBars:
-        drawn = fmt::format("<path class=\"bars {}\" d=\"M3 3H11V11H3ZM11 1H19V11H11Z\"/>", colour);
-        break;
-    }
-    return fmt::format("<svg viewBox=\"0 0 26 12\" aria-hidden=\"true\">{}</svg>", drawn);
-  }
-
  private:
   template <typename... Arguments>
   void Add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
-  }
-
-  static std::string Marker(double x, double y, std::string_view colour) {
-    return fmt::format("<circle class=\"marker {}\" cx=\"{}\" cy=\"{}\" r=\"3.6\"/>", colour,
-                       Coordinate(x), Coordinate(y));
   }
 
   void AddAxes(const PlotPanel& panel) {
@@ -296,12 +250,12 @@ class Drawing {
     Add("<path class=\"axis\" d=\"M{} {}V{}H{}\"/>", Coordinate(frame_.left),
         Coordinate(frame_.top), Coordinate(frame_.bottom), Coordinate(frame_.right));
     // Letters are half as large again on a narrow screen: labels must not touch there.
-    double last_end = -kWidth;
+    double last_end = -width_;
     for (const double tic : frame_.x.tics()) {
       const std::string label = frame_.x.Label(tic);
-      const double half = kTicCharacter * static_cast<double>(label.size()) / 2;
+      const double half = kTicCharacter * static_cast<double>(Characters(label)) / 2;
       const double at = frame_.x.Pixel(tic);
-      if (at - half < last_end || at + half > kWidth) continue;
+      if (at - half < last_end || at + half > width_) continue;
       last_end = at + half;
       Add("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>", Coordinate(at),
           Coordinate(frame_.bottom + 19), HtmlText(label));
@@ -332,7 +286,8 @@ class Drawing {
     return path;
   }
 
-  void AddSeries(const PlotSeries& series, std::string_view colour, std::size_t most) {
+  void AddSeries(const PlotSeries& series, const SeriesLook& look, std::size_t most) {
+    const std::string& colour = look.colour;
     const std::vector<std::size_t> points =
         series.style == PlotStyle::kPoints ? ThinnedCloud(series, most) : Thinned(series, most);
     const auto x = [&](std::size_t point) { return frame_.x.Pixel(series.x[point]); };
@@ -379,26 +334,26 @@ class Drawing {
       Add("<path class=\"bars {}\" d=\"{}\"/>", colour, bars);
     }
     if (has_line) {
-      Add("<path class=\"line {}\" d=\"{}\"/>", colour, Line(series.x, series.y, points));
+      Add("<path class=\"line {}\" d=\"{}\"/>", LineClass(look), Line(series.x, series.y, points));
     }
     if (has_markers) {
-      for (const std::size_t point : points) text_ += Marker(x(point), y(point), colour);
+      for (const std::size_t point : points) text_ += Marker(x(point), y(point), look);
     }
   }
 
   /// Labels of marks that are close to each other stand one under the other.
   void AddMarks(const PlotPanel& panel) {
     constexpr double kLine = 18;
-    double last_end = -kWidth;
+    double last_end = -width_;
     double line = 0;
     for (const PlotMark& mark : panel.marks) {
       const double at = frame_.x.Pixel(mark.x);
       Add("<path class=\"mark\" d=\"M{} {}V{}\"/>", Coordinate(at), Coordinate(frame_.top),
           Coordinate(frame_.bottom));
       if (mark.label.empty()) continue;
-      const double width = kTicCharacter * static_cast<double>(mark.label.size());
+      const double width = kTicCharacter * static_cast<double>(Characters(mark.label));
       line = at < last_end ? line + kLine : 0;
-      const bool is_left = at + width > kWidth;
+      const bool is_left = at + width > width_;
       last_end = at + (is_left ? 0 : width);
       Add("<text x=\"{}\" y=\"{}\" text-anchor=\"{}\">{}</text>",
           Coordinate(at + (is_left ? -5 : 5)), Coordinate(frame_.top + 14 + line),
@@ -407,48 +362,90 @@ class Drawing {
   }
 
   const Frame& frame_;
+  double width_;
   std::string text_;
 };
 
-std::string HtmlLegend(const PlotPanel& panel) {
-  std::string entries;
-  const std::vector<std::string> colours = Drawing::Colours(panel);
-  for (std::size_t k = 0; k < panel.series.size(); ++k) {
-    if (panel.series[k].label.empty()) continue;
-    entries += fmt::format("<li>{}{}</li>", Drawing::Key(panel.series[k].style, colours[k]),
-                           HtmlText(panel.series[k].label));
-  }
-  return entries.empty() ? "" : fmt::format("<ul class=\"legend\">{}</ul>\n", entries);
-}
-
 }  // namespace
 
-std::string_view FigureStyle() { return kStyle; }
+void RequireDrawable(const PlotPanel& panel, const std::string& where) {
+  RequirePositive("height of " + where, panel.height);
+  if (panel.series.empty()) throw InvalidArgument(where + " has no series: must have one");
+  for (const PlotSeries& series : panel.series) {
+    const std::string name = fmt::format("'{}' of {}", series.label, where);
+    RequireSameSize("x of " + name, series.x.size(), "y of " + name, series.y.size());
+    if (series.x.empty()) throw InvalidArgument(name + " has no points: must have one");
+    RequireNumbers("x of " + name, series.x, panel.log_x);
+    RequireNumbers("y of " + name, series.y, panel.log_y);
+    if (!HasEnds(series.style)) continue;
+    for (const auto* ends : {&series.lower, &series.upper}) {
+      RequireSameSize("ends of intervals of " + name, ends->size(), "points", series.y.size());
+      RequireNumbers("ends of intervals of " + name, *ends, panel.log_y);
+    }
+  }
+  for (const PlotMark& mark : panel.marks) {
+    RequireNumbers(fmt::format("mark '{}' of {}", mark.label, where), {mark.x}, panel.log_x);
+  }
+}
 
-std::string HtmlFigure(const PlotPanel& panel, const FigureText& text) {
-  RequireDrawable(panel, fmt::format("figure '{}'", text.id));
+std::vector<SeriesLook> LooksOf(const PlotPanel& panel) {
+  constexpr std::size_t kRounds = 3;
+  std::vector<SeriesLook> looks;
+  std::size_t without_shade = 0;
+  for (const PlotSeries& series : panel.series) {
+    if (series.shade) {
+      const double shade = std::clamp(*series.shade, 0.0, 1.0) * (kShades - 1);
+      looks.push_back({.colour = fmt::format("h{}", std::lround(shade))});
+      continue;
+    }
+    if (!series.label.empty() || without_shade == 0) ++without_shade;
+    const std::size_t place = without_shade - 1;
+    looks.push_back({.colour = fmt::format("s{}", place % kColours),
+                     .shape = place % kColours,
+                     .round = place / kColours % kRounds});
+  }
+  return looks;
+}
+
+std::string LegendSymbol(PlotStyle style, const SeriesLook& look) {
+  const std::string line = fmt::format("<path class=\"line {}\" d=\"M1 6H25\"/>", LineClass(look));
+  switch (style) {
+    case PlotStyle::kLine:
+      return line;
+    case PlotStyle::kPoints:
+      return fmt::format("<path class=\"dots {}\" d=\"M5 6h0M13 6h0M21 6h0\"/>", look.colour);
+    case PlotStyle::kMarkers:
+      return Marker(13, 6, look);
+    case PlotStyle::kIntervals:
+      return fmt::format("<path class=\"line {}\" d=\"M13 0V12\"/>", look.colour) +
+             Marker(13, 6, look);
+    case PlotStyle::kLineAndPoints:
+      return line + Marker(13, 6, look);
+    case PlotStyle::kBand:
+      return fmt::format("<path class=\"area {}\" d=\"M1 1H25V11H1Z\"/>", look.colour) + line;
+    case PlotStyle::kBars:
+      return fmt::format("<path class=\"bars {}\" d=\"M3 3H11V11H3ZM11 1H19V11H11Z\"/>",
+                         look.colour);
+  }
+  return {};
+}
+
+std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
+                      std::size_t most_points) {
   constexpr double kMarginX = 0.02;
   constexpr double kMarginY = 0.05;
   const auto [left, right] = Ends(panel, /*horizontal=*/true);
   const auto [bottom, top] = Ends(panel, /*horizontal=*/false);
-  const double height = std::round(kWidth / 2 * panel.height);
   Frame frame{.x = Axis(left, right, kMarginX, panel.log_x),
               .y = Axis(bottom, top, kMarginY, panel.log_y),
               .left = 0,
-              .right = kWidth - kRightMargin,
-              .top = kTop,
-              .bottom = kTop + height};
+              .right = width - kRightMargin,
+              .top = kAboveAxes,
+              .bottom = kAboveAxes + axes_height};
   frame.left = 14 + kTicCharacter * static_cast<double>(frame.y.LongestLabel());
   frame.x.Place(frame.left, frame.right);
   frame.y.Place(frame.bottom, frame.top);
-  const std::string id = HtmlText(text.id);
-  return fmt::format(
-      "<figure id=\"{0}\">\n<h3>{1}</h3>\n<p>{2}</p>\n{3}"
-      "<svg class=\"plot\" viewBox=\"0 0 {4} {5}\" role=\"img\" aria-labelledby=\"{0}-title "
-      "{0}-text\"><title id=\"{0}-title\">{1}</title><desc id=\"{0}-text\">{2}</desc>{6}</svg>\n"
-      "</figure>\n",
-      id, HtmlText(text.title), HtmlText(text.description), HtmlLegend(panel), kWidth,
-      Coordinate(frame.bottom + kBottom), Drawing(panel, frame).Text());
+  return Drawing(panel, frame, width, most_points).Text();
 }
 
 }  // namespace mindahl::io

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mindahl/io/plot.h"
+
+namespace mindahl::io {
+
+/// True if a series of that style has lower and upper ends.
+constexpr bool HasEnds(PlotStyle style) {
+  return style == PlotStyle::kIntervals || style == PlotStyle::kBand;
+}
+
+/// @param where  the panel, for messages
+/// @throws InvalidArgument naming the panel and series for what DrawPanel() does not draw
+void RequireDrawable(const PlotPanel& panel, const std::string& where);
+
+/// How the series of a panel differ: in colour, and in the shape of their markers; beyond the first
+/// six also in dashes and in filled markers. A series without a label looks like the one before it.
+struct SeriesLook {
+  std::string colour;     ///< class of the style: s0 … s5, or h0 … h7 of a shade
+  std::size_t shape = 0;  ///< of markers, 0 … 5
+  std::size_t round = 0;  ///< how often the colours were used before, 0 … 2
+};
+std::vector<SeriesLook> LooksOf(const PlotPanel& panel);
+
+/// Draws the symbol of a series in the legend, in 26 x 12 px.
+std::string LegendSymbol(PlotStyle style, const SeriesLook& look);
+
+/// Room [px] above the axes of a drawing, for the label of the vertical axis, and below them.
+inline constexpr double kAboveAxes = 30;
+inline constexpr double kBelowAxes = 52;
+
+/// Draws a panel without title and legend as elements of SVG, in `width` and
+/// kAboveAxes + axes_height + kBelowAxes [px]. Text stays text, colours are classes.
+/// @param panel  RequireDrawable()
+/// @param most_points  of all series, over which they are spread evenly
+std::string DrawPanel(const PlotPanel& panel, double width, double axes_height,
+                      std::size_t most_points);
+
+}  // namespace mindahl::io
