@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "mindahl/core/error.h"
 #include "mindahl/report/quantity.h"
 

@@ -1,9 +1,9 @@
 #include "mindahl/campaign/pooled_value.h"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "core/probability.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign {
@@ -39,8 +39,7 @@ double PooledValue::standard_error() const {
 
 double PooledValue::p_value() const {
   if (count_ < 2) return 1.0;
-  const boost::math::chi_squared distribution(static_cast<double>(count_ - 1));
-  return boost::math::cdf(boost::math::complement(distribution, ChiSquared()));
+  return PValueOfChiSquared(ChiSquared(), static_cast<double>(count_ - 1));
 }
 
 }  // namespace mindahl::campaign

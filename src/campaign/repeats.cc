@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "core/probability.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign {
@@ -40,8 +40,7 @@ std::optional<Repeats> DescribeRepeats(std::span<const double> values,
     const double off = (values[k] - weighted / weights) / errors[k];
     chi_squared += off * off;
   }
-  const boost::math::chi_squared distribution(count - 1);
-  repeats.p_value = boost::math::cdf(boost::math::complement(distribution, chi_squared));
+  repeats.p_value = PValueOfChiSquared(chi_squared, count - 1);
   return repeats;
 }
 

@@ -32,7 +32,7 @@
 #include "cli/progress.h"
 #include "cli/provenance.h"
 #include "cli/whole_number.h"
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "mindahl/campaign/pages.h"
 #include "mindahl/campaign/repeats.h"
 #include "mindahl/core/error.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/probability.h"
 #include "identification/cycle_energy.h"
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 
 #include "core/draws.h"
+#include "core/probability.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
@@ -314,14 +314,14 @@ void JudgeCoverage(ValidationReport& report) {
 
 double IntervalCount::ChanceOfSoFew() const {
   if (intervals == 0) return 1.0;
-  const boost::math::binomial law(static_cast<double>(intervals), kLowestCoverage);
-  return boost::math::cdf(law, static_cast<double>(covering));
+  return BinomialAtMost(static_cast<double>(covering), static_cast<double>(intervals),
+                        kLowestCoverage);
 }
 
 double IntervalCount::ChanceOfSoMany() const {
   if (intervals == 0 || covering == 0) return 1.0;
-  const boost::math::binomial law(static_cast<double>(intervals), kHighestCoverage);
-  return boost::math::cdf(boost::math::complement(law, static_cast<double>(covering - 1)));
+  return BinomialAbove(static_cast<double>(covering - 1), static_cast<double>(intervals),
+                       kHighestCoverage);
 }
 
 double NoiseFreeTolerance(double lambda) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/probability.h"
 #include "identification/free_parameters.h"
 #include "identification/inference/evidence.h"
 #include "mindahl/core/error.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 #include "identification/inference/local.h"
 #include "identification/problem/lagged_motion.h"
 #include "mindahl/core/error.h"

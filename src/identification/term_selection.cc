@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/extremes.h"
+#include "core/probability.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
 #include "identification/free_parameters.h"

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <functional>
 
+#include "core/probability.h"
 #include "loop/statistics.h"
 #include "loop/strokes.h"
 #include "mindahl/core/error.h"
@@ -366,9 +366,7 @@ std::optional<Trend> TrendOf(Column numbers, Column values) {
   const Line line = LineThrough(numbers, values);
   Trend trend{.slope = line.slope, .standard_error = line.slope_error};
   if (trend.standard_error > 0) {
-    const boost::math::students_t student(line.degrees_of_freedom);
-    const double t = std::abs(trend.slope) / trend.standard_error;
-    trend.p_value = 2 * boost::math::cdf(boost::math::complement(student, t));
+    trend.p_value = PValueOfT(trend.slope / trend.standard_error, line.degrees_of_freedom);
   } else if (trend.slope != 0) {
     trend.p_value = 0.0;
   }

@@ -1,7 +1,6 @@
 #include "mindahl/loop/trim.h"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <memory_resource>
 #include <numeric>
@@ -10,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "core/probability.h"
 #include "loop/rules.h"
 #include "loop/statistics.h"
 #include "loop/strokes.h"
@@ -17,12 +17,6 @@
 
 namespace mindahl::loop {
 namespace {
-
-/// Returns Student's t beyond which chance lies, to either side.
-double TwoSided(double chance, double degrees_of_freedom) {
-  return boost::math::quantile(
-      boost::math::complement(boost::math::students_t(degrees_of_freedom), chance / 2));
-}
 
 /// Returns the number of samples, at least one, at which the displacement rests from its start.
 template <typename Displacements>
@@ -164,10 +158,11 @@ class Trimming {
     const double settled = rules_.settled * std::abs(level);
     const double slope = std::abs(line.slope);
     const bool is_trend =
-        slope > TwoSided(rules_.trend_chance, line.degrees_of_freedom) * line.slope_error;
+        slope >
+        StudentQuantile(line.degrees_of_freedom, 1 - rules_.trend_chance) * line.slope_error;
     if (is_trend && slope * (count - 1) > settled) return std::nullopt;
-    const double scatter = TwoSided(rules_.chance, line.degrees_of_freedom) * line.deviation *
-                           std::sqrt(1 + 1 / count);
+    const double scatter = StudentQuantile(line.degrees_of_freedom, 1 - rules_.chance) *
+                           line.deviation * std::sqrt(1 + 1 / count);
     const double band = std::max(settled, scatter);
     const double sense = values.front() < level ? -1.0 : 1.0;
     std::size_t off = 0;

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "mindahl/contact/hertz.h"
 #include "mindahl/contact/shape_under_load.h"
 #include "mindahl/report/contact.h"
@@ -65,8 +64,7 @@ double StandardErrorOf(const ParameterEstimate& estimate) {
 
 Estimate EstimateOf(const FitResult& fit) {
   Estimate estimate;
-  estimate.quantile = boost::math::quantile(boost::math::students_t(fit.ErrorDegreesOfFreedom()),
-                                            (1 + fit.confidence) / 2);
+  estimate.quantile = StudentQuantile(fit.ErrorDegreesOfFreedom(), fit.confidence);
   estimate.normal_quantile = NormalQuantile(fit.confidence);
   constexpr std::array<std::string_view, Estimate::kCount> kNames = {"sigma", "load_exponent",
                                                                      "alpha"};

@@ -1,9 +1,9 @@
 #include "mindahl/report/load_series.h"
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
+#include "core/probability.h"
 #include "mindahl/report/contact.h"
 #include "mindahl/report/mapping_tests.h"
 #include "report/load_laws.h"
@@ -38,8 +38,7 @@ LoadHypothesis Test(std::string_view name, double exponent, const FitResult& fit
                  error_of_other > 0 ? Correlation(fit, "load_exponent", "alpha") : 0.0);
   if (!is_known || !(error > 0) || !std::isfinite(error)) return test;
   test.z = *test.difference / error;
-  const boost::math::students_t distribution(fit.ErrorDegreesOfFreedom());
-  test.p_value = 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(*test.z)));
+  test.p_value = PValueOfT(*test.z, fit.ErrorDegreesOfFreedom());
   return test;
 }
 

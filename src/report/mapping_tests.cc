@@ -1,17 +1,10 @@
 #include "mindahl/report/mapping_tests.h"
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
+#include "core/probability.h"
 namespace mindahl::report {
-namespace {
-
-double TwoSided(const boost::math::students_t& distribution, double z) {
-  return 2 * boost::math::cdf(boost::math::complement(distribution, std::abs(z)));
-}
-
-}  // namespace
 
 AlphaTest TestAlpha(const identification::FitResult& fit) {
   AlphaTest test;
@@ -23,7 +16,7 @@ AlphaTest TestAlpha(const identification::FitResult& fit) {
   const double error = fit.ErrorTowards(alpha, kThird);
   if (error > 0 && std::isfinite(error)) {
     test.z = *test.minus_third / error;
-    test.p_value = TwoSided(boost::math::students_t(fit.ErrorDegreesOfFreedom()), *test.z);
+    test.p_value = PValueOfT(*test.z, fit.ErrorDegreesOfFreedom());
   }
   test.is_rejected = alpha.lower95 > kThird || alpha.upper95 < kThird;
   const auto& likelihood = fit.mindlin_test;
@@ -41,13 +34,12 @@ StiffnessTest TestStiffness(std::string_view radius, const contact::PropagatedVa
   test.ratio = ratio;
   if (!(ratio.standard_error > 0) || std::isinf(ratio.standard_error)) return test;
   const double share = ratio.FitShare();
-  const boost::math::students_t distribution(share > 0 ? degrees_of_freedom / (share * share)
-                                                       : std::numeric_limits<double>::infinity());
-  const double half_width =
-      boost::math::quantile(distribution, (1 + confidence) / 2) * ratio.standard_error;
+  const double degrees =
+      share > 0 ? degrees_of_freedom / (share * share) : std::numeric_limits<double>::infinity();
+  const double half_width = StudentQuantile(degrees, confidence) * ratio.standard_error;
   test.interval95 = {ratio.value - half_width, ratio.value + half_width};
   test.z = (ratio.value - 1) / ratio.standard_error;
-  test.p_value = TwoSided(distribution, *test.z);
+  test.p_value = PValueOfT(*test.z, degrees);
   return test;
 }
 

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <numeric>
 #include <string>
 #include <utility>
 
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "report/names.h"
 
 namespace mindahl::report {
@@ -395,13 +395,14 @@ PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units) {
     bars.x.push_back(from + (static_cast<double>(k) + 0.5) * width);
   }
   if (beyond > 0) bars.label += fmt::format(", {} of them further out", beyond);
-  const boost::math::normal_distribution<> normal(mean, deviation);
   PlotSeries curve{"normal distribution of the same standard deviation", {}, {}, PlotStyle::kLine};
   constexpr int kSteps = 120;
   for (int i = 0; i <= kSteps; ++i) {
     const double at = from + (to - from) * i / kSteps;
     curve.x.push_back(at);
-    curve.y.push_back(n * width * boost::math::pdf(normal, at));
+    const double z = (at - mean) / deviation;
+    constexpr double kDensityAtMean = std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+    curve.y.push_back(n * width / deviation * kDensityAtMean * std::exp(-z * z / 2));
   }
   panel.series = {std::move(bars), std::move(curve)};
   return panel;

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "mindahl/identification/trend.h"
 #include "mindahl/report/quantity.h"
 #include "report/adequacy.h"

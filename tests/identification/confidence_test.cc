@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/normal_quantile.h"
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 #include "identification/sample_loop.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"

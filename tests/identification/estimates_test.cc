@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 

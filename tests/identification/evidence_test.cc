@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/stages.h"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "identification/diagnosis/grade.h"
 #include "mindahl/models/steady_loop.h"
 

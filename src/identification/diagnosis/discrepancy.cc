@@ -9,9 +9,9 @@
 #include <optional>
 #include <span>
 
+#include "core/probability.h"
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/main_strokes.h"
-#include "identification/inference/evidence.h"
 #include "identification/intervals.h"
 
 namespace mindahl::identification {

@@ -1,10 +1,10 @@
 #include "mindahl/identification/residual_structure.h"
 
 #include <algorithm>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
 
+#include "core/probability.h"
 #include "identification/diagnosis/main_strokes.h"
 #include "mindahl/core/error.h"
 
@@ -118,8 +118,7 @@ ResidualStructure DescribeStructure(std::span<const double> displacement,
   if (variance.parts == 0 || !(variance.within > 0) || !(squares > 0)) return structure;
   const double ratio =
       variance.between / variance.parts / (variance.within / variance.degrees_within);
-  const boost::math::fisher_f distribution(variance.parts, variance.degrees_within);
-  if (ratio < boost::math::quantile(boost::math::complement(distribution, options.repeat_chance))) {
+  if (ratio < FQuantile(variance.parts, variance.degrees_within, options.repeat_chance)) {
     return structure;
   }
   structure.repeatable_share = std::clamp(

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "core/probability.h"
 #include "identification/inference/column_test.h"
 #include "identification/inference/evidence.h"
 #include "identification/intervals.h"

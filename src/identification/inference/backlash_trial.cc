@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/probability.h"
 #include "identification/inference/evidence.h"
 
 namespace mindahl::identification {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 #include "identification/solve/sums.h"
 
 namespace mindahl::identification {

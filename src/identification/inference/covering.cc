@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/normal_quantile.h"
+#include "core/probability.h"
 #include "identification/inference/estimates.h"
 #include "identification/intervals.h"
 #include "mindahl/identification/terms.h"

@@ -5,8 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/normal_quantile.h"
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 #include "identification/intervals.h"
 
 namespace mindahl::identification {

@@ -36,18 +36,4 @@ class Evidence {
   double effective_;
 };
 
-/// P(F(k, ν) > f)
-double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom);
-/// P(F(1, ν) > f)
-double PValueOfF(double f, double degrees_of_freedom);
-
-/// P(χ²(k) > x)
-double PValueOfChiSquared(double x, double degrees_of_freedom);
-
-/// P(χ²(k) > x) = chance at x
-double ChiSquaredQuantile(double degrees_of_freedom, double chance);
-
-/// Returns the half width of a two-sided interval of this confidence in standard errors (Student).
-double StudentQuantile(double degrees_of_freedom, double confidence);
-
 }  // namespace mindahl::identification

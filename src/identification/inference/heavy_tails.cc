@@ -1,12 +1,12 @@
 #include "identification/inference/heavy_tails.h"
 
 #include <algorithm>
-#include <boost/math/distributions/poisson.hpp>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
+#include "core/probability.h"
 namespace mindahl::identification {
 namespace {
 
@@ -100,10 +100,9 @@ std::optional<IrregularityFit> FindHeavyTails(std::span<const FittedSample> samp
     all += sample.residual * sample.residual;
     ++counted;
   }
-  const boost::math::poisson by_chance(kChance * static_cast<double>(differences.size()));
   IrregularityFit fit;
   const auto off = static_cast<double>(count);
-  fit.p_value = boost::math::cdf(boost::math::complement(by_chance, off - 1));
+  fit.p_value = PoissonAbove(off - 1, kChance * static_cast<double>(differences.size()));
   fit.size = off / counted;
   fit.explains = all > 0 ? std::min(of_the_off / all, 1.0) : 0.0;
   // Two widths for one: n ln(SS/n) against that of either share, and who belongs to which.

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 #include "identification/inference/noise.h"
 
 namespace mindahl::identification {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/probability.h"
 #include "identification/inference/evidence.h"
 #include "identification/inference/noise.h"
 

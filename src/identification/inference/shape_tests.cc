@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/probability.h"
 #include "identification/inference/evidence.h"
 
 namespace mindahl::identification {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "identification/inference/evidence.h"
+#include "core/probability.h"
 
 namespace mindahl::identification {
 namespace {

@@ -1,11 +1,11 @@
 #include "identification/inference/stick_slip.h"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
 #include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
 #include <vector>
 
+#include "core/probability.h"
 #include "identification/inference/evidence.h"
 #include "identification/inference/noise.h"
 
@@ -119,8 +119,7 @@ std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> sampl
   }
   IrregularityFit fit;
   const auto count = static_cast<double>(drops.size());
-  const boost::math::binomial by_chance(count + static_cast<double>(rises), 0.5);
-  fit.p_value = boost::math::cdf(boost::math::complement(by_chance, count - 1));
+  fit.p_value = BinomialAbove(count - 1, count + static_cast<double>(rises), 0.5);
   fit.size = boost::math::statistics::median(drops.begin(), drops.end());
   fit.explains = before > 0 ? std::clamp(1 - after / before, 0.0, 1.0) : 0.0;
   // The teeth autocorrelate the residuals: the rest determines how many are independent.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/probability.h"
 #include "identification/inference/evidence.h"
 #include "identification/inference/local.h"
 #include "identification/solve/search.h"

@@ -1,0 +1,84 @@
+#include "core/probability.h"
+
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/poisson.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/erf.hpp>
+#include <cmath>
+#include <numbers>
+
+namespace mindahl {
+namespace {
+
+/// Boost would evaluate in long double, at several times the cost, to round the last digit well.
+using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+using Binomial = boost::math::binomial_distribution<double, InDouble>;
+using ChiSquared = boost::math::chi_squared_distribution<double, InDouble>;
+using FisherF = boost::math::fisher_f_distribution<double, InDouble>;
+using Poisson = boost::math::poisson_distribution<double, InDouble>;
+using StudentsT = boost::math::students_t_distribution<double, InDouble>;
+
+template <typename Distribution>
+double Above(const Distribution& distribution, double x) {
+  return boost::math::cdf(boost::math::complement(distribution, x));
+}
+
+}  // namespace
+
+double NormalQuantile(double confidence) {
+  return std::numbers::sqrt2 * boost::math::erf_inv(confidence);
+}
+
+double StudentQuantile(double degrees_of_freedom, double confidence) {
+  struct Asked {
+    double degrees_of_freedom = 0.0;
+    double confidence = 0.0;
+    double quantile = 0.0;
+  };
+  // Cycle after cycle of a campaign asks for the same.
+  thread_local Asked last;
+  if (last.degrees_of_freedom != degrees_of_freedom || last.confidence != confidence) {
+    last = {degrees_of_freedom, confidence,
+            boost::math::quantile(StudentsT(degrees_of_freedom), (1 + confidence) / 2)};
+  }
+  return last.quantile;
+}
+
+double PValueOfT(double t, double degrees_of_freedom) {
+  return 2 * Above(StudentsT(degrees_of_freedom), std::abs(t));
+}
+
+double PValueOfF(double f, double numerator_degrees, double degrees_of_freedom) {
+  return Above(FisherF(numerator_degrees, degrees_of_freedom), f);
+}
+
+double PValueOfF(double f, double degrees_of_freedom) {
+  return PValueOfF(f, 1.0, degrees_of_freedom);
+}
+
+double FQuantile(double numerator_degrees, double degrees_of_freedom, double chance) {
+  return boost::math::quantile(
+      boost::math::complement(FisherF(numerator_degrees, degrees_of_freedom), chance));
+}
+
+double PValueOfChiSquared(double x, double degrees_of_freedom) {
+  return Above(ChiSquared(degrees_of_freedom), x);
+}
+
+double ChiSquaredQuantile(double degrees_of_freedom, double chance) {
+  return boost::math::quantile(boost::math::complement(ChiSquared(degrees_of_freedom), chance));
+}
+
+double BinomialAtMost(double count, double trials, double probability) {
+  return boost::math::cdf(Binomial(trials, probability), count);
+}
+
+double BinomialAbove(double count, double trials, double probability) {
+  return Above(Binomial(trials, probability), count);
+}
+
+double PoissonAbove(double count, double mean) { return Above(Poisson(mean), count); }
+
+}  // namespace mindahl
