@@ -35,7 +35,7 @@ Course CourseOf(std::size_t cycles, std::uint64_t seed,
 
 double Level(std::size_t /*cycle*/) { return kLevel; }
 
-TEST(Course, HoldsMeansInBinsOfOneSize) {
+TEST(Course, HoldsMeansInBinsOfEqualSize) {
   Course course;
   constexpr std::size_t kCycles = 10'000;
   for (std::size_t cycle = 1; cycle <= kCycles; ++cycle) {
@@ -57,7 +57,7 @@ TEST(Course, HoldsMeansInBinsOfOneSize) {
   EXPECT_EQ(count, kCycles);
 }
 
-TEST(Course, WeighsTheBinsThatItMerges) {
+TEST(Course, WeightsTheBinsThatItMerges) {
   // More values than bins: pairs of 10 (weight 1) and 20 (weight 100) become one each.
   Course course;
   for (std::size_t cycle = 1; cycle <= Course::kMostBins + 1; ++cycle) {
@@ -293,7 +293,7 @@ double RunningInAndStep(std::size_t cycle) {
 
 class PreciseChanges : public ::testing::TestWithParam<double> {};  // noise over the level
 
-TEST_P(PreciseChanges, FindAStepBesideARunningIn) {
+TEST_P(PreciseChanges, FindAStepInAdditionToRunningIn) {
   int covered = 0;
   int plain = 0;
   constexpr int kCampaigns = 40;
@@ -382,7 +382,7 @@ TEST(Changes, TellTheCycleWithinABinOfSeveral) {
   }
 }
 
-TEST(Stretches, PassThroughTheirEnds) {
+TEST(Stretches, SegmentsPassThroughTheirEnds) {
   Stretch stretch{.first_cycle = 11, .last_cycle = 31, .at_start = 5.0, .at_end = 3.0};
   EXPECT_DOUBLE_EQ(stretch.At(11), 5.0);
   EXPECT_DOUBLE_EQ(stretch.At(31), 3.0);

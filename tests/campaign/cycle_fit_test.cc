@@ -98,7 +98,7 @@ TEST(CycleFitter, HasErrorsThatTellTheScatter) {
   EXPECT_NEAR(mean, kCycleLaw.slip_force, 4 * scatter / std::sqrt(count));
 }
 
-TEST(CycleFitter, TellsFrictionWhereTheLoadIsKnown) {
+TEST(CycleFitter, ReportsFrictionCoefficientIfLoadIsKnown) {
   constexpr double kLoad = 120.0;
   std::vector<Cycle> cycles = CyclesOf(TestRecord(2));
   identification::FitOptions options;

@@ -55,7 +55,7 @@ TEST(CycleTable, ReadsBackEveryDigitItWrote) {
   EXPECT_EQ(entry.fit.flags, Filled().flags);
 }
 
-TEST(CycleTable, LeavesOutWhatIsNotKnown) {
+TEST(CycleTable, LeavesUnknownCellsEmpty) {
   CycleFit fit;
   fit.number = 3;
   const std::string row = CycleTableRow(fit, 0.0);
@@ -79,7 +79,7 @@ TEST(CycleTable, NamesTheUnitsOfTheRecord) {
   EXPECT_NE(CycleTableHeader(true).find("amplitude [rad]"), std::string::npos);
 }
 
-TEST(CycleTable, RefusesWhatIsNoRow) {
+TEST(CycleTable, RefusesMalformedRow) {
   EXPECT_THROW(ReadCycleTableRow("1,2,3"), InputError);
   std::string row = WithoutEnd(CycleTableRow(Filled(), 1.0));
   row.replace(row.find("201"), 3, "2x1");

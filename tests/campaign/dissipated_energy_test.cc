@@ -26,13 +26,13 @@ DissipatedEnergy After(std::size_t loops, std::size_t cycles = 1) {
   return energy;
 }
 
-TEST(DissipatedEnergy, IsTheSumOfWhatIsMeasured) {
+TEST(DissipatedEnergy, IsTheSumOfMeasuredCycles) {
   EXPECT_DOUBLE_EQ(After(5).total(), 5 * kEnergy);
   EXPECT_DOUBLE_EQ(After(5, 12).total(), 60 * kEnergy);
   EXPECT_EQ(After(5).counts().measured, 5U);
 }
 
-TEST(DissipatedEnergy, CountsMendedGlitchesAsMeasured) {
+TEST(DissipatedEnergy, CountsRepairedGlitchesAsMeasured) {
   DissipatedEnergy energy = After(3);
   energy.Add(Loop(0.95 * kEnergy, 201, {"glitches"}));
   EXPECT_DOUBLE_EQ(energy.total(), 3.95 * kEnergy);
@@ -64,7 +64,7 @@ TEST(DissipatedEnergy, ReplacesByTheMedianOfTheLastNine) {
   EXPECT_DOUBLE_EQ(energy.total() - before, 16 * kEnergy);
 }
 
-TEST(DissipatedEnergy, LeavesOutWhatNobodyKnows) {
+TEST(DissipatedEnergy, LeavesOutUnknownCycles) {
   DissipatedEnergy energy(1);
   energy.Add(Loop(11 * kEnergy, 131, {"not_closed"}));
   energy.Add(Loop(std::nullopt, 201, {"no_loop"}));

@@ -38,7 +38,7 @@ TestSummary SummaryOf(Evolution evolution) {
           .changes = {"sigma [N/m]: at cycle 61 a step"}};
 }
 
-TEST(TestPage, SaysTheAlphaThatCyclesShareAndWhatEnergiesAreOf) {
+TEST(TestPage, ReportsSharedAlphaAndSourceOfEnergies) {
   TestSummary test = SummaryOf(Step(/*has_errors=*/true));
   EXPECT_THAT(ToPage(test), Not(HasSubstr("shared")));
   EXPECT_THAT(ToPage(test), Not(HasSubstr("counting")));
@@ -53,7 +53,7 @@ TEST(TestPage, SaysTheAlphaThatCyclesShareAndWhatEnergiesAreOf) {
               HasSubstr("counting 3 that do not close by those before them and 2 by nothing"));
 }
 
-TEST(Evolution, DrawsTheCourseItsBandAndItsChange) {
+TEST(Evolution, DrawsTimeHistoryBandAndChange) {
   const std::vector<Evolution> evolutions = {Step(/*has_errors=*/true)};
   const std::vector<io::PlotPanel> panels = EvolutionPanels(evolutions);
   ASSERT_THAT(panels, SizeIs(1));
@@ -120,7 +120,7 @@ TEST(TestPage, SaysWhatChangedAndEscapesItsFiles) {
   EXPECT_THAT(page, Not(HasSubstr("<script")));
 }
 
-TEST(BatchIndex, LinksPagesSaysFaultsAndShowsOnlyWhatIsIdentified) {
+TEST(BatchIndex, LinksPagesReportsFaultsAndShowsOnlyIdentifiableParameters) {
   identification::ParameterEstimate sigma;
   sigma.name = "sigma";
   sigma.unit = "N/m";

@@ -36,7 +36,7 @@ TEST(PooledValue, WeighsByErrors) {
   EXPECT_NEAR(pooled.p_value(), std::erfc(std::sqrt(0.4)), 1e-14);
 }
 
-TEST(PooledValue, SaysWhatIsBeyondTheErrors) {
+TEST(PooledValue, ReportsScatterBeyondTheErrors) {
   // Equal errors e: Q = Σ(y − ȳ)²/e² = 8, τ² = (8 − 1)·e²/(2 − 1), e(ȳ)² = e²/2 + τ²/2.
   PooledValue pooled;
   pooled.Add(0.0, 1.0);

@@ -23,7 +23,7 @@ loop::Record Loop() {
   return record;
 }
 
-TEST(Reading, ChoosesGateAndSenseForAllCycles) {
+TEST(Reading, ChoosesGateAndForceSignForAllCycles) {
   const loop::Record record = Loop();
   identification::FitOptions fit;
   const Reading reading = ChooseReading(record, fit);
@@ -43,7 +43,7 @@ TEST(Reading, KeepsAGateThatIsGiven) {
   EXPECT_EQ(*fit.preparation.reversal_gate, 1e-7);
 }
 
-TEST(Reading, SaysWhatIsUncertain) {
+TEST(Reading, ReportsUncertainChoices) {
   Reading reading;
   reading.gate.certain = false;
   EXPECT_NE(DoubtAbout(reading, "loop.csv")->find("loop.csv: the reversals are uncertain"),

@@ -25,7 +25,7 @@ TEST(Repeats, OfTwoAreDescribedByHand) {
   EXPECT_NEAR(*repeats->p_value, std::erfc(std::sqrt(0.8 / 2)), kRounding);
 }
 
-TEST(Repeats, ThatAgreeAreWhatTheirErrorsSay) {
+TEST(Repeats, ThatAgreeScatterAsTheirErrorsState) {
   EXPECT_EQ(DescribeRepeats(Numbers{3, 3, 3}, Numbers{1, 2, 3})->p_value, 1.0);
 }
 

@@ -22,7 +22,7 @@ CycleFit Cycle(double alpha, double error, std::vector<std::string> flags = {}) 
   return fit;
 }
 
-TEST(SharedAlpha, IsOfTheCyclesThatDetermineIt) {
+TEST(SharedAlpha, PoolsCyclesThatIdentifyAlpha) {
   PooledValue alpha;
   EXPECT_THROW(RequireSharedAlpha(alpha), InputError);
   PoolAlpha(Cycle(0.3, 0.01), alpha);
@@ -46,7 +46,7 @@ std::string Refusal(const identification::FitOptions& fit, const std::vector<std
   return {};
 }
 
-TEST(SharedAlpha, NeedsAnAlphaThatIsFittedAndFilesThatAreThereTwice) {
+TEST(SharedAlpha, RequiresFittedAlphaAndRepeatableInput) {
   identification::FitOptions fit;
   EXPECT_EQ(Refusal(fit, {}), "");
   EXPECT_THAT(Refusal(fit, {"/dev/null"}), HasSubstr("/dev/null can be read only once"));

@@ -22,7 +22,7 @@ CycleFit WithSlipForce(std::size_t number, double value, double error) {
 }
 
 // One over their squares is 0 or infinite.
-TEST(TrackedCourses, TakeErrorsOfAnySize) {
+TEST(TrackedCourses, AcceptErrorsOfAnySize) {
   TrackedCourses courses;
   std::size_t number = 0;
   for (const double error : {1e-200, 1e-160, 1.0, 1e160, 1e300}) {
@@ -41,7 +41,7 @@ TEST(TrackedCourses, TakeErrorsOfAnySize) {
   }
 }
 
-TEST(SmallTrendStatements, SayWhatIsBeyondChanceAndBelowOnePercent) {
+TEST(SmallTrendStatements, ReportSignificantTrendsBelowOnePercent) {
   CourseDescription course;
   course.stretches = {{.first_cycle = 1,
                        .last_cycle = 100,

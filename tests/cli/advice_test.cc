@@ -111,7 +111,7 @@ TEST(Advice, OfMeasuredRecordsIsNeverRefused) {
   }
 }
 
-TEST(FirstCause, OfMeasuredRecordsIsWhatTheirREADMENames) {
+TEST(FirstCause, OfMeasuredRecordsMatchesTheirDescription) {
   struct Measured {
     const char* file;
     const char* cause;  // the first

@@ -144,7 +144,7 @@ TEST_F(BatchCommand, HasEveryColumnSomewhere) {
   }
 }
 
-TEST_F(BatchCommand, GoesOnPastAFileThatFails) {
+TEST_F(BatchCommand, ContinuesAfterAFileThatFails) {
   const std::string good = Repeat(1);
   const std::string broken = directory_.Write("broken.csv", "x,F\n1,2\n3,oops\n").string();
   const Outcome outcome = Batch({broken, Path("absent.csv"), good});

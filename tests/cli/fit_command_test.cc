@@ -253,7 +253,7 @@ TEST(FitCommand, WithholdsTheFrictionCoefficientOfALoopThatDoesNotSlipThoughItsL
               ::testing::Not(HasSubstr("μ = Tc/N")));
 }
 
-TEST(FitCommand, NullsSayWhatIsMissing) {
+TEST(FitCommand, NullsNameMissingInputs) {
   const json fit = FitJson({SampleRecord(), "--model", "mindlin"});
   EXPECT_EQ(WhyNull(fit, "contact.friction_coefficient"), "needs the normal load");
   EXPECT_EQ(WhyNull(fit, "contact.compliance"), "needs the contact radius");

@@ -145,7 +145,7 @@ TEST_F(FitTerms, MindlinsContactOnARigidRigPassesTheLikelihoodRatio) {
   EXPECT_FALSE(Warns(fit, "shape_or_rig"));
 }
 
-TEST_F(FitTerms, EachBranchTellsItsOwnAlpha) {
+TEST_F(FitTerms, EachBranchIdentifiesItsOwnAlpha) {
   const json fit = Fit(Simulate({"--cycles", "3", "--noise-force", "0.1"}));
   const json& branches = fit["mapping"]["alpha_by_branch"];
   ASSERT_THAT(branches, SizeIs(3));
@@ -292,7 +292,7 @@ TEST_F(FitTerms, LateForceIsPutInItsPlace) {
   EXPECT_EQ(known["parameters"]["lag"]["status"], "fixed");
 }
 
-TEST_F(FitTerms, SlipForcesOfEitherSenseAreFitted) {
+TEST_F(FitTerms, SlipForcesOfBothDirectionsAreFitted) {
   const std::vector<Sample> loop = Simulate({"--cycles", "2", "--asymmetry", "0.2"});
   const json fit = Fit(loop, {"--asymmetry", "fit"});
   ExpectContact(fit, kNoiseFree);

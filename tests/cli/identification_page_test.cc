@@ -72,7 +72,7 @@ TEST(IdentificationPage, HasARowForEveryThresholdAndNoOther) {
   EXPECT_EQ(RowsOf("Thresholds"), expected);
 }
 
-TEST(IdentificationPage, HasARowForEveryDepartureAndNoOther) {
+TEST(IdentificationPage, HasOneRowForEachOmittedTerm) {
   Rows expected;
   for (const Departure& departure : Departures()) {
     const std::string option =
@@ -85,7 +85,7 @@ TEST(IdentificationPage, HasARowForEveryDepartureAndNoOther) {
   EXPECT_EQ(RowsOf("Departures"), expected);
 }
 
-TEST(IdentificationPage, HasARowForEveryIrregularityAndNoOther) {
+TEST(IdentificationPage, HasOneRowForEachResidualStructure) {
   Rows expected;
   for (const Irregularity& row : Irregularities()) {
     const std::string option = row.option.empty() ? "" : fmt::format("`{}`", row.option);

@@ -125,7 +125,7 @@ TEST_F(LoadStepsOfFit, GiveWhatAFileForEachLoadGives) {
   EXPECT_FALSE(apart["input"].contains("between_loads"));
 }
 
-TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWhereItIsSaidWhichLoadsCount) {
+TEST_F(LoadStepsOfFit, AreFollowedInOneRecordWithLoadWindow) {
   const std::string file = Simulate(15, Staircase);
   for (const Words& more : {Words{"--normal-load", "56.6"}, Words{"--samples", "1:1200"},
                             Words{"--load-window", "15:105"}}) {

@@ -72,7 +72,7 @@ TEST_F(MeasuredRecord, TribometerIsFittedAsByTheReference) {
   EXPECT_LT(fit["residuals"]["effective_samples"].get<double>(), 1000.0);
 }
 
-TEST_F(MeasuredRecord, TribometerDoesNotTellTheShapeOfTheContactFromARigThatGivesWay) {
+TEST_F(MeasuredRecord, TribometerConfoundsContactShapeWithCompliantRig) {
   constexpr const char* kFile = "tribometer/test_data_2.txt";
   SKIP_WITHOUT(kFile);
   constexpr double kRigStiffness = 46e3;  // [N/m], under α = 1/3

@@ -81,7 +81,7 @@ TEST_F(NoiseIn, DisplacementGivesResidualsInMetres) {
                                                   "fitted_displacement [m]", "residual [m]"));
 }
 
-TEST_F(NoiseIn, DisplacementIsToldInTheText) {
+TEST_F(NoiseIn, DisplacementIsReportedInTheText) {
   const Outcome outcome = RunCommand({"fit", Loop(kNoise), "--noise-in", "displacement"});
   EXPECT_EQ(outcome.status, kDone) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("residuals of the displacement: rms "));
@@ -104,7 +104,7 @@ TEST_F(NoiseIn, DisplacementFitsItsDrift) {
   EXPECT_FALSE(fit["parameters"].contains("force_drift"));
 }
 
-TEST_F(NoiseIn, DisplacementRefusesWhatIsOfAFittedForceInOneLine) {
+TEST_F(NoiseIn, DisplacementRefusesOptionsOfForceFitsInOneLine) {
   const std::string loop = Loop(0.0);
   const auto refusal = [&](Words options) {
     options.insert(options.begin(), {"fit", loop, "--noise-in", "displacement"});

@@ -286,7 +286,7 @@ TEST(Contact, OfMaterialsAndRadiiFollowsHertzAndMindlin) {
   EXPECT_NEAR(Value(contact, "parameters", "slip_force") / 10, 1, kRounding);
 }
 
-TEST(Contact, NamesWhatIsMissing) {
+TEST(Contact, NamesMissingInputs) {
   const auto message = [](Words words) {
     words.insert(words.begin(), "contact");
     const Outcome outcome = RunCommand(words);
@@ -333,7 +333,7 @@ TEST(Validate, PassesOnTwoRoundsOfTheAmplitudes) {
   EXPECT_TRUE(report["failed_coverages"].empty());
 }
 
-TEST(Validate, SaysNothingOfAmplitudesThatNoCaseWasDrawnFor) {
+TEST(Validate, SkipsAmplitudesWithoutCases) {
   // One contact has one of seven amplitudes.
   const json report = RunCommand({"validate", "--cases", "1", "--json", "-"}).Json();
   std::size_t empty = 0;

@@ -125,7 +125,7 @@ TEST_F(Outputs, AreNotWrittenOverEachOther) {
   EXPECT_EQ(directory_.FileCount(), 0u);
 }
 
-TEST_F(Outputs, MayShareADeviceThatKeepsNothing) {
+TEST_F(Outputs, MayShareTheNullDevice) {
   const Outcome outcome =
       RunCommand({"fit", SampleRecord(), "--json", "/dev/null", "--residuals", "/dev/null"});
   EXPECT_EQ(outcome.status, cli::kDone) << outcome.err;

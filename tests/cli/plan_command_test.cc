@@ -24,7 +24,7 @@ Outcome RunPlan(const Words& more) {
   return RunCommand(words);
 }
 
-TEST(PlanCommand, SaysWhichAmplitudeReachesWhatIsWanted) {
+TEST(PlanCommand, ReportsAmplitudeThatReachesWantedPrecision) {
   const Outcome outcome =
       RunPlan({"--force-noise", "0.4", "--want", "alpha=0.01,slip_force=1%", "--json", "-"});
   ASSERT_EQ(outcome.status, kDone) << outcome.err;

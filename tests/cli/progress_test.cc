@@ -119,7 +119,7 @@ TEST_F(ProgressOnATerminal, SaysWhatComesNext) {
   EXPECT_THAT(last, EndsWith(kErase));
 }
 
-TEST_F(ProgressOnATerminal, OfWhatIsSoonDoneIsNotShown) {
+TEST_F(ProgressOnATerminal, IsNotShownForShortRuns) {
   Redirected terminal(/*terminal=*/true);
   { const Progress progress(std::cerr, "fitting"); }
   std::cerr << "done" << std::flush;

@@ -272,7 +272,7 @@ TEST_F(TrackCommand, WritesOverNothingUnasked) {
   EXPECT_EQ(Lines(ContentOf(Path("whole.csv"))).size(), 5U);
 }
 
-TEST_F(TrackCommand, KeepsWhatIsDoneWhereARowIsBroken) {
+TEST_F(TrackCommand, KeepsFinishedCyclesIfARowIsBroken) {
   std::vector<std::string> lines = Lines(ContentOf(record_));
   const std::string good = lines[15'000];
   lines[15'000] = "12.3,oops,4";
@@ -367,7 +367,7 @@ TEST_F(TrackCommand, TakesSeveralFilesForOneTest) {
   EXPECT_EQ(Cells(rows[kCycles + 1])[1], Cells(rows[1])[1]);
 }
 
-TEST_F(TrackCommand, TellsFrictionUnderAGivenLoad) {
+TEST_F(TrackCommand, ReportsFrictionCoefficientForGivenLoad) {
   const Outcome outcome = RunCommand(
       {"track", record_, "--output", Path("t.csv"), "--normal-load", "120", "--json", "-"});
   const nlohmann::json friction = outcome.Json()["quantities"]["friction_coefficient"];
@@ -430,7 +430,7 @@ TEST_F(TrackCommand, CountsPiecesOfACycleForThatCycle) {
   }
 }
 
-TEST_F(TrackCommand, SharesAlphaOverTheTest) {
+TEST_F(TrackCommand, PoolsAlphaOverTheTest) {
   const Outcome outcome = RunCommand(
       {"track", record_, "--output", Path("shared.csv"), "--alpha", "shared", "--json", "-"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -477,7 +477,7 @@ TEST_F(TrackCommand, SharesAlphaOverTheTest) {
   EXPECT_EQ(ContentOf(Path("part.csv")), table);
 }
 
-TEST_F(TrackCommand, DrawsNoBandAroundWhatIsHeld) {
+TEST_F(TrackCommand, DrawsNoBandAroundFixedParameters) {
   ASSERT_EQ(RunCommand({"track", record_, "--output", Path("held.csv"), "--alpha", "shared",
                         "--report", Path("held.html")})
                 .status,
@@ -489,7 +489,7 @@ TEST_F(TrackCommand, DrawsNoBandAroundWhatIsHeld) {
   EXPECT_NE(page.find("95 % of one"), std::string::npos);
 }
 
-TEST_F(TrackCommand, SharesNoAlphaThatNoCycleDetermines) {
+TEST_F(TrackCommand, PoolsNoAlphaIfNoCycleIdentifiesIt) {
   loop::Record far = TestRecord(5);
   for (double& x : far.displacement) x *= 0.02;
   for (double& force : far.force) force *= 0.02;

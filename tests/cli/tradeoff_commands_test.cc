@@ -106,7 +106,7 @@ struct Refusal {
   std::string said;
 };
 
-TEST(SimulateMethod, RefusesWhatSaysNothingNamingTheRemedy) {
+TEST(SimulateMethod, RefusesOptionsWithoutEffectNamingTheRemedy) {
   const TemporaryDirectory directory;
   const std::string path = directory.Write("path.csv", "x [m],load [N]\n1,10\n").string();
   for (const Refusal& refusal : {

@@ -264,7 +264,7 @@ TEST(Fit, ComparesWithHertzAndItsUncertainty) {
   }
 }
 
-TEST(Fit, TellsPeopleTheErrorAndWhatToMeasureBetter) {
+TEST(Fit, ReportsErrorAndWhatToMeasureBetter) {
   const std::string text =
       RunCommand({"fit", SampleRecord(), "--normal-load", "50±1%", "--compliance", "4.2e-11"}).out;
   EXPECT_THAT(text, HasSubstr("± 0.003"));

@@ -415,7 +415,7 @@ TEST(Limits, MemoryThatRunsOutIsOneOfThem) {
 #endif
 }
 
-TEST(BadFiles, AreRefusedWithOneLineThatSaysWhatIsWrong) {
+TEST(BadFiles, AreRefusedWithOneLineThatNamesTheFault) {
   const std::vector<BadFile> files = {
       {"empty.csv", "", "the file is empty"},
       {"header.csv", "x [m],F [N]\n", "header.csv:1: the file ends after its header"},

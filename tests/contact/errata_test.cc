@@ -187,7 +187,7 @@ TEST(Errata, SlipAnnulusNeverExceedsTheContactItIsPartOf) {
 
 // No erratum, but easily misread: §2.3 takes the loop for four times the energy that the first
 // loading dissipates. That is right, and is not four times its work.
-TEST(MindlinEnergy, IsFourTimesWhatTheFirstLoadingDissipates) {
+TEST(MindlinEnergy, IsFourTimesDissipationOfFirstLoading) {
   const double amplitude = 0.8 * GrossSlipDisplacement(kPaper);
   const double peak = MindlinVirginForce(kPaper, amplitude);
   // The midpoint rule errs by less than the step squared times the change of slope, (1/20000)²

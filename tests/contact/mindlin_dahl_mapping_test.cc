@@ -159,7 +159,7 @@ TEST(PredictContact, DoesNotDependOnWhichBodyComesFirst) {
   EXPECT_NEAR(one_way.tangential_stiffness / other_way.tangential_stiffness, 1.0, kRounding);
 }
 
-TEST(PredictContact, RefusesWhatIsNotAContact) {
+TEST(PredictContact, RefusesInvalidContact) {
   KnownContact unloaded = KnowBodies();
   unloaded.normal_load = 0.0;
   EXPECT_EQ(MessageOf([&] { PredictContact(unloaded, kFriction); }),
@@ -196,7 +196,7 @@ TEST(IdentifyContact, ReturnsTheContactThatTheLoopWasMadeWith) {
   EXPECT_TRUE(contact.redundant.empty());
 }
 
-TEST(IdentifyContact, TellsAStiffnessThatHertzDoesNotPredict) {
+TEST(IdentifyContact, DetectsStiffnessThatContradictsHertz) {
   const ExactContact truth = Truth();
   constexpr double kRatio = 0.7;  // a rough or compliant contact
   const IdentifiedContact contact =
@@ -292,7 +292,7 @@ TEST(IdentifyContact, ComparesTheStiffnessWithAGivenRadiusAndCompliance) {
   EXPECT_TRUE(contact.redundant.empty());
 }
 
-TEST(IdentifyContact, SaysWhatIsMissingWhenNothingIsKnown) {
+TEST(IdentifyContact, NamesMissingInputsIfNothingIsKnown) {
   const IdentifiedContact contact = IdentifyContact(FittedStiffness(), FittedSlipForce(), {});
   EXPECT_FALSE(contact.friction_coefficient || contact.contact_radius ||
                contact.tangential_compliance || contact.equivalent_radius ||
@@ -322,7 +322,7 @@ TEST(IdentifyContact, NamesTheOneInputThatIsMissing) {
             "Hertz prediction of the stiffness needs the Poisson ratio of body 2");
 }
 
-TEST(IdentifyContact, PrefersAGivenComplianceToTheMaterialsAndSaysSo) {
+TEST(IdentifyContact, PrefersGivenComplianceToMaterialsWithNote) {
   const ExactContact truth = Truth();
   KnownContact known = KnowBodies();
   known.tangential_compliance = 1.25 * truth.tangential_compliance;
@@ -339,7 +339,7 @@ TEST(IdentifyContact, PrefersAGivenComplianceToTheMaterialsAndSaysSo) {
             std::string::npos);
 }
 
-TEST(IdentifyContact, KeepsAGivenRadiusApartFromThatOfHertzAndSaysSo) {
+TEST(IdentifyContact, KeepsGivenRadiusSeparateFromHertzRadiusWithNote) {
   const ExactContact truth = Truth();
   KnownContact known = KnowBodies();
   known.contact_radius = 2.0 * truth.contact_radius;

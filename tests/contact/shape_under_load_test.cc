@@ -137,7 +137,7 @@ TEST(SphereUnderLoad, HasItsEffectiveModulusFromRadiiAndAGivenCompliance) {
   ExpectNear(sphere.contact_radius, truth.contact_radius);
 }
 
-TEST(SphereUnderLoad, SaysWhatIsMissing) {
+TEST(SphereUnderLoad, NamesMissingInputs) {
   const auto missing = [](const KnownContact& known) {
     return IdentifyShape(ContactShape::kSphere, 4e7, known).unidentified;
   };
@@ -262,7 +262,7 @@ TEST(ShapeUnderLoad, PropagatesTheFit) {
               1.5, kRounding / kRelative);
 }
 
-TEST(ShapeUnderLoad, LeavesOpenWhatTheFitDoes) {
+TEST(ShapeUnderLoad, LeavesOpenIntervalsOfTheFitOpen) {
   const KnownContact known = Known(kSteelBall, kGlassSeat);
   const UncertainValue open{4e7, std::numeric_limits<double>::infinity()};
   EXPECT_TRUE(std::isinf(
@@ -303,7 +303,7 @@ TEST(RoughSurfacesUnderLoad, HaveALengthAndNoRadius) {
   EXPECT_FALSE(rough.contact_radius);
 }
 
-TEST(ShapeUnderLoad, RefusesWhatIsNoStiffnessOrHasNoLoad) {
+TEST(ShapeUnderLoad, RefusesInvalidStiffnessAndMissingLoad) {
   const auto message = [](double stiffness, const KnownContact& known) {
     return MessageOf([&] { IdentifyShape(ContactShape::kSphere, stiffness, known); });
   };

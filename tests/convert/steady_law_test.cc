@@ -78,7 +78,7 @@ TEST(SteadyLaw, OfAModelIsTheModelsOwnSteadyLoop) {
   }
 }
 
-TEST(SteadyLaw, OfBoucAndWenIsWhatTheirEquationLeadsTo) {
+TEST(SteadyLaw, OfBoucWenMatchesIntegratedEquation) {
   constexpr double kStated = 1e-8;
   for (const double exponent : {1.0, 1.7, 4.0}) {
     for (const double beta : {0.3, 0.5, 1.0}) {
@@ -191,7 +191,7 @@ TEST(SteadyLaw, IsComparedWhereTheBranchesDifferMost) {
   }
 }
 
-TEST(SteadyLaw, RefusesWhatIsNoLaw) {
+TEST(SteadyLaw, RefusesInvalidLaw) {
   const Branch branch(1.0);
   EXPECT_THROW(branch.Of(BoucWenLaw{-1.0, 1.0, 1.0, 0.5}), InvalidArgument);
   EXPECT_THROW(branch.Of(BoucWenLaw{1.0, 0.0, 1.0, 0.5}), InvalidArgument);

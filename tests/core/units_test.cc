@@ -20,7 +20,7 @@ TEST(Units, ReadTheSymbolsOfTheCommandLine) {
   EXPECT_EQ(TimeUnit("ms")->ToSi(4.0), 4e-3);
 }
 
-TEST(Units, CaseTellsMilliFromMega) {
+TEST(Units, CaseDistinguishesMilliFromMega) {
   EXPECT_EQ(ForceUnit("mN")->ToSi(1.0), 1e-3);
   EXPECT_EQ(ForceUnit("MN")->ToSi(1.0), 1e6);
   EXPECT_FALSE(ForceUnit("n"));
@@ -47,7 +47,7 @@ TEST(Units, MicrometresDivideByAnExactMillion) {
   EXPECT_NE(2.3 * 1e-6, 2.3e-6);
 }
 
-TEST(Units, AnglesAndTorquesAreTold) {
+TEST(Units, AnglesAndTorquesAreRecognised) {
   EXPECT_EQ(AngleUnit("rad")->ToSi(2.0), 2.0);
   EXPECT_EQ(AngleUnit("deg")->ToSi(180.0), std::numbers::pi);
   EXPECT_EQ(AngleUnit("°")->ToSi(180.0), std::numbers::pi);
@@ -65,7 +65,7 @@ TEST(Units, AnglesAndTorquesAreTold) {
   EXPECT_FALSE(TorqueUnit("m"));
 }
 
-TEST(Units, PressuresAreKnownForWhatTheyAreNot) {
+TEST(Units, PressuresAreRecognisedAsNoForce) {
   for (const char* symbol : {"bar", "mbar", "Pa", "hPa", "kPa", "MPa", "GPa", "psi"}) {
     EXPECT_TRUE(IsPressureUnit(symbol)) << symbol;
     EXPECT_FALSE(ForceUnit(symbol)) << symbol;

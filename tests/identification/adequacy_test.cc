@@ -234,7 +234,7 @@ TEST(Adequacy, CausesHaveTheirSizeInTheirUnit) {
   }
 }
 
-TEST(Adequacy, CauseOfSeveralNumbersHasASizeWhereTheFirstIsToldFromNone) {
+TEST(Adequacy, ReportsSizeOfCauseWithSeveralParametersIfFirstIsSignificant) {
   const auto cause_of = [](double linear, double square) {
     Record record = Alone();
     const double half_range = std::ranges::max(record.displacement);

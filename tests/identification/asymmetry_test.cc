@@ -68,7 +68,7 @@ std::string RefusalOf(const std::vector<Record>& records, const FitOptions& opti
   return "accepted";
 }
 
-TEST(Asymmetry, IsRecoveredBesideBothOffsetsFromTheUnloadedContactOn) {
+TEST(Asymmetry, IsRecoveredWithBothOffsetsFromVirginContact) {
   for (const double alpha : {0.2, 1.0 / 3, 0.7}) {
     const BranchLaw law{5e7, alpha, 60.0};
     for (const double lambda : {0.9, 1.3, 2.5}) {
@@ -86,7 +86,7 @@ TEST(Asymmetry, IsRecoveredBesideBothOffsetsFromTheUnloadedContactOn) {
   }
 }
 
-TEST(Asymmetry, IsThatOfTheMotionWhicheverWayItSetsOutAndTheForceIsCounted) {
+TEST(Asymmetry, SignIsIndependentOfForceSignAndInitialDirection) {
   Record record = LoopOf(0.25, 1.3);
   for (double& force : record.force) force = -force;  // a load cell on the other body
   const FitResult opposite = FitOne(record, WithAsymmetry());
@@ -116,7 +116,7 @@ TEST(Asymmetry, OfACycledContactFollowsFromTheKnownZeroOfTheForce) {
   EXPECT_NEAR(FitOne(steady, without).Find("asymmetry")->value, 0.25, kNoiseFree);
 }
 
-TEST(Asymmetry, OfACycledContactIsRefusedBesideAnOffsetThatIsFitted) {
+TEST(Asymmetry, IsRefusedForCycledContactWithFittedForceOffset) {
   // Wherever the record begins, of loops that slip and that do not: a first branch from an extreme
   // looks much like a virgin one.
   Generator generator(12);
@@ -159,7 +159,7 @@ TEST(Asymmetry, OfACycledContactThatNeverSlipsAsAWholeIsNotIdentified) {
   EXPECT_EQ(verdict(1.3), std::pair(Identifiability::kIdentifiable, false));
 }
 
-TEST(Asymmetry, IsToldByEveryRecordWhoseZeroIsKnown) {
+TEST(Asymmetry, IsIdentifiedByEveryRecordWithKnownForceZero) {
   // One slips as a whole, the other keeps a force that nobody knows.
   Generator generator(4);
   const Record slipping = WithForceNoise(From(LoopOf(0.25, 1.5, 3.25), 200), 0.05, generator);
@@ -178,7 +178,7 @@ TEST(Asymmetry, IsToldByEveryRecordWhoseZeroIsKnown) {
   EXPECT_EQ(verdict("force_offset_1", "force_offset_2"), Identifiability::kNotIdentifiable);
 }
 
-TEST(Asymmetry, ThatIsHeldTellsTheOffsetOfALoopThatSlipsOnly) {
+TEST(Asymmetry, FixedValueIdentifiesForceOffsetOnlyIfLoopSlips) {
   Generator generator(5);
   FitOptions options;
   options.fixed["asymmetry"] = 0.25;
@@ -253,7 +253,7 @@ TEST(Asymmetry, IsThatOfAllLoadsOfASeries) {
   EXPECT_NEAR(fit.Find("load_exponent")->value, kExponent, kWithAsymmetry);
 }
 
-TEST(Asymmetry, HasTheDerivativesOfDifferencesBesideAllOtherParameters) {
+TEST(Asymmetry, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
   for (const char* beside : {"", "rig_stiffness", "lag"}) {
     for (const InitialState state : {InitialState::kVirgin, InitialState::kSteady}) {
       const BranchLaw law{5e7, 0.7, 60.0};

@@ -207,7 +207,7 @@ TEST(MindlinTest, FindsTheRigInWhichMindlinsContactWasMeasured) {
   EXPECT_TRUE(IsWarnedOf(fit, "shape_or_rig"));
 }
 
-TEST(MindlinTest, ContactOfASmallerExponentIsToldFromARigWhereTheNoiseAllows) {
+TEST(MindlinTest, DistinguishesSmallerExponentFromRigIfNoiseAllows) {
   // The best loop of α = 1/3 in a rig is some 1e-3 to 2e-3 of Tc off: over 400 samples ΔAICc =
   // 400·(that over the noise)² falls below 4 at a noise of 1 to 2 %. Without a rig α = 1/3 is
   // rejected far beyond, which is why the warning is needed.

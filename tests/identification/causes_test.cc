@@ -153,7 +153,7 @@ TEST(FirstCause, OfASlipForceThatBendsAlongTheStrokeIsTheQuadraticOne) {
   EXPECT_EQ(Find(fit, "slip_position"), nullptr);
 }
 
-TEST(FirstCause, OfASpringBesideTheContactIsThePlateauSlope) {
+TEST(FirstCause, OfASpringInParallelIsThePlateauSlope) {
   const FitResult fit = Fitted(With([](const Place& at) { return 0.1 * at.position; }));
   EXPECT_EQ(FirstOf(fit), "plateau_slope");
   EXPECT_EQ(Find(fit, "slip_position"), nullptr) << "on a plateau nearly the same";

@@ -143,7 +143,7 @@ TEST(Covariate, IsRefusedWhereARecordHasNoSuchColumnOrItNeverChanges) {
   EXPECT_THAT(RefusalOf({shorter}, options), HasSubstr("p"));
 }
 
-TEST(Covariate, IsRefusedBesideTheSameChannelInAnotherUnit) {
+TEST(Covariate, IsRefusedIfSameChannelIsGivenInAnotherUnit) {
   Record record = LoopBesideTwo();
   record.covariates.push_back(
       {.name = "volts", .unit = "V", .values = record.covariates[0].values});
@@ -159,7 +159,7 @@ const Cause& FirstCause(const FitResult& fit) {
   return fit.adequacy.causes.empty() ? none : fit.adequacy.causes.front();
 }
 
-TEST(Covariate, ThatNobodyAskedForIsNamedAsACauseAndNotApplied) {
+TEST(Covariate, NotRequestedIsNamedAsCauseAndNotApplied) {
   Generator generator(11);
   Record record = WithForceNoise(LoopBesideTwo(), 0.01 * kLaw.slip_force, generator);
   // The force itself, in another unit, and a column that says nothing.

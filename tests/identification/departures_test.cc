@@ -489,7 +489,7 @@ double Middle(const Motion& motion) {
   return lowest + (highest - lowest) / 2;
 }
 
-TEST_P(DepartureColumn, IsTheChangeOfTheForceByItsSize) {
+TEST_P(DepartureColumn, IsDerivativeOfForceByTermSize) {
   const Setting& setting = GetParam();
   const Contact contact{&Model(setting.model), setting.law, setting.state, setting.unloaded};
   std::vector<Motion> motions = {Move(kLength, kDuration, setting.uneven)};
@@ -637,7 +637,7 @@ std::size_t PlaceOf(const DepartureColumns& columns, std::string_view code) {
 
 constexpr double kRounding = 1e-9;  // of differences of differences
 
-TEST(Departures, WithoutTimeAreBySample) {
+TEST(Departures, CountsSamplesWithoutTime) {
   Record record = Complete();  // a sample a second
   Stages with(record);
   record.time.clear();
@@ -653,14 +653,14 @@ TEST(Departures, WithoutTimeAreBySample) {
   }
 }
 
-TEST(Departures, WhereTimeStandsStillAreBySample) {
+TEST(Departures, CountsSamplesIfTimeStandsStill) {
   Record record = Complete();
   record.time[31] = record.time[30];
   Stages stages(record);
   EXPECT_FALSE(ColumnsOf(stages).timed);
 }
 
-TEST(Departures, TurningPointsThatWerePutInTakeNoTime) {
+TEST(Departures, InsertedTurningPointsTakeNoTime) {
   // Where they do not overshoot, nothing else changes but next to a turn, which no difference is
   // then taken across.
   Stages stages(Complete());
@@ -692,7 +692,7 @@ TEST(Departures, TurningPointsThatWerePutInTakeNoTime) {
   }
 }
 
-TEST(Departures, OfARecordUnderAnotherLoadAreInProportionToIt) {
+TEST(Departures, ScalesTermsWithLoadOfRecord) {
   // σ in proportion to the load: σ/Tc, and with it every branch over Tc, is the same in both.
   FitOptions options;
   options.normal_loads = {120.0, 80.0};
@@ -716,7 +716,7 @@ TEST(Departures, OfARecordUnderAnotherLoadAreInProportionToIt) {
   }
 }
 
-TEST(Departures, OfADisplacementThatIsHeldAreTheWayThatItMisses) {
+TEST(Departures, UsesMissedTravelForHeldDisplacement) {
   // Read anew with every fourth sample, while the contact follows a straight line to the next.
   constexpr std::size_t kEvery = 4;
   constexpr double kShare = 1e-6;  // of that way: second order is as much less than the first
@@ -759,14 +759,14 @@ TEST(Departures, OfADisplacementThatIsHeldAreTheWayThatItMisses) {
   }
 }
 
-TEST(Departures, OfTheDisplacementsRepeatsAndOfTheAmplitudeNeedThem) {
+TEST(Departures, OffersDisplacementTermsOnlyIfAmplitudesDiffer) {
   Stages stages(Complete());
   const DepartureColumns columns = ColumnsOf(stages);
   EXPECT_EQ(PlaceOf(columns, "held_displacement"), columns.of.size()) << "nothing is repeated";
   EXPECT_EQ(PlaceOf(columns, "amplitude_dependence"), columns.of.size()) << "all strokes are alike";
 }
 
-TEST(Departures, AskForTheMeasuredLoadWhereTheLawDoesNotKnowThatItVaries) {
+TEST(Departures, AsksForMeasuredLoadIfLawAssumesConstantLoad) {
   Record record = Complete();
   for (std::size_t i = 0; i < record.size(); ++i) {
     record.normal_load.push_back(100.0 + 20.0 * std::sin(0.1 * static_cast<double>(i)));
@@ -780,7 +780,7 @@ TEST(Departures, AskForTheMeasuredLoadWhereTheLawDoesNotKnowThatItVaries) {
   EXPECT_LT(PlaceOf(columns, "normal_load"), columns.of.size());
 }
 
-TEST(Departures, AreNotLookedForWhereTheyAreFitted) {
+TEST(Departures, SkipsTermsThatAreFitted) {
   FitOptions options;
   options.terms = {"viscous", "force_drift", "plateau_slope", "rig_stiffness"};
   Stages stages(Complete(), options);
@@ -792,7 +792,7 @@ TEST(Departures, AreNotLookedForWhereTheyAreFitted) {
   EXPECT_LT(PlaceOf(columns, "channel_lag"), columns.of.size());
 }
 
-TEST(Departures, AreGivenUpFromTheLastWhereTheColumnsAreFew) {
+TEST(Departures, DropsLastTermsFirstIfColumnsAreFew) {
   Stages stages(Complete());
   const std::vector<double> theta =
       TrueTheta(stages, {&Model("mindlin-dahl"), kSticking, InitialState::kVirgin, 0.0});

@@ -109,7 +109,7 @@ TEST(FindOpenSlipForce, NamesTheShapeToo) {
   EXPECT_EQ(FindOpenSlipForce(result, {.open_above = true}).size(), 1U);
 }
 
-TEST(FindUndetermined, TellsSingleParametersFromCombinations) {
+TEST(FindUndetermined, DistinguishesSingleParametersFromCombinations) {
   const auto displacement = testing::Cycling(testing::Wave::kSine, 1.0, 2.0, 40);
   const testing::Stages stages(testing::MakeRecord(displacement, displacement));
   LocalUncertainty local;

@@ -77,7 +77,7 @@ TEST(Discrepancy, SlipForceOfALoopThatSlidesContainsTheGapWhateverTheUse) {
   }
 }
 
-TEST(Discrepancy, WhatIsMissedMoreWidensMore) {
+TEST(Discrepancy, InflatesIntervalsMoreForLargerMisfit) {
   const auto width = [](double b) {
     const ParameterEstimate estimate = *FitNoisy(OfPosition(b)).Find("slip_force");
     return *estimate.upper95 - *estimate.lower95;

@@ -109,7 +109,7 @@ TEST(DisplacementErrors, OfAnEncoderAreThoseOfItsRoundingAlone) {
   EXPECT_NEAR(ErrorOfASpring(stages) / expected, 1.0, kDrawn);
 }
 
-TEST(DisplacementErrors, MoveTheTurningPointToWhatIsTheOutermostThen) {
+TEST(DisplacementErrors, MoveTheTurningPointToTheNewExtreme) {
   // A slider that slips stands at its slip force where it turns; on the way back its force is off
   // by the errors of the sample and of the turning point, which is the outermost of what is drawn.
   constexpr double kNoise = 0.05;

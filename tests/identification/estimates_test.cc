@@ -120,7 +120,7 @@ TEST(Estimates, OfWhiteNoiseAreThoseOfTheNormalEquations) {
   }
 }
 
-TEST(Estimates, OfCorrelatedNoiseAreWiderAndItsAbsorbedShareIsGivenBack) {
+TEST(Estimates, HaveWiderErrorsUnderCorrelatedNoiseCorrectedForAbsorbedFraction) {
   constexpr double kRho = 0.9;
   constexpr double kVariance = 4e-4;
   Stages stages(NoisyLoop(), Virgin());
@@ -158,7 +158,7 @@ TEST(Estimates, OfCorrelatedNoiseAreWiderAndItsAbsorbedShareIsGivenBack) {
   }
 }
 
-TEST(Estimates, FollowTheParabolaBesideAParameterThatIsMoved) {
+TEST(Estimates, FollowTheParabolaIfAnotherParameterIsMoved) {
   // Where its cost |r + J·Δθ|² is least, J of what is not moved is at right angles to the residual,
   // J from differences; and the cost has risen by the squared step over the parameter's variance.
   constexpr double kStep = 0.03;

@@ -30,7 +30,7 @@ TEST(Evidence, RoundingErrorsSayNothing) {
   EXPECT_LT(evidence.Aicc(floor, 3), evidence.Aicc(2 * floor, 3));
 }
 
-TEST(Evidence, FStatisticIsTheRiseOverTheVarianceByTheShareThatCounts) {
+TEST(Evidence, FStatisticScalesWithFractionOfEffectiveSamples) {
   // (3 − 2)/0.5·40/100
   EXPECT_NEAR(Evidence(100, 40.0).FStatistic(3.0, 2.0, 0.5), 0.8, kRounding);
   EXPECT_EQ(Evidence(100, 40.0).FStatistic(2.0, 3.0, 0.5), 0.0) << "a fit that is better by chance";

@@ -224,7 +224,7 @@ TEST(FitOptions, BoundThatExcludesTheTruthHoldsAndIsReported) {
   EXPECT_EQ(FitOne(Loop(), options).Find("alpha")->status, ParameterStatus::kFree);
 }
 
-TEST(FitOptions, BoundOfAnOffsetIsMeantInTheFilesSense) {
+TEST(FitOptions, BoundOfAnOffsetHasSignOfFile) {
   // The fit turns an opposite force round: its lower bound is the file's upper one.
   const Record opposite = testing::Scaled(Loop(), 1, -1);
   FitOptions options;
@@ -276,7 +276,7 @@ TEST(FitOptions, TooFewIterationsAreAResultThatHasNotConverged) {
   EXPECT_FALSE(fit.parameters.empty());
 }
 
-TEST(FitOptions, WrongForceSenseIsAFailedFitAndNotACrash) {
+TEST(FitOptions, WrongForceSignFailsWithoutCrash) {
   FitOptions options;
   options.preparation.force_sense = -1;
   const FitResult fit = FitOne(Loop(), options);

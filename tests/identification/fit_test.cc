@@ -34,7 +34,7 @@ using testing::Recovers;
 using testing::Respond;
 using testing::Wave;
 
-TEST(Fit, TellsAVirginRecordFromASteadyOneWithAndWithoutNoise) {
+TEST(Fit, DistinguishesVirginFromSteadyRecordWithAndWithoutNoise) {
   Generator generator(1);
   for (const double noise : {0.0, 0.02}) {
     const Record virgin = testing::WithForceNoise(Loop(), noise * kLaw.slip_force, generator);
@@ -47,7 +47,7 @@ TEST(Fit, TellsAVirginRecordFromASteadyOneWithAndWithoutNoise) {
   }
 }
 
-TEST(Fit, TellsTheStateAlsoWhereTheLawIsWrong) {
+TEST(Fit, DeterminesInitialStateEvenIfLawIsWrong) {
   // With α held off the truth both states leave autocorrelated residuals, i.e. few effective
   // samples, but the virgin one is ten times the nearer.
   FitOptions options;
@@ -154,7 +154,7 @@ TEST(Fit, DriftOverTimeOrSamplesIsRecovered) {
   EXPECT_NEAR(counted.Find("force_drift")->value, 0.01 * kDriftPerSecond, 1e-9);
 }
 
-TEST(Fit, ResidualIsFittedMinusMeasuredInTheFilesSense) {
+TEST(Fit, ResidualIsFittedMinusMeasuredWithSignOfFile) {
   constexpr double kRounding = 1e-13;  // of forces below 100 N
   Generator generator(2);
   for (const double sense : {1.0, -1.0}) {

@@ -102,7 +102,7 @@ TEST(ImposedForceFit, RecoversDahlsLawFromAVirginLoop) {
   EXPECT_TRUE(Recovers(fit, law, testing::kNoiseFree));
 }
 
-TEST(ImposedForceFit, KnowsTheSenseOfAForceOfTheOppositeSign) {
+TEST(ImposedForceFit, DetectsForceOfOppositeSign) {
   const BranchLaw law = LawOf(0.4);
   const FitResult fit = FitOne(Scaled(ForcedLoop(law), 1.0, -1.0), OfDisplacement());
   EXPECT_EQ(fit.force_sense, -1);
@@ -223,7 +223,7 @@ TEST(ImposedForceFit, LateForceIsNamedAsACause) {
   }));
 }
 
-TEST(ImposedForceFit, TellsMasingsLawFromDahlsByTheVirginBranch) {
+TEST(ImposedForceFit, DistinguishesMasingFromDahlByVirginBranch) {
   Generator generator(8);
   const Record loop = WithDisplacementNoise(ForcedLoop(LawOf(1.0 / 3)), 0.003, generator);
   const FitResult fit = FitOne(loop, OfDisplacement());
@@ -261,7 +261,7 @@ TEST(ImposedForceFit, IsNotSuggestedOfADrivenLoopWhoseForceIsAsNoisyOrThatSlips)
   EXPECT_EQ(FitOne(both).FindFinding("noise_in_displacement"), nullptr);
 }
 
-TEST(ImposedForceFit, RefusesWhatIsOfAForceThatIsFitted) {
+TEST(ImposedForceFit, RefusesOptionsOfForceFits) {
   const Record loop = ForcedLoop(LawOf(0.4));
   const auto refusal = [&](auto change) {
     FitOptions options = OfDisplacement();
@@ -297,7 +297,7 @@ TEST(ImposedForceFit, RefusesLoadsThatDifferOrVary) {
   EXPECT_THAT(MessageOf([&] { FitOne(varying, options); }), HasSubstr("normal load"));
 }
 
-TEST(ImposedForceFit, SeveralRecordsShareTheContact) {
+TEST(ImposedForceFit, JointFitSharesTheContact) {
   const BranchLaw law = LawOf(0.4);
   const std::vector<Record> loops = {ForcedLoop(law), Shifted(ForcedLoop(law, 0.7), 1e-7, -5.0)};
   const FitResult fit = Fit(loops, OfDisplacement());

@@ -110,7 +110,7 @@ TEST(StickSlip, IsNoneWhereTheForceRisesAsItDrops) {
   EXPECT_EQ(Find(Fitted(record), "stick_slip"), nullptr);
 }
 
-TEST(HeavyTails, AreFoundWithTheirShareAndTheRobustLoss) {
+TEST(HeavyTails, AreFoundWithTheirFractionAndTheRobustLoss) {
   constexpr std::size_t kReadings = 12;
   const Record record = WithStrayReadings(kReadings, 15 * kNoise, 3);
   const FitResult fit = Fitted(record);
@@ -150,7 +150,7 @@ TEST(HeavyTails, AreNoneWhereTheNoiseIsLargerWhereTheForceIsSteep) {
   EXPECT_EQ(Find(Fitted(record, options), "heavy_tails"), nullptr);
 }
 
-TEST(Irregularities, AreSeldomFoundInPlainNoise) {
+TEST(Irregularities, AreRareInWhiteNoise) {
   // At p < 0.001 each: of 100 loops one by chance is 20 % likely, three of them 0.1 %.
   std::size_t found = 0;
   for (std::uint64_t seed = 10; seed < 110; ++seed) {
@@ -160,7 +160,7 @@ TEST(Irregularities, AreSeldomFoundInPlainNoise) {
   EXPECT_LE(found, 2U);
 }
 
-TEST(Irregularities, AreNotLookedForInRoundingErrors) {
+TEST(Irregularities, IgnoreRoundingErrors) {
   const History displacement = Cycling(Wave::kSine, kReach, 2.0, kCycle);
   const Record record =
       MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement));

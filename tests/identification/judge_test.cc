@@ -87,7 +87,7 @@ TEST(Judge, FindingWithoutParametersChangesNone) {
             Identifiability::kIdentifiable);
 }
 
-TEST(Judge, WhatIsHeldIsIdentifiableWhateverIsFound) {
+TEST(Judge, FixedParameterIsIdentifiableWhateverTheFindings) {
   ParameterEstimate held = Known("alpha");
   held.status = ParameterStatus::kFixed;
   held.standard_error = held.lower95 = held.upper95 = std::nullopt;
@@ -167,7 +167,7 @@ TEST(DropNeedless, KeepsAnEnergyThatContradictsAnAnswer) {
   EXPECT_THAT(KeptOf(estimates, {shape, energy}), ElementsAre("no_model_fits"));
 }
 
-TEST(WithdrawInadequate, NeverStandsBesideAMisfitOfNothing) {
+TEST(WithdrawInadequate, IsNeverReportedWithZeroMisfit) {
   // No omitted term explains it, and what comes back in every stroke is 0.8 of the variance.
   FitResult result;
   result.rms = 3.0;

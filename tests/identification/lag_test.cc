@@ -303,7 +303,7 @@ TEST(Lag, IsRefusedWhereItCannotBeCounted) {
   EXPECT_THAT(RefusalOf({timed}, longer), HasSubstr("nothing is left of record 1"));
 }
 
-TEST(Lag, HasTheDerivativesOfDifferencesBesideAllOtherParameters) {
+TEST(Lag, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
   const BranchLaw law = LawOf(0.7);
   for (const bool has_rig : {false, true}) {
     FitOptions options = WithLag();

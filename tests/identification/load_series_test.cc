@@ -79,7 +79,7 @@ TEST_P(LoadSeries, RecoversContactAndExponent) {
 // A flat punch, Hertz, a cone, a rough contact.
 INSTANTIATE_TEST_SUITE_P(OverTheTheories, LoadSeries, ::testing::Values(0.0, 1.0 / 3, 0.5, 1.0));
 
-TEST(LoadSeriesFit, TellsTheRigFromTheContact) {
+TEST(LoadSeriesFit, SeparatesRigFromContact) {
   // 1/σ_seen = 1/k + 1/σ(N): with α and p free too. The condition is some hundred times that of a
   // fit without a rig.
   constexpr double kTolerance = 100 * testing::kNoiseFree;

@@ -125,7 +125,7 @@ std::vector<Record> RecordsOf(const char* model) {
           Of(model, WithInnerLoops())};
 }
 
-TEST(Memory, IsMasingsOfAMasingContactThatCanBeTold) {
+TEST(Memory, IsMasingsForIdentifiableMasingContact) {
   for (const Record& record : RecordsOf("mindlin-dahl")) {
     const MemoryTest memory = MemoryOfNoisy(record);
     EXPECT_EQ(memory.verdict, MemoryVerdict::kMasing);
@@ -134,7 +134,7 @@ TEST(Memory, IsMasingsOfAMasingContactThatCanBeTold) {
   }
 }
 
-TEST(Memory, IsDahlsOfAContactOfDahlsLawWhicheverLawIsFitted) {
+TEST(Memory, IsDahlsForDahlContactWhicheverLawIsFitted) {
   for (const char* fitted : {"mindlin-dahl", "dahl"}) {
     FitOptions options;
     options.model = &Model(fitted);
@@ -147,7 +147,7 @@ TEST(Memory, IsDahlsOfAContactOfDahlsLawWhicheverLawIsFitted) {
   }
 }
 
-TEST(Memory, IsToldWithoutNoiseToo) {
+TEST(Memory, IsDeterminedWithoutNoiseToo) {
   for (const auto& [model, verdict] : {std::pair{"mindlin-dahl", MemoryVerdict::kMasing},
                                        std::pair{"dahl", MemoryVerdict::kDahl}}) {
     for (const Record& record : RecordsOf(model)) {
@@ -185,7 +185,7 @@ TEST(Memory, IsNeitherWhereTheStiffnessDiffersByDirection) {
   EXPECT_TRUE(Rejects(memory, "directions"));
 }
 
-TEST(Memory, IsNeitherWhereASpringThatHardensIsBesideTheContact) {
+TEST(Memory, IsNeitherWithHardeningSpringInParallel) {
   Record record = Of("mindlin-dahl", OneAmplitude());
   for (std::size_t i = 0; i < record.size(); ++i) {
     record.force[i] += 20 * kNoise * std::pow(record.displacement[i] / kWide, 3);
@@ -195,7 +195,7 @@ TEST(Memory, IsNeitherWhereASpringThatHardensIsBesideTheContact) {
   EXPECT_TRUE(Rejects(memory, "virgin_branch"));
 }
 
-TEST(Memory, HasTheWayOnAfterInnerLoopsWhereThereAreSome) {
+TEST(Memory, ReportsBehaviourAfterInnerLoopsIfThereAreAny) {
   EXPECT_FALSE(Find(MemoryOfNoisy(Of("mindlin-dahl", OneAmplitude())), "return_point"));
   EXPECT_TRUE(Find(MemoryOfNoisy(Of("mindlin-dahl", WithInnerLoops())), "return_point"));
   EXPECT_TRUE(Rejects(MemoryOfNoisy(Of("dahl", WithInnerLoops())), "return_point"));

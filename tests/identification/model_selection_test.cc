@@ -143,7 +143,7 @@ TEST(ModelSelection, DahlsLoopIsDahls) {
   EXPECT_THAT(selection.verdict, HasSubstr("dahl is the best"));
 }
 
-TEST(ModelSelection, ARigThatGivesWayIsFoundWithItsStiffness) {
+TEST(ModelSelection, FindsCompliantRigWithItsStiffness) {
   const SeriesSpring rig{.stiffness = 5e7};
   const ModelSelection selection = Select({Measure({.rig = rig, .reach = 3e-6}, 4)});
   EXPECT_EQ(Chosen(selection), "mindlin+rig");
@@ -223,7 +223,7 @@ TEST(ModelSelection, OutliersOfARobustFitAreNotScored) {
   EXPECT_LT(selection.scores[selection.chosen].rms, 2 * kQuiet * kMindlin.slip_force);
 }
 
-TEST(ModelSelection, WhatIsKnownLimitsTheCandidates) {
+TEST(ModelSelection, KnownPropertiesLimitTheCandidates) {
   const Record record = Measure({.cycles = 1.5}, 12);
   FitOptions options;
   options.fixed["rig_stiffness"] = 1e9;

@@ -163,7 +163,7 @@ TEST(Plan, ExpectedErrorsOfALoadSeriesAreTheScatterOfItsFits) {
   EXPECT_NEAR(fit.Find("load_exponent")->value, 0.5, 1e-12);
 }
 
-TEST(Plan, ALoadSeriesTellsTheRigFromTheContact) {
+TEST(Plan, LoadSeriesSeparatesRigFromContact) {
   Expectation expected = Quiet();
   expected.rig.stiffness = 8e7;
   FitOptions with_rig;
@@ -219,7 +219,7 @@ TEST(Plan, ATermThatIsFittedMakesTheOthersLessCertain) {
   EXPECT_GT(ErrorOf(fitted, "alpha"), ErrorOf(known, "alpha"));
 }
 
-TEST(Plan, OnlyAVirginLoopTellsMasingsRulesFromDahls) {
+TEST(Plan, OnlyVirginLoopDistinguishesMasingFromDahl) {
   EXPECT_EQ(ExpectFit(Quiet(), Loop(0.8, InitialState::kSteady)).law_evidence, 0.0);
   const double evidence = ExpectFit(Quiet(), Loop(0.8)).law_evidence;
   EXPECT_GT(evidence, 100);
@@ -229,7 +229,7 @@ TEST(Plan, OnlyAVirginLoopTellsMasingsRulesFromDahls) {
   EXPECT_NEAR(ExpectFit(noisy, Loop(0.8)).law_evidence / evidence, 0.01, 0.01 * kRounding);
 }
 
-TEST(Plan, TheLeastAmplitudeReachesWhatIsWantedAndASmallerOneDoesNot) {
+TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
   const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
                                   {"slip_force", {.value = 0.01, .is_relative = true}}};
   const auto reached = LeastAmplitude(Quiet(), Loop(1.0), wanted, 0.1 * kSlip, 10 * kSlip);

@@ -205,7 +205,7 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
   }
 }
 
-TEST(Profile, OfAlphaIsInItsIntervalWhereAHandfulOfSamplesTellsIt) {
+TEST(Profile, OfAlphaStaysInItsIntervalIfFewSamplesIdentifyIt) {
   // Twenty samples a cycle at twenty times gross slip: one a stroke lies on the bend of its branch,
   // and any α below 0.8 goes through it with a σ of its own.
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {

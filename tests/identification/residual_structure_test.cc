@@ -66,7 +66,7 @@ TEST(ResidualStructure, NoiseRepeatsNothing) {
   EXPECT_LE(found, kMost);
 }
 
-TEST(ResidualStructure, ShareIsThatOfTheVarianceThatRepeats) {
+TEST(ResidualStructure, FractionIsVarianceThatRepeats) {
   // Triangles, so that every part of a stroke has as many samples. Bins of a twentieth flatten
   // sin 3x by (3·0.1)²/12 = 0.8 % of its variance, and the variance of noise over 2000 samples is
   // known to √(2/2000) = 3 %.
@@ -165,7 +165,7 @@ TEST(ResidualStructure, StandardErrorOfABinIsThatOfItsMean) {
   EXPECT_NEAR(std::sqrt(squares * 505), 1.0, 0.08);
 }
 
-TEST(ResidualStructure, SingleStrokeOrNoneTellsNothing) {
+TEST(ResidualStructure, SingleStrokeOrNoneGivesNoResult) {
   const auto residual = [](const History& displacement) {
     return ResidualsOf(displacement, [](double x, int) { return x * x + 0.1; });
   };

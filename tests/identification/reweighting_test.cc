@@ -68,7 +68,7 @@ TEST(Reweighting, OfHubersLossHasHubersVariance) {
   EXPECT_NEAR(static_cast<double>(settled.outliers), static_cast<double>(outliers), 1.0);
 }
 
-TEST(Reweighting, ForceNoiseBesideThatOfTheDisplacementIsOfTheDegreesOfFreedom) {
+TEST(Reweighting, ForceNoiseWithDisplacementNoiseCountsDegreesOfFreedom) {
   // A displacement that is all but exact leaves the plain estimate: SS/(n − p).
   Generator generator(3);
   const testing::History displacement =

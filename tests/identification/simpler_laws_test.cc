@@ -40,7 +40,7 @@ const LawScore& Find(const SimplerLaws& laws, std::string_view model,
   });
 }
 
-TEST(SimplerLaws, AreToldApartWhereTheNoiseIsSmall) {
+TEST(SimplerLaws, AreDistinguishedIfNoiseIsSmall) {
   const SimplerLaws laws = CompareSimplerLaws(Loop("mindlin", kMindlin, 1.2, 0.1));
   for (const char* model : {"spring", "coulomb", "jenkins"}) {
     EXPECT_TRUE(Find(laws, model).told_apart) << model;
@@ -77,7 +77,7 @@ TEST(SimplerLaws, AreNotWhereTheNoiseHidesThem) {
   EXPECT_LE(told_apart, 11);  // beyond it P < 1e-3 of Binomial(20, 1/4)
 }
 
-TEST(SimplerLaws, ASpringIsNotToldFromAContactFarFromSlip) {
+TEST(SimplerLaws, SpringIsConfoundedWithContactFarFromSlip) {
   const SimplerLaws laws = CompareSimplerLaws(Loop("mindlin", kMindlin, 0.01, 0.02));
   const LawScore& spring = Find(laws, "spring");
   EXPECT_FALSE(spring.told_apart);
@@ -134,7 +134,7 @@ TEST(SimplerLaws, RarelyRejectTheLawThatIsTrue) {
   EXPECT_LE(told_apart, 4);  // beyond it P < 1e-3 of Binomial(40, 1/70)
 }
 
-TEST(SimplerLaws, DoNotDependOnTheSenseOfTheForce) {
+TEST(SimplerLaws, AreIndependentOfForceSign) {
   loop::Record record = Loop("mindlin", kMindlin, 1.2, 1.0);
   const SimplerLaws same = CompareSimplerLaws(record);
   for (double& force : record.force) force = -force;

@@ -159,7 +159,7 @@ TEST(Terms, AreFactorsOfColumnsOfTheRecord) {
   EXPECT_EQ(FindTerm("sigma")->column, Regressor::kNone);
 }
 
-TEST(Parameters, LieAtABoundWithinABillionthOfTheWay) {
+TEST(Parameters, LieAtABoundWithinABillionthOfItsRange) {
   EXPECT_EQ(SideOf(0.0, 0.0, 2.0), BoundSide::kLower);
   EXPECT_EQ(SideOf(1e-9, 0.0, 2.0), BoundSide::kLower);
   EXPECT_EQ(SideOf(3e-9, 0.0, 2.0), BoundSide::kInside);

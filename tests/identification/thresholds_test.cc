@@ -214,7 +214,7 @@ double PlacesOfMovedCycles(double moved) {
   return found ? *found->Number("places") : 0.0;
 }
 
-TEST(FindFewPlaces, TakesForOnePlaceWhatIsWithinHalfAPercentOfTheRange) {
+TEST(FindFewPlaces, MergesPlacesWithinHalfAPercentOfTheRange) {
   const double places = PlacesOfMovedCycles(0.0);
   ASSERT_GT(places, 0.0);
   EXPECT_EQ(PlacesOfMovedCycles(2 * 0.0035), places);

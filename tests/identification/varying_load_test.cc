@@ -163,7 +163,7 @@ TEST(VaryingLoad, IsNoneOfNoisyReadings) {
   EXPECT_TRUE(testing::Recovers(fit, LawOf({}), testing::kNoiseFree));
 }
 
-TEST(VaryingLoad, IsSaidWhereTheLawHasNoAccountOfIt) {
+TEST(VaryingLoad, IsReportedIfTheLawDoesNotModelIt) {
   const Record record = RecordOf({.swing = 0.2});
   FitOptions options;
   options.model = models::FindFrictionModel("dahl");
@@ -186,7 +186,7 @@ TEST(VaryingLoad, DoesNotTellASmallerAlphaFromARig) {
   EXPECT_EQ(fit.Find("slip_force")->identifiability, Identifiability::kIdentifiable);
 }
 
-TEST(VaryingLoad, KeepsAlphaBelowOneAndSaysSo) {
+TEST(VaryingLoad, KeepsAlphaBelowOneWithNote) {
   // A loop of Dahl's exponential: the law of a varying load comes no nearer than its bound.
   const testing::History displacement = testing::Cycling(testing::Wave::kSine, 3e-6, 3.0, kSamples);
   Record record = testing::MakeRecord(

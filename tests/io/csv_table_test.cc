@@ -252,7 +252,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // --- The rest ------------------------------------------------------------------------------------
 
-TEST(CsvTable, TakesWhatOnlyResemblesAnErrorValueForARemark) {
+TEST(CsvTable, ReadsTextThatResemblesAnErrorValueAsComment) {
   EXPECT_EQ(ParseCsvTable("#N/Available,3\n#NA\n1,2\n# N/A\n3,4\n", "loop.csv").rows(), 2u);
 }
 
@@ -316,14 +316,14 @@ TEST(CsvTable, HasNoHeaderLineWithoutHeader) {
   EXPECT_EQ(ParseCsvTable("1,2\n", "loop.csv").header_line(), 0u);
 }
 
-TEST(CsvTable, DoesNotMindTextInColumnThatNobodyReads) {
+TEST(CsvTable, AcceptsTextInUnusedColumn) {
   const CsvTable table = ParseCsvTable("x,state,F\n1,ok,2\n3,,4\n", "loop.csv");
   EXPECT_EQ(Column(table, 2), (Numbers{2, 4}));
   EXPECT_FALSE(table.HasNumbers(1));
   EXPECT_TRUE(table.HasNumbers(2));
 }
 
-TEST(CsvTable, DoesNotMindMissingCellInColumnThatNobodyReads) {
+TEST(CsvTable, AcceptsMissingCellInUnusedColumn) {
   const CsvTable table = ParseCsvTable("x,F,c\n1,2,3\n3,4\n5,6,7\n", "loop.csv");
   EXPECT_EQ(Column(table, 1), (Numbers{2, 4, 6}));
 }

@@ -25,7 +25,7 @@ TEST(Sha256, IsThatOfTheStandard) {
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST(Sha256, IsEmptyOfWhatIsNoFile) {
+TEST(Sha256, IsEmptyIfNotARegularFile) {
   const TemporaryDirectory directory;
   EXPECT_EQ(Sha256OfFile(directory.path()), std::nullopt);
   EXPECT_EQ(Sha256OfFile(directory.path() / "absent"), std::nullopt);

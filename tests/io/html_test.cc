@@ -40,12 +40,12 @@ std::size_t Count(const std::string& text, const std::string& part) {
   return count;
 }
 
-TEST(HtmlText, EscapesWhatIsMarkup) {
+TEST(HtmlText, EscapesMarkup) {
   EXPECT_EQ(HtmlText("<script>alert('a & \"b\"')</script>"),
             "&lt;script&gt;alert(&#39;a &amp; &quot;b&quot;&#39;)&lt;/script&gt;");
 }
 
-TEST(HtmlText, KeepsUtf8AndReplacesWhatIsNot) {
+TEST(HtmlText, KeepsUtf8AndReplacesInvalidBytes) {
   EXPECT_EQ(HtmlText("σ = 4·10⁷ 𝛼"), "σ = 4·10⁷ 𝛼");
   EXPECT_EQ(HtmlText("a\xFF\x62"), "a\uFFFDb");
   EXPECT_EQ(HtmlText("a\xC3"), "a\uFFFD");

@@ -491,7 +491,7 @@ TEST(DisplacementPath, PassesOverATimeToADisplacementOfARecognisedName) {
             (Numbers{2e-3, 4e-3}));
 }
 
-TEST(LoadedPath, HasTheLoadBesideTheDisplacementInTheirUnits) {
+TEST(LoadedPath, HasLoadAndDisplacementInTheirUnits) {
   const TemporaryDirectory directory;
   const LoadedPath path =
       ReadLoadedPath(directory.Write("loop.csv", "x [um],normal [kN]\n1,2\n3,4\n"), {},

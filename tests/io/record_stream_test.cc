@@ -119,7 +119,7 @@ TEST_F(RecordStreamTest, ReadsALongFileInPieces) {
   EXPECT_LT(samples.size(), kManyRows / 2);
 }
 
-TEST_F(RecordStreamTest, SaysWhatTheWholeReaderSaysOfABrokenRow) {
+TEST_F(RecordStreamTest, ReportsBrokenRowLikeTheWholeReader) {
   for (const char* row : {"1,2x", "1", "1,", "1,2,3", "1,nan", "1,1e999", "1,0x10"}) {
     const std::filesystem::path path =
         Write(fmt::format("x,F\n0,.5\n1.5,3e-3\n{}\n-2,1E5\n3,4\n", row));

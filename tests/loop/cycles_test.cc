@@ -229,14 +229,14 @@ TEST(MeasureLoop, RejectsAnEmptyOrInconsistentRecord) {
   EXPECT_THROW(MeasureLoop(Record{{1, 2}, {1, std::nan("")}, {}, {}}, {}), InvalidArgument);
 }
 
-TEST(ForceSense, IsThatOfTheEnergy) {
+TEST(ForceSense, FollowsTheSignOfTheEnergy) {
   Record record = MakeRecord({});
   EXPECT_EQ(ForceSense(record, Reversals(record)), 1);
   for (double& force : record.force) force = -force;
   EXPECT_EQ(ForceSense(record, Reversals(record)), -1);
 }
 
-TEST(ForceSense, IsNotMisledByOffsets) {
+TEST(ForceSense, IsIndependentOfOffsets) {
   for (const double sign : {1.0, -1.0}) {
     Record record = MakeRecord({.centre = -0.11, .offset = 500.0});
     for (double& force : record.force) force *= sign;
@@ -244,7 +244,7 @@ TEST(ForceSense, IsNotMisledByOffsets) {
   }
 }
 
-TEST(ForceSense, OfAnElasticLineIsThatOfItsSlope) {
+TEST(ForceSense, OfElasticLineFollowsItsSlope) {
   // Its energy is rounding alone: either sign.
   for (const double slope : {4.8e8, -4.8e8}) {
     for (const double offset : {0.0, 1e-3, 17.0}) {
@@ -260,7 +260,7 @@ TEST(ForceSense, OfAnElasticLineIsThatOfItsSlope) {
 // The energy of a contact that sticks is that of the noise alone, 1.1 σ/(T* √n) of the rectangle
 // round the loop for n samples a cycle: 1 to 4 % here, with either sign, where the slope has
 // √(n/2) T*/σ = 17 standard errors or more.
-TEST(ForceSense, OfAContactThatSticksIsThatOfItsSlope) {
+TEST(ForceSense, OfStickingContactFollowsItsSlope) {
   constexpr std::size_t kSamples = 100;
   Generator generator(7);
   for (int k = 0; k < 300; ++k) {
@@ -276,7 +276,7 @@ TEST(ForceSense, OfAContactThatSticksIsThatOfItsSlope) {
   }
 }
 
-TEST(ForceSense, OfAGrossSlipLoopIsItsEnergysEvenAgainstAFallingPlateau) {
+TEST(ForceSense, OfGrossSlipLoopFollowsEnergyDespiteFallingPlateau) {
   // A rectangle with a plateau that falls: the covariance is negative, the contact dissipates.
   Record record;
   for (int cycle = 0; cycle < 3; ++cycle) {
@@ -292,17 +292,17 @@ TEST(ForceSense, OfAGrossSlipLoopIsItsEnergysEvenAgainstAFallingPlateau) {
   EXPECT_EQ(ForceSense(record, Reversals(record)), 1);
 }
 
-TEST(ForceSense, WithoutAClosedCycleIsThatOfTheCovariance) {
+TEST(ForceSense, WithoutClosedCycleFollowsTheCovariance) {
   EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {5, 6, 8}, {}, {}}, {}), 1);
   EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {-5, -6, -8}, {}, {}}, {}), -1);
 }
 
-TEST(ForceSense, OfAConstantForceIsUnknown) {
+TEST(ForceSense, OfConstantForceIsUnknown) {
   EXPECT_EQ(ForceSense(Record{{0, 1, 2, 1, 0}, {3, 3, 3, 3, 3}, {}, {}}, {}), 0);
   EXPECT_EQ(ForceSense(Record{}, {}), 0);
 }
 
-TEST(ForceSense, SurvivesNoiseOnManyRecords) {
+TEST(ForceSense, IsRightOnManyNoisyRecords) {
   Generator generator(12);
   for (int i = 0; i < 200; ++i) {
     const double sign = i % 2 == 0 ? 1.0 : -1.0;

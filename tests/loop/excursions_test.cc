@@ -34,7 +34,7 @@ TEST(CountReversals, IsTheNumberThatIsFoundUnderEveryGate) {
   }
 }
 
-TEST(FindExcursions, AreClosedLoopsAndTheWayFromEndToEnd) {
+TEST(FindExcursions, AreClosedLoopsAndTheTravelFromEndToEnd) {
   // 0 → 5 → 4 → 6 → −6 → −5: the loop 5 → 4, then three strokes.
   const auto excursions = Excursions({0, 5, 4, 6, -6, -5});
   ASSERT_EQ(excursions.size(), 4U);

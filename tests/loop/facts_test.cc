@@ -70,7 +70,7 @@ LoopFacts FactsOf(const Record& record, int force_sense = 1) {
   return MeasureFacts(record, FindReversals(record.displacement, 0.0), force_sense);
 }
 
-TEST(SlidingFraction, IsWhatIsLeftOfTheStrokeFromNineTenthsOfTheHalfGapOn) {
+TEST(SlidingFraction, IsFractionOfStrokeBeyondNineTenthsOfHalfGap) {
   const Parallelogram loop;
   const LoopFacts facts = FactsOf(MakeRecord(loop));
   // From −Tc to 0.9 Tc along σ, of a stroke of 2 m; the force passes there within a sample.
@@ -144,7 +144,7 @@ TEST(MeasureFacts, OfAParallelogramAreThoseOfItsStickAndSlip) {
   EXPECT_NEAR(*facts.energy_friction_coefficient, 2.0 / 5.0, kRounding);
 }
 
-TEST(MeasureFacts, AreInTheDisplacementsSense) {
+TEST(MeasureFacts, HaveTheSignOfTheDisplacement) {
   const Parallelogram loop{.offset = 7.0};
   Record opposite = MakeRecord(loop);
   for (double& force : opposite.force) force = -force;
@@ -206,7 +206,7 @@ TEST(MeasureFacts, AsymmetryIsHowMuchTheStrokesDifferTurnedAboutTheCentre) {
   EXPECT_NEAR(*facts.asymmetry * facts.peak_force, kCurvature * std::sqrt(variance), kChord);
 }
 
-TEST(MeasureFacts, ASlopeOfBothStrokesIsNoAsymmetryAndTellsInThePlateau) {
+TEST(MeasureFacts, SlopeOfBothStrokesIsPlateauSlopeAndNoAsymmetry) {
   constexpr double kSlope = -0.6;  // [N/m]
   Record record = MakeRecord({});
   for (std::size_t i = 0; i < record.size(); ++i) {
@@ -277,14 +277,14 @@ TEST(MeasureFacts, OfFewSamplesACycleComeFromLinesBetweenThem) {
   EXPECT_NEAR(*facts.plateau_slope, 0.0, kRounding);
 }
 
-TEST(MeasureFacts, ARecordThatClosesNoCycleSaysSo) {
+TEST(MeasureFacts, ReportsThatNoCycleCloses) {
   const LoopFacts facts = FactsOf(Record{{0, 1, 2, 3}, {0, 1, 2, 2}, {}, {}});
   EXPECT_FALSE(facts.closed);
   EXPECT_TRUE(facts.cycles.empty());
   EXPECT_FALSE(facts.half_gap);
 }
 
-TEST(MeasureFacts, RejectsWhatIsNoRecordAndNoSense) {
+TEST(MeasureFacts, RejectsInvalidRecordAndSign) {
   EXPECT_THROW(FactsOf(Record{}), InvalidArgument);
   EXPECT_THROW(FactsOf(Record{{1, 2}, {1}, {}, {}}), InvalidArgument);
   EXPECT_THROW(FactsOf(MakeRecord({}), 0), InvalidArgument);

@@ -287,7 +287,7 @@ TEST(FindGlitches, FindsAChannelThatIsHeldOnItsWay) {
   }
 }
 
-TEST(FindGlitches, FindsAChannelThatReadsOneValueAwayFromItsCourse) {
+TEST(FindGlitches, FindsAChannelThatReadsOneValueOffItsTimeHistory) {
   // A plug that is loose: 0, or what an amplifier reads without a sensor.
   for (History Record::*channel : {&Record::displacement, &Record::force}) {
     for (const double reading : {0.0, -7.5}) {
@@ -342,14 +342,14 @@ TEST(FindGlitches, NamesTheFirstFew) {
   EXPECT_EQ(count.examples, (std::array<std::size_t, 5>{100, 160, 220, 280, 340}));
 }
 
-TEST(FindGlitches, RejectsWhatIsNoRecord) {
+TEST(FindGlitches, RejectsInvalidRecord) {
   EXPECT_THROW(FindGlitches(Record{{1, 2}, {1}, {}, {}}), InvalidArgument);
   EXPECT_THROW(FindGlitches(Record{{1, std::nan("")}, {1, 2}, {}, {}}), InvalidArgument);
   EXPECT_TRUE(FindGlitches(Record{}).empty());
   EXPECT_TRUE(FindGlitches(Record{{0, 0}, {0, 0}, {}, {}}).empty());
 }
 
-TEST(FindAndMend, PutsALineInTheChannelsThatHaveGlitches) {
+TEST(FindAndMend, InterpolatesLinearlyInChannelsWithGlitches) {
   Record record = Noisy();
   record.force[300] = 50;
   record.force[301] = 51;

@@ -125,7 +125,7 @@ TEST(Preparation, CyclesAndSamplesThatARecordHasNotAreRefusedWithWhatItHas) {
             "larger");
 }
 
-TEST(Preparation, SenseIsThatOfTheEnergyUnlessItIsGiven) {
+TEST(Preparation, ForceSignFollowsEnergyUnlessGiven) {
   Record opposite = Made();
   for (double& force : opposite.force) force = -force;
   EXPECT_EQ(PrepareAll({Made()}, {}).force_sense, 1);

@@ -66,7 +66,7 @@ TEST(FindReversals, TakesTheFirstSampleOfADwell) {
   EXPECT_EQ(FindReversals(History{0, 0, 2, 2, 2, 1, 1, 4}, 0.0), (Indices{2, 5}));
 }
 
-TEST(FindReversals, ADwellOnTheWayIsNoReversal) {
+TEST(FindReversals, ADwellWithinAStrokeIsNoReversal) {
   EXPECT_EQ(FindReversals(History{0, 1, 1, 2, 1, 1, 0}, 0.0), (Indices{3}));
 }
 

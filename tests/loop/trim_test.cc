@@ -246,7 +246,7 @@ TEST(Trim, FindsARunningInUnderNoise) {
   EXPECT_GE(found, kRecords * 95 / 100);
 }
 
-TEST(Trim, DoesNotDependOnTheSenseOfTheForceNorOnWhatCounts) {
+TEST(Trim, IsIndependentOfForceSignAndWindow) {
   Record record = Cycled(30, Always, RunningIn(0.7, 2.0));
   const Trim trim = FindTrim(record);
   for (double& force : record.force) force = 5 - force;

@@ -280,7 +280,7 @@ TEST(Method, RefusesAModelThatItsElementsCannotRemember) {
   }
 }
 
-TEST(Method, RefusesWhatIsOutOfRange) {
+TEST(Method, RefusesParametersOutOfRange) {
   const FrictionModel& model = *FindFrictionModel("mindlin");
   for (const Method& method : Methods()) {
     const BranchLaw law{1, 1.0 / 3, 1};

@@ -166,7 +166,7 @@ TEST(Asymmetry, TurnsThroughTheOriginWithTheMotion) {
   }
 }
 
-TEST(Asymmetry, StaysWithinTheSlipForcesOfBothSenses) {
+TEST(Asymmetry, StaysWithinSlipForcesOfBothDirections) {
   const BranchLaw law = LawOf(1.0 / 3);
   constexpr double kAsymmetry = 0.7;
   const std::vector<double> walk = RandomWalk(3 * GrossSlipDisplacement(law), 60, 4);

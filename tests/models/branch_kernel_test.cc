@@ -103,7 +103,7 @@ TEST(BranchKernel, FollowsTheBranchLawToFourEpsilon) {
   }
 }
 
-TEST(BranchKernel, ForceAloneIsTheForceBesideTheGradient) {
+TEST(BranchKernel, ForceAloneEqualsForceComputedWithGradient) {
   for (const BranchKernel* kernel : BranchKernels()) {
     for (const double alpha : Exponents()) {
       const std::vector<double> displacement = Displacements(alpha);

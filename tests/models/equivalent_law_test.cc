@@ -176,7 +176,7 @@ TEST(EquivalentLaw, HoldsFromAtomsToFaults) {
   }
 }
 
-TEST(EquivalentLaw, RefusesWhatIsNoLoopOrNoLaw) {
+TEST(EquivalentLaw, RefusesInvalidAmplitudeOrLaw) {
   const BranchLaw law{1.0, 0.5, 1.0};
   for (const auto convert : {DahlEquivalent, MasingEquivalent}) {
     EXPECT_THROW(convert({-1.0, 0.5, 1.0}, 1.0), InvalidArgument);

@@ -143,7 +143,7 @@ TEST(Excitation, RandomIsThatOfItsSeedOnEveryPlatform) {
   }
 }
 
-TEST(Excitation, NestedExtremesCloseEveryLoopOnTheWayBack) {
+TEST(Excitation, NestedExtremesCloseEveryLoopOnReturn) {
   for (double cycles = 0.25; cycles < 21; cycles += 0.25) {
     const Excitation nested = MakeExcitation({.waveform = Waveform::kNested,
                                               .amplitude = 5.0,

@@ -160,7 +160,7 @@ TEST(ImposedForce, IsExactOnAnyHistoryToTheRoundingOfItsBranches) {
   }
 }
 
-TEST(ImposedForce, IsExactForDahlsOwnLawToWhatTheForcesAreKnownTo) {
+TEST(ImposedForce, IsExactForDahlsLawWithinRoundingOfForces) {
   Generator generator(2212);
   for (const double exponent : kExponents) {
     for (int i = 0; i < 25; ++i) {

@@ -30,7 +30,7 @@ TEST(LimitLaw, CoulombOpposesTheMotionAndHoldsAtRest) {
             (std::vector<double>{0, 0, 3, 3, -3, -3, -3, 3}));
 }
 
-TEST(LimitLaw, TheWayFromTheUnloadedContactToTheFirstSampleIsAMotion) {
+TEST(LimitLaw, TravelFromReferencePositionToFirstSampleIsAMotion) {
   EXPECT_EQ(Respond("coulomb", {-1, -1}), (std::vector<double>{-3, -3}));
 }
 

@@ -170,7 +170,7 @@ TEST(LoadedContactState, RefusesAStepByItsValueAndStaysWhereItWas) {
   EXPECT_THAT(refusal(1.0, 1e6), HasSubstr("normal load [N] = 1000000 is invalid: must keep the"));
 }
 
-TEST(LoadedContactState, RefusesWhatIsNoContact) {
+TEST(LoadedContactState, RefusesInvalidContact) {
   LoadDependentLaw law = UnitLaw(0.5);
   EXPECT_THROW(LoadedContactState(law, {.normal_load = -1.0}), InvalidArgument);
   EXPECT_THROW(LoadedContactState(law, {.unloaded_displacement = kNan}), InvalidArgument);

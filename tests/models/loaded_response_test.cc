@@ -234,7 +234,7 @@ TEST(LoadedHistory, GoesOneWayFromReversalToReversal) {
   }
 }
 
-TEST(NormalizedLoadedResponse, RefusesWhatTheLawHasNoAccountOf) {
+TEST(NormalizedLoadedResponse, RefusesWhatTheLawDoesNotModel) {
   const LoadedHistory history = HistoryOf(PathOf({}));
   History t(history.displacement.size());
   NormalizedLoadedResponse response;

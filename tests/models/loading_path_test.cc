@@ -250,7 +250,7 @@ TEST(LoadingPath, AnEnvelopeMakesEverySampleABranch) {
   EXPECT_EQ(path.branches[3].direction, 1.0);
 }
 
-TEST(LoadingPath, RejectsWhatIsNoHistory) {
+TEST(LoadingPath, RejectsInvalidHistory) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(MakeLoadingPath({}, {}, Memory::kNone, {}), InvalidArgument);
   const History bad = {0, kNan};

@@ -283,7 +283,7 @@ TEST(Rig, ThatIsInfinitelyStiffIsNoneBitForBit) {
   }
 }
 
-TEST(Rig, ThatIsSoftIsAllThatGivesWayUntilSlip) {
+TEST(Rig, SoftRigTakesAllDisplacementUntilSlip) {
   // T = k_r(δ − x), and up to 0.9·Tc the contact's x is below u^{1−α}-fold 10 elastic limits.
   constexpr double kStiffness = 1e-12;
   for (const double alpha : {0.0, 1e-8, 1.0 / 3.0, 1.0, 1.5}) {

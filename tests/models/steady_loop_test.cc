@@ -181,7 +181,7 @@ TEST(SteadyLoop, OfDahlLosesUpToTwiceMindlins) {
   }
 }
 
-TEST(SteadyLoop, OfContactAndRigSharesItsAmplitude) {
+TEST(SteadyLoop, OfContactAndRigDividesItsAmplitude) {
   const FrictionModel& model = *FindFrictionModel("mindlin-dahl");
   const BranchLaw law{4e7, 1.0 / 3, 40.0};
   EXPECT_EQ(ContactAmplitude(model, law, {}, 1.2e-6), 1.2e-6);

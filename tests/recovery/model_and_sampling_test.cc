@@ -88,7 +88,7 @@ TEST(ModelRecovery, VirginLoopsOfEveryModelReturnItsParameters) {
   }
 }
 
-TEST(ModelRecovery, JenkinsLoopJustPastSlipIsRecovered) {
+TEST(ModelRecovery, JenkinsLoopJustBeyondSlipIsRecovered) {
   // Where none of the samples slips the slip force has no effect: a false minimum beside the true
   // one.
   constexpr BranchLaw kLaw{.tangential_stiffness = 1e6, .shape_exponent = 0.0, .slip_force = 10.0};

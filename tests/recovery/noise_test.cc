@@ -266,7 +266,7 @@ TEST(Noise, SingularJacobiansEndInVerdictsAndNotInFailures) {
   }
 }
 
-TEST(Noise, JointFitOfRecordsWithTheirOwnOffsetsSharesTheContact) {
+TEST(Noise, JointFitOfRecordsWithDifferentOffsetsSharesTheContact) {
   Generator generator(29);
   const Record wide = testing::Shifted(
       LoopOf(kMindlin, Cycling(Wave::kSine, 1.4 * kGrossSlip, 2.0, 120)), 3e-6, -12.0);

@@ -88,7 +88,7 @@ TEST(BranchLawTable, ForceIsRoundedOnce) {
   });
 }
 
-TEST(BranchLawTable, RemainingShareIsRoundedOnce) {
+TEST(BranchLawTable, RemainingFractionIsRoundedOnce) {
   ExpectWithin(kRoundedOnce, [](const BranchLaw& law, const Row& row) {
     return Error(BackboneRemaining(law, row.y), row.remaining, row.remaining);
   });

@@ -93,7 +93,7 @@ TEST_F(HistoryTable, HoldsEveryPatternForEveryShapeExponent) {
   EXPECT_EQ(ReadCases().size(), kPatterns * kShapeExponents);
 }
 
-TEST_F(HistoryTable, TellsTheLawsApart) {
+TEST_F(HistoryTable, DistinguishesTheLaws) {
   // Were two columns alike, a model could pass against the wrong one.
   constexpr double kApart = 0.01;  // of Tc
   for (const HistoryCase& history : ReadCases()) {

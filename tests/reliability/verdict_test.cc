@@ -37,11 +37,11 @@ TEST(Verdict, IsRightWhereTheIntervalCoversTheTruth) {
   EXPECT_EQ(OutcomeOf(FitOf(105.0, 6.0)), Outcome::kRight);
 }
 
-TEST(Verdict, IsSilentWhereTheTruthIsFarOffAndNothingIsSaid) {
+TEST(Verdict, IsSilentIfTruthIsFarOffWithoutWarning) {
   EXPECT_EQ(OutcomeOf(FitOf(105.0, 1.0)), Outcome::kSilent);
 }
 
-TEST(Verdict, IsWarnedWhereTheTruthIsFarOffAndSomethingIsSaid) {
+TEST(Verdict, IsWarnedIfTruthIsFarOffWithWarning) {
   FitResult fit = FitOf(105.0, 1.0);
   fit.findings.push_back({.code = "systematic_residual"});
   EXPECT_EQ(OutcomeOf(fit), Outcome::kWarned);

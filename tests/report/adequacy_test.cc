@@ -76,7 +76,7 @@ std::set<std::string> TriedCodes() {
   return testing::Matches(text, "\\.code = \"([a-z_]+)\"");
 }
 
-TEST(CauseSentence, IsThereForEveryDepartureThatIsTriedAndNoOther) {
+TEST(CauseSentence, ExistsForEveryTermThatIsTriedAndNoOther) {
   std::set<std::string> spoken;
   for (const std::string_view code : CauseCodes()) spoken.emplace(code);
   EXPECT_EQ(spoken, TriedCodes());
@@ -95,7 +95,7 @@ TEST(CauseSentence, OfAReadingThatLosesMoreThanThereIsSaysAll) {
   EXPECT_THAT(Sentence(saturates), HasSubstr("loses all of what is beyond"));
 }
 
-TEST(CauseSentence, HasSizeUnitShareAndRemedy) {
+TEST(CauseSentence, HasSizeUnitFractionAndRemedy) {
   EXPECT_EQ(Sentence(Lag()),
             "a force that is read 2.5 ms after the displacement, which explains 93 % of the "
             "misfit: compare the delays and filters of the two channels");
@@ -141,7 +141,7 @@ TEST(AdequacyText, OfAnInadequateModelHasNothingOfItsCurve) {
   EXPECT_THAT(ToText(ReportWith(AdequacyVerdict::kDoubtful, {})), HasSubstr("energy ratio of"));
 }
 
-TEST(AdequacyText, SharesOfTcAreThoseOfATcThatIsKnown) {
+TEST(AdequacyText, GivesFractionsOfTcOnlyIfTcIsKnown) {
   ReportInput input = InputWith(AdequacyVerdict::kAdequate, {});
   for (ParameterEstimate& estimate : input.fit.parameters) {
     estimate.identifiability = Identifiability::kIdentifiable;
@@ -210,7 +210,7 @@ TEST(AdequacyText, OfAFitThatIsNotUsableHasTenLinesAndNoDashes) {
   }
 }
 
-TEST(AdequacyText, OfARecordTooShortToTryAnythingSaysSo) {
+TEST(AdequacyText, SaysThatRecordIsTooShortToTryTerms) {
   ReportInput input = MadeInput();
   EXPECT_THAT(ToText(MakeReport(std::move(input))),
               StartsWith("not judged: the record has too few samples"));

@@ -34,7 +34,7 @@ std::string TextOf(const BackboneEstimate& backbone) {
   return BackboneText(backbone, MadeInput().fit, kUnitsOfForce);
 }
 
-TEST(BackboneCsv, HasTheBandAndTheLawBesideIt) {
+TEST(BackboneCsv, HasTheConfidenceBandAndTheLaw) {
   EXPECT_EQ(BackboneCsv(Made(), kUnitsOfForce),
             "displacement [m],force [N],lower95 [N],upper95 [N],law [N]\n"
             "0,0,0,0,0\n"
@@ -55,7 +55,7 @@ TEST(BackboneJson, IsThereWhereItWasAskedFor) {
   EXPECT_EQ(backbone["points"][2]["law"], 17.0);
 }
 
-TEST(BackboneText, HasTheNearestLawBesideIt) {
+TEST(BackboneText, NamesTheNearestLaw) {
   EXPECT_THAT(TextOf(Made()), AllOf(HasSubstr("first hundredth 30 N/µm (25 … 35)"),
                                     HasSubstr("force at 1 µm: 16 N (15.5 … 16.5)"),
                                     HasSubstr("sigma = 40 N/µm, alpha = 0.333, slip_force = 40 N"),

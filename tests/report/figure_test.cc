@@ -137,7 +137,7 @@ TEST(Figure, MarksTheReversalsOfEveryRecord) {
   }
 }
 
-TEST(Figure, HasTheFileTheVerdictAndNoNumberOfWhatIsNotKnownInItsTitles) {
+TEST(Figure, TitlesNameFileAndVerdictAndNoUnknownValue) {
   report::ReportInput input = MadeInput();
   input.fit.adequacy.tried = 15;
   EXPECT_EQ(ToPlot(report::MakeReport(input)).title, "loop_1.csv: adequate");

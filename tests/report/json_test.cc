@@ -62,7 +62,7 @@ TEST(Json, OfAFitThatFailedIsNullForThatReason) {
 
 TEST(Json, EndsWithAnEndOfLine) { EXPECT_EQ(ToJson(MakeReport(MadeInput())).back(), '\n'); }
 
-TEST(Json, WarnsOfWhatTheFitFoundFirst) {
+TEST(Json, ListsFirstFindingFirst) {
   report::ReportInput input = MadeInput();
   input.fit.findings.push_back(
       {.code = "shape_or_rig", .numbers = {{"rig_stiffness", 1e6}, {"alpha", 0.1}}});

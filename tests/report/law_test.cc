@@ -62,7 +62,7 @@ TEST(Law, ThatIsUndecidedHasTheOthersNumbers) {
                                           {"slip_force", 1.25 * kSlipForce}}));
 }
 
-TEST(Law, SaysWhatTheOtherWouldMakeOfAKnownContact) {
+TEST(Law, ReportsContactUnderTheAlternativeLaw) {
   const Report report = MakeReport(WithBodies(InputOf(Undecided())));
   const json whole = json::parse(ToJson(report));
   const json& other = whole["law"]["alternatives"][0];

@@ -156,7 +156,7 @@ std::vector<Unknown> Unknowns() {
   };
 }
 
-TEST(LoadLaws, RecoverWhatIsNotKnownOfABall) {
+TEST(LoadLaws, RecoverUnknownPropertiesOfABall) {
   // 5 standard errors, which are a millionth of the quantity: for normal errors once in 10⁶.
   constexpr double kErrors = 5.0;
   constexpr double kFaint = 1e-4;  // [N]
@@ -241,9 +241,9 @@ void ExpectCoverage(std::size_t series_count) {
   }
 }
 
-TEST(LoadLaws, CoverWhatIsNotKnownInNineteenOfTwentySeries) { ExpectCoverage(60); }
+TEST(LoadLaws, CoverTruthInNineteenOfTwentySeries) { ExpectCoverage(60); }
 
-TEST(LoadLawsOfManySeries, CoverWhatIsNotKnownInNineteenOfTwenty) { ExpectCoverage(4000); }
+TEST(LoadLawsOfManySeries, CoverTruthInNineteenOfTwenty) { ExpectCoverage(4000); }
 
 TEST(LoadLaws, GiveNoSphereWhereHertzIsRejectedAndTheConeThatIsTenable) {
   const FitResult fit = FitOf(RadiusOfCone, 0.5);
@@ -281,7 +281,7 @@ TEST(LoadLaws, GiveTheRadiusOfAFlatPunchAndTheLengthOfRoughSurfaces) {
             kErrors * length->value.standard_error);
 }
 
-TEST(LoadLaws, AreWhatIsHeldToThreeDigits) {
+TEST(LoadLaws, MatchFixedValuesToThreeDigits) {
   Generator generator(5);
   const std::vector<Record> records = Series(RadiusOfBall, 1.0 / 3, generator);
   const FitResult third = FitUnderLoads(records, 0.333);
@@ -305,7 +305,7 @@ TEST(LoadLaws, AreNoneWhereStiffnessOrExponentIsOpen) {
   }
 }
 
-TEST(LoadLaws, AreAsUncertainAsTheFitWasWidened) {
+TEST(LoadLaws, InheritIntervalInflationOfTheFit) {
   FitResult fit = FitOf(RadiusOfBall, 1.0 / 3);
   const auto interval_of_radius = [&] {
     return *Find(*DescribeLoadSeries(fit, WithoutRadius()), "sphere", "equivalent_radius")
@@ -351,7 +351,7 @@ TEST(LoadLaws, LeaveAModulusOpenWhereARigidBodyWouldDoAsWell) {
   EXPECT_TRUE(std::isinf(open.interval95->upper));
 }
 
-TEST(LoadLaws, HaveNoIntervalOfWhatIsHeld) {
+TEST(LoadLaws, HaveNoIntervalForFixedParameters) {
   Generator generator(5);
   const std::vector<Record> records = Series(RadiusOfBall, 1.0 / 3, generator);
   FitOptions options;

@@ -76,7 +76,7 @@ TEST(LoadSeriesHypotheses, HaveTheErrorOfTheDifferenceOfTwoFittedExponents) {
   EXPECT_NEAR(*elements->z / ((kExponent - kShape) / error), 1, kRounding);
 }
 
-TEST(LoadLawsByHand, AreAsUncertainAsTheExponentWasWidened) {
+TEST(LoadLawsByHand, InheritIntervalInflationOfTheExponent) {
   FitResult fit = SeriesOf({.exponent_stiffness = 0.5}).fit;
   const double half = std::log(Law(*DescribeLoadSeries(fit, {}), "sphere").stiffness95->upper /
                                Law(*DescribeLoadSeries(fit, {}), "sphere").stiffness95->lower) /

@@ -126,7 +126,7 @@ TEST(LoopDescription, StickRadiusIsThatOfMindlinsContact) {
   EXPECT_EQ(Describe(kMindlin, 1.6e-6).stick_radius_ratio, 0.0);
 }
 
-TEST(LoopDescription, SaysOfSlipOnlyWhatTheRecordSays) {
+TEST(LoopDescription, ReportsSlipOnlyAsMeasured) {
   const auto describe = [](const char* open, Identifiability verdict) {
     FitResult fit = MadeFit({MadeRecord(1.6e-6)}, 1.6e-6, kMindlin);
     for (ParameterEstimate& estimate : fit.parameters) {

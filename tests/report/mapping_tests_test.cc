@@ -60,7 +60,7 @@ TEST(StiffnessTest, IsNormalWhereInputsAloneAreUncertain) {
   EXPECT_NEAR(test.interval95->upper, 0.9 + 0.05 * quantile, kRounding);
 }
 
-TEST(StiffnessTest, DoesNotTestWhatIsExactOrOpen) {
+TEST(StiffnessTest, IsSkippedForExactOrOpenValues) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double error : {0.0, infinity}) {
     const StiffnessTest test = TestStiffness("given", Ratio(0.9, error, 0.0), 4);
@@ -120,7 +120,7 @@ TEST(AlphaTest, IsNotMadeOfAnExponentThatIsNotIdentifiable) {
   EXPECT_FALSE(test.z || test.p_value || test.is_rejected || test.likelihood);
 }
 
-TEST(AlphaTest, SaysNothingOfAHeldExponentAndNoZWithoutAnError) {
+TEST(AlphaTest, SkipsFixedExponentAndHasNoZWithoutStandardError) {
   FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
   fit.parameters[1].standard_error.reset();
   EXPECT_TRUE(TestAlpha(fit).minus_third);

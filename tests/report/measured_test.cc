@@ -75,7 +75,7 @@ TEST(Measured, IsInTheJson) {
   EXPECT_EQ(measured["trend"]["energy"]["slope"], 1e-8);
 }
 
-TEST(Measured, NullsSayWhatIsMissing) {
+TEST(Measured, NullsNameMissingInputs) {
   ReportInput input = MeasuredInput();
   input.fit.records[0].facts.half_gap_trend.reset();
   input.fit.records[0].facts.half_gap_standard_deviation.reset();
@@ -127,7 +127,7 @@ TEST(Measured, NamesOnlyTrendsThatMatter) {
   EXPECT_THAT(text, Not(HasSubstr("energy changes")));
 }
 
-TEST(Measured, OfARecordWithoutAClosedCycleSaysSo) {
+TEST(Measured, ReportsThatNoCycleCloses) {
   EXPECT_THAT(ToText(MakeReport(MadeInput())),
               HasSubstr("measured: X = 2 µm, T* = 10 N, no closed cycle\n"));
 }

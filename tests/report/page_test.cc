@@ -95,7 +95,7 @@ TEST(Page, WritesParametersWithPrefixesAndIntervals) {
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">slip_force</th>"));
 }
 
-TEST(Page, HasNoNumberOfWhatIsNotIdentified) {
+TEST(Page, HasNoValueOfUnidentifiableParameters) {
   ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
   // Digits that nothing else has.
   identification::ParameterEstimate& sigma = input.fit.parameters[0];
@@ -187,7 +187,7 @@ TEST(Page, EscapesWhateverComesFromOutside) {
   EXPECT_THAT(page, HasSubstr("&lt;script&gt;"));
 }
 
-TEST(Page, TellsRecordsOfAJointFitApart) {
+TEST(Page, DistinguishesRecordsOfAJointFit) {
   ReportInput input = MadeInput({MadeRecord(1e-6), MadeRecord(2e-6)}, 2e-6);
   const std::string page = PageOf(std::move(input));
   EXPECT_THAT(page, HasSubstr("<h1>loop_1.csv and 1 more: not judged</h1>"));

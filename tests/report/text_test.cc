@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-TEST(Text, SaysFirstWhatIsReadInTenSecondsAndThenWhatItRestsOn) {
+TEST(Text, BeginsWithSummaryFollowedByEvidence) {
   const std::string text = ToText(MakeReport(MadeInput()));
   const std::size_t parameters = text.find("\nparameter ");
   const std::size_t contact = text.find("\ncontact (Mindlin-Dahl mapping)");
@@ -36,7 +36,7 @@ TEST(Text, HasParametersInUnitsThatSuitThem) {
               ::testing::AllOf(HasSubstr("40.00 ± 0.40 N/µm"), HasSubstr("40.00 ± 0.40 N ")));
 }
 
-TEST(Text, HasNoNumberOfWhatIsNotIdentified) {
+TEST(Text, HasNoValueOfUnidentifiableParameters) {
   ReportInput input = MadeInput();
   input.fit.parameters[2].identifiability = Identifiability::kNotIdentifiable;
   input.fit.parameters[2].standard_error.reset();
@@ -45,7 +45,7 @@ TEST(Text, HasNoNumberOfWhatIsNotIdentified) {
   EXPECT_THAT(text, Not(HasSubstr("3Tc/(2σ)")));  // a length that Tc is in
 }
 
-TEST(Text, OfAnOpenStiffnessSaysNothingOfTheContactThatFollowsFromIt) {
+TEST(Text, HasNoContactIfStiffnessIsOpen) {
   ReportInput input = MadeInput();
   input.known.tangential_compliance = 4.2e-11;
   input.known.normal_load = 100.0;
@@ -103,7 +103,7 @@ TEST(Text, OfAnOpenShapeHasNoSlipOfMindlins) {
   EXPECT_THAT(ToText(MakeReport(std::move(input))), Not(HasSubstr("gross slip (α = 1/3)")));
 }
 
-TEST(Text, OfAForceWithoutALoopSaysSoFirst) {
+TEST(Text, ReportsMissingLoopFirst) {
   ReportInput input = MadeInput();
   input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
   input.fit.adequacy.tried = 1;

@@ -157,7 +157,7 @@ std::string NoteOf(const report::Report& report, std::string_view code) {
   return note == report.notes.end() ? "" : note->message;
 }
 
-TEST(TrimmedFit, SaysWhatIsLeftOutAndWhatGoesWithIt) {
+TEST(TrimmedFit, ReportsWhatIsLeftOutAndWhatDependsOnIt) {
   Generator generator(6);
   const report::Report report = ReportOf(RunningIn(16, generator));
   EXPECT_THAT(NoteOf(report, "trimmed"),
@@ -194,7 +194,7 @@ TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {
   EXPECT_EQ(report.records.front().record.size(), record.size() - (3 * kCycle + 3 * kCycle / 4));
 }
 
-TEST(TrimmedFit, IsRefusedBesideWhatSaysToo) {
+TEST(TrimmedFit, IsRefusedTogetherWithOtherWindows) {
   const auto message = [](FitRequest request) {
     request.trim = kAutomatic;
     try {

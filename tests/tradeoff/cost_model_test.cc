@@ -16,7 +16,7 @@ using models::BranchLaw;
 
 constexpr BranchLaw kMindlin{4.8e8, 1.0 / 3, 30};
 
-TEST(CostModel, SumsThePricesOfWhatIsCounted) {
+TEST(CostModel, SumsThePricesOfCountedOperations) {
   OperationCount count;
   count.Add(Operation::kSample, 10);
   count.Add(Operation::kElement, 160);

@@ -50,7 +50,7 @@ TEST(CyclesPassed, TakesTheSecondSwingToBeTwiceTheFirst) {
   EXPECT_EQ(CyclesPassed(Cycles{2, 1, 0, -1}), (Cycles{0.25, 0.375, 0.5, 0.625}));
 }
 
-TEST(CyclesPassed, TakesTheWayFromTheUnloadedContactAlong) {
+TEST(CyclesPassed, CountsTravelFromReferencePosition) {
   EXPECT_EQ(CyclesPassed(Cycles{1, 0, -1, 0}), (Cycles{0.25, 0.5, 0.75, 1}));
 }
 

@@ -120,7 +120,7 @@ TEST(Recommend, TransientCyclesDoNotCount) {
   EXPECT_FALSE(Find(later, "dahl").meets);
 }
 
-TEST(Recommend, WhatIsNamedForLaterIsSimplerThanTheChoice) {
+TEST(Recommend, LaterAlternativeIsSimplerThanTheChoice) {
   for (const double lambda : {1e-3, 0.8}) {
     const Recommendation recommendation = RecommendFor(Sine(lambda, 6), {.tolerance = 0.01});
     if (!recommendation.after_transient) continue;

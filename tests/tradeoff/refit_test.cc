@@ -145,7 +145,7 @@ TEST(Refit, OfAContactThatNothingMovesThereIsNone) {
   EXPECT_TRUE(RefitAlong({0.0, 0.0, 0.0}).empty());
 }
 
-TEST(Refit, RefusesWhatIsNoDrive) {
+TEST(Refit, RefusesInvalidDrive) {
   EXPECT_THROW(RefitAlong({0.0, 1e-8}, 2), InvalidArgument);
   const std::vector<double> displacement = {1, 2};
   EXPECT_THROW(RefittedLadder(kMindlin, {.displacement = displacement}, {.force = {1}}),

@@ -67,7 +67,7 @@ TEST(ReferenceResponse, IsTheLawAsDefinedOnRandomHistoriesWithDwells) {
   }
 }
 
-TEST(ReferenceResponse, RefusesWhatIsNoDrive) {
+TEST(ReferenceResponse, RefusesInvalidDrive) {
   const BranchLaw law{1, 0.5, 1};
   const History not_finite = {0, std::numeric_limits<double>::infinity()};
   EXPECT_THROW(MakeReferenceResponse(law, {}), InvalidArgument);
@@ -82,7 +82,7 @@ const History kDisplacement = {0, 1, 2, 1};
 const ReferenceResponse kReference{.force = {0, 2, 4, 0}, .peak_force = 4};
 const Drive kDrive{.displacement = kDisplacement};
 
-TEST(Compare, GivesWhatIsWorkedOutByHand) {
+TEST(Compare, MatchesCaseComputedByHand) {
   // Errors over the peak 0, ¼, 0, ¼. Work 1 + 3 − 2 = 2 against 1.5 + 3.5 − 2.5 = 2.5.
   const Precision precision = Compare(kReference, kDrive, History{0, 3, 4, 1});
   EXPECT_DOUBLE_EQ(precision.max_force, 0.25);
@@ -91,7 +91,7 @@ TEST(Compare, GivesWhatIsWorkedOutByHand) {
   EXPECT_DOUBLE_EQ(*precision.energy, 0.25);
 }
 
-TEST(Compare, CountsFromTheFirstSampleThatItIsTold) {
+TEST(Compare, CountsFromTheGivenFirstSample) {
   // Errors 0, −½; work (4 + 0)/2·(−1) = −2 against (4 − 2)/2·(−1) = −1.
   const Precision precision = Compare(kReference, kDrive, History{9, 9, 4, -2}, 2);
   EXPECT_DOUBLE_EQ(precision.max_force, 0.5);
@@ -116,7 +116,7 @@ TEST(Compare, TakesAForceThatIsNoNumberAsInfinitelyWrong) {
   EXPECT_FALSE(ErrorBy(Criterion::kEnergy, precision) <= 1);
 }
 
-TEST(Compare, LooksAtWhatTheCriterionNames) {
+TEST(Compare, UsesTheQuantityNamedByTheCriterion) {
   const Precision precision{.max_force = 1, .rms_force = 2, .energy = 3};
   EXPECT_EQ(ErrorBy(Criterion::kMaxForce, precision), 1);
   EXPECT_EQ(ErrorBy(Criterion::kRmsForce, precision), 2);
