@@ -14,6 +14,7 @@ packages=(
   libceres-dev libeigen3-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcsv-dev libboost-dev libssl-dev
   librsvg2-bin jq python3
 )
+node_packages=()
 for group in "$@"; do
   case $group in
     --tests)
@@ -25,7 +26,11 @@ for group in "$@"; do
       ;;
     --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
-    --peers) packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts gnuplot-nox) ;;
+    --peers)
+      packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts gnuplot-nox)
+      command -v npm >/dev/null || packages+=(nodejs npm)
+      node_packages+=(@mujoco/mujoco@3)  # no Debian package: Google's WebAssembly build
+      ;;
     --coverage) packages+=(gcovr) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --workflow) packages+=(snakemake) ;;
@@ -43,10 +48,13 @@ for package in "${packages[@]}"; do
     missing+=("$package")
   fi
 done
-if [ ${#missing[@]} -eq 0 ]; then exit 0; fi
+for package in "${node_packages[@]}"; do
+  if command -v npm >/dev/null && [ -d "$(npm root -g)/${package%@*}" ]; then node_packages=(); fi
+done
+if [ ${#missing[@]} -eq 0 ] && [ ${#node_packages[@]} -eq 0 ]; then exit 0; fi
 
 if ! command -v apt-get >/dev/null; then
-  echo "install-dependencies: apt-get not found; install by hand: ${missing[*]}" >&2
+  echo "install-dependencies: apt-get not found; install by hand: ${missing[*]} ${node_packages[*]}" >&2
   exit 1
 fi
 sudo=()
@@ -57,7 +65,12 @@ if [ "$(id -u)" -ne 0 ]; then
   fi
   sudo=(sudo)
 fi
-echo "installing ${missing[*]}"
-"${sudo[@]}" apt-get update -q
-"${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
-  apt-get install -y -q --no-install-recommends "${missing[@]}"
+echo "installing ${missing[*]} ${node_packages[*]}"
+if [ ${#missing[@]} -gt 0 ]; then
+  "${sudo[@]}" apt-get update -q
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -q --no-install-recommends "${missing[@]}"
+fi
+if [ ${#node_packages[@]} -gt 0 ]; then
+  "${sudo[@]}" npm install -g --no-audit --no-fund "${node_packages[@]}"
+fi

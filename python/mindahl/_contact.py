@@ -61,17 +61,20 @@ def convert(
     from_: str = "masing", least_amplitude: Optional[float] = None,
     largest_amplitude: Optional[float] = None, tolerance: float = 0.01, elements: int = 8,
     beta: float = 0.5, normal_load: Optional[float] = None, contact_radius: Optional[float] = None,
+    viscous: float = 0.0,
 ) -> Conversion:
     """A contact's steady loop by another law or another program.
 
     sigma [N/m], alpha [-], slip_force Tc [N]: of the law from_, "masing" or "dahl".
     amplitude: X [m] of the steady loop, the contact's.
-    to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "liggghts" or "yade".
+    to: "masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "liggghts", "yade",
+        "mujoco", "mujoco-joint", "urdf" or "sdf".
     least_amplitude, largest_amplitude [m]: what cannot be exact is fitted between; default X.
     tolerance: of force and energy [-]. elements: of "iwan". beta: of "bouc-wen".
     normal_load [N]: of "lammps", "liggghts", "yade". contact_radius [m]: of "lammps".
+    viscous [N s/m]: of "lugre" and the four of robots.
     Returns the sections of `mindahl convert --json`; .input_lines are the lines the target reads,
-        None for these three without a normal load.
+        None for codes of discrete elements without a normal load.
     Raises ValueError naming the quantity, its value and the rule.
     """
     amplitude = number("amplitude", amplitude)
@@ -86,7 +89,8 @@ def convert(
         range=span, tolerance=number("tolerance", tolerance),
         elements=count("elements", elements, 1), beta=number("beta", beta),
         normal_load=optional_number("normal_load", normal_load),
-        contact_radius=optional_number("contact_radius", contact_radius)))
+        contact_radius=optional_number("contact_radius", contact_radius),
+        viscous=number("viscous", viscous)))
 
 
 def excitation(

@@ -138,18 +138,19 @@ void AddContact(py::module_& module) {
       [](double sigma, double alpha, double slip_force, double amplitude, const std::string& from,
          const std::string& to, const std::optional<std::pair<double, double>>& range,
          double tolerance, std::size_t elements, double beta, std::optional<double> normal_load,
-         std::optional<double> contact_radius) {
+         std::optional<double> contact_radius, double viscous) {
         ConversionOptions options{
             .amplitude = amplitude, .tolerance = tolerance, .elements = elements, .beta = beta};
         if (range) options.range = convert::AmplitudeRange{range->first, range->second};
         return Convert(
             {.tangential_stiffness = sigma, .shape_exponent = alpha, .slip_force = slip_force},
-            from, to, options, {.normal_load = normal_load, .contact_radius = contact_radius});
+            from, to, options,
+            {.normal_load = normal_load, .contact_radius = contact_radius, .viscous = viscous});
       },
       py::kw_only(), py::arg("sigma"), py::arg("alpha"), py::arg("slip_force"),
       py::arg("amplitude"), py::arg("from_law"), py::arg("to"), py::arg("range"),
       py::arg("tolerance"), py::arg("elements"), py::arg("beta"), py::arg("normal_load"),
-      py::arg("contact_radius"));
+      py::arg("contact_radius"), py::arg("viscous"));
 }
 
 }  // namespace mindahl::python

@@ -247,6 +247,11 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   AddOptional(*command, "--contact-radius", options->normal.contact_radius,
               "of --to lammps [m]: for a stiffness that follows the radius", "M")
       ->group(result);
+  command
+      ->add_option("--viscous", options->normal.viscous,
+                   "force per speed [N s/m] of --to lugre, mujoco, mujoco-joint, urdf and sdf")
+      ->type_name("C")
+      ->group(result);
   const std::string outputs = "Output";
   command
       ->add_option("--input-lines", options->input_lines_path,

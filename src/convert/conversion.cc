@@ -25,6 +25,10 @@ constexpr std::array kTargets = {
     TargetRow{Target::kLammps, "lammps", "a tangential spring with Coulomb's limit"},
     TargetRow{Target::kLiggghts, "liggghts", "a tangential spring with Coulomb's limit"},
     TargetRow{Target::kYade, "yade", "a tangential spring with Coulomb's limit"},
+    TargetRow{Target::kMujoco, "mujoco", "MuJoCo's LuGre without rate: Dahl's law of α = 1"},
+    TargetRow{Target::kMujocoJoint, "mujoco-joint", "Coulomb's friction of a joint"},
+    TargetRow{Target::kUrdf, "urdf", "Coulomb's friction of a joint"},
+    TargetRow{Target::kSdf, "sdf", "Coulomb's friction of a joint"},
 };
 
 const models::FrictionModel& Dahl() { return *models::FindFrictionModel("dahl"); }
@@ -64,6 +68,21 @@ std::vector<double> AmplitudesOf(const ConversionOptions& options) {
   return amplitudes;
 }
 
+/// Returns Coulomb's friction: the mean square difference of force, each amplitude over its own T*,
+/// is least for the weighted mean of the strokes' mean forces.
+ModelLaw CoulombOf(const ModelLaw& contact, const std::vector<double>& amplitudes) {
+  constexpr double kElastic = 1e-13;  // of the smallest amplitude: what slips later is rounding
+  double total = 0.0;
+  double weights = 0.0;
+  for (const double amplitude : amplitudes) {
+    const double peak = models::SteadyPeakForce(*contact.model, contact.law, amplitude);
+    total += LoopEnergy(contact, amplitude) / (4 * amplitude) / (peak * peak);
+    weights += 1 / (peak * peak);
+  }
+  const double friction = total / weights;
+  return {&Masing(), {friction / (kElastic * std::ranges::min(amplitudes)), 0.0, friction}};
+}
+
 SteadyLaw LawOf(const ModelLaw& contact, Target target, const ConversionOptions& options,
                 const std::vector<double>& amplitudes) {
   const bool is_masing = contact.model->memory == Memory::kReturnPoint;
@@ -81,11 +100,16 @@ SteadyLaw LawOf(const ModelLaw& contact, Target target, const ConversionOptions&
     case Target::kBoucWen:
       return ReferenceLoops(contact, amplitudes).FitBoucWen(options.beta);
     case Target::kLuGre:
+    case Target::kMujoco:
       return ReferenceLoops(contact, amplitudes).Fit(Dahl(), 1.0);
     case Target::kLammps:
     case Target::kLiggghts:
     case Target::kYade:
       return ReferenceLoops(contact, amplitudes).Fit(Masing(), 0.0);
+    case Target::kMujocoJoint:
+    case Target::kUrdf:
+    case Target::kSdf:
+      return CoulombOf(contact, amplitudes);
   }
   throw InvalidArgument("no such target");
 }
@@ -117,6 +141,11 @@ std::span<const TargetRow> Targets() { return kTargets; }
 
 bool IsDiscreteElementCode(Target target) {
   return target == Target::kLammps || target == Target::kLiggghts || target == Target::kYade;
+}
+
+bool IsJoint(Target target) {
+  return target == Target::kMujoco || target == Target::kMujocoJoint || target == Target::kUrdf ||
+         target == Target::kSdf;
 }
 
 Conversion Convert(const ModelLaw& contact, Target target, const ConversionOptions& options) {

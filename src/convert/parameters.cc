@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <variant>
 
 #include "mindahl/core/error.h"
@@ -12,6 +13,9 @@ namespace mindahl::convert {
 using methods::IwanElements;
 
 namespace {
+
+constexpr double kLargestImpedance = 0.9999;  // mjMAXIMP: least creep of MuJoCo's constraints
+constexpr double kNoDamping = 1e15;           // [Ω], a resistance: damping of 1e-15 N s/m
 
 /// Returns γ and β of dz/dx = A − |z|ⁿ(γ + β·sgn(z·ẋ)) with A = 1 and z = T/k: over z*ⁿ, z* = Tc/k.
 double PerTravel(const BoucWenLaw& law, double share) {
@@ -54,6 +58,51 @@ std::vector<std::string> LinesOfSpring(const models::BranchLaw& law, Target targ
   return lines;
 }
 
+/// Returns a joint's parameters in the names of MuJoCo, URDF and SDF: in rad and N m if it turns.
+std::vector<Parameter> ParametersOfJoint(const models::BranchLaw& law, Target target,
+                                         double viscous) {
+  const Parameter damping = {"damping", viscous, "N s/m", "force per speed"};
+  if (target == Target::kMujoco) {
+    return {{"stiffness", law.tangential_stiffness, "N/m", "bristles' stiffness"},
+            {"coulomb", law.slip_force, "N", "Coulomb's force; static force the same"},
+            {"knee", law.slip_force / law.tangential_stiffness, "m",
+             "h of a plugin's dz/dt = (v - |v| z)/h, force = Fc z"},
+            damping};
+  }
+  if (target == Target::kMujocoJoint) {
+    return {
+        {"frictionloss", law.slip_force, "N", "mean force of a stroke"},
+        damping,
+        {"creep", 1 - kLargestImpedance, "-", "speed under a force T that it holds, over T h/M"}};
+  }
+  return {{"friction", law.slip_force, "N", "mean force of a stroke"}, damping};
+}
+
+std::vector<std::string> LinesOfJoint(const models::BranchLaw& law, Target target, double viscous) {
+  switch (target) {
+    case Target::kMujoco:
+      return {
+          "<!-- MuJoCo, in actuator: the joint's friction, a motor without input; lugre is -->",
+          "<!-- stiffness, damping, Coulomb's force; motorconst^2/resistance is the damping -->",
+          fmt::format("<dcmotor joint=\"joint\" input=\"none\" motorconst=\"1\" resistance=\"{}\" "
+                      "lugre=\"{} 0 {}\"/>",
+                      viscous > 0 ? 1 / viscous : kNoDamping, law.tangential_stiffness,
+                      law.slip_force)};
+    case Target::kMujocoJoint:
+      return {
+          "<!-- MuJoCo; type, axis and armature are yours; the engine raises the time constant -->",
+          "<!-- of solreffriction to two time steps -->",
+          fmt::format("<joint name=\"joint\" type=\"slide\" frictionloss=\"{}\" damping=\"{}\" "
+                      "solreffriction=\"1e-06 1\" solimpfriction=\"{} {} 0.001\"/>",
+                      law.slip_force, viscous, kLargestImpedance, kLargestImpedance)};
+    case Target::kUrdf:
+      return {fmt::format("<dynamics damping=\"{}\" friction=\"{}\"/>", viscous, law.slip_force)};
+    default:
+      return {fmt::format("<dynamics><damping>{}</damping><friction>{}</friction></dynamics>",
+                          viscous, law.slip_force)};
+  }
+}
+
 }  // namespace
 
 void Validate(const NormalContact& contact, Target target) {
@@ -64,6 +113,13 @@ void Validate(const NormalContact& contact, Target target) {
   }
   if (contact.contact_radius && target != Target::kLammps) {
     throw InputError("--contact-radius is of --to lammps alone");
+  }
+  if (!(contact.viscous >= 0 && contact.viscous < std::numeric_limits<double>::infinity())) {
+    ThrowInvalid("--viscous [N s/m]", contact.viscous, "must be finite and >= 0");
+  }
+  if (contact.viscous > 0 && target != Target::kLuGre && !IsJoint(target)) {
+    throw InputError(
+        "--viscous is of --to lugre, mujoco, mujoco-joint, urdf and sdf alone: give it there");
   }
 }
 
@@ -91,10 +147,11 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
   if (target == Target::kLuGre) {
     return {{"sigma0", law.tangential_stiffness, "N/m", "bristles' stiffness"},
             {"sigma1", 0.0, "N s/m", "bristles' damping"},
-            {"sigma2", 0.0, "N s/m", "viscous friction"},
+            {"sigma2", contact.viscous, "N s/m", "viscous friction"},
             {"Fc", law.slip_force, "N", "Coulomb's force"},
             {"Fs", law.slip_force, "N", "static force: no Stribeck effect"}};
   }
+  if (IsJoint(target)) return ParametersOfJoint(law, target, contact.viscous);
   if (IsDiscreteElementCode(target)) {
     std::vector<Parameter> parameters = {
         {target == Target::kYade ? "ks" : "kt", law.tangential_stiffness, "N/m",
@@ -145,9 +202,11 @@ std::vector<std::string> InputLines(const Conversion& conversion, Target target,
   }
   const models::BranchLaw& law = std::get<ModelLaw>(conversion.law).law;
   if (IsDiscreteElementCode(target)) return LinesOfSpring(law, target, contact);
+  if (IsJoint(target)) return LinesOfJoint(law, target, contact.viscous);
   if (target == Target::kLuGre) {
-    return {fmt::format("sigma0 = {}", law.tangential_stiffness), "sigma1 = 0", "sigma2 = 0",
-            fmt::format("Fc = {}", law.slip_force), fmt::format("Fs = {}", law.slip_force)};
+    return {fmt::format("sigma0 = {}", law.tangential_stiffness), "sigma1 = 0",
+            fmt::format("sigma2 = {}", contact.viscous), fmt::format("Fc = {}", law.slip_force),
+            fmt::format("Fs = {}", law.slip_force)};
   }
   return {fmt::format("--model {} --sigma {} --alpha {} --slip-force {}",
                       std::get<ModelLaw>(conversion.law).model->name, law.tangential_stiffness,

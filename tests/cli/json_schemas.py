@@ -81,6 +81,8 @@ COMMANDS = [
      "--contact-radius 3e-4", 0),
     *[(f"convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to {code} --normal-load 50", 0)
       for code in ("liggghts", "yade")],
+    *[(f"convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to {robot} --viscous 3", 0)
+      for robot in ("mujoco", "mujoco-joint", "urdf", "sdf")],
     ("convert --from dahl --alpha 1 --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan "
      "--least-amplitude 1e-6 --largest-amplitude 2e-6", 0),
     ("plan --sigma 4e7 --slip-force 40 --force-noise 0.1", 0),

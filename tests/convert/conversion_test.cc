@@ -102,6 +102,27 @@ TEST(Conversion, ToASpringWithCoulombsLimitFindsItWhereItIsOne) {
   EXPECT_LT(iwan.at_amplitude.force, 1e-14);
 }
 
+TEST(Conversion, ToCoulombsFrictionLosesTheEnergyOfTheLoopAndNoPresliding) {
+  // A rectangle of height F differs by F + T* after a reversal; F of least squares is W/4X.
+  constexpr double kElastic = 1e-12;  // ten times what a spring of 1e-13·X leaves
+  const double energy = LoopEnergy(kMindlin, kAmplitude);
+  const double peak = models::SteadyPeakForce(*kMindlin.model, kMindlin.law, kAmplitude);
+  for (const Target target : {Target::kMujocoJoint, Target::kUrdf, Target::kSdf}) {
+    const Conversion joint = To(target, kMindlin);
+    const double friction = std::get<ModelLaw>(joint.law).law.slip_force;
+    EXPECT_NEAR(friction, energy / (4 * kAmplitude), 1e-14 * friction);
+    EXPECT_NEAR(joint.at_amplitude.energy, 0.0, kElastic);
+    EXPECT_NEAR(joint.at_amplitude.force, (friction + peak) / peak, kElastic);
+    // No other height is nearer in the mean square, by its own definition.
+    for (const double factor : {0.9, 1.1}) {
+      ModelLaw other = std::get<ModelLaw>(joint.law);
+      other.law.slip_force *= factor;
+      other.law.tangential_stiffness *= factor;
+      EXPECT_GT(RmsError(other, kMindlin, kAmplitude), RmsError(joint.law, kMindlin, kAmplitude));
+    }
+  }
+}
+
 TEST(Conversion, IsRefittedToTheLeastMeanSquareError) {
   // No parameter can be moved to a smaller error, and 3 % make it larger.
   constexpr double kMove = 1.03;

@@ -130,7 +130,7 @@ def main():
         print(f"skipped: there is no {engine}; install-dependencies.sh --peers has it")
         return SKIPPED
     _, steps, every, _, _ = ENGINES[arguments.name]
-    lines, report = converted(arguments.program, arguments.name)
+    lines, report = converted(arguments.program, arguments.name, "--normal-load", repr(NORMAL_LOAD))
     stated = report["error_at_amplitude"]
     displacement, force, load = run(arguments.name, engine, lines)
     worst, energy = loop_error(displacement, force)

@@ -37,16 +37,14 @@ def mindlin_energy():
 PEAK_FORCE = mindlin_force(AMPLITUDE)
 
 
-def converted(program, target, contact_radius=None):
+def converted(program, target, *options):
     """Returns the lines that `mindahl convert --to target` writes, and what it states of them."""
     command = [program, "convert", "--sigma", repr(SIGMA), "--slip-force", repr(SLIP_FORCE),
-               "--amplitude", repr(AMPLITUDE), "--to", target, "--normal-load", repr(NORMAL_LOAD)]
-    if contact_radius is not None:
-        command += ["--contact-radius", repr(contact_radius)]
+               "--amplitude", repr(AMPLITUDE), "--to", target, *options]
     lines = subprocess.run([*command, "--input-lines", "-"], check=True, capture_output=True,
                            text=True).stdout.splitlines()
     stated = subprocess.run([*command, "--json", "-"], check=True, capture_output=True, text=True)
-    return [line for line in lines if not line.startswith("#")], json.loads(stated.stdout)
+    return [line for line in lines if not line.startswith(("#", "<!--"))], json.loads(stated.stdout)
 
 
 def loop_error(displacement, force):

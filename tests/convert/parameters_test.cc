@@ -58,6 +58,22 @@ TEST(InputLines, OfLiggghtsAreItsPairStyleAndItsProperties) {
   EXPECT_THROW(Validate({.contact_radius = 1e-4}, Target::kLiggghts), InputError);
 }
 
+TEST(InputLines, OfJointsHaveTheirDamping) {
+  for (const Target target :
+       {Target::kLuGre, Target::kMujoco, Target::kMujocoJoint, Target::kUrdf, Target::kSdf}) {
+    const Conversion conversion = To(target);
+    EXPECT_NO_THROW(Validate({.viscous = 3.0}, target));
+    EXPECT_THROW(Validate({.viscous = -3.0}, target), InvalidArgument);
+    double viscous = 0.0;
+    for (const Parameter& parameter : ParametersOf(conversion, target, {.viscous = 3.0})) {
+      if (parameter.unit == "N s/m") viscous += parameter.value;
+    }
+    EXPECT_EQ(viscous, 3.0);
+    EXPECT_NE(InputLines(conversion, target, {.viscous = 3.0}), InputLines(conversion, target));
+  }
+  EXPECT_THROW(Validate({.viscous = 3.0}, Target::kIwan), InputError);
+}
+
 TEST(NormalContact, IsOfDiscreteElementCodesAlone) {
   EXPECT_THROW(Validate({.normal_load = 100.0}, Target::kDahl), InputError);
   EXPECT_THROW(Validate({.normal_load = -1.0}, Target::kLammps), InvalidArgument);

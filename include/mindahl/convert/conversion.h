@@ -21,10 +21,18 @@ enum class Target {
   kLammps,
   kLiggghts,
   kYade,
+  kMujoco,  ///< as kLuGre: `lugre` of MuJoCo's dcmotor
+  // Coulomb's friction without presliding, as descriptions of robots have it:
+  kMujocoJoint,
+  kUrdf,
+  kSdf,
 };
 
 /// True for a code whose contact is a tangential spring with Coulomb's limit μN.
 bool IsDiscreteElementCode(Target target);
+
+/// True for a joint's friction in a description of a robot, which may carry viscous damping.
+bool IsJoint(Target target);
 
 struct TargetRow {
   Target target;
@@ -61,11 +69,13 @@ struct Conversion {
 
 /// Returns the parameters with which another law reproduces the steady loop of a contact.
 ///
-/// Masing's law and Dahl's own are one curve at X, in closed form (models/equivalent_law.h). LuGre,
-/// Bouc–Wen, the spring with Coulomb's limit and Jenkins elements are fitted: the mean square
-/// difference of force over the loop, each amplitude over its own T*, is least over all their
-/// parameters; of elements neither it nor the largest difference is more than that of the tangents
-/// of the virgin curve (MakeIwanElements), of Masing's law at X where the contact is Dahl's.
+/// Masing's law and Dahl's own are one curve at X, in closed form (models/equivalent_law.h).
+/// Coulomb's friction of a robot's joint, for which the least mean square is the mean force of a
+/// stroke, W/4X, is a spring that slips after 1e-13·X. LuGre, Bouc–Wen, the spring with Coulomb's
+/// limit and Jenkins elements are fitted: the mean square difference of force over the loop, each
+/// amplitude over its own T*, is least over all their parameters; of elements neither it nor the
+/// largest difference is more than that of the tangents of the virgin curve (MakeIwanElements), of
+/// Masing's law at X where the contact is Dahl's.
 /// @param contact  Masing's law (mindlin-dahl) or dahl
 /// @throws InvalidArgument for an invalid law or option: a range that does not hold X, a tolerance
 ///   outside (0, 1)

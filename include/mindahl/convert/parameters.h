@@ -16,10 +16,11 @@ struct Parameter {
   std::string meaning;
 };
 
-/// Holds the properties of a contact that discrete-element codes need in addition to a law.
+/// Holds the properties of a contact that programs need in addition to a law.
 struct NormalContact {
   std::optional<double> normal_load = {};     ///< N [N], > 0: its friction coefficient is Tc/N
   std::optional<double> contact_radius = {};  ///< a [m], > 0: LAMMPS' Mindlin stiffness is kt·a
+  double viscous = 0.0;                       ///< [N s/m], >= 0: damping of a joint, σ₂ of LuGre
 };
 
 /// @throws InputError for what belongs to another target, InvalidArgument for values out of range
