@@ -398,7 +398,8 @@ std::vector<SeriesLook> LooksOf(const PlotPanel& panel) {
       looks.push_back({.colour = fmt::format("h{}", std::lround(shade))});
       continue;
     }
-    if (!series.label.empty() || without_shade == 0) ++without_shade;
+    const bool continues = series.label.empty() && series.style == PlotStyle::kLine;
+    if (!continues || without_shade == 0) ++without_shade;
     const std::size_t place = without_shade - 1;
     looks.push_back({.colour = fmt::format("s{}", place % kColours),
                      .shape = place % kColours,

@@ -19,7 +19,8 @@ constexpr bool HasEnds(PlotStyle style) {
 void RequireDrawable(const PlotPanel& panel, const std::string& where);
 
 /// How the series of a panel differ: in colour, and in the shape of their markers; beyond the first
-/// six also in dashes and in filled markers. A series without a label looks like the one before it.
+/// six also in dashes and in filled markers. A line without a label looks like the series before
+/// it.
 struct SeriesLook {
   std::string colour;     ///< class of the style: s0 … s5, or h0 … h7 of a shade
   std::size_t shape = 0;  ///< of markers, 0 … 5

@@ -34,6 +34,7 @@ constexpr std::size_t kMostPointsOfPlot = 20'000;
 constexpr double kTitleHeight = 40;     // of the whole plot
 constexpr double kSubtitleHeight = 22;  // under it
 constexpr double kHeading = 26;         // title and legend of a panel, above its drawing
+constexpr double kLabelBelow = 24;      // label of the horizontal axis, where it has one
 constexpr double kEdge = 8;
 
 // A legend entry [px]: its symbol, and a character of its text, as wide as most fonts draw it.
@@ -160,16 +161,27 @@ class Page {
   }
 
   void AddPanels() {
-    std::vector<double> rows((plot_.panels.size() + Columns() - 1) / Columns(), 0.0);
-    for (std::size_t panel = 0; panel < plot_.panels.size(); ++panel) {
-      double& row = rows[panel / Columns()];
-      row = std::max(row, plot_.panels[panel].height);
+    struct Row {
+      double height = 0.0;  // of the axes, relative to other rows
+      double heading = 0.0;
+      double below = kBelowAxes - kLabelBelow;
+    };
+    std::vector<Row> rows((plot_.panels.size() + Columns() - 1) / Columns());
+    for (std::size_t k = 0; k < plot_.panels.size(); ++k) {
+      const PlotPanel& panel = plot_.panels[k];
+      Row& row = rows[k / Columns()];
+      row.height = std::max(row.height, panel.height);
+      if (!panel.title.empty() || LegendOf(panel).entries > 0) row.heading = kHeading;
+      if (!panel.x_label.empty()) row.below = kBelowAxes;
     }
     double heights = 0.0;
-    for (const double row : rows) heights += row;
+    double around = 0.0;
+    for (const Row& row : rows) {
+      heights += row.height;
+      around += row.heading + kAboveAxes + row.below;
+    }
     const double subtitle = plot_.subtitle.empty() ? 0.0 : kSubtitleHeight;
     double top = (plot_.title.empty() ? kEdge : kTitleHeight) + subtitle;
-    const double around = (kHeading + kAboveAxes + kBelowAxes) * static_cast<double>(rows.size());
     // A page too small for its margins still gets axes one pixel high.
     const double drawable = std::max(plot_.height - top - around - kEdge, heights);
     constexpr std::string_view kCentred = " text-anchor=\"middle\"";
@@ -183,25 +195,27 @@ class Page {
     for (const double legend : legends) legends_width += legend;
     const double width = std::max((plot_.width - legends_width) / plot_.columns - kEdge, 1.0);
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      const double axes = drawable * rows[row] / heights;
+      const double axes = drawable * rows[row].height / heights;
       double left = kEdge / 2;
       for (std::size_t column = 0; column < Columns(); ++column) {
         const std::size_t panel = row * Columns() + column;
         if (panel >= plot_.panels.size()) break;
-        AddPanel(plot_.panels[panel], left, top, width, axes);
+        AddPanel(plot_.panels[panel], left, top, top + rows[row].heading, width, axes);
         left += width + legends[column] + kEdge;
       }
-      top += kHeading + kAboveAxes + axes + kBelowAxes;
+      top += rows[row].heading + kAboveAxes + axes + rows[row].below;
     }
   }
 
   /// @param left, top  of the panel with its heading [px]
-  void AddPanel(const PlotPanel& panel, double left, double top, double width, double axes) {
+  /// @param drawing    top of what is below the heading [px]
+  void AddPanel(const PlotPanel& panel, double left, double top, double drawing, double width,
+                double axes) {
     const double heading = top + 0.7 * kHeading;
     if (!panel.title.empty()) AddText(left + kEdge, heading, "", panel.title);
     const bool at_side = IsLegendAtSide(panel);
     double x = at_side ? left + width + kEdge : left + width - LegendOf(panel).row;
-    double y = at_side ? top + kHeading + kAboveAxes : heading;
+    double y = at_side ? drawing + kAboveAxes : heading;
     const std::vector<SeriesLook> looks = LooksOf(panel);
     for (std::size_t k = 0; k < panel.series.size(); ++k) {
       const PlotSeries& series = panel.series[k];
@@ -215,7 +229,7 @@ class Page {
         x += kSymbol + TextWidth(series.label) + kBetweenEntries;
       }
     }
-    Add("<g transform=\"translate({:.1f},{:.1f})\">{}</g>\n", left, top + kHeading,
+    Add("<g transform=\"translate({:.1f},{:.1f})\">{}</g>\n", left, drawing,
         DrawPanel(panel, width, axes, kMostPointsOfPlot * panel.series.size()));
   }
 
