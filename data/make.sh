@@ -58,3 +58,19 @@ awk 'BEGIN {
 # shellcheck disable=SC2086
 "$mindahl" simulate $contact --force-path "$forces" --noise-displacement 2e-9 --seed 16 \
   >"$folder/imposed_force.csv"
+
+# A strain-wave drive of a robot: friction in proportion to the torque that it carries, which changes
+# its sign, and different in the two directions; knee 1.2 mrad, 3 N m under the mean of 21.8 N m.
+awk 'BEGIN {
+  print "angle [rad],torque [N m]"
+  for (i = 0; i <= 600; ++i) {
+    phase = 6.283185307179586 * i / 200
+    printf "%.9e,%.6f\n", 3.6e-3 * sin(phase), 12 + 28 * cos(0.4 * phase)
+  }
+}' >"$forces"
+"$mindahl" simulate --model dahl --alpha 1 --sigma 2500 --slip-force 3 --asymmetry -0.2 \
+  --path "$forces" --normal-load-column torque --normal-load 21.7868 --noise-force 0.015 --seed 17 |
+  awk -F, -v OFS=, '
+    NR == 1 { print "time [s]", "angle [rad]", "friction torque [N m]", "torque [N m]"; next }
+    { print 0.01 * $1, sprintf("%.9e", $2), sprintf("%.6f", $3), sprintf("%.6f", $4) }' \
+  >"$folder/joint.csv"

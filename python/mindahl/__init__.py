@@ -12,16 +12,16 @@ law; read_csv() reads a record as the program does. docs/python.md has them with
 
 from ._contact import Conversion, Report, contact, convert, excitation, simulate
 from ._fit import fit
-from ._mindahl import ContactState, InputError, Record, __version__
+from ._mindahl import ContactState, InputError, JointState, Record, __version__
 from ._records import read_csv
 from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Section
 from ._track import CycleTable, track
 
-for _public in (ContactState, InputError, Record):
+for _public in (ContactState, InputError, JointState, Record):
     _public.__module__ = __name__
 
 __all__ = [
     "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning", "FittedRecord",
-    "InputError", "Message", "Parameter", "Record", "Report", "Section", "__version__", "contact",
+    "InputError", "JointState", "Message", "Parameter", "Record", "Report", "Section", "__version__", "contact",
     "convert", "excitation", "fit", "read_csv", "simulate", "track",
 ]

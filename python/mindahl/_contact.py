@@ -116,7 +116,8 @@ def excitation(
 
 def simulate(
     displacement: Any, *, sigma: float, slip_force: float, alpha: Optional[float] = None,
-    model: str = "mindlin-dahl", rig_stiffness: Optional[float] = None,
+    model: str = "mindlin-dahl", rig_stiffness: Optional[float] = None, asymmetry: float = 0.0,
+    load: Any = None, reference_load: float = 1.0,
 ) -> Floats:
     """Tangential force [N] of a contact along a displacement, exact for any history.
 
@@ -126,10 +127,16 @@ def simulate(
     alpha: shape exponent [-], >= 0; by default the model's own, or 1/3.
     model: "mindlin-dahl", "mindlin", "dahl", "jenkins", "simplified-dahl".
     rig_stiffness: of a spring [N/m] in series, by default rigid.
+    asymmetry: A of slip forces Tc(1 ± A) [-], in (-1, 1).
+    load: array, of "dahl": the force is in proportion to it, slip_force being that under
+        reference_load; of either sign, as the torque that a joint carries.
     Returns an array of the same length. Noise is NumPy's: + rng.normal(0, deviation, force.size).
     Raises ValueError naming the quantity, its value and the rule.
     """
     return _mindahl.simulate(
         array("displacement", displacement), sigma=number("sigma", sigma),
         slip_force=number("slip_force", slip_force), alpha=optional_number("alpha", alpha),
-        model=model, rig_stiffness=optional_number("rig_stiffness", rig_stiffness))
+        model=model, rig_stiffness=optional_number("rig_stiffness", rig_stiffness),
+        asymmetry=number("asymmetry", asymmetry),
+        load=None if load is None else array("load", load),
+        reference_load=number("reference_load", reference_load))

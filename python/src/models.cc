@@ -12,6 +12,7 @@
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/friction_model.h"
+#include "mindahl/models/joint_friction.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
 #include "mindahl/request/one_of.h"
@@ -22,6 +23,7 @@ namespace py = pybind11;
 using models::BranchLaw;
 using models::ContactState;
 using models::FrictionModel;
+using models::JointState;
 
 namespace {
 
@@ -54,15 +56,31 @@ models::SeriesSpring RigOf(std::optional<double> stiffness) {
 
 py::array_t<double> Simulate(const Array& displacement, double sigma, double slip_force,
                              std::optional<double> alpha, const std::string& model_name,
-                             std::optional<double> rig_stiffness) {
+                             std::optional<double> rig_stiffness, double asymmetry,
+                             const std::optional<Array>& load, double reference_load) {
   const FrictionModel& model = RequireModel(model_name);
   const BranchLaw law = LawOf(model, sigma, alpha, slip_force);
   const std::span<const double> samples = SpanOf(displacement, "displacement");
   py::array_t<double> force(displacement.size());
   const std::span<double> written(force.mutable_data(), samples.size());
+  const bool is_joint = model.memory == models::Memory::kNone && !model.scaled_by_peak;
+  if (load && !is_joint) {
+    throw InputError("--load is of --model dahl alone: leave it out, or use that model");
+  }
+  if (is_joint && (load || asymmetry != 0)) {
+    if (rig_stiffness)
+      throw InputError("--rig-stiffness is refused beside a load and an asymmetry");
+    const std::vector<double> constant(load ? 0 : samples.size(), reference_load);
+    const std::span<const double> loads = load ? SpanOf(*load, "load") : constant;
+    const py::gil_scoped_release others_may_run;
+    models::EvaluateJointFriction(
+        {.law = law, .reference_load = reference_load, .asymmetry = asymmetry}, samples, loads,
+        written);
+    return force;
+  }
   const py::gil_scoped_release others_may_run;
   const models::LoadingPath path = models::MakeLoadingPath(
-      samples, loop::FindReversals(samples, 0.0), model.memory, models::InitialContact{});
+      samples, loop::FindReversals(samples, 0.0), model.memory, {.asymmetry = asymmetry});
   models::EvaluateForce(model, law, path, samples, written, RigOf(rig_stiffness));
   return force;
 }
@@ -92,6 +110,14 @@ ContactState MakeState(double sigma, double slip_force, std::optional<double> al
       {.unloaded_displacement = unloaded_displacement, .rig = RigOf(rig_stiffness)});
 }
 
+JointState MakeJoint(double sigma, double slip_force, double alpha, double asymmetry,
+                     double reference_load, double unloaded_displacement) {
+  return JointState({.law = LawOf(RequireModel("dahl"), sigma, alpha, slip_force),
+                     .reference_load = reference_load,
+                     .asymmetry = asymmetry},
+                    unloaded_displacement);
+}
+
 }  // namespace
 
 void AddModels(py::module_& module) {
@@ -109,7 +135,8 @@ void AddModels(py::module_& module) {
       py::kw_only(), py::arg("waveform"), py::arg("amplitude"), py::arg("cycles"),
       py::arg("samples_per_cycle"), py::arg("frequency"), py::arg("growth"), py::arg("seed"));
   module.def("simulate", &Simulate, py::arg("displacement"), py::kw_only(), py::arg("sigma"),
-             py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"));
+             py::arg("slip_force"), py::arg("alpha"), py::arg("model"), py::arg("rig_stiffness"),
+             py::arg("asymmetry"), py::arg("load"), py::arg("reference_load"));
   py::class_<ContactState>(module, "ContactState", R"(A contact that is moved step by step.
 
 Exact for a motion that does not turn within a step, however long the step; no time enters.
@@ -141,6 +168,27 @@ Raises ValueError naming the quantity, its value and the rule.)")
           "__deepcopy__",
           [](const ContactState& state, const py::dict& /*memo*/) { return ContactState(state); },
           py::arg("memo"));
+  py::class_<JointState>(module, "JointState", R"(Friction of a joint that is moved step by step.
+
+dz/dx = (sigma/slip_force)·(1 - s·z)^alpha, force = slip_force·(|N|·z + asymmetry·N·z²)/reference_load;
+exact for a motion that does not turn within a step, whatever the load does in between.
+
+sigma: tangential stiffness [N m/rad], > 0, and slip_force: Tc [N m], > 0, under the reference load.
+alpha: shape exponent [-]. asymmetry: in (-1, 1). reference_load: [N m], > 0.
+unloaded_displacement: [rad], where the force is 0 before any motion.
+Raises ValueError naming the quantity, its value and the rule.)")
+      .def(py::init(&MakeJoint), py::kw_only(), py::arg("sigma"), py::arg("slip_force"),
+           py::arg("alpha") = 1.0, py::arg("asymmetry") = 0.0, py::arg("reference_load") = 1.0,
+           py::arg("unloaded_displacement") = 0.0)
+      .def("move", &JointState::Move, py::arg("displacement"), py::arg("load"),
+           "Moves on to a displacement and returns the force there under a load.")
+      .def("peek", &JointState::Peek, py::arg("displacement"), py::arg("load"),
+           "The force that move() would return, without moving.")
+      .def("reset", &JointState::Reset, "Back to the start.")
+      .def("tangent_stiffness", &JointState::TangentStiffness, py::arg("load"),
+           "dT/dx under a load, onward in the direction of the last motion")
+      .def_property_readonly("state", &JointState::State, "z [-]")
+      .def_property_readonly("displacement", &JointState::Displacement, "[rad]");
 }
 
 }  // namespace mindahl::python

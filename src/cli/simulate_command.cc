@@ -28,6 +28,7 @@
 #include "mindahl/methods/method.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/imposed_force.h"
+#include "mindahl/models/joint_friction.h"
 #include "mindahl/models/limit_law.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
@@ -108,6 +109,42 @@ Approximation ResolveMethod(const SimulateOptions& options) {
   return approximation;
 }
 
+/// True of Dahl's own law, whose force follows a load and differs between the directions.
+bool IsJoint(const SimulateOptions& options) {
+  const FrictionModel* model = models::FindFrictionModel(options.model);
+  return model != nullptr && model->memory == models::Memory::kNone && !model->scaled_by_peak &&
+         options.method == "exact";
+}
+
+/// Returns the load at which sigma and the slip force are those given.
+double ReferenceLoad(const SimulateOptions& options) {
+  const std::optional<double> load = options.law.contact.known.normal_load;
+  if (load) return *load;
+  throw InputError(
+      "--normal-load missing: with --normal-load-column it is the load at which sigma and the "
+      "slip force are those given");
+}
+
+LawOptions AtReference(const SimulateOptions& options) {
+  LawOptions at_reference = options.law;
+  if (options.law.sigma || options.law.slip_force) at_reference.contact.known.normal_load.reset();
+  return at_reference;
+}
+
+/// Computes the force of a joint along a motion, under its load where that is given.
+void FollowJoint(const SimulateOptions& options, ImposedMotion& motion,
+                 std::vector<double>& force) {
+  models::JointFriction joint{
+      .law = ResolveLaw(AtReference(options), options.model, PrescribedExponent(options.model)),
+      .asymmetry = options.asymmetry};
+  if (!options.drive.load_column.empty()) joint.reference_load = ReferenceLoad(options);
+  motion = MakeMotion(options.drive, joint.law);
+  force.resize(motion.displacement.size());
+  const std::vector<double> constant(force.size(), joint.reference_load);
+  models::EvaluateJointFriction(joint, motion.displacement,
+                                motion.normal_load.empty() ? constant : motion.normal_load, force);
+}
+
 /// Returns the law under a varying load: σ and Tc are those at the reference load.
 models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
   const FrictionModel* model = models::FindFrictionModel(options.model);
@@ -115,20 +152,14 @@ models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
       options.method != "exact") {
     throw InputError(
         fmt::format("--normal-load-column does not serve --model {} --method {}: use --model "
-                    "mindlin, mindlin-dahl or jenkins and --method exact",
+                    "mindlin, mindlin-dahl, jenkins or dahl and --method exact",
                     options.model, options.method));
   }
-  const std::optional<double> load = options.law.contact.known.normal_load;
-  if (!load) {
-    throw InputError(
-        "--normal-load missing: with --normal-load-column it is the load at which sigma and the "
-        "slip force are those given");
-  }
-  LawOptions at_reference = options.law;
-  if (options.law.sigma || options.law.slip_force) at_reference.contact.known.normal_load.reset();
-  const models::BranchLaw law = ResolveLaw(at_reference, options.model, model->shape_exponent);
-  return {.friction_coefficient = law.slip_force / *load,
-          .reference_load = *load,
+  const double load = ReferenceLoad(options);
+  const models::BranchLaw law =
+      ResolveLaw(AtReference(options), options.model, model->shape_exponent);
+  return {.friction_coefficient = law.slip_force / load,
+          .reference_load = load,
           .reference_stiffness = law.tangential_stiffness,
           .shape_exponent = law.shape_exponent};
 }
@@ -169,14 +200,15 @@ void RequireAsymmetry(const SimulateOptions& options) {
     ThrowInvalid("--asymmetry [-]", options.asymmetry, "must be in (-1, 1)");
   }
   const FrictionModel* model = models::FindFrictionModel(options.model);
-  if (model == nullptr || model->memory != models::Memory::kReturnPoint ||
-      options.method != "exact") {
+  const bool is_joint = IsJoint(options);
+  if (model == nullptr || options.method != "exact" ||
+      (model->memory != models::Memory::kReturnPoint && !is_joint)) {
     throw InputError(
         fmt::format("--asymmetry does not serve --model {} --method {}: use --model mindlin, "
-                    "mindlin-dahl or jenkins and --method exact",
+                    "mindlin-dahl, jenkins or dahl and --method exact",
                     options.model, options.method));
   }
-  if (!options.drive.force_path.empty() || !options.drive.load_column.empty()) {
+  if (!options.drive.force_path.empty() || (!options.drive.load_column.empty() && !is_joint)) {
     throw InputError(
         fmt::format("--asymmetry does not serve {}: leave one of the two out",
                     options.drive.force_path.empty() ? "--normal-load-column" : "--force-path"));
@@ -204,6 +236,8 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   std::vector<double> force;
   if (!options.drive.force_path.empty()) {
     motion = FollowForce(options, force);
+  } else if (IsJoint(options) && (options.asymmetry != 0 || !options.drive.load_column.empty())) {
+    FollowJoint(options, motion, force);
   } else if (options.drive.load_column.empty()) {
     const models::BranchLaw law =
         ResolveLaw(options.law, options.model, PrescribedExponent(options.model));

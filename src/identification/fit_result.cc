@@ -6,6 +6,7 @@
 
 #include "core/probability.h"
 #include "mindahl/identification/terms.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
 namespace {
@@ -76,6 +77,10 @@ double FitResult::ResponseNoise() const {
 
 double FitResult::PeakForce() const {
   const RecordFit& widest = WidestRecord();
+  // The force of a joint follows its load: under the mean one it is that of the law's steady loop.
+  if (widest.load_varies && model->memory == models::Memory::kNone) {
+    return models::SteadyPeakForce(*model, law, widest.measures.amplitude);
+  }
   return widest.measures.peak_force / widest.load_ratio;
 }
 

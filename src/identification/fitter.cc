@@ -100,10 +100,12 @@ void RequireOptions(const FitOptions& options) {
     ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1");
   }
   RequireTermsOfResponse(options);
-  if (options.model->memory == models::Memory::kNone && HasTerm(options, "asymmetry")) {
+  if (options.model->memory == models::Memory::kNone && HasTerm(options, "asymmetry") &&
+      HasTerm(options, "rig_stiffness")) {
     throw InvalidArgument(fmt::format(
-        "asymmetry is of Masing's law, and not of {}: where slip forces differ, that one's "
-        "directions differ in stiffness too; use --model mindlin-dahl, mindlin or jenkins",
+        "asymmetry and rig_stiffness of {}: the rig is compliant to the force, which is not the "
+        "state that the law integrates; leave one out, or use --model mindlin-dahl, mindlin or "
+        "jenkins",
         options.model->name));
   }
   if (options.max_iterations < 1) {
@@ -424,7 +426,9 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
 /// Fills what the law loses in each cycle where that changes from cycle to cycle.
 void FillLawEnergy(const Attempt& attempt, FitResult& result) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
-  const bool is_asymmetric = asymmetry != nullptr && asymmetry->value != 0;
+  // Of Dahl's own law z² adds as much on the way up as it takes on the way down.
+  const bool is_asymmetric = asymmetry != nullptr && asymmetry->value != 0 &&
+                             result.model->memory == models::Memory::kReturnPoint;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
     RecordFit& fit = result.records[r];
     fit.law_energy.clear();
@@ -848,7 +852,9 @@ std::optional<FitOptions> WithinMeasuredForce(const FitResult& result, const Fit
     return std::nullopt;
   }
   const RecordFit& widest = result.WidestRecord();
-  if (!SlidesOverMostOfStroke(widest.facts, given.thresholds)) return std::nullopt;
+  if (!SlidesOverMostOfStroke(widest.facts, given.thresholds) || IsScaledByLoad(result)) {
+    return std::nullopt;
+  }
   const double peak_force = widest.facts.peak_force / widest.load_ratio;
   if (peak_force >= given.thresholds.mobilised_by_asymptote * result.law.slip_force) {
     return std::nullopt;

@@ -52,4 +52,9 @@ void WithdrawInterval(ParameterEstimate& estimate) {
   estimate.interval.clear();
 }
 
+bool IsScaledByLoad(const FitResult& result) {
+  return result.model->memory == models::Memory::kNone && !result.records.empty() &&
+         result.WidestRecord().load_varies;
+}
+
 }  // namespace mindahl::identification

@@ -22,4 +22,8 @@ void OpenAbove(ParameterEstimate& estimate, IntervalSource source);
 /// Takes back the interval and the standard error.
 void WithdrawInterval(ParameterEstimate& estimate);
 
+/// True of Dahl's own law under a load that varies: its force follows the load at once, so that
+/// neither a peak nor a half gap of the measured force bounds Tc.
+bool IsScaledByLoad(const FitResult& result);
+
 }  // namespace mindahl::identification

@@ -39,13 +39,13 @@ std::vector<ModelScore> ListCandidates(const FitOptions& options) {
   std::vector<ModelScore> scores;
   for (const models::FrictionModel& model : models::FrictionModels()) {
     if (model.scaled_by_peak) continue;
-    if (model.memory == models::Memory::kNone && HasTerm(options, "asymmetry")) continue;
     if (model.shape_exponent && alpha != options.fixed.end() &&
         *model.shape_exponent != alpha->second) {
       continue;
     }
     for (const bool rig : {false, true}) {
       if (rig && rig_is_known) continue;
+      if (rig && model.memory == models::Memory::kNone && HasTerm(options, "asymmetry")) continue;
       ModelScore& score = scores.emplace_back();
       score.model = &model;
       score.rig = rig;

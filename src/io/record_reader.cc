@@ -120,6 +120,22 @@ constexpr Role kNormalLoad{
     "normal load", kNormalLoadAliases,     ForceUnit,           ForceUnitSymbols,
     "N",           "--normal-load-column", "--normal-load-unit"};
 
+std::string ForceOrTorqueUnitSymbols() { return ForceUnitSymbols() + ", " + TorqueUnitSymbols(); }
+std::string LengthOrAngleUnitSymbols() { return LengthUnitSymbols() + ", " + AngleUnitSymbols(); }
+std::optional<Unit> LengthOrAngleUnit(std::string_view symbol) {
+  const std::optional<Unit> length = LengthUnit(symbol);
+  return length ? length : AngleUnit(symbol);
+}
+
+/// A joint carries a torque, a twisted contact a normal load.
+constexpr Role kLoadOfTorsion{
+    "normal load", kNormalLoadAliases,     ForceOrTorqueUnit,   ForceOrTorqueUnitSymbols,
+    "N",           "--normal-load-column", "--normal-load-unit"};
+/// What drives a simulated contact, or joint.
+constexpr Role kDrive{
+    "displacement",   kDisplacementAliases, LengthOrAngleUnit, LengthOrAngleUnitSymbols, "m",
+    "--displacement", "--displacement-unit"};
+
 std::string LowerCase(std::string_view text) {
   std::string lower(text);
   std::ranges::transform(lower, lower.begin(), [](unsigned char character) {
@@ -644,6 +660,11 @@ std::vector<double> ReadPathColumn(const CsvTable& table, const Role& role,
 
 }  // namespace
 
+std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol) {
+  const std::optional<Unit> force = ForceUnit(symbol);
+  return force ? force : TorqueUnit(symbol);
+}
+
 RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
   const ColumnFinder finder(table);
   RecordFile file;
@@ -683,8 +704,8 @@ RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
   file.force =
       read(file.is_torsional ? kTorque : kForce, assigned.force, columns.force, record.force);
   file.time = read_optional(kTime, assigned.time, columns.time, record.time);
-  file.normal_load =
-      read_optional(kNormalLoad, assigned.normal_load, columns.normal_load, record.normal_load);
+  file.normal_load = read_optional(file.is_torsional ? kLoadOfTorsion : kNormalLoad,
+                                   assigned.normal_load, columns.normal_load, record.normal_load);
   if (table.MayHaveCommasForThousands(assigned.displacement) &&
       table.MayHaveCommasForThousands(assigned.force)) {
     file.notes.push_back(fmt::format(
@@ -727,14 +748,14 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,
                                          const ColumnChoice& displacement) {
   const CsvTable table = ReadCsvTable(path);
-  return ReadPathColumn(table, WithUnitOption(kDisplacement, kUnitOfPath), displacement);
+  return ReadPathColumn(table, WithUnitOption(kDrive, kUnitOfPath), displacement);
 }
 
 LoadedPath ReadLoadedPath(const std::filesystem::path& path, const ColumnChoice& displacement,
                           const ColumnChoice& normal_load) {
   const CsvTable table = ReadCsvTable(path);
-  return {ReadPathColumn(table, WithUnitOption(kDisplacement, kUnitOfPath), displacement),
-          ReadPathColumn(table, kNormalLoad, normal_load)};
+  return {ReadPathColumn(table, WithUnitOption(kDrive, kUnitOfPath), displacement),
+          ReadPathColumn(table, kLoadOfTorsion, normal_load)};
 }
 
 ForcePath ReadForcePath(const std::filesystem::path& path, const ColumnChoice& force) {

@@ -97,7 +97,7 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
       &Samples::force, "force");
   if (layout.time) add(*layout.time, TimeUnit(layout.time->unit), &Samples::time, "time");
   if (layout.normal_load) {
-    add(*layout.normal_load, ForceUnit(layout.normal_load->unit), &Samples::normal_load,
+    add(*layout.normal_load, ForceOrTorqueUnit(layout.normal_load->unit), &Samples::normal_load,
         "normal load");
   }
   std::vector<std::size_t> wanted;

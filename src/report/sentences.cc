@@ -409,11 +409,13 @@ std::string EnergyContradiction(const Finding& finding, const FitResult& fit, co
 
 // --- the normal load
 
-std::string LoadFollowed(const Finding& finding, const FitResult&, const Units&) {
+std::string LoadFollowed(const Finding& finding, const FitResult& fit, const Units&) {
+  const bool is_joint = fit.model->memory == models::Memory::kNone;
   return fmt::format(
-      "{}the normal load varies by ±{:.3g} %: the law follows it, Tc = μN and σ ∝ N^α within the "
-      "record, and σ and Tc are those under its mean",
-      WhichRecord(finding), 100 * Needed(finding, "variation"));
+      "{}the normal load varies by ±{:.3g} %: the law follows it, {}", WhichRecord(finding),
+      100 * Needed(finding, "variation"),
+      is_joint ? "the force in proportion, and σ and Tc are those under its mean magnitude"
+               : "Tc = μN and σ ∝ N^α within the record, and σ and Tc are those under its mean");
 }
 
 std::string LoadNotFollowed(const Finding& finding, const FitResult& fit, const Units&) {

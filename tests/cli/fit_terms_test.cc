@@ -567,9 +567,9 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"AsymmetryOfOneSense",
                {"--asymmetry", "1"},
                "asymmetry [-] = 1 is invalid: must be in (-1, 1)"},
-        Misuse{"AsymmetryOfDahlsLaw",
-               {"--asymmetry", "fit", "--model", "dahl"},
-               "asymmetry is of Masing's law, and not of dahl"},
+        Misuse{"AsymmetryOfDahlsLawBehindARig",
+               {"--asymmetry", "fit", "--model", "dahl", "--rig-stiffness", "fit"},
+               "asymmetry and rig_stiffness of dahl"},
         Misuse{"AsymmetryOfACycledContact",
                {"--asymmetry", "fit", "--initial-state", "steady"},
                "asymmetry cannot be told from force_offset: the contact had slipped before what is "

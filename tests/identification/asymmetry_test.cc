@@ -292,21 +292,24 @@ TEST(Asymmetry, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
   }
 }
 
-TEST(Asymmetry, IsRefusedOfALawWithoutMemoryAndBeyondOne) {
+TEST(Asymmetry, IsRefusedOfDahlsLawBehindARigAndBeyondOne) {
   FitOptions options = WithAsymmetry();
   options.model = &Model("dahl");
-  EXPECT_THAT(RefusalOf({LoopOf(0.2, 1.3)}, options), HasSubstr("is of Masing's law"));
+  options.terms.emplace_back("rig_stiffness");
+  EXPECT_THAT(RefusalOf({LoopOf(0.2, 1.3)}, options), HasSubstr("rig_stiffness of dahl"));
   FitOptions beyond;
   beyond.fixed["asymmetry"] = -1.0;
   EXPECT_THAT(RefusalOf({LoopOf(0.2, 1.3)}, beyond), HasSubstr("must be in (-1, 1)"));
 }
 
-TEST(Asymmetry, IsComparedWithNoLawThatHasNone) {
+TEST(Asymmetry, IsComparedWithNoLawThatDoesNotModelIt) {
   Generator generator(4);
   const Record record = WithForceNoise(LoopOf(0.25, 1.3), 0.6, generator);
   EXPECT_FALSE(FitOne(record, WithAsymmetry()).law_choice.has_value());
   const ModelSelection selection = SelectModel(std::vector<Record>{record}, WithAsymmetry());
-  for (const ModelScore& score : selection.scores) EXPECT_NE(score.model->name, "dahl");
+  for (const ModelScore& score : selection.scores) {
+    EXPECT_FALSE(score.rig && score.model->memory == models::Memory::kNone);
+  }
   EXPECT_FALSE(selection.scores.empty());
 }
 

@@ -82,8 +82,6 @@ std::vector<Case> LawsAndTerms() {
                             term.name == "force_drift";
       // A further coefficient of a term is fitted with it.
       if (!is_asked || term.of_column || term.option.empty()) continue;
-      // Dahl's own law has no asymmetry.
-      if (std::string(model) == "dahl" && term.name == "asymmetry") continue;
       cases.push_back({model, std::string(term.name)});
     }
   }

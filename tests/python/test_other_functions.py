@@ -178,6 +178,29 @@ def test_a_contact_state_moves_as_simulate_does():
         assert state.force == moved[-1] and state.displacement == displacement[-1]
 
 
+def test_a_joint_follows_the_torque_that_it_carries():
+    generator = np.random.default_rng(12)
+    angle = np.cumsum(generator.normal(size=300)) * 4e-4
+    torque = 10 + 40 * np.cos(np.arange(300) / 17)
+    joint = {"sigma": 2500.0, "slip_force": 3.0, "alpha": 1.0, "asymmetry": -0.2,
+             "reference_load": 22.0}
+    force = mindahl.simulate(angle, load=torque, model="dahl", **joint)
+    state = mindahl.JointState(**joint)
+    moved = []
+    for x, load in zip(angle, torque):
+        peeked = state.peek(x, load)
+        moved.append(state.move(x, load))
+        assert moved[-1] == peeked
+    # As above, times 1 + 2|A| and the largest torque over its mean.
+    np.testing.assert_allclose(moved, force, rtol=0, atol=1e-12)
+    fit = mindahl.fit(angle, force, normal_load_column=torque, model="dahl", asymmetry="fit",
+                      initial_state="virgin")
+    assert abs(fit.asymmetry.value + 0.2) < 1e-9
+    assert abs(fit.slip_force.value * 22 / 3 / np.abs(torque).mean() - 1) < 1e-9
+    with pytest.raises(ValueError, match="load is of model dahl alone"):
+        mindahl.simulate(angle, load=torque, sigma=1, slip_force=1)
+
+
 def test_a_contact_state_is_copied_peeked_and_reset():
     state = mindahl.ContactState(sigma=SIGMA, slip_force=SLIP_FORCE)
     state.move(5e-7)

@@ -11,6 +11,7 @@
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/imposed_force.h"
+#include "mindahl/models/joint_friction.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 #include "mindahl/models/variable_load.h"
@@ -44,6 +45,13 @@ BranchLaw LawOf(const Scenario& scenario, double load = 1.0) {
 }
 
 constexpr double kMeanLoad = 50.0;  // [N]
+
+/// Returns half the way of an imposed motion [m]: λ times the gross-slip displacement, or of a law
+/// that never slips as a whole times the knee Tc/σ.
+double ReachOf(const Scenario& scenario, const BranchLaw& law) {
+  return scenario.lambda * (law.shape_exponent < 1 ? GrossSlipDisplacement(law)
+                                                   : law.slip_force / law.tangential_stiffness);
+}
 
 models::SeriesSpring RigOf(const Scenario& scenario) {
   if (!(scenario.rig > 0)) return {};
@@ -159,11 +167,10 @@ Record DrivenRecord(const Scenario& scenario, double load, bool is_steady) {
   const BranchLaw law = LawOf(scenario, load);
   if (scenario.steps_a_reading > 1) return ReadApart(scenario, law);
   Record record;
-  record.displacement =
-      models::MakeExcitation({.amplitude = scenario.lambda * GrossSlipDisplacement(law),
-                              .cycles = static_cast<double>(scenario.cycles),
-                              .samples_per_cycle = scenario.samples_per_cycle})
-          .displacement;
+  record.displacement = models::MakeExcitation({.amplitude = ReachOf(scenario, law),
+                                                .cycles = static_cast<double>(scenario.cycles),
+                                                .samples_per_cycle = scenario.samples_per_cycle})
+                            .displacement;
   for (std::size_t i = 0; i < record.displacement.size(); ++i) {
     record.displacement[i] = record.displacement[i - i % scenario.dwell];
   }
@@ -175,6 +182,16 @@ Record DrivenRecord(const Scenario& scenario, double load, bool is_steady) {
           static_cast<double>(i) / static_cast<double>(scenario.samples_per_cycle);
       record.normal_load.push_back(kMeanLoad * load *
                                    (1 + scenario.load_swing * std::cos(2 * kTwoPi * cycles)));
+    }
+    if (scenario.model == "dahl") {
+      double magnitude = 0.0;
+      for (const double value : record.normal_load) magnitude += std::abs(value);
+      models::EvaluateJointFriction(
+          {.law = law,
+           .reference_load = magnitude / static_cast<double>(record.size()),
+           .asymmetry = scenario.asymmetry},
+          record.displacement, record.normal_load, record.force);
+      return record;
     }
     models::EvaluateForceUnderLoad({.friction_coefficient = law.slip_force / (kMeanLoad * load),
                                     .reference_load = kMeanLoad * load,
@@ -208,7 +225,7 @@ std::vector<Record> CleanRecords(const Scenario& scenario) {
 
 /// Half the way of the motion [m].
 double Amplitude(const Scenario& scenario) {
-  if (!IsForced(scenario)) return scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
+  if (!IsForced(scenario)) return ReachOf(scenario, LawOf(scenario));
   Scenario steady = scenario;
   steady.is_steady = true;
   const auto [low, high] = std::ranges::minmax(ForcedRecord(steady).displacement);
@@ -222,7 +239,7 @@ double ForceNoise(const Scenario& scenario, double load = 1.0) {
   const double of_load = scenario.noise_follows_load ? load : 1.0;
   return of_load * scenario.force_noise *
          models::SteadyPeakForce(*models::FindFrictionModel("mindlin-dahl"), law,
-                                 scenario.lambda * GrossSlipDisplacement(law));
+                                 ReachOf(scenario, law));
 }
 
 Record NoisyRecord(const Scenario& scenario, double load, const Record& clean, Normal& normal) {
@@ -407,6 +424,14 @@ std::vector<Scenario> Scenarios() {
        .highest_coverage = kWhiteHigh,
        .asymmetry = 0.2,
        .is_steady = true},
+      {.name = "Dahl's own law, alpha 1, 3 knees, torque of either sign, asymmetry -0.3 fitted",
+       .shape_exponent = 1.0,
+       .lambda = 3.0,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .asymmetry = -0.3,
+       .load_swing = 2.5,
+       .model = "dahl"},
       {.name = "four loads, 1 to 2.5 to 5 to 10, noise 1 % of each T*",
        .lowest_coverage = kWhiteLow,
        .highest_coverage = kWhiteHigh,

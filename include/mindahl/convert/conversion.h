@@ -69,7 +69,7 @@ struct Conversion {
 
 /// Returns the parameters with which another law reproduces the steady loop of a contact.
 ///
-/// Masing's law and Dahl's own are one curve at X, in closed form (models/equivalent_law.h).
+/// Masing's law and Dahl's own are one curve at X, in closed form (models/steady_loop.h).
 /// Coulomb's friction of a robot's joint, for which the least mean square is the mean force of a
 /// stroke, W/4X, is a spring that slips after 1e-13·X. LuGre, Bouc–Wen, the spring with Coulomb's
 /// limit and Jenkins elements are fitted: the mean square difference of force over the loop, each

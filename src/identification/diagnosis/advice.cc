@@ -37,14 +37,17 @@ bool HasTimes(const ScaledRecords& data) {
                               [](const ScaledRecord& record) { return record.velocity.empty(); });
 }
 
-/// Under a load that varies the law does not model it, and Dahl's own law has no asymmetry.
+/// Masing's law does not model it under a load that varies, and Dahl's own not behind a rig.
 bool MayBeAsymmetric(const Problem& problem) {
-  return problem.model->memory == models::Memory::kReturnPoint && !problem.data->load_varies;
+  return problem.model->memory == models::Memory::kReturnPoint ? !problem.data->load_varies
+                                                               : !problem.parameters.has_rig();
 }
 
-/// An asymmetry is identifiable where the offset is known, or if the contact started unloaded.
+/// An asymmetry is identifiable where the offset is known, or if the contact started unloaded; of
+/// Dahl's own law, whose branches bend by it, always.
 bool TellsAsymmetry(const Problem& problem) {
-  return problem.state.Any(models::InitialState::kVirgin) || problem.parameters.any_zero_is_known();
+  return problem.model->memory == models::Memory::kNone ||
+         problem.state.Any(models::InitialState::kVirgin) || problem.parameters.any_zero_is_known();
 }
 
 bool IsAccepted(const Problem& problem, std::string_view option) {

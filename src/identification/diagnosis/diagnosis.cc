@@ -241,7 +241,8 @@ std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solu
 
 std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresholds& thresholds) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
-  if (asymmetry == nullptr || result.initial_state == models::InitialState::kVirgin) {
+  if (asymmetry == nullptr || result.initial_state == models::InitialState::kVirgin ||
+      result.model->memory == models::Memory::kNone) {
     return std::nullopt;
   }
   const bool is_known = asymmetry->status == ParameterStatus::kFixed;

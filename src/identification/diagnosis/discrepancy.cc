@@ -273,7 +273,7 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
   const loop::LoopFacts& facts = result.WidestRecord().facts;
   const double load_ratio = result.WidestRecord().load_ratio;
   const bool is_open = slip_force.lower95 && !slip_force.upper95;
-  if (is_open && facts.closed && plain[kSlipForce].lower95) {
+  if (is_open && facts.closed && plain[kSlipForce].lower95 && !IsScaledByLoad(result)) {
     const double carried = std::min(facts.peak_force / load_ratio, *plain[kSlipForce].lower95);
     RaiseLowerEnd(slip_force, IntervalSource::kCarriedForce, carried);
   }

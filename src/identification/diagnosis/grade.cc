@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/intervals.h"
+
 namespace mindahl::identification {
 namespace {
 
@@ -33,6 +35,7 @@ bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thre
 std::optional<double> MeasuredHalfGap(const FitResult& result) {
   const RecordFit& widest = result.WidestRecord();
   const bool is_of_force = result.response == loop::Channel::kForce;
+  if (IsScaledByLoad(result)) return std::nullopt;
   if (!is_of_force || !widest.facts.half_gap || !(*widest.facts.half_gap > 0)) return std::nullopt;
   return *widest.facts.half_gap / widest.load_ratio;
 }

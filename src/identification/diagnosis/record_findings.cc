@@ -102,17 +102,22 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
     const ScaledRecord& record = data.records[r];
     const bool is_followed = !record.load_ratio.empty();
     if (!is_followed && record.load_change.empty()) continue;
+    double sum = 0.0;
     double squares = 0.0;
     double count = 0.0;
     for (std::size_t i = 0; i < record.size(); ++i) {
       if (record.counts[i] == 0) continue;
       const double change = is_followed ? record.load_ratio[i] - 1 : record.load_change[i];
+      sum += change;
       squares += change * change;
       ++count;
     }
+    // Of a load of either sign the mean is not that of its magnitude.
+    const double mean = sum / std::max(count, 1.0);
     Finding& finding = findings.emplace_back(Finding{
         .code = is_followed ? FindingCode("load_followed") : FindingCode("load_not_followed"),
-        .numbers = {{"variation", std::sqrt(2 * squares / std::max(count, 1.0))}}});
+        .numbers = {{"variation",
+                     std::sqrt(2 * std::max(squares / std::max(count, 1.0) - mean * mean, 0.0))}}});
     if (data.records.size() > 1) {
       finding.numbers.emplace_back("record", static_cast<double>(r + 1));
     }

@@ -86,10 +86,11 @@ Place SteadyExtreme(const Problem& problem, const LawPoint& point, const ScaledR
   const std::span<const double> displacement = record.displacement;
   const auto [lowest, highest] = std::ranges::minmax(displacement);
   const std::array<double, 2> stroke = {lowest, highest};
-  const models::LoadingPath path =
-      models::MakeLoadingPath(stroke, {}, problem.model->memory,
-                              {.state = models::InitialState::kSteady,
-                               .asymmetry = problem.parameters.AsymmetryAt(point.theta)});
+  const bool is_masing = problem.model->memory == models::Memory::kReturnPoint;
+  const models::LoadingPath path = models::MakeLoadingPath(
+      stroke, {}, problem.model->memory,
+      {.state = models::InitialState::kSteady,
+       .asymmetry = is_masing ? problem.parameters.AsymmetryAt(point.theta) : 0.0});
   const models::NormalizedLaw law = LawUnder(problem, point, record);
   models::NormalizedResponse response;
   std::array<double, 2> t{};

@@ -54,6 +54,7 @@ void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
   ParameterEstimate& slip_force = result.parameters[kSlipForce];
   const RecordFit& widest = result.WidestRecord();
   if (result.response == loop::Channel::kDisplacement) return;  // of a contact that never slips
+  if (IsScaledByLoad(result)) return;
   const bool slips = result.PeakForce() >= thresholds.mobilised_by_asymptote * slip_force.value;
   if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
   const double half_gap = *widest.facts.half_gap / widest.load_ratio;
@@ -63,6 +64,7 @@ void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
 void KeepAboveCarriedForce(FitResult& result) {
   const RecordFit& widest = result.WidestRecord();
   if (result.response == loop::Channel::kDisplacement || !widest.facts.half_gap) return;
+  if (IsScaledByLoad(result)) return;
   const bool has_other =
       std::ranges::any_of(result.parameters, [](const ParameterEstimate& estimate) {
         return estimate.name == "viscous" || estimate.name == "lag" ||

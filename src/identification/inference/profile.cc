@@ -418,6 +418,7 @@ namespace {
 /// distance between the medians of a few ends is known to about half of that.
 double CarriedForce(const Problem& problem, const FitResult& result, double peak_force) {
   if (problem.data->is_forced() || result.records.empty()) return peak_force;
+  if (IsScaledByLoad(result)) return 0.0;
   const RecordFit& widest = result.WidestRecord();
   if (widest.fitted_force.empty()) return peak_force;
   const auto [low, high] = std::ranges::minmax(widest.fitted_force);

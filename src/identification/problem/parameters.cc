@@ -180,8 +180,10 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   }
   ApplyOptions(options);
   RequireShapedColumns();
-  if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
-  if (data.load_varies) KeepShapeBelowOne(options);
+  if (options.model->memory == models::Memory::kReturnPoint) {
+    if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
+    if (data.load_varies) KeepShapeBelowOne(options);
+  }
   for (const Parameter& parameter : parameters_) {
     if (parameter.absent || !parameter.term->needs_time) continue;
     for (const ScaledRecord& record : data.records) {

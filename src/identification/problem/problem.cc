@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "mindahl/models/joint_friction.h"
+
 namespace mindahl::identification {
 
 LawPoint PointAt(const Problem& problem, std::span<const double> theta) {
@@ -89,6 +91,43 @@ LawSensitivity SensitivityTo(const Problem& problem, std::size_t parameter) {
   return result;
 }
 
+namespace {
+
+/// True of Masing's law: its loading path depends on an asymmetry, and its elements on the load.
+/// Dahl's own reads both from its state.
+bool HasPathAsymmetry(const Problem& problem) {
+  return problem.model->memory == models::Memory::kReturnPoint;
+}
+
+/// True if the response is the state z of a joint, from which its force is read by the load and by
+/// the asymmetry (models/joint_friction.h).
+bool IsStateOfJoint(const Problem& problem, const ScaledRecord& record) {
+  return problem.model->memory == models::Memory::kNone &&
+         (!record.load_ratio.empty() || problem.parameters.has_asymmetry());
+}
+
+double LoadRatioAt(const ScaledRecord& record, std::size_t sample) {
+  return record.load_ratio.empty() ? 1.0 : record.load_ratio[sample];
+}
+
+/// Puts the force in the place of the state z, and its derivatives in the place of those of z.
+void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<double> t,
+                      const ResponseColumns& columns) {
+  const std::array by_state = {columns.log_rate, columns.shape_exponent, columns.unloaded,
+                               columns.lag};
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double load = LoadRatioAt(record, i);
+    const double slope = models::JointForceSlope(t[i], load, asymmetry);
+    for (const std::span<double> column : by_state) {
+      if (!column.empty()) column[i] *= slope;
+    }
+    if (!columns.asymmetry.empty()) columns.asymmetry[i] = load * t[i] * t[i];
+    t[i] = models::JointForce(t[i], load, asymmetry);
+  }
+}
+
+}  // namespace
+
 void Response::Bind(const Problem& problem) {
   problem_ = &problem;
   const std::size_t records = problem.data->records.size();
@@ -101,7 +140,7 @@ void Response::Bind(const Problem& problem) {
   if (problem.data->load_varies) histories_.resize(records);
   for (std::size_t r = 0; r < records; ++r) {
     const ScaledRecord& record = problem.data->records[r];
-    if (record.load_ratio.empty()) continue;
+    if (record.load_ratio.empty() || !HasPathAsymmetry(problem)) continue;
     models::MakeLoadedHistory(record.displacement, record.load_ratio, record.reversals,
                               problem.state.Of(r), histories_[r]);
   }
@@ -127,7 +166,7 @@ models::InitialContact Response::InitialOf(std::size_t r, std::span<const double
   const bool virgin = state == models::InitialState::kVirgin;
   return {.state = state,
           .unloaded_displacement = virgin ? theta[unloaded_[r]] : 0.0,
-          .asymmetry = theta[asymmetry_]};
+          .asymmetry = HasPathAsymmetry(*problem_) ? theta[asymmetry_] : 0.0};
 }
 
 double Response::LagOf(std::size_t r, std::span<const double> theta) const {
@@ -184,6 +223,19 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
                                       models::OriginSensitivity& sensitivity) {
   const ScaledRecord& record = problem_->data->records[r];
   const models::NormalizedLaw law = LawUnder(*problem_, at, record);
+  const auto scale = [&] {
+    if (IsStateOfJoint(*problem_, record)) {
+      std::vector<double> state(record.size());
+      has_lag_ ? DifferentiateLagged(at, r, state, {}) : DifferentiateRecord(at, r, state, {});
+      for (std::size_t i = 0; i < record.size(); ++i) {
+        const double slope =
+            models::JointForceSlope(state[i], LoadRatioAt(record, i), at.theta[asymmetry_]);
+        sensitivity.sample_slope[i] *= slope;
+        sensitivity.sample_gain[i] *= slope;
+      }
+    }
+    if (slip_varies_) ScaleSensitivity(r, at, sensitivity);
+  };
   if (has_lag_) {
     const LaggedMotion& motion = MotionOf(r, at.theta);
     response_.DifferentiateByOrigins(*problem_->model, law, motion.path(), motion.displacement(),
@@ -194,12 +246,12 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
       }
       column->resize(motion.places().size());
     }
-    if (slip_varies_) ScaleSensitivity(r, at, sensitivity);
+    scale();
     return;
   }
   response_.DifferentiateByOrigins(*problem_->model, law, PathOf(r, at.theta), record.displacement,
                                    sensitivity);
-  if (slip_varies_) ScaleSensitivity(r, at, sensitivity);
+  scale();
 }
 
 /// Differentiates the response of one record, over its own slip force.
@@ -214,12 +266,13 @@ void Response::DifferentiateRecord(const LawPoint& at, std::size_t r, std::span<
   const bool wants_any = !columns.log_rate.empty() || !columns.shape_exponent.empty() ||
                          !columns.unloaded.empty() || !columns.log_spring_travel.empty() ||
                          !columns.asymmetry.empty();
-  const models::NormalizedGradient gradient{.log_rate = columns.log_rate,
-                                            .shape_exponent = columns.shape_exponent,
-                                            .unloaded_displacement = columns.unloaded,
-                                            .log_spring_travel = columns.log_spring_travel,
-                                            .asymmetry = columns.asymmetry};
-  if (!record.load_ratio.empty()) {
+  const models::NormalizedGradient gradient{
+      .log_rate = columns.log_rate,
+      .shape_exponent = columns.shape_exponent,
+      .unloaded_displacement = columns.unloaded,
+      .log_spring_travel = columns.log_spring_travel,
+      .asymmetry = HasPathAsymmetry(*problem_) ? columns.asymmetry : std::span<double>()};
+  if (!record.load_ratio.empty() && HasPathAsymmetry(*problem_)) {
     const double unloaded = at.theta[unloaded_[r]];
     if (wants_any) {
       loaded_response_.Differentiate(law, histories_[r], unloaded, t, gradient);
@@ -256,7 +309,8 @@ void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<
   const LaggedMotion& motion = MotionOf(r, at.theta);
   const std::size_t size = motion.displacement().size();
   const std::array wanted = {columns.log_rate, columns.shape_exponent, columns.unloaded,
-                             columns.log_spring_travel, columns.asymmetry};
+                             columns.log_spring_travel,
+                             HasPathAsymmetry(*problem_) ? columns.asymmetry : std::span<double>()};
   moved_.resize((1 + wanted.size()) * size);
   const auto moved = [&](std::size_t column) {
     return std::span(moved_).subspan(column * size, size);
@@ -318,6 +372,9 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
       DifferentiateLagged(at, r, values, parts);
     } else {
       DifferentiateRecord(at, r, values, parts);
+    }
+    if (IsStateOfJoint(*problem_, record)) {
+      ReadForceOfJoint(record, at.theta[asymmetry_], values, parts);
     }
     if (slip_varies_) ScaleBySlipForce(r, at, values, parts);
     if (record.load != 1) {

@@ -151,16 +151,19 @@ bool TellsLoad(const loop::PreparedRecord& record, const loop::PreparationOption
 struct MeasuredLoad {
   double mean = 0.0;       // [N]
   double amplitude = 0.0;  // [N] of a sine of the same standard deviation, but for white noise
+  double magnitude = 0.0;  // [N], mean of |N|
 };
 
 MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
                          const loop::PreparationOptions& options, std::size_t r) {
   const std::span<const double> load = record.record.normal_load;
   double sum = 0.0;
+  double magnitude = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < load.size(); ++i) {
     if (!TellsLoad(record, options, r, i)) continue;
     sum += load[i];
+    magnitude += std::abs(load[i]);
     ++count;
   }
   if (count == 0) return {};
@@ -178,22 +181,26 @@ MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
   // White noise of the readings has half the mean squared step for its variance; what varies
   // smoothly hardly steps.
   const double noise = step_count > 0 ? steps / (2 * step_count) : 0.0;
-  return {mean, std::sqrt(2 * std::max(squares / count - noise, 0.0))};
+  return {mean, std::sqrt(2 * std::max(squares / count - noise, 0.0)), magnitude / count};
 }
 
-/// True if the law models a load that varies: it is of Masing's kind, its displacement that of
-/// the contact alone, and read with the force, and slips as easily in either direction.
+/// True for Dahl's own law, whose force follows a load of either sign (models/joint_friction.h).
+bool HasStateOfJoint(const FitOptions& options) {
+  return options.model->memory == models::Memory::kNone;
+}
+
+/// True if the law models a load that varies. The displacement is then that of the contact alone;
+/// of Masing's law it is read with the force, and slip is as easy in either direction.
 bool KnowsVaryingLoads(const FitOptions& options) {
-  return options.model->memory == models::Memory::kReturnPoint &&
-         !HasTerm(options, "rig_stiffness") && !HasTerm(options, "lag") &&
-         !HasTerm(options, "asymmetry");
+  if (HasTerm(options, "rig_stiffness")) return false;
+  return HasStateOfJoint(options) || (!HasTerm(options, "lag") && !HasTerm(options, "asymmetry"));
 }
 
 /// Takes the loads within a record from their column.
 void TakeVaryingLoad(ScaledRecord& target, const loop::PreparedRecord& record,
-                     const MeasuredLoad& measured, bool is_known) {
+                     const MeasuredLoad& measured, bool is_known, bool has_sign) {
   for (const double load : record.record.normal_load) {
-    const double ratio = std::max(load, 0.0) / measured.mean;
+    const double ratio = (has_sign ? load : std::max(load, 0.0)) / measured.mean;
     if (is_known) {
       target.load_ratio.push_back(ratio);
     } else {
@@ -218,10 +225,14 @@ void TakeLoads(ScaledRecords& data, const loop::PreparedRecords& records,
     MeasuredLoad measured;
     if (!record.record.normal_load.empty()) {
       measured = MeasureLoad(record, options.preparation, r);
-      const bool varies = measured.mean > 0 &&
-                          measured.amplitude > options.thresholds.load_variation * measured.mean;
+      const bool has_sign = HasStateOfJoint(options) && KnowsVaryingLoads(options);
+      const bool is_reversed = has_sign && measured.mean < 0;
+      if (has_sign) measured.mean = measured.magnitude;
+      const bool varies =
+          measured.mean > 0 &&
+          (is_reversed || measured.amplitude > options.thresholds.load_variation * measured.mean);
       const bool is_known = varies && KnowsVaryingLoads(options);
-      if (varies) TakeVaryingLoad(data.records[r], record, measured, is_known);
+      if (varies) TakeVaryingLoad(data.records[r], record, measured, is_known, has_sign);
       data.load_varies = data.load_varies || is_known;
     }
     const double mean = options.normal_loads.empty()
