@@ -82,7 +82,7 @@ void TryBacklash(const Problem& problem, const Solution& solution,
                  std::span<const std::optional<loop::Backlash>> gaps, const SolverOptions& options,
                  SearchBuffers& buffers, AdequacyTest& test) {
   const bool all = std::ranges::all_of(gaps, [](const auto& gap) { return gap.has_value(); });
-  if (gaps.empty() || !all || problem.parameters.has_lag()) return;
+  if (gaps.empty() || !all || problem.parameters.moves_contact()) return;
   const auto has = [](std::string_view code) {
     return [code](const DepartureFit& tried) { return Departures()[tried.departure].code == code; };
   };

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "core/nearest_name.h"
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/problem/ripple.h"
 #include "mindahl/core/error.h"
 
@@ -180,6 +180,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   }
   ApplyOptions(options);
   RequireShapedColumns();
+  RequireOneMotion();
   if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
   if (data.load_varies) KeepShapeBelowOne(options);
   for (const Parameter& parameter : parameters_) {
@@ -237,6 +238,17 @@ void Parameters::RequireShapedColumns() const {
   }
 }
 
+/// Refuses two terms that move the contact.
+void Parameters::RequireOneMotion() const {
+  const std::size_t first = PositionOfMotion();
+  for (std::size_t p = first + 1; p < size(); ++p) {
+    if (parameters_[p].absent || ContactMotionOf(*parameters_[p].term) == ContactMotion::kMeasured)
+      continue;
+    throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
+                                      parameters_[first].term->name, parameters_[p].term->name));
+  }
+}
+
 /// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
 void Parameters::HoldConfoundedAsymmetry() {
   Parameter& asymmetry = parameters_[PositionOf("asymmetry", 0)];
@@ -282,6 +294,13 @@ std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) co
     if (parameter.term->scope == Scope::kContact || parameter.record == record) return i;
   }
   return parameters_.size();
+}
+
+std::size_t Parameters::PositionOfMotion() const {
+  const auto moves = [](const Parameter& parameter) {
+    return !parameter.absent && ContactMotionOf(*parameter.term) != ContactMotion::kMeasured;
+  };
+  return static_cast<std::size_t>(std::ranges::find_if(parameters_, moves) - parameters_.begin());
 }
 
 std::size_t Parameters::PositionOfOrigin(std::size_t record) const {

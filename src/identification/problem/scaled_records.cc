@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/extremes.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/problem/one_channel.h"
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
@@ -185,8 +186,11 @@ MeasuredLoad MeasureLoad(const loop::PreparedRecord& record,
 /// the contact alone, and read with the force, and slips as easily in either direction.
 bool KnowsVaryingLoads(const FitOptions& options) {
   return options.model->memory == models::Memory::kReturnPoint &&
-         !HasTerm(options, "rig_stiffness") && !HasTerm(options, "lag") &&
-         !HasTerm(options, "asymmetry");
+         std::ranges::none_of(Terms(), [&](const Term& term) {
+           const bool is_other = ContactMotionOf(term) != ContactMotion::kMeasured ||
+                                 term.name == "rig_stiffness" || term.name == "asymmetry";
+           return is_other && HasTerm(options, term.name);
+         });
 }
 
 /// Takes the loads within a record from their column.

@@ -1,4 +1,4 @@
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 
 #include <fmt/format.h>
 
@@ -115,49 +115,39 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
   }
 }
 
-void LaggedMotion::MoveTo(const ScaledRecord& record, double lag, models::Memory memory,
+ContactMotion ContactMotionOf(const Term& term) {
+  if (term.name == "lag") return ContactMotion::kLate;
+  return ContactMotion::kMeasured;
+}
+
+void MovedSamples::MoveTo(const ScaledRecord& record, double amount, models::Memory memory,
                           const models::InitialContact& initial) {
-  const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
-  const std::span<const double> x = motion.displacement;
-  const std::span<const double> clock = motion.clock;
-  const std::size_t last = motion.size() - 1;
-  displacement_.clear();
-  displacement_.reserve(record.size() + motion.reversals.size() + 2);
-  reversals_.clear();
-  reversals_.reserve(motion.reversals.size());
-  places_.resize(record.size());
-  rates_.resize(record.size());
-  displacement_.push_back(x.front());
-  std::size_t segment = 0;  // from this sample to the next, its end included
-  std::size_t turn = 0;
-  const auto turn_before = [&](std::size_t end) {
-    for (; turn < motion.reversals.size() && motion.reversals[turn] < end; ++turn) {
-      reversals_.push_back(displacement_.size());
-      displacement_.push_back(x[motion.reversals[turn]]);
-    }
-  };
-  for (std::size_t i = 0; i < record.size(); ++i) {
-    const double wanted = record.clock[i] - lag;
-    const double time = std::clamp(wanted, clock.front(), clock.back());
-    while (segment + 1 < last && clock[segment + 1] < time) ++segment;
-    turn_before(segment + 1);
-    const double duration = clock[segment + 1] - clock[segment];
-    const double way = x[segment + 1] - x[segment];
-    places_[i] = displacement_.size();
-    // So close that they are one: the later.
-    const double share = duration > 0 ? (time - clock[segment]) / duration : 1.0;
-    rates_[i] = time == wanted && duration > 0 ? -way / duration : 0.0;
-    displacement_.push_back(std::lerp(x[segment], x[segment + 1], share));
+  if (valid_ && amount == amount_ && initial.unloaded_displacement == unloaded_ &&
+      initial.asymmetry == path_.asymmetry) {
+    return;
   }
-  turn_before(motion.size());
-  displacement_.push_back(x.back());
+  Fill(record, amount, initial);
   models::MakeLoadingPath(displacement_, reversals_, memory, initial, path_);
-  lag_ = lag;
+  amount_ = amount;
   unloaded_ = initial.unloaded_displacement;
   valid_ = true;
 }
 
-void LaggedMotion::CopyPathOfSamples(models::LoadingPath& path) const {
+void MovedSamples::Clear(std::size_t most) {
+  displacement_.clear();
+  displacement_.reserve(most);
+  rates_.clear();
+  rates_.reserve(most);
+  reversals_.clear();
+}
+
+void MovedSamples::Gather(std::span<const double> at_places, std::span<double> at_samples) const {
+  for (std::size_t i = 0; i < at_samples.size(); ++i) {
+    at_samples[i] = bears_.empty() || bears_[i] != 0 ? at_places[places_[i]] : 0.0;
+  }
+}
+
+void MovedSamples::CopyPathOfSamples(models::LoadingPath& path) const {
   path.branches = path_.branches;
   path.open = path_.open;
   path.asymmetry = path_.asymmetry;
@@ -170,6 +160,51 @@ void LaggedMotion::CopyPathOfSamples(models::LoadingPath& path) const {
     path.runs.push_back(
         {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(next), run.branch});
   }
+}
+
+void LaggedSamples::Fill(const ScaledRecord& record, double lag,
+                         const models::InitialContact& /*initial*/) {
+  const ScaledRecord& motion = record.whole != nullptr ? *record.whole : record;
+  const std::span<const double> x = motion.displacement;
+  const std::span<const double> clock = motion.clock;
+  const std::size_t last = motion.size() - 1;
+  Clear(record.size() + motion.reversals.size() + 2);
+  places_.resize(record.size());
+  Append(x.front(), 0.0);
+  std::size_t segment = 0;  // from this sample to the next, its end included
+  std::size_t turn = 0;
+  const auto turn_before = [&](std::size_t end) {
+    for (; turn < motion.reversals.size() && motion.reversals[turn] < end; ++turn) {
+      reversals_.push_back(displacement_.size());
+      Append(x[motion.reversals[turn]], 0.0);
+    }
+  };
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double wanted = record.clock[i] - lag;
+    const double time = std::clamp(wanted, clock.front(), clock.back());
+    while (segment + 1 < last && clock[segment + 1] < time) ++segment;
+    turn_before(segment + 1);
+    const double duration = clock[segment + 1] - clock[segment];
+    const double travel = x[segment + 1] - x[segment];
+    places_[i] = displacement_.size();
+    // So close that they are one: the later.
+    const double fraction = duration > 0 ? (time - clock[segment]) / duration : 1.0;
+    Append(std::lerp(x[segment], x[segment + 1], fraction),
+           time == wanted && duration > 0 ? -travel / duration : 0.0);
+  }
+  turn_before(motion.size());
+  Append(x.back(), 0.0);
+}
+
+void LaggedSamples::DifferentiateByAmount(const models::OriginSensitivity& sensitivity,
+                                          std::span<double> at_places) const {
+  for (std::size_t k = 0; k < at_places.size(); ++k) {
+    at_places[k] = sensitivity.sample_slope[k] * rates_[k];
+  }
+}
+
+std::unique_ptr<MovedSamples> MakeMovedSamples(ContactMotion /*motion*/) {
+  return std::make_unique<LaggedSamples>();
 }
 
 }  // namespace mindahl::identification
