@@ -117,6 +117,7 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
 
 ContactMotion ContactMotionOf(const Term& term) {
   if (term.name == "lag") return ContactMotion::kLate;
+  if (term.name == "backlash") return ContactMotion::kBehindGap;
   return ContactMotion::kMeasured;
 }
 
@@ -203,7 +204,130 @@ void LaggedSamples::DifferentiateByAmount(const models::OriginSensitivity& sensi
   }
 }
 
-std::unique_ptr<MovedSamples> MakeMovedSamples(ContactMotion /*motion*/) {
+void SamplesBehindGap::Fill(const ScaledRecord& record, double gap,
+                            const models::InitialContact& initial) {
+  const std::span<const double> x = record.displacement;
+  const double half = gap / 2;
+  gap_ = gap;
+  Clear(2 * record.size());
+  for (auto* places : {&places_, &unloading_, &loading_}) places->resize(record.size());
+  direction_.resize(record.size());
+  bears_.assign(record.size(), 1);
+  std::vector<Stroke> strokes;
+  std::vector<Place> ends;
+  for (std::size_t s = 0; s <= record.reversals.size(); ++s) {
+    const std::size_t begin = s == 0 ? 0 : strokes.back().end;
+    const std::size_t end = s < record.reversals.size() ? record.reversals[s] : record.size() - 1;
+    const double direction = x[end] >= x[begin] ? 1.0 : -1.0;
+    const double side = record.force[end] == 0 ? direction : std::copysign(1.0, record.force[end]);
+    strokes.push_back({begin, end, direction});
+    ends.push_back({x[end] - side * half, -side / 2});
+  }
+  Place from;
+  if (initial.state == models::InitialState::kVirgin) {
+    // The contact is unloaded in the middle of the gap.
+    const double travel = x.front() - initial.unloaded_displacement;
+    const double side = std::copysign(1.0, travel);
+    from = std::abs(travel) <= half ? Place{initial.unloaded_displacement, 0.0}
+                                    : Place{x.front() - side * half, -side / 2};
+  } else {
+    const double direction = strokes.front().direction;
+    from = {x.front() + direction * half, direction / 2};
+    for (const Place& end : ends) {
+      if (direction * (end.displacement - from.displacement) < 0) from = end;
+    }
+  }
+  for (std::size_t s = 0; s < strokes.size(); ++s) {
+    const Stroke& stroke = strokes[s];
+    // The contact does not move in a stroke that is shorter than the gap.
+    const bool moves = stroke.direction * (ends[s].displacement - from.displacement) >= 0;
+    const Place to = moves ? ends[s] : from;
+    FillStroke(stroke, s == 0 ? 0 : stroke.begin + 1, x, from, to);
+    if (s < record.reversals.size()) reversals_.push_back(displacement_.size() - 1);
+    from = to;
+  }
+}
+
+void SamplesBehindGap::FillStroke(const Stroke& stroke, std::size_t first,
+                                  std::span<const double> x, Place from, Place to) {
+  const auto place = [&](std::size_t i, double side) {
+    const Place at{x[i] + side * gap_ / 2, side / 2};
+    if (stroke.direction * (at.displacement - from.displacement) < 0) return from;
+    return stroke.direction * (to.displacement - at.displacement) < 0 ? to : at;
+  };
+  const auto append = [&](const Place& at) {
+    Append(at.displacement, at.rate);
+    return displacement_.size() - 1;
+  };
+  std::fill(direction_.begin() + static_cast<std::ptrdiff_t>(first),
+            direction_.begin() + static_cast<std::ptrdiff_t>(stroke.end) + 1, stroke.direction);
+  std::size_t next = first;  // of those that bear the force of the stroke
+  for (std::size_t i = first; i <= stroke.end; ++i) {
+    const Place unloading = place(i, stroke.direction);
+    for (; next <= stroke.end; ++next) {
+      const Place loading = place(next, -stroke.direction);
+      const double ahead = loading.displacement - unloading.displacement;
+      if (stroke.direction * ahead > 0) break;
+      loading_[next] = append(loading);
+    }
+    unloading_[i] = append(unloading);
+  }
+  for (; next <= stroke.end; ++next) loading_[next] = append(place(next, -stroke.direction));
+}
+
+void SamplesBehindGap::TakeForces(std::span<const double> t) {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const double direction = direction_[i];
+    bears_[i] = 1;
+    if (direction * t[unloading_[i]] < 0) {
+      places_[i] = unloading_[i];
+    } else if (direction * t[loading_[i]] > 0 || gap_ == 0) {
+      places_[i] = loading_[i];
+    } else {
+      places_[i] = i > 0 ? places_[i - 1] : loading_[i];
+      bears_[i] = 0;
+    }
+  }
+}
+
+void SamplesBehindGap::DifferentiateByAmount(const models::OriginSensitivity& sensitivity,
+                                             std::span<double> at_places) const {
+  const auto [lowest, highest] = std::ranges::minmax_element(displacement_);
+  const double rate_of_lowest = rates_[static_cast<std::size_t>(lowest - displacement_.begin())];
+  const double rate_of_highest = rates_[static_cast<std::size_t>(highest - displacement_.begin())];
+  const std::size_t initial = path_.branches.size() - reversals_.size();
+  std::vector<double> origin(path_.branches.size());  // ∂/∂g of where the branches start
+  std::vector<double> force(path_.branches.size());   // and of t there
+  for (std::size_t b = 0; b < path_.branches.size(); ++b) {
+    const models::Branch& branch = path_.branches[b];
+    if (b >= initial) {
+      origin[b] = rates_[reversals_[b - initial]];
+    } else if (branch.start == models::BranchStart::kSteadyCentre) {
+      origin[b] = (rate_of_lowest + rate_of_highest) / 2;
+    } else if (path_.branches.front().start == models::BranchStart::kUnloaded) {
+      origin[b] = branch.start == models::BranchStart::kUnloaded ? 0.0 : rates_.front();
+    } else {
+      origin[b] = branch.direction > 0 ? rate_of_lowest : rate_of_highest;
+    }
+    if (branch.start == models::BranchStart::kSteadyExtreme) {
+      force[b] = sensitivity.per_amplitude[b] * (rate_of_highest - rate_of_lowest) / 2;
+    } else if (branch.start == models::BranchStart::kReversal) {
+      const auto parent = static_cast<std::size_t>(branch.parent);
+      force[b] =
+          sensitivity.slope[b] * (origin[b] - origin[parent]) + sensitivity.gain[b] * force[parent];
+    }
+  }
+  for (const models::BranchRun& run : path_.runs) {
+    const auto b = static_cast<std::size_t>(run.branch);
+    for (std::size_t k = run.begin; k < run.end; ++k) {
+      at_places[k] = sensitivity.sample_slope[k] * (rates_[k] - origin[b]) +
+                     sensitivity.sample_gain[k] * force[b];
+    }
+  }
+}
+
+std::unique_ptr<MovedSamples> MakeMovedSamples(ContactMotion motion) {
+  if (motion == ContactMotion::kBehindGap) return std::make_unique<SamplesBehindGap>();
   return std::make_unique<LaggedSamples>();
 }
 

@@ -14,7 +14,7 @@
 #include "mindahl/models/normalized_response.h"
 
 /// Contacts that are elsewhere than the displacement at the time of the force: T_file(t) = T(δ(t −
-/// lag)) of a force that is read late.
+/// lag)) of a force that is read late, and those behind a gap.
 namespace mindahl::identification {
 
 /// True if all records have a time that increases, or none has a time.
@@ -37,8 +37,9 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
 
 /// Says where the contact is at the time of a force.
 enum class ContactMotion {
-  kMeasured,  ///< at the displacement, behind a rig's spring
-  kLate,      ///< at the displacement of an earlier time
+  kMeasured,   ///< at the displacement, behind a rig's spring
+  kLate,       ///< at the displacement of an earlier time
+  kBehindGap,  ///< at the displacement less what a gap takes of it
 };
 
 /// Returns what a term makes of it; one of a fit's terms may move the contact.
@@ -114,6 +115,41 @@ class LaggedSamples : public MovedSamples {
 
  private:
   void Fill(const ScaledRecord& record, double lag, const models::InitialContact& initial) override;
+};
+
+/// Locates a contact behind a gap of width g, which bears no force while it is crossed:
+///   T = max(F(δ − g/2), 0) + min(F(δ + g/2), 0)
+/// F the force on the branch of the stroke, that runs from where the contact was when the last one
+/// ended. There the gap is closed on the side of the force that is measured, so that the path of
+/// the contact depends on g alone: exact where no turning point lies within the gap. Each sample
+/// has two places, of which it takes the one that bears force.
+class SamplesBehindGap : public MovedSamples {
+ public:
+  void TakeForces(std::span<const double> t) override;
+  void DifferentiateByAmount(const models::OriginSensitivity& sensitivity,
+                             std::span<double> at_places) const override;
+
+ private:
+  struct Place {
+    double displacement = 0.0;
+    double rate = 0.0;
+  };
+  struct Stroke {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    double direction = 1.0;
+  };
+
+  void Fill(const ScaledRecord& record, double gap, const models::InitialContact& initial) override;
+  /// Fills the places of a stroke's samples from `first`, in the order in which the contact comes
+  /// by.
+  void FillStroke(const Stroke& stroke, std::size_t first, std::span<const double> x, Place from,
+                  Place to);
+
+  double gap_ = 0.0;
+  std::vector<double> direction_;       // of the stroke of each sample
+  std::vector<std::size_t> unloading_;  // place while the force is still that before the reversal
+  std::vector<std::size_t> loading_;    // place once the gap is crossed
 };
 
 std::unique_ptr<MovedSamples> MakeMovedSamples(ContactMotion motion);

@@ -20,8 +20,15 @@ void RequireInDomain(const Parameter& parameter, std::string_view name, double v
   const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
   if (parameter.term->positive) {
     RequirePositive(quantity, value);
-  } else if (parameter.term->name == "alpha") {
+  } else if (parameter.term->name == "alpha" ||
+             ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap) {
     RequireNonNegative(quantity, value);
+    const bool is_gap = ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap;
+    if (is_gap && !(value < 2 * parameter.scale)) {
+      ThrowInvalid(quantity, value,
+                   fmt::format("must be below the range of the displacement, {:.6g} m",
+                               2 * parameter.scale));
+    }
   } else if (parameter.term->name == "asymmetry") {
     if (!(std::abs(value) < 1)) ThrowInvalid(quantity, value, "must be in (-1, 1)");
   } else {
@@ -141,10 +148,12 @@ BoundSide SideOf(double theta, double lower, double upper) {
 
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
-  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed.
+  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed, no gap.
   const std::string_view name = parameter.term->name;
   if (name == "alpha" || name == "slip_speed_exponent") return side == BoundSide::kUpper;
   if (name == "slip_speed") return side == BoundSide::kLower;
+  if (ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap)
+    return side == BoundSide::kUpper;
   return true;
 }
 

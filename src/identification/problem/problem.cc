@@ -43,6 +43,7 @@ struct LawRow {
 constexpr std::array kLawRows = {
     LawRow{"alpha", &ResponseColumns::shape_exponent, 1.0, true},
     LawRow{"lag", &ResponseColumns::moved, 0.02},  // cycles
+    LawRow{"backlash", &ResponseColumns::moved, 0.1},
     LawRow{"asymmetry", &ResponseColumns::asymmetry, 0.25},
     LawRow{"slip_slope", &ResponseColumns::slip_slope, 0.25},
     LawRow{"slip_curvature", &ResponseColumns::slip_curvature, 0.25},
