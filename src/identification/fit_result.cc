@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "identification/inference/evidence.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/identification/terms.h"
+#include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
 namespace {
@@ -77,6 +79,15 @@ double FitResult::ResponseNoise() const {
 double FitResult::PeakForce() const {
   const RecordFit& widest = WidestRecord();
   return widest.measures.peak_force / widest.load_ratio;
+}
+
+double AmplitudeBehindGap(const FitResult& fit, double amplitude) {
+  const ParameterEstimate* const gap = fit.Find("backlash");
+  return gap == nullptr ? amplitude : std::max(amplitude - gap->value / 2, 0.0);
+}
+
+double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, double amplitude) {
+  return models::ContactAmplitude(*fit.model, law, fit.rig, AmplitudeBehindGap(fit, amplitude));
 }
 
 double FitResult::ErrorOf(const ParameterEstimate& estimate) const {
