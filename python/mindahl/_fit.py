@@ -72,7 +72,7 @@ def fit(
     speed_exponent: Optional[Asked] = None, inertia: Optional[Asked] = None,
     slip_position: Optional[str] = None, slip_speed: Optional[Asked] = None,
     slip_trend: Optional[Asked] = None,
-    ripple: Optional[Asked] = None,
+    ripple: Optional[Asked] = None, backlash: Optional[Asked] = None,
     terms: Union[None, str, Sequence[str]] = None,
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
@@ -111,7 +111,8 @@ def fit(
         rig_stiffness [N/m], viscous [N s/m], lag [s], asymmetry [-] of slip forces
             slip_force·(1 ± asymmetry): a known value, or "fit".
         speed_exponent [-], of a force C·sgn(v)|v|^m in place of the viscous one, inertia [kg],
-            ripple: period [m] of a force over the position; likewise.
+            ripple: period [m] of a force over the position; backlash: width [m] of a gap before
+            the contact that is crossed at zero force; likewise.
         slip_speed [-]: exponent of a slip force that depends on the speed. slip_trend [-]: k of
             one that changes with time, Tc(1 + k·τ), τ from -1 to 1 over the record.
         slip_position: "linear" or "quadratic", a slip force that depends on position, differently
@@ -153,7 +154,7 @@ def fit(
                "lag": lag, "asymmetry": asymmetry, "drift": drift,
                "speed_exponent": speed_exponent, "inertia": inertia,
                "slip_position": slip_position, "slip_speed": slip_speed, "slip_trend": slip_trend,
-               "ripple": ripple},
+               "ripple": ripple, "backlash": backlash},
         covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate, term_choice=terms,

@@ -81,7 +81,8 @@ def track(
     drift: bool = False, speed_exponent: Optional[Asked] = None,
     inertia: Optional[Asked] = None, slip_position: Optional[str] = None,
     slip_speed: Optional[Asked] = None,
-    slip_trend: Optional[Asked] = None, ripple: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
+    slip_trend: Optional[Asked] = None, ripple: Optional[Asked] = None,
+    backlash: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
     fix: Optional[Mapping[str, float]] = None,
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
     loss: str = "none", starts: int = 1, seed: int = 1, confidence: float = 0.95,
@@ -113,7 +114,7 @@ def track(
                "lag": lag, "asymmetry": None, "drift": drift,  # cycles have no column for that one
                "speed_exponent": speed_exponent, "inertia": inertia,
                "slip_position": slip_position, "slip_speed": slip_speed, "slip_trend": slip_trend,
-               "ripple": ripple},
+               "ripple": ripple, "backlash": backlash},
         covariate=None, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate, term_choice=terms,

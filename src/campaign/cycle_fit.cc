@@ -8,6 +8,7 @@
 
 #include "mindahl/campaign/cycle_table.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/models/steady_loop.h"
 #include "mindahl/report/loop_description.h"
 
@@ -135,10 +136,9 @@ CycleFit CycleFitter::FitAlone(const Cycle& cycle) {
     fit.friction_coefficient = *fit.slip_force.value / *fit.normal_load;
   }
   if (result->converged) {
-    fit.slips_grossly =
-        report::SlipsGrossly(*result->model, result->law,
-                             models::ContactAmplitude(*result->model, result->law, result->rig,
-                                                      fitted.measures.amplitude));
+    fit.slips_grossly = report::SlipsGrossly(
+        *result->model, result->law,
+        identification::ContactAmplitude(*result, result->law, fitted.measures.amplitude));
   }
   return fit;
 }

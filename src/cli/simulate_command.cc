@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,7 @@
 #include "mindahl/io/output_file.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/methods/method.h"
+#include "mindahl/models/contact_state.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/imposed_force.h"
 #include "mindahl/models/joint_friction.h"
@@ -48,6 +50,7 @@ struct SimulateOptions {
   LawOptions law;
   DriveOptions drive;
   double asymmetry = 0.0;
+  double backlash = 0.0;  // [m]
   AddedForces forces;
   double force_noise = 0.0;
   double displacement_noise = 0.0;
@@ -194,24 +197,46 @@ void FollowAsymmetry(const SimulateOptions& options, const models::BranchLaw& la
   models::EvaluateForce(model, law, path, displacement, force);
 }
 
-void RequireAsymmetry(const SimulateOptions& options) {
-  if (options.asymmetry == 0) return;
-  if (!(std::abs(options.asymmetry) < 1)) {
-    ThrowInvalid("--asymmetry [-]", options.asymmetry, "must be in (-1, 1)");
-  }
+/// The force of a contact behind a gap.
+void FollowBehindGap(const SimulateOptions& options, const models::BranchLaw& law,
+                     std::span<const double> displacement, std::span<double> force) {
+  models::ContactBehindGap contact({*models::FindFrictionModel(options.model), law},
+                                   options.backlash);
+  std::ranges::transform(displacement, force.begin(), [&](double x) { return contact.Move(x); });
+}
+
+/// Requires what an asymmetry and a gap need: the closed form of a law, under one load.
+void RequireExactLaw(const SimulateOptions& options, std::string_view option, bool needs_memory) {
   const FrictionModel* model = models::FindFrictionModel(options.model);
-  const bool is_joint = IsJoint(options);
-  if (model == nullptr || options.method != "exact" ||
-      (model->memory != models::Memory::kReturnPoint && !is_joint)) {
-    throw InputError(
-        fmt::format("--asymmetry does not serve --model {} --method {}: use --model mindlin, "
-                    "mindlin-dahl, jenkins or dahl and --method exact",
-                    options.model, options.method));
+  const bool is_joint = needs_memory && IsJoint(options);
+  const bool serves =
+      model != nullptr && !model->scaled_by_peak &&
+      (!needs_memory || model->memory == models::Memory::kReturnPoint || is_joint);
+  if (!serves || options.method != "exact") {
+    throw InputError(fmt::format(
+        "{} does not serve --model {} --method {}: use --model mindlin, mindlin-dahl, jenkins or "
+        "dahl and --method exact",
+        option, options.model, options.method));
   }
   if (!options.drive.force_path.empty() || (!options.drive.load_column.empty() && !is_joint)) {
     throw InputError(
-        fmt::format("--asymmetry does not serve {}: leave one of the two out",
+        fmt::format("{} does not serve {}: leave one of the two out", option,
                     options.drive.force_path.empty() ? "--normal-load-column" : "--force-path"));
+  }
+}
+
+void RequireAsymmetryAndGap(const SimulateOptions& options) {
+  if (options.asymmetry != 0) {
+    if (!(std::abs(options.asymmetry) < 1)) {
+      ThrowInvalid("--asymmetry [-]", options.asymmetry, "must be in (-1, 1)");
+    }
+    RequireExactLaw(options, "--asymmetry", /*needs_memory=*/true);
+  }
+  if (options.backlash == 0) return;
+  RequireNonNegative("--backlash [m]", options.backlash);
+  RequireExactLaw(options, "--backlash", /*needs_memory=*/false);
+  if (options.asymmetry != 0) {
+    throw InputError("--asymmetry does not serve --backlash: leave one of the two out");
   }
 }
 
@@ -230,7 +255,7 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
   RequireOutputPaths({{"--output", options.output, /*dash_is_stdout=*/true}}, inputs);
   RequireNonNegative("--noise-force [N]", options.force_noise);
   RequireNonNegative("--noise-displacement [m]", options.displacement_noise);
-  RequireAsymmetry(options);
+  RequireAsymmetryAndGap(options);
   const Approximation approximation = ResolveMethod(options);
   ImposedMotion motion;
   std::vector<double> force;
@@ -245,6 +270,8 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
     force.resize(motion.displacement.size());
     if (options.asymmetry != 0) {
       FollowAsymmetry(options, law, motion.displacement, force);
+    } else if (options.backlash != 0) {
+      FollowBehindGap(options, law, motion.displacement, force);
     } else {
       Prepare(approximation, law)(motion.drive(), force);
     }
@@ -298,6 +325,11 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
                    "slip forces Tc(1 + A) where the motion is in the sense of positive\n"
                    "displacement and Tc(1 - A) where it is not [-]")
       ->type_name("A")
+      ->capture_default_str();
+  command
+      ->add_option("--backlash", options->backlash,
+                   "width of a gap before the contact that is crossed at zero force [m]")
+      ->type_name("G")
       ->capture_default_str();
   AddAddedForceOptions(*command, options->forces);
   AddDriveOptions(*command, options->drive);

@@ -15,9 +15,11 @@
 #include "core/draws.h"
 #include "identification/backbone_prior.h"
 #include "identification/inference/noise.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/solve/nonnegative.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/residual_structure.h"
+#include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
@@ -380,7 +382,11 @@ bool HasBackbone(const FitResult& fit) {
   const bool is_of_one_load =
       !fit.is_load_series() &&
       std::ranges::none_of(fit.records, [](const RecordFit& record) { return record.load_varies; });
-  const bool is_of_one_curve = fit.Find("lag") == nullptr && fit.Find("asymmetry") == nullptr;
+  const bool is_of_one_curve =
+      std::ranges::none_of(fit.parameters, [](const ParameterEstimate& estimate) {
+        const Term* const term = FindTerm(TermNameOf(estimate.name));
+        return ContactMotionOf(*term) != ContactMotion::kMeasured || term->name == "asymmetry";
+      });
   return !fit.parameters.empty() && is_of_one_load && is_of_one_curve &&
          fit.model->memory == models::Memory::kReturnPoint && fit.response == loop::Channel::kForce;
 }

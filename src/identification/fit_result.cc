@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/probability.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -82,6 +83,15 @@ double FitResult::PeakForce() const {
     return models::SteadyPeakForce(*model, law, widest.measures.amplitude);
   }
   return widest.measures.peak_force / widest.load_ratio;
+}
+
+double AmplitudeBehindGap(const FitResult& fit, double amplitude) {
+  const ParameterEstimate* const gap = fit.Find("backlash");
+  return gap == nullptr ? amplitude : std::max(amplitude - gap->value / 2, 0.0);
+}
+
+double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, double amplitude) {
+  return models::ContactAmplitude(*fit.model, law, fit.rig, AmplitudeBehindGap(fit, amplitude));
 }
 
 double FitResult::ErrorOf(const ParameterEstimate& estimate) const {

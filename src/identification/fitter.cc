@@ -1003,11 +1003,11 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
       // nothing of where the motion turned.
       const bool gated = std::ranges::any_of(
           prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
-      // Turning points are not fitted together with a lag, which moves the samples off them.
-      const bool has_lag = best->problem.parameters.has_lag();
+      // Turning points are not fitted together with a term that moves the samples off them.
+      const bool is_moved = best->problem.parameters.moves_contact();
       // Nor under a load that varies: the path between the samples is not the displacement's alone.
       // An imposed force is taken as it was sampled.
-      if (best->solution->converged && !gated && !has_lag && !data.load_varies &&
+      if (best->solution->converged && !gated && !is_moved && !data.load_varies &&
           !data.is_forced()) {
         turned = FitTurningPointsIfNeeded(best->problem, *best->solution, given, buffers);
       }

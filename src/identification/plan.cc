@@ -10,6 +10,7 @@
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/reweighting.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
@@ -30,8 +31,8 @@ using models::InitialState;
 void RequireTerms(const FitOptions& options) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name);
-    if (term != nullptr &&
-        (name == "lag" || name == "load_exponent" || name == "asymmetry" || term->of_column)) {
+    if (term != nullptr && (ContactMotionOf(*term) != ContactMotion::kMeasured ||
+                            name == "load_exponent" || name == "asymmetry" || term->of_column)) {
       throw InvalidArgument(fmt::format(
           "'{}' cannot be planned for: must be one of rig_stiffness, plateau_slope, viscous, "
           "force_drift",

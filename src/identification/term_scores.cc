@@ -7,7 +7,7 @@
 
 #include "core/probability.h"
 #include "identification/inference/local.h"
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {

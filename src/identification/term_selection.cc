@@ -269,6 +269,8 @@ class Selection {
   std::vector<const TermTrial*> WithSimpler(const TermTrial& trial,
                                             std::span<const TermTrial> trials) const;
   bool Round(std::vector<TermCandidate>& candidates, CandidateModel& base, FitResult& judged);
+  void AddMeasuredGap(std::vector<TermCandidate>& candidates, CandidateModel& base,
+                      FitResult& judged);
   bool Accept(CandidateModel& model, FitResult& judged);
   void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
   [[nodiscard]] double SquaresOf(double rms) const { return SumOfSquares(rms, samples_); }
@@ -528,12 +530,44 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
   return false;
 }
 
+/// Moves to the model with a gap that was measured without one, in all records, where that gains:
+/// no linear step from a contact that is too soft for the want of a gap predicts it.
+void Selection::AddMeasuredGap(std::vector<TermCandidate>& candidates, CandidateModel& base,
+                               FitResult& judged) {
+  const auto gap = std::ranges::find_if(candidates, [](const TermCandidate& candidate) {
+    return candidate.considered.name == "backlash";
+  });
+  const bool is_measured = std::ranges::all_of(
+      judged.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); });
+  if (gap == candidates.end() || !is_measured) return;
+  CandidateModel from = base;
+  from.fit.parameters.clear();  // from starts of its own
+  std::optional<CandidateModel> model = FitFrom(from, With(*gap, base.options), {});
+  if (!model || !(model->sum_of_squares < base.sum_of_squares)) return;
+  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
+                                                   static_cast<double>(samples_.count)));
+  const double ratio = evidence.LikelihoodRatio(base.sum_of_squares, model->sum_of_squares);
+  const double gain = 1 - std::sqrt(model->sum_of_squares / base.sum_of_squares);
+  if (gain < selection_.smallest_gain || !(PValueOfChiSquared(ratio, 1.0) < selection_.chance) ||
+      IsUnphysical(model->fit) || !Accept(*model, judged)) {
+    return;
+  }
+  gap->considered.gain = gain;
+  gap->considered.p_value = PValueOfChiSquared(ratio, 1.0);
+  gap->considered.added = true;
+  result_.added.push_back(gap->considered.name);
+  base = std::move(*model);
+}
+
 /// True if a larger model keeps the slip force of the one that was judged, which it then replaces.
 bool Selection::Accept(CandidateModel& model, FitResult& judged) {
   ++result_.estimates;
   Fitter fitter(ContinuedFrom(model.fit, model.options));
   const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
+  // At a limit of the search no parameter would be known.
+  const bool is_limited = now.FindFinding("search_limit") != nullptr;
   if (!IsFitted(now) || IsUnphysical(now)) return false;
+  if (is_limited && judged.FindFinding("search_limit") == nullptr) return false;
   if (LosesSlipForce(judged, now, model.options.thresholds.widest_ratio)) return false;
   judged = now;
   return true;
@@ -561,8 +595,9 @@ void Selection::Run(const FitOptions& options) {
   DivideIntoParts(base.fit);
 
   FitResult judged = result_.fit;
-  while (result_.added.size() < selection_.most_terms && Round(candidates, base, judged)) {
-    if (judged.adequacy.verdict == AdequacyVerdict::kAdequate) break;
+  AddMeasuredGap(candidates, base, judged);
+  while (judged.adequacy.verdict != AdequacyVerdict::kAdequate &&
+         result_.added.size() < selection_.most_terms && Round(candidates, base, judged)) {
   }
   for (const TermCandidate& candidate : candidates)
     result_.considered.push_back(candidate.considered);
@@ -614,6 +649,7 @@ std::span<const TermGroup> TermGroups() {
       {"rig_stiffness", {"rig_stiffness"}},
       {"asymmetry", {"asymmetry"}},
       {"lag", {"lag"}},
+      {"backlash", {"backlash"}},
   };
   return groups;
 }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 
@@ -55,7 +56,7 @@ LoopDescription DescribeLoop(const identification::FitResult& fit) {
   LoopDescription loop;
   loop.measured = MeasuredLoopOf(widest);
   const MeasuredLoop& measured = loop.measured;
-  loop.contact_amplitude = models::ContactAmplitude(*fit.model, law, fit.rig, measured.amplitude);
+  loop.contact_amplitude = identification::ContactAmplitude(fit, law, measured.amplitude);
   loop.model_energy =
       MeanOfSteadyCycles(widest.facts, widest.law_energy)
           .value_or(models::SteadyLoopEnergy(*fit.model, law, loop.contact_amplitude));

@@ -145,13 +145,32 @@ TEST(FirstCause, OfMeasuredRecordsMatchesTheirDescription) {
 TEST(Text, OfAMeasuredBrakeNamesItsBacklashAndASlipForceThatContainsTheHalfGap) {
   const std::string file = testing::MeasuredPath("band_brake/dataset-1_0.5Hz70lbtension.csv");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
-  const Outcome outcome = RunCommand({"fit", file});
+  const Outcome outcome = RunCommand({"fit", file, "--terms", "none"});
   EXPECT_THAT(outcome.out, ::testing::HasSubstr("next: it looks like a backlash"));
-  const json fit = RunCommand({"fit", file, "--json", "-"}).Json();
+  EXPECT_THAT(outcome.out, ::testing::HasSubstr("--backlash fit"));
+  const json fit = RunCommand({"fit", file, "--terms", "none", "--json", "-"}).Json();
   const json& slip_force = fit["parameters"]["slip_force"];
   EXPECT_EQ(slip_force["identifiability"], "effective");
   EXPECT_LE(slip_force["ci95"][0], fit["measured"]["half_gap"]["value"]);
   EXPECT_GE(slip_force["ci95"][1], fit["measured"]["half_gap"]["value"]);
+}
+
+// A step at zero force in every stroke is no compliance: with the gap the misfit is half as large.
+TEST(Backlash, OfAMeasuredBrakeIsAddedByDefaultAndHalvesTheMisfit) {
+  const std::string file = testing::MeasuredPath("band_brake/dataset-1_0.5Hz70lbtension.csv");
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
+  const auto misfit = [](const json& fit) {
+    return fit["adequacy"]["misfit_over_half_gap"].get<double>();
+  };
+  const json alone = RunCommand({"fit", file, "--terms", "none", "--json", "-"}).Json();
+  const json with = RunCommand({"fit", file, "--backlash", "fit", "--json", "-"}).Json();
+  const json automatic = RunCommand({"fit", file, "--json", "-"}).Json();
+  EXPECT_LT(misfit(with), 0.6 * misfit(alone));
+  EXPECT_LE(misfit(automatic), misfit(with));
+  EXPECT_EQ(automatic["terms"]["added"][0], "backlash");
+  const double measured = alone["measured"]["backlash"];
+  EXPECT_NEAR(with["parameters"]["backlash"]["value"].get<double>() / measured, 1.0, 0.2)
+      << "which the compliance of the contact before and after the gap is a part of";
 }
 
 }  // namespace

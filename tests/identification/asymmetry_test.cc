@@ -269,7 +269,7 @@ TEST(Asymmetry, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
       theta[kSlipForce] = parameters[kSlipForce].ToTheta(law.slip_force);
       if (parameters.has_rig()) theta[kRig] = theta[kStiffness] + 1;
       const std::size_t lag = parameters.PositionOf("lag", 0);
-      if (parameters.has_lag()) theta[lag] = parameters[lag].ToTheta(1.4);
+      if (parameters.moves_contact()) theta[lag] = parameters[lag].ToTheta(1.4);
       theta[parameters.PositionOf("asymmetry", 0)] = 0.2;
       const auto& free = parameters.free();
       Eigen::MatrixXd jacobian(static_cast<Eigen::Index>(stages.problem.size()),

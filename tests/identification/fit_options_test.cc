@@ -67,7 +67,7 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "load_exponent, asymmetry, plateau_slope, viscous, speed_exponent, inertia, slip_slope, "
        "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, plateau_curvature, "
        "ripple_period, "
-       "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, "
+       "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},
       {[](FitOptions& o) { o.start["force_offset_2"] = 1; },
        "parameter 'force_offset_2' is unknown: did you mean 'force_offset'? must be one of sigma, "
@@ -75,7 +75,7 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "speed_exponent, inertia, slip_slope, "
        "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, plateau_curvature, "
        "ripple_period, "
-       "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, "
+       "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},
       {[](FitOptions& o) { o.fixed["sigma"] = 0; },
        "sigma [N/m] = 0 is invalid: must be finite and > 0"},

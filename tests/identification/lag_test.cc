@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/stages.h"
 #include "mindahl/core/error.h"
 
@@ -342,14 +342,14 @@ TEST(Lag, DerivativesMatchFiniteDifferencesWithAllOtherParameters) {
   }
 }
 
-TEST(LaggedMotion, PutsReversalsWhereTheyAreAndSamplesWhereTheyWere) {
+TEST(LaggedSamples, PutsReversalsWhereTheyAreAndSamplesWhereTheyWere) {
   // Up to 3 and back to 0, a sample a unit of time, seen half a sample later.
   Record record = MakeRecord({0, 1, 2, 3, 2, 1, 0}, {0, 1, 2, 3, 2, 1, 0});
   FitOptions options;
   options.fixed["lag"] = 0.5;
   const Stages stages(record, options);
   const ScaledRecord& scaled = stages.data.records[0];
-  LaggedMotion motion;
+  LaggedSamples motion;
   motion.MoveTo(scaled, 0.5 / scaled.units.half_duration, Memory::kReturnPoint, {});
   std::vector<double> metres;
   for (const double x : motion.displacement()) {
@@ -359,9 +359,10 @@ TEST(LaggedMotion, PutsReversalsWhereTheyAreAndSamplesWhereTheyWere) {
                                            {0.0, 0.0, 0.5, 1.5, 2.5, 3.0, 2.5, 1.5, 0.5, 0.0}));
   EXPECT_THAT(motion.places(), ::testing::ElementsAre(1, 2, 3, 4, 6, 7, 8));
   // Of those that were there: the first was not.
-  EXPECT_EQ(motion.rates()[0], 0.0);
-  EXPECT_LT(motion.rates()[3], 0.0);
-  EXPECT_GT(motion.rates()[4], 0.0);
+  const auto rate = [&](std::size_t sample) { return motion.rates()[motion.places()[sample]]; };
+  EXPECT_EQ(rate(0), 0.0);
+  EXPECT_LT(rate(3), 0.0);
+  EXPECT_GT(rate(4), 0.0);
 }
 
 }  // namespace

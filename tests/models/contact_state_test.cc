@@ -153,6 +153,34 @@ TEST(ContactState, MovesAlongThePathThatIsEvaluatedAtOnce) {
   }
 }
 
+TEST(ContactBehindGap, BearsNoForceUntilTheGapIsClosedAgain) {
+  // σ = 2 N/m and Tc = 1 N, which slips from 0.5 m; all numbers are exact in binary but 0.1.
+  ContactBehindGap contact(ContactState(Model("jenkins"), {2.0, 0.0, 1.0}), 1.0);
+  struct Step {
+    double displacement;
+    double force;
+    double contact;
+  };
+  for (const Step& step :
+       {Step{0.25, 0.0, 0.0},                                 // in the gap
+        Step{1.0, 1.0, 0.5},                                  // closed, at slip
+        Step{1.5, 1.0, 1.0},                                  // slides
+        Step{1.25, 0.5, 0.75},                                // unloads
+        Step{0.9375, 0.0, 0.5},                               // unloaded at 0.5, and stands there
+        Step{0.5, 0.0, 0.5},                                  //
+        Step{-0.25, -0.5, 0.25},                              // closed on the other side
+        Step{0.125, 0.0, 0.5},                                // back into the gap
+        Step{0.875, 0.0, 0.5},                                //
+        Step{1.125, 0.25, 0.625}, Step{-3.0, -1.0, -2.5}}) {  // across the gap in one step
+    EXPECT_NEAR(contact.Move(step.displacement), step.force, 4 * kEpsilon) << step.displacement;
+    EXPECT_NEAR(contact.contact().Displacement(), step.contact, 4 * kEpsilon) << step.displacement;
+  }
+  EXPECT_THAT(MessageOf([] {
+                ContactBehindGap(ContactState(Model("jenkins"), {2.0, 0.0, 1.0}), -1.0);
+              }),
+              ::testing::HasSubstr("gap [m] = -1 is invalid"));
+}
+
 TEST(ContactState, DoesSoBehindASpring) {
   Generator generator(2);
   for (const Case& c : Cases()) {

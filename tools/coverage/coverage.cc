@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mindahl/loop/reversals.h"
+#include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/imposed_force.h"
 #include "mindahl/models/joint_friction.h"
@@ -92,6 +93,11 @@ std::vector<double> LateForce(const BranchLaw& law, std::span<const double> disp
   return late;
 }
 
+/// Width of the gap before the contact [m].
+double GapOf(const Scenario& scenario) {
+  return 0.1 * scenario.lambda * GrossSlipDisplacement(LawOf(scenario));
+}
+
 /// Adds what is beside the contact, and the columns that tell it.
 void AddBeside(const Scenario& scenario, Record& record) {
   const BranchLaw law = LawOf(scenario);
@@ -111,6 +117,12 @@ void AddBeside(const Scenario& scenario, Record& record) {
     }
   }
   if (scenario.beside == Beside::kLag) record.force = LateForce(law, record.displacement);
+  if (scenario.beside == Beside::kBacklash) {
+    models::ContactBehindGap contact({*models::FindFrictionModel(scenario.model), law},
+                                     GapOf(scenario));
+    std::ranges::transform(record.displacement, record.force.begin(),
+                           [&](double x) { return contact.Move(x); });
+  }
   if (scenario.beside == Beside::kCovariate) record.covariates.push_back(std::move(column));
 }
 
@@ -301,6 +313,7 @@ FitOptions OptionsOf(const Scenario& scenario) {
   if (scenario.asymmetry != 0 && scenario.is_steady) options.fixed["force_offset"] = kForceOffset;
   if (scenario.rig > 0) options.terms.emplace_back("rig_stiffness");
   if (scenario.beside == Beside::kLag) options.terms.emplace_back("lag");
+  if (scenario.beside == Beside::kBacklash) options.terms.emplace_back("backlash");
   if (scenario.beside == Beside::kViscous) options.terms.emplace_back("viscous");
   if (scenario.beside == Beside::kCovariate) options.covariates.emplace_back("pressure");
   return options;
@@ -400,6 +413,10 @@ std::vector<Scenario> Scenarios() {
       {.name = "at a bound: alpha 0", .shape_exponent = 0.0, .lambda = 1.2},
       {.name = "white 1 %, late by 1.5 samples: lag fitted",
        .beside = Beside::kLag,
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh},
+      {.name = "white 1 %, behind a gap of X/10: backlash fitted",
+       .beside = Beside::kBacklash,
        .lowest_coverage = kWhiteLow,
        .highest_coverage = kWhiteHigh},
       {.name = "white 1 %, viscous 5 % of Tc: fitted",
@@ -524,10 +541,11 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   const bool is_asymmetric = scenario.asymmetry != 0;
   const std::array<double, Coverage::kParameters> truth = {
       law.tangential_stiffness, law.shape_exponent, law.slip_force,
-      is_asymmetric                     ? scenario.asymmetry
-      : scenario.rig > 0                ? RigOf(scenario).stiffness
-      : scenario.beside == Beside::kLag ? 1.5 * StepOf(scenario)
-                                        : scenario.load_exponent};
+      is_asymmetric                          ? scenario.asymmetry
+      : scenario.rig > 0                     ? RigOf(scenario).stiffness
+      : scenario.beside == Beside::kLag      ? 1.5 * StepOf(scenario)
+      : scenario.beside == Beside::kBacklash ? GapOf(scenario)
+                                             : scenario.load_exponent};
   const std::array<std::string_view, Coverage::kParameters> names = {"sigma", "alpha", "slip_force",
                                                                      scenario.FourthParameter()};
   const std::size_t parameters = names.back().empty() ? truth.size() - 1 : truth.size();

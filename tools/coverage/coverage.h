@@ -28,6 +28,7 @@ enum class Beside {
   kLag,        ///< the force is read 1.5 samples after the displacement
   kViscous,    ///< C·dδ/dt, up to 5 % of Tc
   kCovariate,  ///< C times a column that wanders, up to 20 % of Tc
+  kBacklash,   ///< a gap of a tenth of the amplitude, crossed at zero force
 };
 
 /// Fits a row: 0.7 % of counting error at 95 %.
@@ -71,6 +72,7 @@ struct Scenario {
     if (asymmetry != 0) return "asymmetry";
     if (rig > 0) return "rig_stiffness";
     if (beside == Beside::kLag) return "lag";
+    if (beside == Beside::kBacklash) return "backlash";
     return loads.size() > 1 && !first_is_virgin ? "load_exponent" : "";
   }
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
@@ -58,7 +58,13 @@ bool IsAccepted(const Problem& problem, std::string_view option) {
   const Term* const term = TermOf(option, loop::Channel::kForce);
   if (term == nullptr) return false;
   if (term->needs_time && !HasTimes(data)) return false;
-  if (term->name == "lag") return MayHaveClocks(data) && !data.load_varies;
+  if (ContactMotionOf(*term) != ContactMotion::kMeasured) {
+    const std::size_t moved = problem.parameters.PositionOfMotion();
+    const bool is_only =
+        !problem.parameters.moves_contact() || problem.parameters[moved].term->name == term->name;
+    const bool has_clocks = ContactMotionOf(*term) != ContactMotion::kLate || MayHaveClocks(data);
+    return is_only && has_clocks && !data.load_varies;
+  }
   if (term->name == "asymmetry") return MayBeAsymmetric(problem) && TellsAsymmetry(problem);
   return true;
 }

@@ -11,6 +11,7 @@
 
 #include "core/probability.h"
 #include "identification/diagnosis/grade.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -258,8 +259,7 @@ std::optional<Finding> FindUntoldAsymmetry(const FitResult& result, const Thresh
     if (zero_is_known == is_known) continue;
     const RecordFit& record = result.records[r];
     const models::BranchLaw law = result.LawOf(record);
-    const double amplitude =
-        models::ContactAmplitude(*result.model, law, result.rig, record.measures.amplitude);
+    const double amplitude = ContactAmplitude(result, law, record.measures.amplitude);
     const double never_slips =
         1 - models::SteadyPeakForce(*result.model, law, amplitude) / law.slip_force;
     if (never_slips <= thresholds.never_slips) continue;

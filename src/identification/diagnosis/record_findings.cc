@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "identification/diagnosis/grade.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/trend.h"
 #include "mindahl/loop/displacement_noise.h"
@@ -143,8 +144,7 @@ std::optional<Finding> FindEnergyContradiction(const FitResult& result,
   const models::BranchLaw law = result.LawOf(record);
   const std::optional<CycleEnergies> energies = EnergiesThatCount(
       record,
-      models::SteadyLoopEnergy(
-          *result.model, law, models::ContactAmplitude(*result.model, law, result.rig, amplitude)));
+      models::SteadyLoopEnergy(*result.model, law, ContactAmplitude(result, law, amplitude)));
   if (!energies) return std::nullopt;
   const auto [measured, model] = *energies;
   const double difference = std::abs(measured - model);

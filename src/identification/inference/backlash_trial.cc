@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/probability.h"
@@ -13,46 +12,6 @@
 
 namespace mindahl::identification {
 namespace {
-
-/// Takes from the displacement what the gap takes: ½ of its width to the side on which the force
-/// is. On each stroke it is taken up, evenly along the displacement, between the first samples at
-/// which the force is within a tenth of its half range of where it stands still, and beyond that;
-/// no stroke runs backward, which noise of a force in the gap would make it do.
-void MoveBehind(const loop::Backlash& gap, const ScaledRecords& data, ScaledRecord& record) {
-  constexpr double kAround = 0.1;
-  const double half = gap.width / 2 / data.length;
-  const double level = (gap.force - record.units.force_reference) / data.force;
-  double taken = record.force[0] < level ? -half : half;
-  const std::vector<double> x(record.displacement.begin(), record.displacement.end());
-  std::size_t begin = 0;
-  for (std::size_t turn = 0; turn <= record.reversals.size(); ++turn) {
-    const std::size_t end =
-        turn < record.reversals.size() ? record.reversals[turn] : record.size() - 1;
-    const double sense = x[end] > x[begin] ? 1.0 : -1.0;
-    const auto first_beyond = [&](std::size_t from, double force) {
-      while (from < end && sense * (record.force[from] - level) < force) ++from;
-      return from;
-    };
-    const std::size_t enters = first_beyond(begin, -kAround);
-    const std::size_t leaves = first_beyond(enters, kAround);
-    const double before = taken;
-    for (std::size_t i = begin; i <= end; ++i) {
-      if (i > enters && before != sense * half) {
-        const double travel = std::abs(x[leaves] - x[enters]);
-        const double part = i >= leaves || !(travel > 0)
-                                ? 1.0
-                                : std::clamp(std::abs(x[i] - x[enters]) / travel, 0.0, 1.0);
-        taken = before + part * (sense * half - before);
-      }
-      if (i == begin && turn > 0) continue;  // the last stroke's
-      record.displacement[i] = x[i] - taken;
-      if (i == 0) continue;
-      double& here = record.displacement[i];
-      here = sense * std::max(sense * here, sense * record.displacement[i - 1]);
-    }
-    begin = end;
-  }
-}
 
 /// θ of least cost among stiffer contacts: what was the gap's was taken for theirs.
 std::vector<double> StifferLook(std::span<const double> theta, const Parameters& parameters,
@@ -83,22 +42,22 @@ void TryBacklash(const Problem& problem, const Solution& solution,
                  std::span<const std::optional<loop::Backlash>> gaps, const SolverOptions& options,
                  SearchBuffers& buffers, AdequacyTest& test) {
   const bool all = std::ranges::all_of(gaps, [](const auto& gap) { return gap.has_value(); });
-  if (gaps.empty() || !all || problem.parameters.has_lag()) return;
+  if (gaps.empty() || !all || problem.parameters.moves_contact()) return;
   const auto has = [](std::string_view code) {
     return [code](const DepartureFit& tried) { return Departures()[tried.departure].code == code; };
   };
   if (std::ranges::none_of(test.fits, has("backlash"))) return;
   std::erase_if(test.fits, has("force_saturates"));
   const auto fit = std::ranges::find_if(test.fits, has("backlash"));
-  ScaledRecords data(*problem.data);
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    MoveBehind(*gaps[r], data, data.records[r]);
-  }
   Problem behind = problem;
-  behind.data = &data;
+  const std::size_t gap = problem.parameters.PositionOf("backlash", 0);
+  std::vector<double> start = solution.theta;
+  start[gap] = behind.parameters[gap].ToTheta(gaps.front()->width);
+  behind.parameters.Release(gap);
+  behind.parameters.Fix(gap, start[gap]);
   Solution after;
   buffers.solver.Bind(behind, buffers.response);
-  const std::vector<double> start = StifferLook(solution.theta, behind.parameters, buffers.solver);
+  start = StifferLook(start, behind.parameters, buffers.solver);
   buffers.solver.Solve(start, options, after);
   buffers.response.Bind(problem);
   const double before = solution.sum_of_squares;
@@ -111,7 +70,7 @@ void TryBacklash(const Problem& problem, const Solution& solution,
   fit->error.resize(free.size(), 0.0);
   // Other effects in addition to the gap may leave a fit behind it no better than one without.
   if (!after.converged || !(after.sum_of_squares < before)) return;
-  const Evidence evidence(data.counted, test.effective_samples);
+  const Evidence evidence(problem.data->counted, test.effective_samples);
   fit->explains = 1 - after.sum_of_squares / before;
   fit->delta_aicc = 2 - evidence.LikelihoodRatio(before, after.sum_of_squares);
   fit->p_value =

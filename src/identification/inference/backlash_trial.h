@@ -12,9 +12,8 @@ namespace mindahl::identification {
 
 /// Makes a gap that was measured (LoopFacts::backlash) a cause that is named first, and takes a
 /// force that saturates, whose columns only stand for it, from what was tried. Fits the contact
-/// behind that gap: the displacement less ±½ of the width, by the side on which the force is, with
-/// all parameters searched again; where that explains anything, it is put in the place of what the
-/// first order of a gap does.
+/// behind a gap of that width, all parameters searched again; where that explains anything, it is
+/// put in the place of what the first order of a gap does.
 /// @param gaps  of each record, empty where none was measured; nothing is done unless all have one
 /// @param test  of the same solution
 void TryBacklash(const Problem& problem, const Solution& solution,

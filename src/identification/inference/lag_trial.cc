@@ -10,7 +10,7 @@
 
 #include "core/probability.h"
 #include "identification/inference/evidence.h"
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 #include "mindahl/identification/terms.h"
 
 namespace mindahl::identification {
@@ -100,7 +100,7 @@ void DenyLagBeyondKnee(const Problem& problem, const Solution& solution, Respons
 void TryLag(const Problem& problem, const Solution& solution, const SolverOptions& options,
             SearchBuffers& buffers, AdequacyTest& test) {
   const auto fit = FindLag(test);
-  if (fit == test.fits.end() || problem.parameters.has_lag()) return;
+  if (fit == test.fits.end() || problem.parameters.moves_contact()) return;
   ScaledRecords data(*problem.data);
   if (!MayHaveClocks(data)) return;
   SetClocks(data);

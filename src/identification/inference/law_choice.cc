@@ -11,6 +11,7 @@
 
 #include "identification/inference/evidence.h"
 #include "identification/inference/local.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -45,8 +46,8 @@ bool AreComparable(const Problem& problem) {
 
 /// Returns the law whose steady loop at the record's amplitude is the fitted one.
 models::BranchLaw EquivalentOf(const FitResult& result) {
-  const double amplitude = models::ContactAmplitude(*result.model, result.law, result.rig,
-                                                    result.WidestRecord().measures.amplitude);
+  const double amplitude =
+      ContactAmplitude(result, result.law, result.WidestRecord().measures.amplitude);
   return result.model->memory == Memory::kReturnPoint
              ? models::DahlEquivalent(result.law, amplitude)
              : models::MasingEquivalent(result.law, amplitude);

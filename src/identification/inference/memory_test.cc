@@ -105,7 +105,7 @@ class MemoryTrial {
 
 bool CanCompareBranches(const Problem& problem) {
   return !problem.data->is_forced() && !problem.data->load_varies &&
-         !problem.parameters.has_lag() && !problem.parameters.is_load_series();
+         !problem.parameters.moves_contact() && !problem.parameters.is_load_series();
 }
 
 MemoryVerdict VerdictOf(double p_value, double dahl_p_value, const Thresholds& thresholds) {

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "core/nearest_name.h"
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/problem/ripple.h"
 #include "mindahl/core/error.h"
 
@@ -20,8 +20,15 @@ void RequireInDomain(const Parameter& parameter, std::string_view name, double v
   const std::string quantity = fmt::format("{} [{}]", name, parameter.term->unit);
   if (parameter.term->positive) {
     RequirePositive(quantity, value);
-  } else if (parameter.term->name == "alpha") {
+  } else if (parameter.term->name == "alpha" ||
+             ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap) {
     RequireNonNegative(quantity, value);
+    const bool is_gap = ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap;
+    if (is_gap && !(value < 2 * parameter.scale)) {
+      ThrowInvalid(quantity, value,
+                   fmt::format("must be below the range of the displacement, {:.6g} m",
+                               2 * parameter.scale));
+    }
   } else if (parameter.term->name == "asymmetry") {
     if (!(std::abs(value) < 1)) ThrowInvalid(quantity, value, "must be in (-1, 1)");
   } else {
@@ -141,10 +148,12 @@ BoundSide SideOf(double theta, double lower, double upper) {
 
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
-  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed.
+  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed, no gap.
   const std::string_view name = parameter.term->name;
   if (name == "alpha" || name == "slip_speed_exponent") return side == BoundSide::kUpper;
   if (name == "slip_speed") return side == BoundSide::kLower;
+  if (ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap)
+    return side == BoundSide::kUpper;
   return true;
 }
 
@@ -180,6 +189,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
   }
   ApplyOptions(options);
   RequireShapedColumns();
+  RequireOneMotion();
   if (options.model->memory == models::Memory::kReturnPoint) {
     if (state.AreAll(models::InitialState::kSteady)) HoldConfoundedAsymmetry();
     if (data.load_varies) KeepShapeBelowOne(options);
@@ -239,6 +249,17 @@ void Parameters::RequireShapedColumns() const {
   }
 }
 
+/// Refuses two terms that move the contact.
+void Parameters::RequireOneMotion() const {
+  const std::size_t first = PositionOfMotion();
+  for (std::size_t p = first + 1; p < size(); ++p) {
+    if (parameters_[p].absent || ContactMotionOf(*parameters_[p].term) == ContactMotion::kMeasured)
+      continue;
+    throw InvalidArgument(fmt::format("{} and {} cannot be in one fit: leave one of them out",
+                                      parameters_[first].term->name, parameters_[p].term->name));
+  }
+}
+
 /// Holds an asymmetry that is confounded with the force's offset: the contact had slipped before.
 void Parameters::HoldConfoundedAsymmetry() {
   Parameter& asymmetry = parameters_[PositionOf("asymmetry", 0)];
@@ -284,6 +305,13 @@ std::size_t Parameters::PositionOf(std::string_view term, std::size_t record) co
     if (parameter.term->scope == Scope::kContact || parameter.record == record) return i;
   }
   return parameters_.size();
+}
+
+std::size_t Parameters::PositionOfMotion() const {
+  const auto moves = [](const Parameter& parameter) {
+    return !parameter.absent && ContactMotionOf(*parameter.term) != ContactMotion::kMeasured;
+  };
+  return static_cast<std::size_t>(std::ranges::find_if(parameters_, moves) - parameters_.begin());
 }
 
 std::size_t Parameters::PositionOfOrigin(std::size_t record) const {

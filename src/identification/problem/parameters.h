@@ -98,7 +98,10 @@ class Parameters {
   /// Returns the place of a record's term; size() where there is no such term.
   [[nodiscard]] std::size_t PositionOf(std::string_view term, std::size_t record) const;
   [[nodiscard]] bool has_rig() const { return !parameters_[kRig].absent; }
-  [[nodiscard]] bool has_lag() const { return !parameters_[PositionOf("lag", 0)].absent; }
+  /// Returns the place of the term that moves the contact away from the displacement at the time of
+  /// the force, of which there is one at most; size() where there is none.
+  [[nodiscard]] std::size_t PositionOfMotion() const;
+  [[nodiscard]] bool moves_contact() const { return PositionOfMotion() < size(); }
   [[nodiscard]] bool has_asymmetry() const {
     return !parameters_[PositionOf("asymmetry", 0)].absent;
   }
@@ -142,6 +145,7 @@ class Parameters {
  private:
   void ApplyOptions(const FitOptions& options);
   void RequireShapedColumns() const;
+  void RequireOneMotion() const;
   void HoldConfoundedAsymmetry();
   void KeepShapeBelowOne(const FitOptions& options);
   void Sort();

@@ -44,7 +44,8 @@ struct LawRow {
 };
 constexpr std::array kLawRows = {
     LawRow{"alpha", &ResponseColumns::shape_exponent, 1.0, true},
-    LawRow{"lag", &ResponseColumns::lag, 0.02},  // cycles
+    LawRow{"lag", &ResponseColumns::moved, 0.02},  // cycles
+    LawRow{"backlash", &ResponseColumns::moved, 0.1},
     LawRow{"asymmetry", &ResponseColumns::asymmetry, 0.25},
     LawRow{"slip_slope", &ResponseColumns::slip_slope, 0.25},
     LawRow{"slip_curvature", &ResponseColumns::slip_curvature, 0.25},
@@ -83,7 +84,8 @@ LawSensitivity SensitivityTo(const Problem& problem, std::size_t parameter) {
     const auto row = std::ranges::find(kLawRows, term.name, &LawRow::term);
     if (ShapesColumns(problem, parameter)) result.longest_step = 0.2;
     if (row == kLawRows.end()) return result;
-    if (row->column == &ResponseColumns::lag && !problem.parameters.has_lag()) return result;
+    if (row->column == &ResponseColumns::moved && problem.parameters[parameter].absent)
+      return result;
     add({.column = row->column});
     result.longest_step = row->longest_step;
     result.step_grows_with_theta = row->step_grows_with_theta;
@@ -154,11 +156,12 @@ void Response::Bind(const Problem& problem) {
   slip_varies_ = slip_goes_by_speed_ || !problem.parameters[slip_slope_].absent ||
                  !problem.parameters[slip_curvature_].absent ||
                  !problem.parameters[slip_trend_].absent;
-  lag_ = problem.parameters.PositionOf("lag", 0);
-  has_lag_ = problem.parameters.has_lag();
-  if (!has_lag_) return;
-  if (motions_.size() < records) motions_.resize(records);
-  for (LaggedMotion& motion : motions_) motion.Forget();
+  moves_ = problem.parameters.PositionOfMotion();
+  has_moved_ = problem.parameters.moves_contact();
+  motions_.clear();
+  for (std::size_t r = 0; has_moved_ && r < records; ++r) {
+    motions_.push_back(MakeMovedSamples(ContactMotionOf(*problem.parameters[moves_].term)));
+  }
 }
 
 models::InitialContact Response::InitialOf(std::size_t r, std::span<const double> theta) const {
@@ -169,28 +172,39 @@ models::InitialContact Response::InitialOf(std::size_t r, std::span<const double
           .asymmetry = HasPathAsymmetry(*problem_) ? theta[asymmetry_] : 0.0};
 }
 
-double Response::LagOf(std::size_t r, std::span<const double> theta) const {
-  return problem_->parameters[lag_].ToValue(theta[lag_]) /
-         problem_->data->records[r].units.half_duration;
+double Response::UnitOfAmount(std::size_t r) const {
+  const TermUnits& units = problem_->data->records[r].units;
+  const bool is_in_time =
+      ContactMotionOf(*problem_->parameters[moves_].term) == ContactMotion::kLate;
+  return is_in_time ? units.half_duration : units.length;
 }
 
-const LaggedMotion& Response::MotionOf(std::size_t r, std::span<const double> theta) {
-  LaggedMotion& motion = motions_[r];
-  const models::InitialContact initial = InitialOf(r, theta);
-  const double lag = LagOf(r, theta);
-  if (!motion.IsAt(lag, initial)) {
-    motion.MoveTo(problem_->data->records[r], lag, problem_->model->memory, initial);
-    paths_[r].valid = false;
-  }
-  return motion;
+MovedSamples& Response::MovedOf(std::size_t r, std::span<const double> theta) {
+  const double amount = problem_->parameters[moves_].ToValue(theta[moves_]) / UnitOfAmount(r);
+  motions_[r]->MoveTo(problem_->data->records[r], amount, problem_->model->memory,
+                      InitialOf(r, theta));
+  return *motions_[r];
+}
+
+MovedSamples& Response::MovedUnderForces(const LawPoint& at, std::size_t r) {
+  MovedSamples& moved = MovedOf(r, at.theta);
+  const std::span<double> t = PlacesOf(moved, 0);
+  response_.Evaluate(*problem_->model, LawUnder(*problem_, at, problem_->data->records[r]),
+                     moved.path(), moved.displacement(), t);
+  moved.TakeForces(t);
+  return moved;
+}
+
+std::span<double> Response::PlacesOf(const MovedSamples& moved, std::size_t column) {
+  const std::size_t size = moved.displacement().size();
+  if (moved_.size() < (column + 1) * size) moved_.resize((column + 1) * size);
+  return std::span(moved_).subspan(column * size, size);
 }
 
 const models::LoadingPath& Response::PathOf(std::size_t r, std::span<const double> theta) {
   CachedPath& cached = paths_[r];
-  if (has_lag_) {
-    const LaggedMotion& motion = MotionOf(r, theta);
-    if (!cached.valid) motion.CopyPathOfSamples(cached.path);
-    cached.valid = true;
+  if (has_moved_) {
+    MovedUnderForces(PointAt(*problem_, theta), r).CopyPathOfSamples(cached.path);
     return cached.path;
   }
   const models::InitialContact initial = InitialOf(r, theta);
@@ -226,7 +240,7 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
   const auto scale = [&] {
     if (IsStateOfJoint(*problem_, record)) {
       std::vector<double> state(record.size());
-      has_lag_ ? DifferentiateLagged(at, r, state, {}) : DifferentiateRecord(at, r, state, {});
+      has_moved_ ? DifferentiateMoved(at, r, state, {}) : DifferentiateRecord(at, r, state, {});
       for (std::size_t i = 0; i < record.size(); ++i) {
         const double slope =
             models::JointForceSlope(state[i], LoadRatioAt(record, i), at.theta[asymmetry_]);
@@ -236,15 +250,13 @@ void Response::DifferentiateByOrigins(const LawPoint& at, std::size_t r,
     }
     if (slip_varies_) ScaleSensitivity(r, at, sensitivity);
   };
-  if (has_lag_) {
-    const LaggedMotion& motion = MotionOf(r, at.theta);
-    response_.DifferentiateByOrigins(*problem_->model, law, motion.path(), motion.displacement(),
+  if (has_moved_) {
+    const MovedSamples& moved = MovedUnderForces(at, r);
+    response_.DifferentiateByOrigins(*problem_->model, law, moved.path(), moved.displacement(),
                                      sensitivity);
     for (auto* column : {&sensitivity.sample_slope, &sensitivity.sample_gain}) {
-      for (std::size_t i = 0; i < motion.places().size(); ++i) {
-        (*column)[i] = (*column)[motion.places()[i]];  // which is not before i
-      }
-      column->resize(motion.places().size());
+      moved.Gather(*column, std::span(*column).first(record.size()));
+      column->resize(record.size());
     }
     scale();
     return;
@@ -303,48 +315,42 @@ void Response::DifferentiateForced(const LawPoint& at, std::size_t r, std::span<
   for (double& value : columns.log_rate) value = -value;
 }
 
-void Response::DifferentiateLagged(const LawPoint& at, std::size_t r, std::span<double> t,
-                                   const ResponseColumns& columns) {
+void Response::DifferentiateMoved(const LawPoint& at, std::size_t r, std::span<double> t,
+                                  const ResponseColumns& columns) {
   const models::NormalizedLaw law = LawUnder(*problem_, at, problem_->data->records[r]);
-  const LaggedMotion& motion = MotionOf(r, at.theta);
-  const std::size_t size = motion.displacement().size();
+  MovedSamples& moved = MovedOf(r, at.theta);
   const std::array wanted = {columns.log_rate, columns.shape_exponent, columns.unloaded,
                              columns.log_spring_travel,
                              HasPathAsymmetry(*problem_) ? columns.asymmetry : std::span<double>()};
-  moved_.resize((1 + wanted.size()) * size);
-  const auto moved = [&](std::size_t column) {
-    return std::span(moved_).subspan(column * size, size);
-  };
-  const auto moved_if_wanted = [&](std::size_t column) {
-    return wanted[column].empty() ? std::span<double>() : moved(1 + column);
+  PlacesOf(moved, wanted.size());  // all of them, before any is taken
+  const std::span<double> forces = PlacesOf(moved, 0);
+  const auto places_if_wanted = [&](std::size_t column) {
+    return wanted[column].empty() ? std::span<double>() : PlacesOf(moved, 1 + column);
   };
   const bool wants_any =
       std::ranges::any_of(wanted, [](std::span<double> column) { return !column.empty(); });
   if (wants_any) {
-    response_.Differentiate(*problem_->model, law, motion.path(), motion.displacement(), moved(0),
-                            {.log_rate = moved_if_wanted(0),
-                             .shape_exponent = moved_if_wanted(1),
-                             .unloaded_displacement = moved_if_wanted(2),
-                             .log_spring_travel = moved_if_wanted(3),
-                             .asymmetry = moved_if_wanted(4)});
+    response_.Differentiate(*problem_->model, law, moved.path(), moved.displacement(), forces,
+                            {.log_rate = places_if_wanted(0),
+                             .shape_exponent = places_if_wanted(1),
+                             .unloaded_displacement = places_if_wanted(2),
+                             .log_spring_travel = places_if_wanted(3),
+                             .asymmetry = places_if_wanted(4)});
   } else {
-    response_.Evaluate(*problem_->model, law, motion.path(), motion.displacement(), moved(0));
+    response_.Evaluate(*problem_->model, law, moved.path(), moved.displacement(), forces);
   }
-  const std::span<const std::size_t> places = motion.places();
-  for (std::size_t i = 0; i < t.size(); ++i) t[i] = moved(0)[places[i]];
+  moved.TakeForces(forces);
+  moved.Gather(forces, t);
   for (std::size_t column = 0; column < wanted.size(); ++column) {
-    for (std::size_t i = 0; i < wanted[column].size(); ++i) {
-      wanted[column][i] = moved(1 + column)[places[i]];
-    }
+    if (!wanted[column].empty()) moved.Gather(PlacesOf(moved, 1 + column), wanted[column]);
   }
-  if (columns.lag.empty()) return;
-  response_.DifferentiateByOrigins(*problem_->model, law, motion.path(), motion.displacement(),
+  if (columns.moved.empty()) return;
+  response_.DifferentiateByOrigins(*problem_->model, law, moved.path(), moved.displacement(),
                                    sensitivity_);
-  const double per_theta =
-      problem_->parameters[lag_].scale / problem_->data->records[r].units.half_duration;
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    columns.lag[i] = sensitivity_.sample_slope[places[i]] * motion.rates()[i] * per_theta;
-  }
+  moved.DifferentiateByAmount(sensitivity_, forces);
+  moved.Gather(forces, columns.moved);
+  const double per_theta = problem_->parameters[moves_].scale / UnitOfAmount(r);
+  for (double& value : columns.moved) value *= per_theta;
 }
 
 void Response::Differentiate(const LawPoint& at, std::span<double> t,
@@ -356,20 +362,11 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
     const auto part = [&](std::span<double> column) {
       return column.empty() ? column : column.subspan(begin, count);
     };
-    const ResponseColumns parts{.log_rate = part(columns.log_rate),
-                                .shape_exponent = part(columns.shape_exponent),
-                                .unloaded = part(columns.unloaded),
-                                .log_spring_travel = part(columns.log_spring_travel),
-                                .lag = part(columns.lag),
-                                .asymmetry = part(columns.asymmetry),
-                                .slip_slope = part(columns.slip_slope),
-                                .slip_curvature = part(columns.slip_curvature),
-                                .slip_speed = part(columns.slip_speed),
-                                .slip_speed_exponent = part(columns.slip_speed_exponent),
-                                .slip_trend = part(columns.slip_trend)};
+    ResponseColumns parts;
+    for (const auto column : kResponseColumns) parts.*column = part(columns.*column);
     const std::span<double> values = part(t);
-    if (has_lag_) {
-      DifferentiateLagged(at, r, values, parts);
+    if (has_moved_) {
+      DifferentiateMoved(at, r, values, parts);
     } else {
       DifferentiateRecord(at, r, values, parts);
     }
@@ -378,11 +375,9 @@ void Response::Differentiate(const LawPoint& at, std::span<double> t,
     }
     if (slip_varies_) ScaleBySlipForce(r, at, values, parts);
     if (record.load != 1) {
-      for (const std::span<double> column :
-           {values, parts.log_rate, parts.shape_exponent, parts.unloaded, parts.log_spring_travel,
-            parts.lag, parts.asymmetry, parts.slip_slope, parts.slip_curvature, parts.slip_speed,
-            parts.slip_speed_exponent, parts.slip_trend}) {
-        for (double& value : column) value *= record.load;
+      for (double& value : values) value *= record.load;
+      for (const auto column : kResponseColumns) {
+        for (double& value : parts.*column) value *= record.load;
       }
     }
     begin += count;
@@ -423,7 +418,7 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
                              columns.shape_exponent,
                              columns.unloaded,
                              columns.log_spring_travel,
-                             columns.lag,
+                             columns.moved,
                              columns.asymmetry};
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double position = record.displacement[i];

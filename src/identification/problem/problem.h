@@ -2,11 +2,12 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "identification/problem/lagged_motion.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/problem/parameters.h"
 #include "identification/problem/record_states.h"
 #include "identification/problem/scaled_records.h"
@@ -60,7 +61,7 @@ struct ResponseColumns {
   std::span<double> shape_exponent;
   std::span<double> unloaded;  // where the contact is unloaded, in the channel that is imposed
   std::span<double> log_spring_travel;
-  std::span<double> lag;        // by θ of the lag; where the problem has one
+  std::span<double> moved;      // by θ of the term that moves the contact; where there is one
   std::span<double> asymmetry;  // likewise
   std::span<double> slip_slope;
   std::span<double> slip_curvature;
@@ -68,6 +69,13 @@ struct ResponseColumns {
   std::span<double> slip_speed_exponent;
   std::span<double> slip_trend;
 };
+inline constexpr std::array kResponseColumns = {
+    &ResponseColumns::log_rate,   &ResponseColumns::shape_exponent,
+    &ResponseColumns::unloaded,   &ResponseColumns::log_spring_travel,
+    &ResponseColumns::moved,      &ResponseColumns::asymmetry,
+    &ResponseColumns::slip_slope, &ResponseColumns::slip_curvature,
+    &ResponseColumns::slip_speed, &ResponseColumns::slip_speed_exponent,
+    &ResponseColumns::slip_trend};
 
 /// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where no column stands for t itself.
 struct Sensitivity {
@@ -128,12 +136,17 @@ class Response {
                                   std::size_t sample) const;
   void ScaleSensitivity(std::size_t record, const LawPoint& at,
                         models::OriginSensitivity& sensitivity) const;
-  [[nodiscard]] double LagOf(std::size_t record, std::span<const double> theta) const;
-  const LaggedMotion& MotionOf(std::size_t record, std::span<const double> theta);
+  /// Returns the unit of the amount by which a record's samples are moved.
+  [[nodiscard]] double UnitOfAmount(std::size_t record) const;
+  MovedSamples& MovedOf(std::size_t record, std::span<const double> theta);
+  /// Returns them as they are under the forces at this point.
+  MovedSamples& MovedUnderForces(const LawPoint& at, std::size_t record);
+  /// Returns a buffer of a value for each place.
+  std::span<double> PlacesOf(const MovedSamples& moved, std::size_t column);
   void DifferentiateForced(const LawPoint& at, std::size_t r, std::span<double> t,
                            const ResponseColumns& columns);
-  void DifferentiateLagged(const LawPoint& at, std::size_t record, std::span<double> t,
-                           const ResponseColumns& columns);
+  void DifferentiateMoved(const LawPoint& at, std::size_t record, std::span<double> t,
+                          const ResponseColumns& columns);
 
   struct CachedPath {
     models::LoadingPath path;
@@ -156,11 +169,11 @@ class Response {
   std::size_t slip_trend_ = 0;
   bool slip_varies_ = false;  // over positions, speeds or time
   bool slip_goes_by_speed_ = false;
-  // For a problem with a lag:
-  std::size_t lag_ = 0;  // its position
-  bool has_lag_ = false;
-  std::vector<LaggedMotion> motions_;  // of each record
-  std::vector<double> moved_;          // columns of all that a motion has
+  // For a problem with a term that moves the contact:
+  std::size_t moves_ = 0;  // its position
+  bool has_moved_ = false;
+  std::vector<std::unique_ptr<MovedSamples>> motions_;  // of each record
+  std::vector<double> moved_;                           // columns of all places of one
   models::OriginSensitivity sensitivity_;
   std::vector<models::LoadedHistory> histories_;  // of records under a load that varies
   models::NormalizedLoadedResponse loaded_response_;

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/extremes.h"
+#include "identification/problem/moved_samples.h"
 #include "identification/problem/one_channel.h"
 #include "identification/problem/parameters.h"
 #include "mindahl/core/error.h"
@@ -192,8 +193,15 @@ bool HasStateOfJoint(const FitOptions& options) {
 /// True if the law models a load that varies. The displacement is then that of the contact alone;
 /// of Masing's law it is read with the force, and slip is as easy in either direction.
 bool KnowsVaryingLoads(const FitOptions& options) {
-  if (HasTerm(options, "rig_stiffness")) return false;
-  return HasStateOfJoint(options) || (!HasTerm(options, "lag") && !HasTerm(options, "asymmetry"));
+  const bool is_joint = HasStateOfJoint(options);
+  return std::ranges::none_of(Terms(), [&](const Term& term) {
+    const ContactMotion motion = ContactMotionOf(term);
+    const bool is_other =
+        term.name == "rig_stiffness" ||
+        (is_joint ? motion == ContactMotion::kBehindGap
+                  : motion != ContactMotion::kMeasured || term.name == "asymmetry");
+    return is_other && HasTerm(options, term.name);
+  });
 }
 
 /// Takes the loads within a record from their column.

@@ -33,6 +33,9 @@ constexpr double kLargestSlipBySpeed = 1.0;
 constexpr double kShortestPeriod = 0.01;
 constexpr double kLongestPeriod = 1.0;
 
+// Of a gap, in half ranges of the displacement: half of a stroke.
+constexpr double kWidestGap = 1.0;
+
 // One slip force is then nine times the other. Nearer to −1 and 1 a virgin branch grows twice as
 // large as the contact's, as branches of a contact are that was cycled.
 constexpr double kLargestAsymmetry = 0.8;
@@ -279,6 +282,18 @@ constexpr std::array kTerms = {
          .argument = "S|fit",
          .help = "the force is read S [s] after the displacement, before it where\n"
                  "negative, or fit; samples where there is no time"},
+    Term{
+        .name = "backlash",
+        .unit = "m",
+        .meaning = "g, width of a gap before the contact, which bears no force while it is crossed",
+        .presence = Presence::kOnDemand,
+        .lowest = 0.0,
+        .highest = kWidestGap,
+        .scale = Length,
+        .option = "--backlash",
+        .argument = "G|fit",
+        .help = "width of a gap before the contact that is crossed at zero force, G [m],\n"
+                "or fit"},
     Term{.name = "covariate",
          .unit = "N/unit",
          .meaning = "C of a force C·column in addition to the contact's, one for each column that "

@@ -50,6 +50,7 @@ struct Look {
   std::size_t guess = 0;   // of where the contact was unloaded
   double lag = 0.0;        // θ; ignored where none is fitted
   double asymmetry = 0.0;  // likewise
+  double backlash = 0.0;   // likewise
 };
 
 class Plane {
@@ -62,11 +63,13 @@ class Plane {
     for (std::size_t p = 0; p < parameters.size(); ++p) theta_[p] = parameters[p].theta;
     lag_ = parameters.PositionOf("lag", 0);
     asymmetry_ = parameters.PositionOf("asymmetry", 0);
+    backlash_ = parameters.PositionOf("backlash", 0);
     FindGuesses(memory);
   }
 
   [[nodiscard]] bool lag_is_open() const { return !problem_.parameters[lag_].fixed; }
   [[nodiscard]] bool asymmetry_is_open() const { return !problem_.parameters[asymmetry_].fixed; }
+  [[nodiscard]] bool backlash_is_open() const { return !problem_.parameters[backlash_].fixed; }
   [[nodiscard]] const Parameter& lag() const { return problem_.parameters[lag_]; }
   [[nodiscard]] std::size_t guesses() const { return guesses_.size(); }
 
@@ -94,6 +97,10 @@ class Plane {
     }
     if (lag_is_open()) {
       theta_[lag_] = std::clamp(look.lag, parameters[lag_].lower, parameters[lag_].upper);
+    }
+    if (backlash_is_open()) {
+      const Parameter& backlash = parameters[backlash_];
+      theta_[backlash_] = std::clamp(look.backlash, backlash.lower, backlash.upper);
     }
     if (asymmetry_is_open()) {
       const Parameter& asymmetry = parameters[asymmetry_];
@@ -200,6 +207,7 @@ class Plane {
   std::pmr::vector<Guess> guesses_;
   std::size_t lag_ = 0;  // position of the parameter
   std::size_t asymmetry_ = 0;
+  std::size_t backlash_ = 0;
 };
 
 void KeepBetter(Look& best, Plane& plane, Look look) {
@@ -248,6 +256,19 @@ void LookForAsymmetry(Look& best, Plane& plane) {
     Look look = none;
     look.asymmetry = asymmetry;
     KeepBetter(best, plane, look);
+  }
+}
+
+/// Tries gaps, each with stiffer contacts: what the gap takes of a stroke looked like compliance.
+void LookForBacklash(Look& best, Plane& plane) {
+  const Look none = best;
+  for (const double gap : {0.02, 0.05, 0.1, 0.2, 0.4}) {
+    for (const double stiffer : {1.0, 2.0, 4.0, 8.0}) {
+      Look look = none;
+      look.backlash = gap;
+      look.reach = none.reach * stiffer;
+      KeepBetter(best, plane, look);
+    }
   }
 }
 
@@ -319,6 +340,7 @@ Looks LookAround(Plane& plane, const Parameters& parameters, double hopeless) {
     if (!std::isfinite(look.cost)) continue;
     if (plane.lag_is_open()) LookForLag(look, plane);
     if (plane.asymmetry_is_open()) LookForAsymmetry(look, plane);
+    if (plane.backlash_is_open()) LookForBacklash(look, plane);
   }
   std::ranges::sort(best, {}, &Look::cost);
   return best;

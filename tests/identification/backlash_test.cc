@@ -1,0 +1,176 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "identification/stages.h"
+#include "mindahl/core/error.h"
+
+// A gap before the contact that is crossed at zero force. The records are made from the contact's
+// own motion: δ = x + (g/2)·sgn F(x), so that the fit's rule for finding x is not used.
+namespace mindahl::identification::backlash_test {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::FitOne;
+using ::testing::HasSubstr;
+using testing::History;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Stages;
+using testing::Wave;
+
+constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
+constexpr double kReach = 4e-6;  // 2 of gross slip
+constexpr double kGap = 1.3e-6;
+constexpr int kSamplesPerCycle = 400;
+/// The sums of squares are zero to rounding, and the condition of a fit is 1e4.
+constexpr double kRecovered = 1e-8;
+
+/// The record of a contact that moves along `contact` behind a gap. Where its force changes sign
+/// three readings are put into the gap.
+Record BehindGap(const std::string& model, const BranchLaw& law, const History& contact,
+                 double gap) {
+  const std::vector<double> force = Respond(Model(model), law, contact);
+  History displacement;
+  std::vector<double> read;
+  for (std::size_t i = 0; i < contact.size(); ++i) {
+    const double side = force[i] == 0 ? 0.0 : std::copysign(0.5, force[i]);
+    if (i > 0 && force[i - 1] * force[i] < 0) {
+      const double fraction = force[i - 1] / (force[i - 1] - force[i]);
+      const double crossing = std::lerp(contact[i - 1], contact[i], fraction);
+      for (const double part : {-0.7, 0.1, 0.6}) {
+        displacement.push_back(crossing + part * side * gap);
+        read.push_back(0.0);
+      }
+    }
+    displacement.push_back(contact[i] + side * gap);
+    read.push_back(force[i]);
+  }
+  return MakeRecord(displacement, read);
+}
+
+FitOptions WithBacklash(const std::string& model = "mindlin-dahl") {
+  FitOptions options;
+  options.model = &Model(model);
+  options.terms = {"backlash"};
+  return options;
+}
+
+void ExpectRecovered(const FitResult& fit, const BranchLaw& law, double tolerance) {
+  ASSERT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.law.tangential_stiffness / law.tangential_stiffness, 1.0, tolerance);
+  EXPECT_NEAR(fit.law.shape_exponent, law.shape_exponent, tolerance);
+  EXPECT_NEAR(fit.law.slip_force / law.slip_force, 1.0, tolerance);
+  EXPECT_NEAR(fit.Find("backlash")->value / kGap, 1.0, tolerance);
+}
+
+TEST(Backlash, IsRecoveredFromAVirginLoop) {
+  const Record record =
+      BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 2.3, kSamplesPerCycle), kGap);
+  ExpectRecovered(FitOne(record, WithBacklash()), kLaw, kRecovered);
+}
+
+TEST(Backlash, IsRecoveredFromASteadyLoopOfDahlsOwnLaw) {
+  constexpr BranchLaw kDahl{5e7, 1.0, 60.0};
+  Record record =
+      BehindGap("dahl", kDahl, Cycling(Wave::kSine, kReach, 8.25, kSamplesPerCycle), kGap);
+  // From a turning point on, when the first loading is forgotten.
+  const auto cut = static_cast<std::ptrdiff_t>(record.size() / 8.25 * 6);
+  record.displacement.erase(record.displacement.begin(), record.displacement.begin() + cut);
+  record.force.erase(record.force.begin(), record.force.begin() + cut);
+  FitOptions options = WithBacklash("dahl");
+  options.initial_state = InitialState::kSteady;
+  // The loop of exp(−2σX/Tc) = 1e-3 a stroke has settled to 1e-18 of its slip force; its centre is
+  // that of the sampled extremes, which lie half a sample's sine of 1e-4 off.
+  constexpr double kSampled = 1e-3;
+  ExpectRecovered(FitOne(record, options), kDahl, kSampled);
+}
+
+TEST(Backlash, LeavesInnerLoopsThatDoNotUnloadTheContactOnOneSideOfTheGap) {
+  // Up, back by an eighth of the reach, twice, and round.
+  History contact;
+  const auto go = [&](double to) {
+    const double from = contact.empty() ? 0.0 : contact.back();
+    for (int i = contact.empty() ? 0 : 1; i <= 100; ++i) {
+      contact.push_back(std::lerp(from, to, i / 100.0));
+    }
+  };
+  for (const double to : {1.0, 0.9, 0.97, 0.88, 1.0, -1.0, -0.85, -1.0, 1.0}) go(to * kReach);
+  const Record record = BehindGap("mindlin-dahl", kLaw, contact, kGap);
+  ExpectRecovered(FitOne(record, WithBacklash()), kLaw, kRecovered);
+}
+
+TEST(Backlash, OfAKnownWidthIsTakenOff) {
+  const Record record =
+      BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 2.3, kSamplesPerCycle), kGap);
+  FitOptions options;
+  options.fixed["backlash"] = kGap;
+  const FitResult fit = FitOne(record, options);
+  ExpectRecovered(fit, kLaw, kRecovered);
+  EXPECT_EQ(fit.Find("backlash")->status, ParameterStatus::kFixed);
+}
+
+TEST(Backlash, OfNoneIsFoundAtItsBoundAndLeavesTheLaw) {
+  const History displacement = Cycling(Wave::kSine, kReach, 2.3, kSamplesPerCycle);
+  const FitResult fit = FitOne(
+      MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)), WithBacklash());
+  ASSERT_TRUE(fit.converged);
+  EXPECT_NEAR(fit.law.slip_force / kLaw.slip_force, 1.0, kRecovered);
+  EXPECT_LT(fit.Find("backlash")->value, 1e-6 * kReach);
+}
+
+TEST(Backlash, OfZeroWidthIsTheLawAloneToTheLastBit) {
+  const Record record =
+      BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 2.3, kSamplesPerCycle), kGap);
+  FitOptions options;
+  options.fixed["backlash"] = 0.0;
+  const Stages with(record, options);
+  const Stages without(record);
+  std::vector<double> theta;
+  for (const Parameter& parameter : with.problem.parameters) theta.push_back(parameter.theta);
+  theta[kStiffness] = 1.5;
+  theta[kShape] = 0.3;
+  Response response;
+  std::vector<double> one(record.size());
+  std::vector<double> other(record.size());
+  EvaluateResidual(with.problem, theta, response, one);
+  EvaluateResidual(without.problem, theta, response, other);
+  EXPECT_EQ(one, other);
+}
+
+TEST(Backlash, IsRefusedWhereItCannotBe) {
+  const Record record =
+      BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 1.3, kSamplesPerCycle), kGap);
+  const auto message = [&](FitOptions options) -> std::string {
+    try {
+      FitOne(record, options);
+    } catch (const InvalidArgument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  FitOptions late = WithBacklash();
+  late.fixed["lag"] = 0.5;
+  EXPECT_THAT(message(late), HasSubstr("lag and backlash cannot be in one fit"));
+  FitOptions negative;
+  negative.fixed["backlash"] = -1e-6;
+  EXPECT_THAT(message(negative), HasSubstr("backlash [m] = -1e-06 is invalid: must be finite and"));
+  FitOptions wide;
+  wide.fixed["backlash"] = 1.0;
+  EXPECT_THAT(message(wide), HasSubstr("must be below the range of the displacement"));
+  FitOptions forced = WithBacklash();
+  forced.preparation.excitation = Channel::kForce;
+  EXPECT_THAT(message(forced), HasSubstr("backlash has no place in a fit of the displacement"));
+}
+
+}  // namespace
+}  // namespace mindahl::identification::backlash_test
