@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/established.h"
 #include "cli/examples.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"

@@ -15,9 +15,9 @@
 
 #include "cli/added_forces.h"
 #include "cli/commands.h"
+#include "cli/contact_options.h"
 #include "cli/drive_options.h"
 #include "cli/examples.h"
-#include "cli/law_options.h"
 #include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/whole_number.h"
@@ -38,14 +38,16 @@ namespace mindahl::cli {
 
 using methods::Method;
 using models::FrictionModel;
+using request::ImposedForce;
+using request::ImposedMotion;
 using tradeoff::Approximation;
 
 namespace {
 
 struct SimulateOptions {
   std::string model = "mindlin";
-  LawOptions law;
-  DriveOptions drive;
+  LawRequest law;
+  DriveRequest drive;
   double asymmetry = 0.0;
   AddedForces forces;
   double force_noise = 0.0;
@@ -124,7 +126,7 @@ models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
         "--normal-load missing: with --normal-load-column it is the load at which sigma and the "
         "slip force are those given");
   }
-  LawOptions at_reference = options.law;
+  LawRequest at_reference = options.law;
   if (options.law.sigma || options.law.slip_force) at_reference.contact.known.normal_load.reset();
   const models::BranchLaw law = ResolveLaw(at_reference, options.model, model->shape_exponent);
   return {.friction_coefficient = law.slip_force / *load,
@@ -191,7 +193,7 @@ void AddNoise(std::vector<double>& values, double standard_deviation,
 }
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
-  Validate(options.law);
+  Validate(options.law.contact);
   std::vector<std::string> inputs = console.inputs;
   inputs.push_back(options.drive.path);
   inputs.push_back(options.drive.force_path);

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
@@ -20,8 +22,13 @@
 
 namespace mindahl::request {
 
+using identification::AdequacyVerdict;
 using identification::FitOptions;
+using identification::FitResult;
+using identification::Identifiability;
 using identification::Interval;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
 using io::RecordFile;
 using loop::Record;
 
@@ -300,6 +307,42 @@ void Validate(const FitRequest& request) {
 void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFile& record) {
   const std::optional<Interval> window = TimeWindow(request);
   if (window) io::KeepTimeWindow(record, name, window->lower, window->upper);
+}
+
+bool Established(const FitResult& fit, Strictness strictness) {
+  if (!fit.converged) return false;
+  const AdequacyVerdict verdict = fit.adequacy.verdict;
+  switch (strictness) {
+    case Strictness::kNone:
+      return true;
+    case Strictness::kDoubtful:
+      return verdict != AdequacyVerdict::kInadequate &&
+             std::ranges::all_of(fit.parameters, &ParameterEstimate::is_known);
+    case Strictness::kAdequate:
+      return verdict == AdequacyVerdict::kAdequate &&
+             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
+               return estimate.status == ParameterStatus::kFixed ||
+                      estimate.identifiability == Identifiability::kIdentifiable;
+             });
+  }
+  return false;
+}
+
+std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note) {
+  io::RecordColumns columns = request.columns;
+  columns.covariates = CovariateColumns(request);
+  std::vector<RecordFile> inputs;
+  io::ReadLimits left{.rows = request.max_rows,
+                      .memory = request.max_memory.value_or(MemoryOfProcess())};
+  for (const std::string& file : request.files) {
+    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns, left));
+    const std::size_t rows = input.record.size();
+    left.rows -= std::min<std::uintmax_t>(left.rows, rows);
+    left.memory -= std::min(left.memory, io::ReadLimits::MemoryOf(rows, 0));
+    KeepTimeWindow(request, file, input);
+    for (const std::string& text : input.notes) note(text);
+  }
+  return inputs;
 }
 
 report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs,
