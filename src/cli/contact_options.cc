@@ -137,7 +137,7 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options) {
            "MU");
 }
 
-void AddLawOptions(CLI::App& command, LawRequest& request) {
+void AddLawOptions(CLI::App& command, LawOptions& request) {
   const std::string parameters = "Parameters";
   AddOptional(command, "--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M")
       ->group(parameters);

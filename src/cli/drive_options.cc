@@ -16,7 +16,7 @@ std::vector<std::string> Waveforms() {
 
 }  // namespace
 
-void AddDriveOptions(CLI::App& command, DriveRequest& request) {
+void AddDriveOptions(CLI::App& command, DriveOptions& request) {
   const std::string group = "Excitation";
   command.add_option("--waveform", request.waveform, "imposed displacement")
       ->capture_default_str()
@@ -60,7 +60,7 @@ void AddDriveOptions(CLI::App& command, DriveRequest& request) {
   }
 }
 
-void AddLoadColumnOptions(CLI::App& command, DriveRequest& request) {
+void AddLoadColumnOptions(CLI::App& command, DriveOptions& request) {
   CLI::Option* path = command.get_option("--path");
   CLI::Option* column =
       command
@@ -77,7 +77,7 @@ void AddLoadColumnOptions(CLI::App& command, DriveRequest& request) {
       ->group("Excitation");
 }
 
-void AddForcePathOptions(CLI::App& command, DriveRequest& request) {
+void AddForcePathOptions(CLI::App& command, DriveOptions& request) {
   const std::string group = "Excitation";
   CLI::Option* force_path =
       command

@@ -38,16 +38,14 @@ namespace mindahl::cli {
 
 using methods::Method;
 using models::FrictionModel;
-using request::ImposedForce;
-using request::ImposedMotion;
 using tradeoff::Approximation;
 
 namespace {
 
 struct SimulateOptions {
   std::string model = "mindlin";
-  LawRequest law;
-  DriveRequest drive;
+  LawOptions law;
+  DriveOptions drive;
   double asymmetry = 0.0;
   AddedForces forces;
   double force_noise = 0.0;
@@ -126,7 +124,7 @@ models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
         "--normal-load missing: with --normal-load-column it is the load at which sigma and the "
         "slip force are those given");
   }
-  LawRequest at_reference = options.law;
+  LawOptions at_reference = options.law;
   if (options.law.sigma || options.law.slip_force) at_reference.contact.known.normal_load.reset();
   const models::BranchLaw law = ResolveLaw(at_reference, options.model, model->shape_exponent);
   return {.friction_coefficient = law.slip_force / *load,
