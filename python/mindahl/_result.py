@@ -279,6 +279,13 @@ class FitResult:
         """The same as text, byte for byte as the program writes it."""
         return self._fitted.json()
 
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with one row a parameter. Raises ImportError without pandas."""
+        import pandas
+
+        return pandas.json_normalize([{"name": name, **values} for name, values in
+                                      (self._report.get("parameters") or {}).items()], sep="_")
+
     def residuals_csv(self) -> str:
         """What `mindahl fit --residuals` writes."""
         return self._fitted.residuals_csv()

@@ -33,7 +33,7 @@ std::vector<campaign::Evolution> EvolutionsOf(const TrackedTest& test,
   const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
   std::vector<campaign::Evolution> evolutions;
   const auto is_known = [&](std::string_view name) {
-    const auto found = std::ranges::find(tracked_, name, &TrackedQuantity::name);
+    const auto found = std::ranges::find(tracked, name, &TrackedQuantity::name);
     const auto k = static_cast<std::size_t>(found - tracked.begin());
     return !described[k].stretches.empty();
   };

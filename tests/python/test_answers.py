@@ -170,6 +170,7 @@ def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
     table = mindahl.batch([SPHERE, record, frame, (record.displacement, record.force)], model="mindlin",
                           normal_load=50, terms="none")
     expected = mindahl.fit(record, model="mindlin", normal_load=50, terms="none")
+    assert list(expected.to_pandas()["name"]) == list(expected.parameters)
     assert set(table["sigma"]) == {expected.sigma.value}
     assert set(table["friction_coefficient"]) == {expected.contact.friction_coefficient.value}
     strict = mindahl.batch([FAR], strict=True, terms="none")
