@@ -5,23 +5,28 @@
     result.sigma.value, result.slip_force.interval, result.adequacy.verdict
     print(result)
 
-fit() fits a record or several, track() every cycle of a long one; simulate() and ContactState
-compute the force of a contact, along excitation() or any motion; contact() predicts it from materials, convert() writes it as another
-law; read_csv() reads a record as the program does. docs/python.md has them with examples.
+fit() fits a record or several, track() every cycle of a long one, batch() many files each on its own;
+plan() says what should be measured, contact() predicts the force from materials, validate() tests the
+mapping. simulate() and ContactState compute the force of a contact, along excitation() or any motion;
+recommend() and tradeoff() say by which model and method, convert() writes it as another law;
+read_csv() reads a record as the program does. docs/python.md has them with examples.
 """
 
-from ._contact import Conversion, Report, contact, convert, excitation, simulate
+from ._batch import BatchTable, batch
+from ._contact import Conversion, contact, convert, excitation, simulate
+from ._design import plan, recommend, tradeoff, validate
 from ._fit import fit
 from ._mindahl import ContactState, InputError, JointState, Record, __version__
 from ._records import read_csv
-from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Section
+from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Report, Section
 from ._track import CycleTable, track
 
 for _public in (ContactState, InputError, JointState, Record):
     _public.__module__ = __name__
 
 __all__ = [
-    "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning", "FittedRecord",
-    "InputError", "JointState", "Message", "Parameter", "Record", "Report", "Section", "__version__", "contact",
-    "convert", "excitation", "fit", "read_csv", "simulate", "track",
+    "BatchTable", "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning",
+    "FittedRecord", "InputError", "JointState", "Message", "Parameter", "Record", "Report", "Section",
+    "__version__", "batch", "contact", "convert", "excitation", "fit", "plan", "read_csv",
+    "recommend", "simulate", "tradeoff", "track", "validate",
 ]

@@ -187,3 +187,29 @@ def names_of(values: Union[None, str, Iterable[str]]) -> list[str]:
     if values is None:
         return []
     return [values] if isinstance(values, str) else list(values)
+
+
+def contact_options(friction: Optional[Uncertain] = None, **known: Optional[Uncertain]) -> _mindahl.ContactOptions:
+    """friction and what known_contact() takes."""
+    options = _mindahl.ContactOptions()
+    options.known = known_contact(**known)
+    options.friction = None if friction is None else uncertain("friction", friction)
+    return options
+
+
+def law_of(sigma: Optional[float], alpha: Optional[float], slip_force: Optional[float],
+           contact: Mapping[str, Optional[Uncertain]]) -> _mindahl.LawRequest:
+    law = _mindahl.LawRequest()
+    law.sigma = optional_number("sigma", sigma)
+    law.alpha = optional_number("alpha", alpha)
+    law.slip_force = optional_number("slip_force", slip_force)
+    law.contact = contact_options(**contact)
+    return law
+
+
+def numbers(name: str, values: Any) -> list[float]:
+    """A number, or several."""
+    if values is None:
+        return []
+    given = [values] if isinstance(values, (Number, np.generic)) else values
+    return [float(value) for value in array(name, given)]

@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from typing import Any, Optional
 
 from . import _mindahl
-from ._arguments import (Floats, Uncertain, array, count, known_contact, number, optional_number, uncertain)
-from ._result import FitWarning, Section
-
-
-class Report(Section):
-    """A result by item or by attribute; to_dict() is what the program writes as JSON."""
-
-    def to_dict(self) -> dict[str, Any]:
-        import copy
-
-        return copy.deepcopy(dict(self._values))
+from ._arguments import (Floats, Uncertain, array, contact_options, count, number,
+                         optional_number)
+from ._result import FitWarning, Report
 
 
 class Conversion(Report):
     """A conversion: sections of the program's JSON, and the lines that the target reads."""
 
-    def __init__(self, values: dict[str, Any], input_lines: Optional[list[str]]) -> None:
-        super().__init__(values, "conversion")
-        self.__dict__["input_lines"] = input_lines
+    def __init__(self, answer: _mindahl.Answer, input_lines: Optional[list[str]]) -> None:
+        super().__init__(answer, "conversion", ("parameters", "elements"))
+        self.input_lines = input_lines
+
+
+def report_of(answer: _mindahl.Answer, path: str, tables: tuple[str, ...],
+              assumed: Sequence[str] = ()) -> Report:
+    """The answer, its warnings and what was assumed as FitWarning of the caller's caller."""
+    for doubt in (*assumed, *answer.warnings):
+        warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=3)
+    return Report(answer, path, tables)
 
 
 def contact(
@@ -44,16 +45,11 @@ def contact(
         .standard_error, .unit.
     Raises InputError naming what is missing, ValueError for a value out of range.
     """
-    options = _mindahl.ContactOptions()
-    options.known = known_contact(
-        youngs_modulus_1=youngs_modulus_1, poisson_1=poisson_1, radius_1=radius_1,
+    return report_of(_mindahl.contact(contact_options(
+        friction, youngs_modulus_1=youngs_modulus_1, poisson_1=poisson_1, radius_1=radius_1,
         youngs_modulus_2=youngs_modulus_2, poisson_2=poisson_2, radius_2=radius_2,
-        contact_radius=contact_radius, compliance=compliance, normal_load=normal_load)
-    options.friction = None if friction is None else uncertain("friction", friction)
-    result = Report(_mindahl.contact(options), "contact")
-    for doubt in _mindahl.doubts_about(options):
-        warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
-    return result
+        contact_radius=contact_radius, compliance=compliance, normal_load=normal_load)),
+        "contact", ("contact", "parameters"))
 
 
 def convert(
@@ -77,16 +73,12 @@ def convert(
         None for codes of discrete elements without a normal load.
     Raises ValueError naming the quantity, its value and the rule.
     """
-    amplitude = number("amplitude", amplitude)
-    least = optional_number("least_amplitude", least_amplitude)
-    largest = optional_number("largest_amplitude", largest_amplitude)
-    span = None
-    if least is not None or largest is not None:
-        span = (amplitude if least is None else least, amplitude if largest is None else largest)
     return Conversion(*_mindahl.convert(
         sigma=number("sigma", sigma), alpha=number("alpha", alpha),
-        slip_force=number("slip_force", slip_force), amplitude=amplitude, from_law=from_, to=to,
-        range=span, tolerance=number("tolerance", tolerance),
+        slip_force=number("slip_force", slip_force), amplitude=number("amplitude", amplitude),
+        from_law=from_, to=to, least_amplitude=optional_number("least_amplitude", least_amplitude),
+        largest_amplitude=optional_number("largest_amplitude", largest_amplitude),
+        tolerance=number("tolerance", tolerance),
         elements=count("elements", elements, 1), beta=number("beta", beta),
         normal_load=optional_number("normal_load", normal_load),
         contact_radius=optional_number("contact_radius", contact_radius),

@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 from . import _mindahl
-from ._arguments import (Uncertain, assignments, bounds, count, known_contact, names_of, number,
+from ._arguments import (Uncertain, assignments, bounds, contact_options, count, names_of, number,
                          number_text, on_off, optional_number, pair, uncertain)
+from ._mindahl import Record
 from ._records import Column, RecordArguments, records_of
 from ._result import FitResult, FitWarning
 
@@ -147,44 +148,51 @@ def fit(
     Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
     Other threads run while it fits. Cost: the library's fit and a millisecond.
     """
-    request = request_of(
-        model=model, initial_state=initial_state, force_sign=force_sign, noise_in=noise_in,
-        offsets=offsets,
-        terms={"rig_stiffness": rig_stiffness, "plateau_slope": plateau_slope, "viscous": viscous,
-               "lag": lag, "asymmetry": asymmetry, "drift": drift,
-               "speed_exponent": speed_exponent, "inertia": inertia,
-               "slip_position": slip_position, "slip_speed": slip_speed, "slip_trend": slip_trend,
-               "ripple": ripple, "backlash": backlash},
-        covariate=covariate, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
-        force_noise=force_noise, displacement_noise=displacement_noise,
-        reversal_gate=reversal_gate, term_choice=terms,
-        confidence=confidence)
-    request.cycles = "" if cycles is None else pair("cycles", cycles)
-    request.samples = "" if samples is None else pair("samples", samples)
-    request.skip_cycles = count("skip_cycles", skip_cycles, 0)
-    request.trim = trim
-    request.time_window = "" if time_window is None else pair("time_window", time_window)
-    request.load_window = "" if load_window is None else pair("load_window", load_window)
-    options = _mindahl.ContactOptions()
-    options.known = known_contact(
-        youngs_modulus_1=youngs_modulus_1, poisson_1=poisson_1, radius_1=radius_1,
-        youngs_modulus_2=youngs_modulus_2, poisson_2=poisson_2, radius_2=radius_2,
-        contact_radius=contact_radius, compliance=compliance)
-    request.contact = options
-    if normal_load is not None:
-        loads = list(normal_load) if isinstance(normal_load, list) else [normal_load]
-        request.set_normal_loads([uncertain("normal_load", load) for load in loads])
-    arguments = RecordArguments(
-        displacement=displacement, force=None, time=time, normal_load_column=normal_load_column,
-        displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
-        normal_load_unit=normal_load_unit, covariates=request.covariate_columns(),
-        max_rows=count("max_rows", max_rows, 1),
-        max_memory=None if max_memory is None else count("max_memory", max_memory, 1))
-    request.columns = _mindahl.RecordColumns(
-        _mindahl.ColumnChoice(), _mindahl.ColumnChoice(),
-        _mindahl.ColumnChoice(unit=time_unit or ""), _mindahl.ColumnChoice(unit=normal_load_unit or ""),
-        [])
-    result = FitResult(_mindahl.fit(records_of(source, force, arguments, columns), request))
-    for message in (*arguments.assumed, *(warning.message for warning in result.warnings)):
+    records, request, assumed = prepared(locals())
+    result = FitResult(_mindahl.fit(records, request))
+    for message in (*assumed, *(warning.message for warning in result.warnings)):
         warnings.warn(_mindahl.with_keywords(message), FitWarning, stacklevel=2)
     return result
+
+
+_KNOWN = ("youngs_modulus_1", "poisson_1", "radius_1", "youngs_modulus_2", "poisson_2", "radius_2",
+          "contact_radius", "compliance")
+
+
+def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest, RecordArguments]:
+    """What the arguments of fit() ask for, and how they say that records are to be read."""
+    request = request_of(
+        terms=given, term_choice=given["terms"],
+        **{name: given[name] for name in (
+            "model", "initial_state", "force_sign", "noise_in", "offsets", "covariate", "fix",
+            "start", "bound", "loss", "starts", "seed", "force_noise", "displacement_noise",
+            "reversal_gate", "confidence")})
+    for name in ("cycles", "samples", "time_window", "load_window"):
+        setattr(request, name, "" if given[name] is None else pair(name, given[name]))
+    request.skip_cycles = count("skip_cycles", given["skip_cycles"], 0)
+    request.trim = given["trim"]
+    request.contact = contact_options(**{name: given[name] for name in _KNOWN})
+    loads = given["normal_load"]
+    if loads is not None:
+        request.set_normal_loads([uncertain("normal_load", load)
+                                  for load in (loads if isinstance(loads, list) else [loads])])
+    most = given["max_memory"]
+    arguments = RecordArguments(
+        force=None, covariates=request.covariate_columns(),
+        max_rows=count("max_rows", given["max_rows"], 1),
+        max_memory=None if most is None else count("max_memory", most, 1),
+        **{name: given[name] for name in (
+            "displacement", "time", "normal_load_column", "displacement_unit", "force_unit",
+            "time_unit", "normal_load_unit")})
+    request.columns = _mindahl.RecordColumns(
+        _mindahl.ColumnChoice(), _mindahl.ColumnChoice(),
+        _mindahl.ColumnChoice(unit=given["time_unit"] or ""),
+        _mindahl.ColumnChoice(unit=given["normal_load_unit"] or ""), [])
+    return request, arguments
+
+
+def prepared(given: Mapping[str, Any]) -> tuple[list[Record], _mindahl.FitRequest, list[str]]:
+    """The records and the request that the arguments of fit() say, and what was assumed."""
+    request, arguments = request_and_arguments(given)
+    records = records_of(given["source"], given["force"], arguments, given["columns"])
+    return records, request, arguments.assumed

@@ -46,6 +46,61 @@ class Section(Mapping[str, Any]):
         return f"{self._path}: {dict(self._values)!r}"
 
 
+class Report(Section):
+    """The answer of a command, by item or by attribute: the program's JSON, as docs/contract.md lists it.
+
+    established: did the program end with exit status 0?
+    """
+
+    _tables: tuple[str, ...] = ()
+
+    def __init__(self, answer: _mindahl.Answer, path: str, tables: tuple[str, ...] = ()) -> None:
+        super().__init__(json.loads(answer.json), path)
+        self._answer = answer
+        self._tables = tables
+
+    @property
+    def established(self) -> bool:
+        return self._answer.established
+
+    def to_dict(self) -> dict[str, Any]:
+        """What the program writes as JSON, as a dict of one's own."""
+        return copy.deepcopy(dict(self._values))
+
+    def to_json(self) -> str:
+        """The same as text, byte for byte as the program writes it."""
+        return self._answer.json
+
+    def text(self) -> str:
+        """What the program prints."""
+        return self._answer.text
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text())}</pre>"
+
+    def to_pandas(self, table: Optional[str] = None) -> Any:
+        """A table of the report as a pandas DataFrame; members of members have names such as
+        "parameters_alpha_value".
+
+        table: one of the lists of the report, by default its main one.
+        Raises ValueError for what is no table of this report, ImportError without pandas.
+        """
+        import pandas
+
+        name = self._tables[0] if table is None and self._tables else table
+        if name not in self._tables:
+            raise ValueError(f"table = {table!r} is invalid: must be one of {', '.join(self._tables)}")
+        rows = self._values[name]
+        if isinstance(rows, dict):  # one row a member
+            rows = [{"name": key, **row} for key, row in rows.items()]
+        elif rows and "points" in rows[0]:  # one row a point
+            rows = [{"excitation": row["name"], **point} for row in rows for point in row["points"]]
+        return pandas.json_normalize(rows, sep="_")
+
+
 def _wrapped(value: Any, path: str) -> Any:
     if isinstance(value, dict):
         return Section(value, path)
@@ -223,6 +278,13 @@ class FitResult:
     def to_json(self) -> str:
         """The same as text, byte for byte as the program writes it."""
         return self._fitted.json()
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame with one row a parameter. Raises ImportError without pandas."""
+        import pandas
+
+        return pandas.json_normalize([{"name": name, **values} for name, values in
+                                      (self._report.get("parameters") or {}).items()], sep="_")
 
     def residuals_csv(self) -> str:
         """What `mindahl fit --residuals` writes."""

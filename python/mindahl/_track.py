@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import json
 import os
 import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from html import escape
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -32,24 +34,58 @@ class CycleTable(Mapping[str, Any]):
     """
 
     def __init__(self, columns: Mapping[str, Any], units: Mapping[str, str],
-                 courses: _mindahl.TrackedCourses, summary: Mapping[str, Any]) -> None:
+                 test: _mindahl.TrackedTest) -> None:
         self._columns = {name: np.asarray(values) for name, values in columns.items()}
         self.units = dict(units)
-        self._courses = courses
-        self.energy_counts: dict[str, int] = summary["energy_counts"]
-        self.shared_alpha: Optional[dict[str, float]] = summary["shared_alpha"]
+        self._test = test
 
     @cached_property
-    def _described(self) -> tuple[dict[str, dict[str, Any]], list[str]]:
-        return self._courses.describe()
+    def _described(self) -> tuple[str, str, list[str]]:
+        return self._test.describe()
+
+    @cached_property
+    def _document(self) -> dict[str, Any]:
+        return dict(json.loads(self.to_json()))
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `mindahl track --json` writes; its "output" is None."""
+        return copy.deepcopy(self._document)
+
+    def to_json(self) -> str:
+        """The same as text, byte for byte."""
+        return self._described[0]
+
+    def text(self) -> str:
+        """What `mindahl track` prints."""
+        return self._described[1]
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text())}</pre>"
+
+    @property
+    def established(self) -> bool:
+        """Did any fit converge?"""
+        return self._test.established
+
+    @property
+    def energy_counts(self) -> dict[str, int]:
+        return dict(self._document["energy_counts"])
+
+    @property
+    def shared_alpha(self) -> Optional[dict[str, float]]:
+        alpha = self._document["shared_alpha"]
+        return None if alpha is None else dict(alpha)
 
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
-        return copy.deepcopy(self._described[0])
+        return copy.deepcopy(dict(self._document["quantities"]))
 
     @property
     def changes(self) -> tuple[str, ...]:
-        return tuple(self._described[1])
+        return tuple(self._described[2])
 
     def __getitem__(self, name: str) -> Any:
         return self._columns[name]
@@ -143,10 +179,10 @@ def track(
         fit.columns = arguments.columns()
         request.fit = fit
         found = _mindahl.track_files(request, files, broken_rows == "skip")
-    columns, units, doubts, courses, summary = found
+    columns, units, doubts, test = found
     for doubt in (*arguments.assumed, *doubts):
         warnings.warn(_mindahl.with_keywords(doubt), FitWarning, stacklevel=2)
-    return CycleTable(columns, units, courses, summary)
+    return CycleTable(columns, units, test)
 
 
 def _files_of(source: Any) -> Optional[Sequence[str]]:

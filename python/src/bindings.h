@@ -28,7 +28,7 @@ void AddErrors(pybind11::module_& module);
 void AddRecords(pybind11::module_& module);
 void AddFit(pybind11::module_& module);
 void AddTrack(pybind11::module_& module);
-void AddContact(pybind11::module_& module);
+void AddAnswers(pybind11::module_& module);
 void AddModels(pybind11::module_& module);
 
 }  // namespace mindahl::python

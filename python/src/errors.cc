@@ -21,11 +21,14 @@ std::string WithKeywords(const std::string& message) {
       text += message[i++];
       continue;
     }
+    std::string word;
     for (i += 2;
          is_alphanumeric(i) || (i < message.size() && message[i] == '-' && is_alphanumeric(i + 1));
          ++i) {
-      text += message[i] == '-' ? '_' : message[i];
+      word += message[i] == '-' ? '_' : message[i];
     }
+    text += word;
+    if (word == "from" || word == "with" || word == "lambda") text += '_';  // words of Python
     const bool has_number = i + 1 < message.size() && message[i] == ' ' &&
                             std::isdigit(static_cast<unsigned char>(message[i + 1])) != 0;
     if (has_number) {

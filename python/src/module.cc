@@ -8,6 +8,6 @@ PYBIND11_MODULE(_mindahl, module) {
   mindahl::python::AddRecords(module);
   mindahl::python::AddFit(module);
   mindahl::python::AddTrack(module);
-  mindahl::python::AddContact(module);
+  mindahl::python::AddAnswers(module);
   mindahl::python::AddModels(module);
 }

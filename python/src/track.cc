@@ -1,3 +1,5 @@
+#include "mindahl/request/track.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <pybind11/stl.h>
@@ -13,15 +15,12 @@
 
 #include "bindings.h"
 #include "mindahl/campaign/cycle_table.h"
-#include "mindahl/campaign/dissipated_energy.h"
 #include "mindahl/campaign/pooled_value.h"
 #include "mindahl/campaign/reading.h"
 #include "mindahl/campaign/shared_alpha.h"
-#include "mindahl/campaign/tracked_quantities.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/record_stream.h"
-#include "mindahl/report/quantity.h"
 #include "mindahl/report/units.h"
 #include "mindahl/request/fit_records.h"
 #include "mindahl/request/fit_request.h"
@@ -46,10 +45,8 @@ struct TrackRequest {
 
 struct Tracked {
   std::vector<CycleFit> fits;
-  campaign::TrackedCourses courses;
-  std::optional<campaign::PooledValue> shared_alpha;
-  bool is_torsional = false;
-  std::size_t cycles_per_row = 1;
+  std::vector<double> accumulated_energy;  // [J], with each fit
+  request::TrackedTest test;
   std::vector<std::string> warnings;
 };
 
@@ -59,19 +56,23 @@ class Run {
   /// @param shared_alpha  held in all fits; empty where each cycle has its own
   explicit Run(const TrackRequest& request,
                const std::optional<campaign::PooledValue>& shared_alpha = {})
-      : request_(request), fit_(request::MakeCycleFitOptions(request.fit)) {
-    tracked_.shared_alpha = shared_alpha;
+      : request_(request),
+        fit_(request::MakeCycleFitOptions(request.fit)),
+        tracked_{.fits = {},
+                 .accumulated_energy = {},
+                 .test = request::TrackedTest(request.together * request.every),
+                 .warnings = {}} {
+    tracked_.test.shared_alpha = shared_alpha;
     if (shared_alpha) fit_.fixed["alpha"] = shared_alpha->mean();
     if (request.normal_load) RequirePositive("--normal-load [N]", *request.normal_load);
     if (request.normal_load) fit_.normal_loads = {*request.normal_load};
-    tracked_.cycles_per_row = request.together * request.every;
   }
 
   [[nodiscard]] bool has_begun() const { return tracker_.has_value(); }
-  [[nodiscard]] bool is_torsional() const { return tracked_.is_torsional; }
+  [[nodiscard]] bool is_torsional() const { return tracked_.test.is_torsional; }
 
   void Begin(const loop::RecordView& head, bool is_torsional, std::string_view source) {
-    tracked_.is_torsional = is_torsional;
+    tracked_.test.is_torsional = is_torsional;
     reading_ = campaign::ChooseReading(head, fit_);
     request::ChooseTermsOfCycles(request_.fit, head, fit_);
     if (auto doubt = campaign::DoubtAbout(reading_, source)) Warn(std::move(*doubt));
@@ -81,20 +82,31 @@ class Run {
                                             .threads = request_.threads},
                      [this](std::span<const CycleFit> fits) {
                        tracked_.fits.insert(tracked_.fits.end(), fits.begin(), fits.end());
-                       for (const CycleFit& fit : fits) tracked_.courses.Add(fit);
+                       for (const CycleFit& fit : fits) {
+                         tracked_.test.Add(fit);
+                         tracked_.accumulated_energy.push_back(tracked_.test.energy.total());
+                       }
                      });
   }
 
   void Add(const loop::RecordView& samples, std::span<const std::size_t> lines) {
+    tracked_.test.samples += samples.size();
     tracker_->Add(samples, lines);
   }
 
-  void NextFile() { tracker_->NextFile(); }
+  void NextFile() { tracked_.test.unused_samples += tracker_->NextFile(); }
+
+  void SkipRows(std::size_t count) { tracked_.test.broken_rows += count; }
 
   void Warn(std::string message) { tracked_.warnings.push_back(std::move(message)); }
 
-  Tracked Finish(std::string_view source) {
+  Tracked Finish(std::string_view source, std::vector<std::string> files) {
     tracker_->Finish();
+    request::TrackedTest& test = tracked_.test;
+    test.files = std::move(files);
+    test.cycles = tracker_->cycles();
+    test.reversal_gate = *fit_.preparation.reversal_gate;
+    test.is_gate_certain = reading_.gate.certain;
     campaign::RequireCycles(tracker_->cycles(), request_.together, reading_,
                             *fit_.preparation.reversal_gate, source);
     return std::move(tracked_);
@@ -157,12 +169,13 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
       if (!stream.Next(piece)) break;
     }
     run.NextFile();
+    run.SkipRows(stream.broken_rows());
     if (stream.broken_rows() > 0) {
       run.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}", stream.broken_rows(),
                            file, stream.first_broken_row()));
     }
   }
-  return run.Finish(fmt::format("{}", fmt::join(files, ", ")));
+  return run.Finish(fmt::format("{}", fmt::join(files, ", ")), files);
 }
 
 Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>& records,
@@ -186,7 +199,9 @@ Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>
             record.file.lines);
     run.NextFile();
   }
-  return run.Finish(records.front().name);
+  std::vector<std::string> names;
+  for (const NamedRecord& record : records) names.push_back(record.name);
+  return run.Finish(records.front().name, names);
 }
 
 template <typename Value, typename Of>
@@ -197,95 +212,26 @@ py::array_t<Value> CycleColumn(const std::vector<CycleFit>& fits, Of of) {
   return column;
 }
 
-/// Courses of a test in the units of its records.
-struct CoursesOfTest {
-  campaign::TrackedCourses courses;
-  report::Units units;
+/// A test whose time histories are described when they are asked for, which takes a while.
+struct DescribedTest {
+  request::TrackedTest test;
+
+  /// Returns the JSON, the text, and the changes in sentences.
+  [[nodiscard]] std::tuple<std::string, std::string, std::vector<std::string>> Describe() const {
+    const py::gil_scoped_release others_may_run;
+    const std::vector<campaign::CourseDescription> described = test.courses.Describe();
+    return {ToJson(test, described), ToText(test, described), SummaryOf(test, described).changes};
+  }
 };
 
-py::dict Describe(const campaign::CourseDescription& course, std::string_view unit) {
-  py::list stretches;
-  for (const campaign::Stretch& stretch : course.stretches) {
-    py::dict described;
-    described["first_cycle"] = stretch.first_cycle;
-    described["last_cycle"] = stretch.last_cycle;
-    described["at_start"] = stretch.at_start;
-    described["at_end"] = stretch.at_end;
-    described["slope"] = stretch.slope;
-    described["slope_p_value"] = stretch.slope_p_value;
-    described["trends"] = stretch.trends;
-    described["time_constant"] = py::cast(stretch.time_constant);
-    stretches.append(described);
-  }
-  py::list changes;
-  for (const campaign::Change& change : course.changes) {
-    py::dict described;
-    described["kind"] = std::string(campaign::NameOf(change.kind));
-    described["cycle"] = change.cycle;
-    described["ci95"] = std::vector<std::size_t>{change.lower95, change.upper95};
-    described["before"] = change.before;
-    described["after"] = change.after;
-    described["p_value"] = change.p_value;
-    changes.append(described);
-  }
-  py::dict described;
-  described["unit"] = std::string(unit);
-  described["stretches"] = stretches;
-  described["changes"] = changes;
-  return described;
-}
-
-/// `quantities` of what `mindahl track --json` writes, and its changes in sentences.
-std::pair<py::dict, std::vector<std::string>> Describe(const CoursesOfTest& test) {
-  std::vector<campaign::CourseDescription> courses;
-  {
-    const py::gil_scoped_release others_may_run;
-    courses = test.courses.Describe();
-  }
-  py::dict quantities;
-  std::vector<std::string> statements;
-  for (std::size_t k = 0; k < courses.size(); ++k) {
-    if (courses[k].stretches.empty()) continue;
-    const campaign::TrackedQuantity& quantity = campaign::TrackedQuantities()[k];
-    const std::string_view unit = report::UnitIn(test.units, quantity.unit);
-    quantities[py::str(std::string(quantity.name))] = Describe(courses[k], unit);
-    for (const std::string& statement : campaign::ChangeStatements(courses[k])) {
-      statements.push_back(fmt::format("{}: {}", report::WithUnit(quantity.name, unit), statement));
-    }
-  }
-  return {quantities, statements};
-}
-
-/// `energy_counts` and `shared_alpha` of what `mindahl track --json` writes.
-py::dict SummaryOf(const campaign::EnergyCounts& counts,
-                   const std::optional<campaign::PooledValue>& alpha) {
-  py::dict energy;
-  energy["measured"] = counts.measured;
-  energy["replaced"] = counts.replaced;
-  energy["left_out"] = counts.left_out;
-  py::dict summary;
-  summary["energy_counts"] = energy;
-  summary["shared_alpha"] = py::none();
-  if (alpha) {
-    py::dict shared;
-    shared["value"] = alpha->mean();
-    shared["standard_error"] = alpha->standard_error();
-    shared["cycles"] = alpha->count();
-    shared["scatter"] = alpha->scatter();
-    shared["p_value"] = alpha->p_value();
-    summary["shared_alpha"] = shared;
-  }
-  return summary;
-}
-
 /// The columns of the command line's table, with NaN for what is not known; their units; what is to
-/// be warned of; the courses, which are described when they are asked for; and SummaryOf().
-std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest, py::dict> TrackedColumns(
+/// be warned of; and the test.
+std::tuple<py::dict, py::dict, std::vector<std::string>, DescribedTest> TrackedColumns(
     Tracked tracked) {
   py::dict columns;
   py::dict units;
   const report::Units& names =
-      tracked.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+      tracked.test.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
   const auto number = [&](const char* name, std::size_t CycleFit::*member) {
     columns[name] = CycleColumn<std::int64_t>(tracked.fits, [member](const CycleFit& fit) {
       return static_cast<std::int64_t>(fit.*member);
@@ -308,11 +254,9 @@ std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest, py::dict
   }
   py::list regimes;
   py::list flags;
-  campaign::DissipatedEnergy energy(tracked.cycles_per_row);
-  columns["accumulated_energy"] = CycleColumn<double>(tracked.fits, [&](const CycleFit& fit) {
-    energy.Add(fit);
-    return energy.total();
-  });
+  const std::vector<double>& energy = tracked.accumulated_energy;
+  columns["accumulated_energy"] =
+      py::array_t<double>(static_cast<py::ssize_t>(energy.size()), energy.data());
   units["accumulated_energy"] = "J";
   for (const CycleFit& fit : tracked.fits) {
     regimes.append(!fit.slips_grossly ? "" : *fit.slips_grossly ? "gross" : "partial");
@@ -320,18 +264,16 @@ std::tuple<py::dict, py::dict, std::vector<std::string>, CoursesOfTest, py::dict
   }
   columns["slip_regime"] = regimes;
   columns["flags"] = flags;
-  return {columns,
-          units,
-          tracked.warnings,
-          {std::move(tracked.courses), names},
-          SummaryOf(energy.counts(), tracked.shared_alpha)};
+  return {columns, units, tracked.warnings, {std::move(tracked.test)}};
 }
 
 }  // namespace
 
 void AddTrack(py::module_& module) {
-  py::class_<CoursesOfTest>(module, "TrackedCourses")
-      .def("describe", py::overload_cast<const CoursesOfTest&>(&Describe));
+  py::class_<DescribedTest>(module, "TrackedTest")
+      .def("describe", &DescribedTest::Describe)
+      .def_property_readonly("established",
+                             [](const DescribedTest& self) { return self.test.established(); });
   py::class_<TrackRequest>(module, "TrackRequest")
       .def(py::init<>())
       .def_readwrite("fit", &TrackRequest::fit)

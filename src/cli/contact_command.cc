@@ -1,25 +1,15 @@
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/contact_options.h"
 #include "cli/examples.h"
-#include "cli/json_output.h"
 #include "cli/output_path.h"
-#include "mindahl/contact/mindlin_dahl_mapping.h"
-#include "mindahl/core/error.h"
-#include "mindahl/core/version.h"
-#include "mindahl/request/contact_parameters.h"
+#include "cli/text_output.h"
+#include "mindahl/request/contact_request.h"
 
 namespace mindahl::cli {
-using request::ContactParameters;
-using request::ContactQuantity;
-
 namespace {
 
 struct ContactCommandOptions {
@@ -30,31 +20,10 @@ struct ContactCommandOptions {
 void RunContact(const ContactCommandOptions& options, Console& console) {
   Validate(options.contact);
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
-  const ContactParameters contact = ResolveContact(options.contact);
+  const request::ContactParameters contact = ResolveContact(options.contact);
   WarnOfDoubts(options.contact, "contact", console);
-  if (!options.json_path.empty()) {
-    nlohmann::ordered_json json = {{"schema", "mindahl.contact/1"},
-                                   {"version", Version()},
-                                   {"compliance_definition", request::kComplianceDefinition},
-                                   {"compliance_unit", request::kComplianceUnit}};
-    for (const ContactQuantity& quantity : contact.quantities) {
-      json[quantity.section][quantity.name] = {
-          {"value", NumberOrNull(quantity.value.value)},
-          {"standard_error", NumberOrNull(quantity.value.standard_error)},
-          {"unit", quantity.unit}};
-    }
-    WriteJson(json, options.json_path, console);
-  }
-  if (options.json_path == "-") return;
-  const bool uncertain = std::ranges::any_of(
-      contact.quantities,
-      [](const ContactQuantity& quantity) { return quantity.value.standard_error > 0; });
-  for (const ContactQuantity& quantity : contact.quantities) {
-    const std::string error =
-        uncertain ? fmt::format("± {:<8.2g} ", quantity.value.standard_error) : "";
-    console.out << fmt::format("{:<26} {:>24.17g} {}{:<5} {}\n", quantity.name,
-                               quantity.value.value, error, quantity.unit, quantity.meaning);
-  }
+  if (!options.json_path.empty()) WriteText(ToJson(contact), options.json_path, console);
+  if (options.json_path != "-") console.out << ToText(contact);
 }
 
 }  // namespace

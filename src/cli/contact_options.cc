@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "cli/trimmed.h"
-#include "mindahl/contact/plausibility.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
@@ -138,11 +137,21 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options) {
            "MU");
 }
 
+void AddLawOptions(CLI::App& command, LawOptions& request) {
+  const std::string parameters = "Parameters";
+  AddOptional(command, "--sigma", request.sigma, "tangential stiffness sigma [N/m]", "N/M")
+      ->group(parameters);
+  AddOptional(command, "--alpha", request.alpha,
+              "shape exponent [-], default 1/3 where the model leaves it free", "ALPHA")
+      ->group(parameters);
+  AddOptional(command, "--slip-force", request.slip_force, "slip force Tc [N]", "N")
+      ->group(parameters);
+  AddContactOptions(command, request.contact);
+  AddFrictionOption(command, request.contact);
+}
+
 void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console) {
-  const std::optional<double> friction =
-      options.friction_coefficient ? std::optional<double>(options.friction_coefficient->value)
-                                   : std::nullopt;
-  for (const std::string& doubt : contact::DoubtsAbout(options.known, friction)) {
+  for (const std::string& doubt : DoubtsAbout(options)) {
     console.err << fmt::format("mindahl {}: warning: {}\n", command, doubt);
   }
 }

@@ -13,6 +13,7 @@
 namespace mindahl::cli {
 
 using request::ContactOptions;
+using LawOptions = request::LawRequest;
 
 /// Reads "0.01", "0.01±0.0001", "0.01+-0.0001", "0.01+/-0.0001" or "0.01±1%": a number as in every
 /// other option and, unless it is exact, one standard uncertainty, in percent of the number's
@@ -35,6 +36,10 @@ void AddFrictionOption(CLI::App& command, ContactOptions& options);
 /// A value that may be missing, read from one option.
 CLI::Option* AddOptional(CLI::App& command, const std::string& name, std::optional<double>& target,
                          const std::string& description, const std::string& unit);
+
+/// Adds --sigma, --alpha, --slip-force and what describes a contact, --friction included.
+/// @param request  must outlive the application
+void AddLawOptions(CLI::App& command, LawOptions& request);
 
 /// Says on standard error what is hardly meant; `fit` says it with what it identified.
 void WarnOfDoubts(const ContactOptions& options, std::string_view command, Console& console);

@@ -1,23 +1,17 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <functional>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/established.h"
 #include "cli/examples.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
 #include "cli/output_path.h"
 #include "cli/provenance.h"
 #include "cli/text_output.h"
-#include "mindahl/core/error.h"
-#include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/report/backbone.h"
@@ -42,47 +36,11 @@ struct FitCommandOptions {
   std::string report_path;
 };
 
-/// Estimates the backbone of the records without any law's shape.
-identification::BackboneEstimate BackboneOf(const FitRequest& request,
-                                            const report::Report& report) {
-  if (!identification::HasBackbone(report.fit)) {
-    throw InputError(
-        "--backbone is of a contact of Masing's memory under one load, by its forces: leave out "
-        "--model dahl, --lag, --asymmetry and --noise-in displacement, and fit records of other "
-        "loads apart");
-  }
-  std::vector<loop::RecordView> records;
-  records.reserve(report.records.size());
-  for (const io::RecordFile& input : report.records) records.emplace_back(input.record);
-  identification::FitOptions options = MakeFitOptions(request);
-  request::LeaveOutTrimmed(report.trims, options);
-  return identification::EstimateBackbone(records, options, report.fit);
-}
-
 /// @param provenance  asked for where a page is written: it reads the files once more
-/// Findings that stand where the model does not: those of the record. What else there is to say of
-/// an inadequate fit is in its text.
-bool IsOfTheRecord(std::string_view code) {
-  constexpr std::array<std::string_view, 7> kOfTheRecord = {
-      "reversals_uncertain", "glitches_left_out", "path_too_long",      "no_closed_cycle",
-      "few_places",          "loop_not_seen",     "weights_not_settled"};
-  return std::ranges::find(kOfTheRecord, code) != kOfTheRecord.end();
-}
-
 void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
                      const std::function<report::Provenance()>& provenance,
                      const Messages& messages, Console& console) {
-  const bool is_inadequate =
-      report.fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate;
-  for (const report::Warning& warning : report.fit_warnings) {
-    if (warning.code == "fit_failed") continue;  // an error, below
-    if (is_inadequate && !IsOfTheRecord(warning.code)) continue;
-    messages.Warn(warning.message);
-  }
-  for (const report::Warning& warning : report.contact_warnings) {
-    if (warning.code != "contact_implausible") continue;  // the others are in the text
-    messages.Warn(warning.message);
-  }
+  for (const std::string& warning : request::WarningsBesideText(report)) messages.Warn(warning);
   if (report.failed()) {  // no curve to draw, no residual to list
     console.err << fmt::format("mindahl fit: the fit failed: {}\n", report.fit.solver.message);
     if (!options.report_path.empty()) {
@@ -126,14 +84,7 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
                      read);
   const Messages messages{console.err, "fit"};
   report::Report report = FitRecords(request, messages);
-  if (!options.backbone_path.empty() && !report.failed()) {
-    report.backbone = BackboneOf(request, report);
-    for (identification::Cause& cause : report.fit.adequacy.causes) {
-      // Refused together with a backbone.
-      const std::string_view option = cause.option;
-      if (option.starts_with("--lag") || option.starts_with("--asymmetry")) cause.option.clear();
-    }
-  }
+  if (!options.backbone_path.empty() && !report.failed()) request::AddBackbone(request, report);
   console.exit_status = Established(report.fit, options.strict) ? kDone : kNotEstablished;
   const auto provenance = [&] { return ProvenanceOf(command, console, request.files); };
   WriteFitOutputs(options, report, provenance, messages, console);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -286,6 +288,32 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddWindowOptions(command, request);
   AddModelOptions(command, request);
   AddContactOptions(command, request.contact, loads);
+}
+
+void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
+               const std::string& group) {
+  // A configuration has `strict = true`.
+  static const std::map<std::string, Strictness> levels = {{"adequate", Strictness::kAdequate},
+                                                           {"true", Strictness::kAdequate},
+                                                           {"doubtful", Strictness::kDoubtful},
+                                                           {"false", Strictness::kNone}};
+  const auto text = std::make_shared<std::string>();
+  const auto read = [text, &strictness](const std::string& given) {
+    const auto level = levels.find(given);
+    if (level == levels.end()) {
+      throw InputError(fmt::format(
+          "--strict: '{}' is no verdict: give --strict for adequate, or --strict=doubtful", given));
+    }
+    strictness = level->second;
+  };
+  command
+      .add_flag("--strict{adequate}", *text,
+                otherwise +
+                    " unless the model is adequate and every free\n"
+                    "parameter identifiable; --strict=doubtful accepts a doubtful\n"
+                    "model and parameters that are effective")
+      ->each(read)
+      ->group(group);
 }
 
 }  // namespace mindahl::cli

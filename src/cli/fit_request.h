@@ -5,12 +5,14 @@
 
 #include "cli/contact_options.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/request/fit_records.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::cli {
 
 using request::FitRequest;
 using request::kAutomatic;
+using request::Strictness;
 
 /// Adds them to a command.
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
@@ -26,5 +28,10 @@ void RequireNoColumns(const io::RecordColumns& columns);
 
 /// Adds the options of the model that is fitted to them.
 void AddModelOptions(CLI::App& command, FitRequest& request);
+
+/// Adds `--strict`, which asks for kAdequate, and `--strict=doubtful`.
+/// @param otherwise  what happens to a fit that is not: "exit status 3"
+void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
+               const std::string& group);
 
 }  // namespace mindahl::cli

@@ -16,9 +16,9 @@
 
 #include "cli/added_forces.h"
 #include "cli/commands.h"
+#include "cli/contact_options.h"
 #include "cli/drive_options.h"
 #include "cli/examples.h"
-#include "cli/law_options.h"
 #include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/whole_number.h"
@@ -248,7 +248,7 @@ void AddNoise(std::vector<double>& values, double standard_deviation,
 }
 
 void RunSimulate(const SimulateOptions& options, Console& console) {
-  Validate(options.law);
+  Validate(options.law.contact);
   std::vector<std::string> inputs = console.inputs;
   inputs.push_back(options.drive.path);
   inputs.push_back(options.drive.force_path);

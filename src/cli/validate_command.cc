@@ -1,27 +1,20 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/commands.h"
 #include "cli/examples.h"
-#include "cli/json_output.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
+#include "cli/text_output.h"
 #include "cli/whole_number.h"
-#include "mindahl/core/version.h"
 #include "mindahl/identification/mapping_validation.h"
+#include "mindahl/request/validation.h"
 
 namespace mindahl::cli {
-
-using identification::ValidationReport;
-
 namespace {
 
 struct ValidateOptions {
@@ -29,151 +22,19 @@ struct ValidateOptions {
   std::string json_path;
 };
 
-nlohmann::ordered_json RowsToJson(const std::vector<identification::ValidationRow>& rows) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const identification::ValidationRow& row : rows) {
-    const auto of_cases = [&row](double value) {
-      return row.cases == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
-    };
-    nlohmann::ordered_json entry = {{"lambda", row.lambda},
-                                    {"noise", row.noise},
-                                    {"cases", row.cases},
-                                    {"failures", row.failures},
-                                    {"not_identifiable", row.undetermined},
-                                    {"tolerance", row.tolerance},
-                                    {"sigma_error",
-                                     {{"median", of_cases(row.median_sigma_error)},
-                                      {"worst", of_cases(row.worst_sigma_error)}}},
-                                    {"alpha_error",
-                                     {{"median", of_cases(row.median_alpha_error)},
-                                      {"worst", of_cases(row.worst_alpha_error)}}},
-                                    {"slip_force_error",
-                                     {{"median", of_cases(row.median_slip_force_error)},
-                                      {"worst", of_cases(row.worst_slip_force_error)}}}};
-    if (row.noise > 0) {
-      entry["worst_standard_errors"] = of_cases(row.worst_standardized);
-      entry["coverage"] = of_cases(row.coverage);
-    }
-    json.push_back(std::move(entry));
-  }
-  return json;
-}
-
-nlohmann::ordered_json CoverageToJson(
-    const std::vector<identification::CoverageVerdict>& verdicts) {
-  const auto fraction = [](const identification::IntervalCount& count) {
-    return count.intervals == 0 ? nlohmann::ordered_json()
-                                : nlohmann::ordered_json(count.fraction());
-  };
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const identification::CoverageVerdict& verdict : verdicts) {
-    json.push_back({{"law", verdict.by_dahl ? "dahl" : "masing"},
-                    {"parameter", verdict.parameter},
-                    {"intervals", verdict.all.intervals},
-                    {"coverage", fraction(verdict.all)},
-                    {"sliding_intervals", verdict.sliding.intervals},
-                    {"sliding_coverage", fraction(verdict.sliding)},
-                    {"p_value", verdict.chance},
-                    {"passed", verdict.passed}});
-  }
-  return json;
-}
-
-nlohmann::ordered_json ValidationJson(const ValidationReport& report,
-                                      const identification::ValidationOptions& options) {
-  nlohmann::ordered_json json = {
-      {"schema", "mindahl.validate/1"}, {"version", Version()}, {"cases", options.cases},
-      {"seed", options.seed},           {"fits", report.fits},  {"failures", report.failures},
-      {"passed", report.passed()}};
-  json["rows"] = RowsToJson(report.rows);
-  json["dahl_rows"] = RowsToJson(report.dahl_rows);
-  json["coverage"] = CoverageToJson(report.coverage);
-  json["failed_cases"] = report.failed_cases;
-  json["failed_coverages"] = report.failed_coverages;
-  return json;
-}
-
-std::string Table(const std::vector<identification::ValidationRow>& rows) {
-  std::string text =
-      "noise    lambda  cases  |sigma/(8a/G*)-1|      |alpha-1/3|           |Tc/(mu N)-1|         "
-      "not    coverage  worst   failed\n"
-      "of T*                   median   worst        median   worst        median   worst        "
-      "ident.   of 95%   error\n";
-  for (const identification::ValidationRow& row : rows) {
-    const auto error = [&row](double value) {
-      return row.cases == 0 ? std::string("-") : fmt::format("{:.1e}", value);
-    };
-    const std::string worst = row.noise > 0 && row.cases > 0
-                                  ? fmt::format("{:5.1f} SE", row.worst_standardized)
-                                  : error(std::max({row.worst_sigma_error, row.worst_alpha_error,
-                                                    row.worst_slip_force_error}));
-    text += fmt::format(
-        "{:<8g} {:<6g} {:6}   {:>7}  {:>7}     {:>7}  {:>7}     {:>7}  {:>7}     {:5}   "
-        "{:>7} "
-        "{:>9} {:6}\n",
-        row.noise, row.lambda, row.cases, error(row.median_sigma_error),
-        error(row.worst_sigma_error), error(row.median_alpha_error), error(row.worst_alpha_error),
-        error(row.median_slip_force_error), error(row.worst_slip_force_error), row.undetermined,
-        row.noise > 0 && row.cases > 0 ? fmt::format("{:.1f} %", 100 * row.coverage) : "-", worst,
-        row.failures);
-  }
-  return text;
-}
-
-std::string CoverageText(const std::vector<identification::CoverageVerdict>& verdicts) {
-  std::string text;
-  for (const identification::CoverageVerdict& verdict : verdicts) {
-    if (verdict.all.intervals == 0) continue;
-    text += fmt::format("{} {}{} {:.1f} % of {}", text.empty() ? "" : ",", verdict.parameter,
-                        verdict.by_dahl ? " (Dahl)" : "", 100 * verdict.all.fraction(),
-                        verdict.all.intervals);
-  }
-  return text;
-}
-
-ValidationReport ValidateContacts(const identification::ValidationOptions& options,
-                                  Console& console) {
-  Progress progress(console.err, fmt::format("fitting the first of {} contacts", options.cases));
-  return identification::ValidateMapping(options, [&](std::size_t done) {
-    progress.Say(fmt::format("{} of {} contacts", done, options.cases));
-  });
-}
-
 void RunValidate(const ValidateOptions& options, Console& console) {
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}}, console.inputs);
-  const ValidationReport report = ValidateContacts(options.validation, console);
-  if (!options.json_path.empty()) {
-    WriteJson(ValidationJson(report, options.validation), options.json_path, console);
+  request::Validation validation{.options = options.validation, .report = {}};
+  const identification::ValidationReport& report = validation.report;
+  {
+    Progress progress(console.err,
+                      fmt::format("fitting the first of {} contacts", validation.options.cases));
+    validation.report = identification::ValidateMapping(validation.options, [&](std::size_t done) {
+      progress.Say(fmt::format("{} of {} contacts", done, validation.options.cases));
+    });
   }
-  if (options.json_path != "-") {
-    console.out << fmt::format(
-        "Mindlin loops of {} contacts (seed {}), fitted with free alpha: {} fits\n\n"
-        "by Masing's law:\n{}\n"
-        "from their first extreme on by Dahl's own law, and translated:\n{}\n",
-        options.validation.cases, options.validation.seed, report.fits, Table(report.rows),
-        Table(report.dahl_rows));
-    console.out << fmt::format(
-        "Tolerance: noise-free {:g} relative for lambda >= 0.5 and {:g} below; with noise the "
-        "truth "
-        "within\n{:g} standard errors (likelihood ratio). A parameter may be reported as not "
-        "identifiable with noise only.\n",
-        identification::NoiseFreeTolerance(0.5), identification::NoiseFreeTolerance(0.3),
-        identification::kStandardErrorsTolerated);
-    if (const std::string coverage = CoverageText(report.coverage); !coverage.empty()) {
-      console.out << fmt::format(
-          "Coverage of the 95 % intervals:{}.\nIt is judged by binomial tests against {:g} %, and, "
-          "at lambda > 1, {:g} %; chance of a false alarm {:g}.\n",
-          coverage, 100 * identification::kLowestCoverage, 100 * identification::kHighestCoverage,
-          identification::kCoverageFalseAlarm);
-    }
-    if (report.failures > 0) {
-      console.out << fmt::format("FAILED: {} of {} fits\n", report.failures, report.fits);
-    }
-    if (!report.failed_coverages.empty()) {
-      console.out << fmt::format("FAILED: {} of the coverages\n", report.failed_coverages.size());
-    }
-    if (report.passed()) console.out << "passed: every case within its tolerance\n";
-  }
+  if (!options.json_path.empty()) WriteText(ToJson(validation), options.json_path, console);
+  if (options.json_path != "-") console.out << ToText(validation);
   for (const std::string& failed : report.failed_cases) console.err << failed << '\n';
   for (const std::string& failed : report.failed_coverages) console.err << failed << '\n';
   console.exit_status = report.passed() ? kDone : kNotEstablished;

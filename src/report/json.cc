@@ -1,10 +1,10 @@
 #include "mindahl/report/json.h"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <variant>
 
 #include "report/fields.h"
+#include "report/json_document.h"
 
 namespace mindahl::report {
 namespace {
@@ -42,7 +42,7 @@ void AppendWarnings(const std::vector<Warning>& warnings, Json& list) {
 
 }  // namespace
 
-std::string ToJson(const Report& report) {
+nlohmann::ordered_json JsonDocument(const Report& report) {
   const Value::Object document = Document(report);
   Json json = Converter{}(document);
   json["nulls"] = Json::array();
@@ -54,8 +54,13 @@ std::string ToJson(const Report& report) {
   AppendWarnings(report.contact_warnings, json["warnings"]);
   json["notes"] = Json::array();
   AppendWarnings(report.notes, json["notes"]);
+  return json;
+}
+
+std::string ToJson(const Report& report) {
   // A file name need not be UTF-8; JSON must.
-  return json.dump(2, ' ', /*ensure_ascii=*/false, Json::error_handler_t::replace) + "\n";
+  const auto replace = Json::error_handler_t::replace;
+  return JsonDocument(report).dump(2, ' ', /*ensure_ascii=*/false, replace) + "\n";
 }
 
 }  // namespace mindahl::report

@@ -1,16 +1,22 @@
 #include "mindahl/request/contact_request.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "mindahl/contact/plausibility.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/version.h"
+#include "request/json.h"
 
 namespace mindahl::request {
 
 using contact::KnownBody;
 using contact::UncertainValue;
+using models::BranchLaw;
 
 namespace {
 
@@ -34,6 +40,19 @@ void RequireBody(const KnownBody& body, int number) {
         "{}",
         number, uncertainty, radius));
   }
+}
+
+void CollectMissing(const contact::KnownBody& body, int number, std::vector<std::string>& missing) {
+  if (!body.youngs_modulus) missing.push_back(fmt::format("--youngs-modulus-{}", number));
+  if (!body.poisson_ratio) missing.push_back(fmt::format("--poisson-{}", number));
+  if (!body.radius) missing.push_back(fmt::format("--radius-{}", number));
+}
+
+[[noreturn]] void ThrowMissing(const std::vector<std::string>& missing) {
+  throw InputError(fmt::format(
+      "{} missing: a contact needs --friction, --normal-load and either --contact-radius with "
+      "--compliance or --youngs-modulus-1, --poisson-1, --radius-1 and the same of body 2",
+      fmt::join(missing, ", ")));
 }
 
 }  // namespace
@@ -72,6 +91,134 @@ void Validate(const ContactOptions& options) {
   require_positive("--friction [-]", options.friction_coefficient);
   RequireBody(options.known.body_1, 1);
   RequireBody(options.known.body_2, 2);
+}
+
+ContactParameters ResolveContact(const ContactOptions& options) {
+  const contact::KnownContact& known = options.known;
+  std::vector<std::string> missing;
+  if (!options.friction_coefficient) missing.emplace_back("--friction");
+  if (!known.normal_load) missing.emplace_back("--normal-load");
+  const bool by_radius = known.contact_radius || known.tangential_compliance;
+  std::vector<std::string> missing_bodies;
+  CollectMissing(known.body_1, 1, missing_bodies);
+  CollectMissing(known.body_2, 2, missing_bodies);
+  constexpr std::size_t kBodyOptions = 6;
+  if (by_radius && missing_bodies.size() < kBodyOptions) {
+    throw InputError(
+        "a contact is described either by --contact-radius with --compliance or by the materials "
+        "and radii of its bodies: give one of the two");
+  }
+  if (by_radius) {
+    if (!known.contact_radius) missing.emplace_back("--contact-radius");
+    if (!known.tangential_compliance) missing.emplace_back("--compliance");
+  } else {
+    missing.insert(missing.end(), missing_bodies.begin(), missing_bodies.end());
+  }
+  if (!options.friction_coefficient || !missing.empty()) ThrowMissing(missing);
+
+  const contact::PredictedContact predicted =
+      contact::PredictContact(known, *options.friction_coefficient);
+  ContactParameters result{.law = {.tangential_stiffness = predicted.tangential_stiffness.value,
+                                   .shape_exponent = contact::kMindlinShapeExponent,
+                                   .slip_force = predicted.slip_force.value},
+                           .quantities = {}};
+  const auto add = [&](const char* section, const char* name,
+                       const std::optional<contact::UncertainValue>& value, const char* unit,
+                       const char* meaning) {
+    if (value) result.quantities.push_back({section, name, *value, unit, meaning});
+  };
+  add("contact", "friction_coefficient", options.friction_coefficient, "-", "mu");
+  add("contact", "normal_load", known.normal_load, "N", "N");
+  add("contact", "effective_modulus", predicted.effective_modulus, "Pa", "E*");
+  add("contact", "equivalent_radius", predicted.equivalent_radius, "m", "rho");
+  add("contact", "approach", predicted.approach, "m", "normal approach a^2/rho");
+  add("contact", "compliance", predicted.tangential_compliance, "1/Pa",
+      "G* = (2-nu1)/G1 + (2-nu2)/G2, a compliance");
+  add("contact", "contact_radius", predicted.contact_radius, "m", "a");
+  add("contact", "maximum_pressure", predicted.maximum_pressure, "Pa", "p0 = 3N/(2 pi a^2)");
+  add("contact", "gross_slip_displacement", predicted.gross_slip_displacement, "m",
+      "delta_c = 3 mu N G*/(16 a)");
+  add("parameters", "sigma", predicted.tangential_stiffness, "N/m", "8a/G*");
+  add("parameters", "alpha", contact::UncertainValue(contact::kMindlinShapeExponent), "-",
+      "1/3, Mindlin");
+  add("parameters", "slip_force", predicted.slip_force, "N", "Tc = mu N");
+  return result;
+}
+
+bool IsAnythingGiven(const LawRequest& request) {
+  return request.sigma || request.slip_force || IsAnythingGiven(request.contact);
+}
+
+BranchLaw ResolveLaw(const LawRequest& request) {
+  Validate(request.contact);
+  const bool by_parameters = request.sigma || request.slip_force;
+  const bool by_contact = IsAnythingGiven(request.contact);
+  if (by_parameters && by_contact) {
+    throw InputError(
+        "--sigma and --slip-force exclude --friction, --normal-load and whatever else describes a "
+        "contact: give one of the two");
+  }
+  BranchLaw law;
+  if (by_contact) {
+    law = ResolveContact(request.contact).law;
+  } else if (request.sigma && request.slip_force) {
+    law = {.tangential_stiffness = *request.sigma, .slip_force = *request.slip_force};
+  } else {
+    throw InputError(fmt::format(
+        "{} missing: give --sigma and --slip-force, or a contact (--friction, --normal-load, "
+        "--contact-radius, --compliance or materials and radii)",
+        request.sigma ? "--slip-force" : "--sigma"));
+  }
+  if (request.alpha) law.shape_exponent = *request.alpha;
+  Validate(law);
+  return law;
+}
+
+BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
+                     std::optional<double> prescribed_exponent) {
+  BranchLaw law = ResolveLaw(request);
+  if (!prescribed_exponent) return law;
+  if (request.alpha && *request.alpha != *prescribed_exponent) {
+    throw InputError(fmt::format(
+        "--alpha {} contradicts --model {}, whose alpha is {}: use --model mindlin-dahl",
+        *request.alpha, model, *prescribed_exponent));
+  }
+  law.shape_exponent = *prescribed_exponent;
+  return law;
+}
+
+std::vector<std::string> DoubtsAbout(const ContactOptions& options) {
+  std::optional<double> friction;
+  if (options.friction_coefficient) friction = options.friction_coefficient->value;
+  return contact::DoubtsAbout(options.known, friction);
+}
+
+std::string ToJson(const ContactParameters& contact) {
+  Json json = {{"schema", "mindahl.contact/1"},
+               {"version", Version()},
+               {"compliance_definition", kComplianceDefinition},
+               {"compliance_unit", kComplianceUnit}};
+  for (const ContactQuantity& quantity : contact.quantities) {
+    json[quantity.section][quantity.name] = {
+        {"value", NumberOrNull(quantity.value.value)},
+        {"standard_error", NumberOrNull(quantity.value.standard_error)},
+        {"unit", quantity.unit}};
+  }
+  return Dump(json);
+}
+
+std::string ToText(const ContactParameters& contact) {
+  const bool uncertain = std::ranges::any_of(
+      contact.quantities,
+      [](const ContactQuantity& quantity) { return quantity.value.standard_error > 0; });
+  std::string text;
+  for (const ContactQuantity& quantity : contact.quantities) {
+    const std::string error =
+        uncertain ? fmt::format("± {:<8.2g} ", quantity.value.standard_error) : "";
+    text += fmt::format("{:<26} {:>24.17g} {}{:<5} {}\n", quantity.name, quantity.value.value,
+                        error, quantity.unit, quantity.meaning);
+  }
+  return text;
 }
 
 }  // namespace mindahl::request

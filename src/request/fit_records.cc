@@ -4,13 +4,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
+#include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
@@ -20,8 +24,13 @@
 
 namespace mindahl::request {
 
+using identification::AdequacyVerdict;
 using identification::FitOptions;
+using identification::FitResult;
+using identification::Identifiability;
 using identification::Interval;
+using identification::ParameterEstimate;
+using identification::ParameterStatus;
 using io::RecordFile;
 using loop::Record;
 
@@ -253,6 +262,15 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
   }
 }
 
+/// Findings that stand where the model does not: those of the record. What else there is to say of
+/// an inadequate fit is in its text.
+bool IsOfTheRecord(std::string_view code) {
+  constexpr std::array<std::string_view, 7> kOfTheRecord = {
+      "reversals_uncertain", "glitches_left_out", "path_too_long",      "no_closed_cycle",
+      "few_places",          "loop_not_seen",     "weights_not_settled"};
+  return std::ranges::find(kOfTheRecord, code) != kOfTheRecord.end();
+}
+
 }  // namespace
 
 void LeaveOutTrimmed(std::span<const loop::Trim> trims, FitOptions& options) {
@@ -300,6 +318,75 @@ void Validate(const FitRequest& request) {
 void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFile& record) {
   const std::optional<Interval> window = TimeWindow(request);
   if (window) io::KeepTimeWindow(record, name, window->lower, window->upper);
+}
+
+bool Established(const FitResult& fit, Strictness strictness) {
+  if (!fit.converged) return false;
+  const AdequacyVerdict verdict = fit.adequacy.verdict;
+  switch (strictness) {
+    case Strictness::kNone:
+      return true;
+    case Strictness::kDoubtful:
+      return verdict != AdequacyVerdict::kInadequate &&
+             std::ranges::all_of(fit.parameters, &ParameterEstimate::is_known);
+    case Strictness::kAdequate:
+      return verdict == AdequacyVerdict::kAdequate &&
+             std::ranges::all_of(fit.parameters, [](const ParameterEstimate& estimate) {
+               return estimate.status == ParameterStatus::kFixed ||
+                      estimate.identifiability == Identifiability::kIdentifiable;
+             });
+  }
+  return false;
+}
+
+std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note) {
+  io::RecordColumns columns = request.columns;
+  columns.covariates = CovariateColumns(request);
+  std::vector<RecordFile> inputs;
+  io::ReadLimits left{.rows = request.max_rows,
+                      .memory = request.max_memory.value_or(MemoryOfProcess())};
+  for (const std::string& file : request.files) {
+    RecordFile& input = inputs.emplace_back(io::ReadRecord(file, columns, left));
+    const std::size_t rows = input.record.size();
+    left.rows -= std::min<std::uintmax_t>(left.rows, rows);
+    left.memory -= std::min(left.memory, io::ReadLimits::MemoryOf(rows, 0));
+    KeepTimeWindow(request, file, input);
+    for (const std::string& text : input.notes) note(text);
+  }
+  return inputs;
+}
+
+void AddBackbone(const FitRequest& request, report::Report& report) {
+  if (!identification::HasBackbone(report.fit)) {
+    throw InputError(
+        "--backbone is of a contact of Masing's memory under one load, by its forces: leave out "
+        "--model dahl, --lag, --asymmetry and --noise-in displacement, and fit records of other "
+        "loads apart");
+  }
+  std::vector<loop::RecordView> records;
+  records.reserve(report.records.size());
+  for (const io::RecordFile& input : report.records) records.emplace_back(input.record);
+  identification::FitOptions options = MakeFitOptions(request);
+  LeaveOutTrimmed(report.trims, options);
+  report.backbone = identification::EstimateBackbone(records, options, report.fit);
+  for (identification::Cause& cause : report.fit.adequacy.causes) {
+    // Refused together with a backbone.
+    const std::string_view option = cause.option;
+    if (option.starts_with("--lag") || option.starts_with("--asymmetry")) cause.option.clear();
+  }
+}
+
+std::vector<std::string> WarningsBesideText(const report::Report& report) {
+  std::vector<std::string> warnings;
+  const bool is_inadequate = report.fit.adequacy.verdict == AdequacyVerdict::kInadequate;
+  for (const report::Warning& warning : report.fit_warnings) {
+    if (warning.code == "fit_failed") continue;  // an error, which the caller says
+    if (!is_inadequate || IsOfTheRecord(warning.code)) warnings.push_back(warning.message);
+  }
+  for (const report::Warning& warning : report.contact_warnings) {
+    if (warning.code == "contact_implausible") warnings.push_back(warning.message);
+  }
+  return warnings;
 }
 
 report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inputs,

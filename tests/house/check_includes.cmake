@@ -17,7 +17,7 @@ set(stages_inference problem solve inference)
 set(stages_diagnosis problem solve inference diagnosis)
 set(stages_judge judge)
 set(allowed_campaign core loop models identification io report)
-set(allowed_request core contact loop models identification io report)
+set(allowed_request core contact loop models methods tradeoff convert identification io report campaign)
 set(allowed_cli core contact loop models methods tradeoff convert identification io report campaign request)
 
 set(errors "")

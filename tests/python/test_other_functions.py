@@ -72,6 +72,11 @@ def test_track_says_what_changed_as_the_program_does(long_record, tmp_path):
     expected = program_json("track", long_record, worn, "--output", tmp_path / "worn_cycles.csv")
     tracked = mindahl.track([long_record, worn])
     assert tracked.quantities == expected["quantities"]
+    written = program("track", long_record, worn, "--output", tmp_path / "again.csv", "--json", "-")
+    assert tracked.to_json() == written.replace(f'"output": "{tmp_path}/again.csv"', '"output": null')
+    printed = program("track", long_record, worn, "--output", tmp_path / "third.csv")
+    assert tracked.text() == printed.replace(f" in {tmp_path}/third.csv", "")
+    assert "<pre>" in tracked._repr_html_() and tracked.established
     step, = tracked.quantities["slip_force"]["changes"]
     assert step["kind"] == "transition"
     assert step["after"] == pytest.approx(0.8 * step["before"], rel=0.01)

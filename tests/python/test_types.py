@@ -11,6 +11,7 @@ pytest.importorskip("mypy")
 USE = Path(__file__).with_name("typed_use.py")
 MISTAKES = {
     "mindahl.simulate(displacement, sigma='stiff', slip_force=40.0)": 'has incompatible type "str"',
+    "mindahl.plan(sigma='stiff')": 'has incompatible type "str"',
     "mindahl.fit(displacement, force, modell='dahl')": 'Unexpected keyword argument "modell"',
     "state.displacement = 1.0": "is read-only",
     "text: str = mindahl.fit(displacement, force).sigma.unit_of": 'has no attribute "unit_of"',

@@ -98,7 +98,7 @@ struct ValidationRow {
 struct ValidationReport {
   std::vector<ValidationRow> rows;  ///< in order of noise level, then amplitude
   /// Rows of Dahl's own law, fitted to each loop from its first extreme on. σ, α and Tc are
-  /// then those of the Masing law with the same steady loop (models/equivalent_law.h), standard
+  /// then those of the Masing law with the same steady loop (models/steady_loop.h), standard
   /// errors and intervals those of Dahl's law itself.
   std::vector<ValidationRow> dahl_rows;
   std::size_t fits = 0;

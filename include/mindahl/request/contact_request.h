@@ -2,9 +2,12 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "mindahl/models/branch_law.h"
 
 namespace mindahl::request {
 
@@ -31,5 +34,54 @@ bool IsAnythingGiven(const ContactOptions& options);
 /// @throws InvalidArgument naming the option, its value and the rule; InputError for a plane with
 /// an uncertain radius
 void Validate(const ContactOptions& options);
+
+/// A line of the report on a contact.
+struct ContactQuantity {
+  std::string section;  // of the JSON
+  std::string name;
+  contact::UncertainValue value;
+  std::string unit;
+  std::string meaning;
+};
+
+struct ContactParameters {
+  models::BranchLaw law;
+  std::vector<ContactQuantity> quantities;
+};
+
+/// Returns Dahl's parameters of a contact described by friction and normal load with either contact
+/// radius and compliance or the materials and radii of both bodies; uncertain inputs make uncertain
+/// quantities.
+/// @throws InputError naming the options that are missing
+ContactParameters ResolveContact(const ContactOptions& options);
+
+/// A branch law: by its parameters, or by a contact.
+struct LawRequest {
+  std::optional<double> sigma;       ///< [N/m]
+  std::optional<double> alpha;       ///< [-]
+  std::optional<double> slip_force;  ///< [N]
+  ContactOptions contact;
+};
+
+/// True if a parameter other than α, or anything of a contact, was given.
+bool IsAnythingGiven(const LawRequest& request);
+
+/// Returns the law; α is 1/3 where it is not given.
+/// @throws InputError when parameters are missing or given twice, InvalidArgument out of range
+models::BranchLaw ResolveLaw(const LawRequest& request);
+
+/// Returns the law as a model uses it that prescribes α.
+/// @throws InputError when --alpha contradicts it
+models::BranchLaw ResolveLaw(const LawRequest& request, std::string_view model,
+                             std::optional<double> prescribed_exponent);
+
+/// Returns the doubts about a contact that is hardly meant, one sentence each.
+std::vector<std::string> DoubtsAbout(const ContactOptions& options);
+
+/// Returns the JSON of schema mindahl.contact/1, as `mindahl contact --json` writes it.
+std::string ToJson(const ContactParameters& contact);
+
+/// Returns the table that `mindahl contact` prints.
+std::string ToText(const ContactParameters& contact);
 
 }  // namespace mindahl::request

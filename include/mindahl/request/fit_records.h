@@ -16,6 +16,16 @@ namespace mindahl::request {
 /// Receives the assumptions, one sentence each.
 using Tell = std::function<void(std::string_view)>;
 
+/// Requirements of `--strict` on a fit.
+enum class Strictness {
+  kNone,      ///< the fit converged
+  kDoubtful,  ///< also that the model is not inadequate and every free parameter known
+  kAdequate,  ///< also that the model is adequate and every free parameter identifiable
+};
+
+/// Returns true if a fit is done, for the exit status.
+bool Established(const identification::FitResult& fit, Strictness strictness);
+
 /// Has the fit leave out what is no part of the test of each record, and take the contact for one
 /// that was not unloaded before where that leaves out every first loading and nothing else is
 /// stated of it.
@@ -37,6 +47,18 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
 /// @param name  the record's, for messages
 /// @throws InputError as io::KeepTimeWindow()
 void KeepTimeWindow(const FitRequest& request, const std::string& name, io::RecordFile& record);
+
+/// Reads the request's files, within its limits and time window.
+/// @throws InputError naming file, line and column
+std::vector<io::RecordFile> ReadRecords(const FitRequest& request, const Tell& note);
+
+/// Adds the backbone of the report's records, without any law's shape, and withdraws the advice
+/// that cannot be followed together with one.
+/// @throws InputError for a fit that has none
+void AddBackbone(const FitRequest& request, report::Report& report);
+
+/// Returns the warnings of a fit that its text does not have, one sentence each.
+std::vector<std::string> WarningsBesideText(const report::Report& report);
 
 /// Fits records together as one contact at Depth::kThorough, and reports.
 /// @param records  within the time window, called as request.files; one whose normal load goes in

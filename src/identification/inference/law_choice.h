@@ -11,7 +11,7 @@ namespace mindahl::identification {
 
 /// True if all swings of the records are as wide as the widest, those to their ends no wider. Then
 /// a steady contact of Masing's law and one of Dahl's own run along one curve, each with a σ and a
-/// Tc of its own (models/equivalent_law.h).
+/// Tc of its own (models/steady_loop.h).
 bool HasOneAmplitude(const Problem& problem, const Thresholds& thresholds);
 
 /// True if the record hardly distinguishes Masing's law from Dahl's own.

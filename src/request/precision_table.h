@@ -1,11 +1,11 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "mindahl/tradeoff/work_precision.h"
+#include "request/json.h"
 
-namespace mindahl::cli {
+namespace mindahl::request {
 
 /// Head of a table of approximations with their cost and errors.
 /// @param is_timed  there is a column of what was measured
@@ -19,6 +19,12 @@ std::string PrecisionTableRow(const tradeoff::WorkPrecision& point, double floor
 std::string RefittedParameters(const tradeoff::Approximation& approximation);
 
 /// {"model", "method", "steps", "tolerance", "cost_ns_per_sample", "max_force_error", …}
-nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point);
+Json PrecisionJson(const tradeoff::WorkPrecision& point);
 
-}  // namespace mindahl::cli
+/// {"sigma", "alpha", "slip_force"}
+Json LawJson(const models::BranchLaw& law);
+
+/// {"memory_ns_per_sample", "arithmetic_ns_per_sample"}
+Json FloorJson(const tradeoff::CostFloor& floor);
+
+}  // namespace mindahl::request

@@ -1,8 +1,8 @@
-#include "cli/established.h"
-
 #include <gtest/gtest.h>
 
-namespace mindahl::cli::established_test {
+#include "mindahl/request/fit_records.h"
+
+namespace mindahl::request::established_test {
 namespace {
 
 using namespace identification;
@@ -54,4 +54,4 @@ TEST(Established, DoubtfulTakesEffectiveParametersAndNoOpenOnes) {
 }
 
 }  // namespace
-}  // namespace mindahl::cli::established_test
+}  // namespace mindahl::request::established_test

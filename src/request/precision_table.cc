@@ -1,14 +1,13 @@
-#include "cli/precision_table.h"
+#include "request/precision_table.h"
 
 #include <fmt/format.h>
 
-#include "cli/json_output.h"
 #include "mindahl/methods/method.h"
 
-namespace mindahl::cli {
+namespace mindahl::request {
 namespace {
 
-std::string Error(double error) { return fmt::format("{:.1e}", error); }
+std::string InOneDigit(double error) { return fmt::format("{:.1e}", error); }
 
 }  // namespace
 
@@ -19,11 +18,12 @@ std::string PrecisionTableHead(bool is_timed) {
 }
 
 std::string PrecisionTableRow(const tradeoff::WorkPrecision& point, double floor) {
-  return fmt::format(
-      "{:<50} {:>10.2f}{} {:>8.1f}  {:>8} {:>8} {:>8}", tradeoff::Describe(point.approximation),
-      point.cost, point.measured_cost ? fmt::format(" {:>10.2f}", *point.measured_cost) : "",
-      point.cost / floor, Error(point.precision.max_force), Error(point.precision.rms_force),
-      point.precision.energy ? Error(*point.precision.energy) : "-");
+  return fmt::format("{:<50} {:>10.2f}{} {:>8.1f}  {:>8} {:>8} {:>8}",
+                     tradeoff::Describe(point.approximation), point.cost,
+                     point.measured_cost ? fmt::format(" {:>10.2f}", *point.measured_cost) : "",
+                     point.cost / floor, InOneDigit(point.precision.max_force),
+                     InOneDigit(point.precision.rms_force),
+                     point.precision.energy ? InOneDigit(*point.precision.energy) : "-");
 }
 
 std::string RefittedParameters(const tradeoff::Approximation& approximation) {
@@ -36,9 +36,9 @@ std::string RefittedParameters(const tradeoff::Approximation& approximation) {
                      law.slip_force);
 }
 
-nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point) {
+Json PrecisionJson(const tradeoff::WorkPrecision& point) {
   const tradeoff::Approximation& approximation = point.approximation;
-  nlohmann::ordered_json json;
+  Json json;
   json["model"] = approximation.model;
   json["method"] = nullptr;
   json["steps"] = nullptr;
@@ -51,9 +51,10 @@ nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point) {
   json["refitted"] = nullptr;
   if (approximation.law) {
     const models::BranchLaw& law = *approximation.law;
-    json["refitted"] = {{"sigma", law.tangential_stiffness},
-                        {"alpha", tradeoff::LawOf(approximation, law).shape_exponent},
-                        {"slip_force", law.slip_force}};
+    json["refitted"] =
+        LawJson({.tangential_stiffness = law.tangential_stiffness,
+                 .shape_exponent = tradeoff::LawOf(approximation, law).shape_exponent,
+                 .slip_force = law.slip_force});
     if (approximation.model == "spring") {
       json["refitted"] = {{"sigma", law.tangential_stiffness}};
     } else if (approximation.model == "coulomb") {
@@ -62,7 +63,7 @@ nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point) {
   }
   json["cost_ns_per_sample"] = point.cost;
   json["measured_ns_per_sample"] = NumberOrNull(point.measured_cost);
-  json["operations_per_sample"] = nlohmann::ordered_json::object();
+  json["operations_per_sample"] = Json::object();
   const double samples = point.operations[methods::Operation::kSample];
   for (std::size_t i = 0; i < methods::kOperations; ++i) {
     const auto operation = static_cast<methods::Operation>(i);
@@ -77,4 +78,14 @@ nlohmann::ordered_json PrecisionJson(const tradeoff::WorkPrecision& point) {
   return json;
 }
 
-}  // namespace mindahl::cli
+Json LawJson(const models::BranchLaw& law) {
+  return {{"sigma", law.tangential_stiffness},
+          {"alpha", law.shape_exponent},
+          {"slip_force", law.slip_force}};
+}
+
+Json FloorJson(const tradeoff::CostFloor& floor) {
+  return {{"memory_ns_per_sample", floor.memory}, {"arithmetic_ns_per_sample", floor.arithmetic}};
+}
+
+}  // namespace mindahl::request

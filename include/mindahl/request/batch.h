@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "mindahl/campaign/pages.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/report/report.h"
+#include "mindahl/request/fit_records.h"
+#include "mindahl/request/fit_request.h"
+
+namespace mindahl::request {
+
+struct FitDocument;  // the JSON of a fit
+
+/// Holds the fit of one source of a batch, or the fault for which it has none.
+struct BatchEntry {
+  bool done = false;                       ///< fitted, and Established()
+  std::shared_ptr<const FitDocument> fit;  ///< empty where there is none
+  std::vector<std::string> notes;          ///< assumptions of the run, one sentence each
+  campaign::FileResult result;             ///< its name, its fault, what the index shows of it
+};
+
+/// Reads the records of one source, with notes on what was assumed.
+using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&, const Tell& note)>;
+
+/// Is given a report, and returns the name of the page that it wrote; empty: no pages.
+using WritePage = std::function<std::string(const report::Report&)>;
+
+/// Fits one source on its own. A fault of the source is one of the entry.
+/// @param request  of all sources, of which `files` is not looked at
+BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictness strictness,
+                     const ReadSource& read, const WritePage& write_page = {});
+
+/// Fits each of the request's files on its own, in their order whatever the number of threads.
+/// @param page_of   of the k-th file; may be empty
+/// @param progress  is called with the number of files that are done, may be empty
+/// @throws InputError or InvalidArgument for options that break a rule whatever the files are
+std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
+                                 std::size_t threads,
+                                 const std::function<WritePage(std::size_t k)>& page_of = {},
+                                 const std::function<void(std::size_t)>& progress = {});
+
+/// True if every entry is done.
+bool AllDone(std::span<const BatchEntry> entries);
+
+using BatchCell = std::variant<std::monostate, std::int64_t, double, std::string>;
+
+/// A column of the table that `mindahl batch --output` writes.
+struct BatchColumn {
+  std::string_view name;
+  std::vector<BatchCell> cells;  ///< one an entry, empty where there is nothing to say
+};
+
+/// Returns the columns in their order.
+std::vector<BatchColumn> TableOf(std::span<const BatchEntry> entries);
+
+/// Returns the table as CSV.
+std::string TableCsv(std::span<const BatchEntry> entries);
+
+/// Returns the JSON of schema mindahl.batch/1, as `mindahl batch --json` writes it.
+/// @param output  path of the table; null where it is empty
+std::string ToJson(std::span<const BatchEntry> entries, const std::string& output);
+
+/// Returns the text that `mindahl batch` prints.
+/// @param output  path of the table; not said where it is empty
+std::string ToText(std::span<const BatchEntry> entries, const std::string& output);
+
+/// Returns the index of the entries' pages.
+std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance);
+
+/// Returns the JSON of an entry's fit as `mindahl fit --json` writes it; "" where there is none.
+std::string FitJson(const BatchEntry& entry);
+
+/// Makes an entry of what FitJson() returned, in another process.
+void SetFitJson(BatchEntry& entry, const std::string& json);
+
+}  // namespace mindahl::request

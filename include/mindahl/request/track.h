@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mindahl/campaign/cycle_fit.h"
+#include "mindahl/campaign/dissipated_energy.h"
+#include "mindahl/campaign/pages.h"
+#include "mindahl/campaign/pooled_value.h"
+#include "mindahl/campaign/tracked_quantities.h"
+
+namespace mindahl::request {
+
+/// Holds what is said of a test of many cycles, but for its rows.
+struct TrackedTest {
+  /// @param cycles_per_row  that a fit stands for, >= 1
+  explicit TrackedTest(std::size_t cycles_per_row = 1) : energy(cycles_per_row) {}
+
+  /// Adds a fit, in their order.
+  void Add(const campaign::CycleFit& fit);
+  /// True unless no fit converged.
+  [[nodiscard]] bool established() const;
+
+  std::vector<std::string> files;
+  std::string output;  ///< path of the table of cycles; "" where none was written
+  bool is_torsional = false;
+  std::size_t samples = 0;  ///< that were read
+  std::size_t cycles = 0;
+  std::size_t unused_samples = 0;  ///< at the ends, part of no whole cycle
+  std::size_t broken_rows = 0;     ///< that were skipped
+  double reversal_gate = 0.0;      ///< [m]
+  bool is_gate_certain = true;
+  std::size_t fits = 0;
+  std::size_t flagged = 0;
+  std::size_t resumed = 0;  ///< fits that the table had already
+  std::map<std::string, std::size_t> flags;
+  campaign::TrackedCourses courses;
+  campaign::DissipatedEnergy energy;
+  std::optional<campaign::PooledValue> shared_alpha;  ///< empty where each cycle has its own
+};
+
+/// Returns the JSON of schema mindahl.track/1, as `mindahl track --json` writes it.
+/// @param described  of the test's time histories, by Describe()
+std::string ToJson(const TrackedTest& test,
+                   const std::vector<campaign::CourseDescription>& described);
+
+/// Returns the summary that `mindahl track` prints, likewise.
+std::string ToText(const TrackedTest& test,
+                   const std::vector<campaign::CourseDescription>& described);
+
+/// Returns what the page and the figure of the test show, likewise.
+campaign::TestSummary SummaryOf(const TrackedTest& test,
+                                const std::vector<campaign::CourseDescription>& described);
+
+}  // namespace mindahl::request

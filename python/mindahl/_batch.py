@@ -1,0 +1,161 @@
+"""mindahl.batch()."""
+
+from __future__ import annotations
+
+import inspect
+import json
+import os
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from html import escape
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from . import _mindahl
+from ._arguments import count, is_frame, path_text
+from ._fit import fit, prepared, request_and_arguments
+from ._records import is_path
+from ._result import FitWarning, Report
+
+
+class BatchTable(Mapping[str, Any]):
+    """What batch() found: one row a source, an array a column; NaN and None for what is not known.
+
+    report: sections of `mindahl batch --json`, `files` with the fit of each, and `repeats`.
+    """
+
+    def __init__(self, entries: list[_mindahl.BatchEntry]) -> None:
+        self._entries = entries
+        self._columns = {name: _column(cells)
+                         for name, cells in _mindahl.batch_columns(entries).items()}
+        self.report = Report(_mindahl.batch_answer(entries), "batch", ("files", "repeats"))
+
+    def __getitem__(self, name: str) -> Any:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def established(self) -> bool:
+        """Was every source fitted, and established where `strict` asks for it?"""
+        return self.report.established
+
+    @property
+    def faults(self) -> dict[str, str]:
+        """Why a source has no fit or is not established, by its name."""
+        return {entry.name: entry.fault for entry in self._entries if entry.fault}
+
+    def to_pandas(self) -> Any:
+        """A pandas DataFrame of the columns. Raises ImportError without pandas."""
+        import pandas
+
+        return pandas.DataFrame(self._columns)
+
+    def to_csv(self) -> str:
+        """What `mindahl batch --output` writes."""
+        return _mindahl.batch_csv(self._entries)
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `mindahl batch --json` writes; its "output" is None."""
+        return self.report.to_dict()
+
+    def to_json(self) -> str:
+        """The same as text, byte for byte."""
+        return self.report.to_json()
+
+    def text(self) -> str:
+        """What `mindahl batch` prints."""
+        return self.report.text()
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __repr__(self) -> str:
+        return f"<mindahl.BatchTable: {len(self._entries)} rows of {', '.join(self._columns)}>"
+
+    def _repr_html_(self) -> str:
+        rows = [list(self._columns), *zip(*self._columns.values())]
+        cells = "".join("<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>"
+                        for row in rows)
+        return f"<table>{cells}</table><pre>{escape(self.text())}</pre>"
+
+
+def _column(cells: list[Any]) -> Any:
+    """Numbers as float64 or int64, with NaN for None; texts as objects."""
+    if any(isinstance(cell, str) for cell in cells):
+        return np.array(cells, dtype=object)
+    if all(isinstance(cell, int) for cell in cells):
+        return np.array(cells, dtype=np.int64)
+    return np.array([np.nan if cell is None else cell for cell in cells], dtype=np.float64)
+
+
+def batch(
+    sources: Iterable[Any], *, strict: Union[bool, str] = False, threads: Optional[int] = None,
+    executor: Any = None, **keywords: Any,
+) -> BatchTable:
+    """Fits each source on its own, with any keyword of fit() for all of them: one row a source.
+
+    sources: files, data frames, Records or pairs (displacement [m], force [N]), each a test of its
+        own. A source that fails does not stop the others.
+    strict: True, or "doubtful", as --strict: a source whose fit is not established fails too.
+    threads: that fit; by default one a core. The results do not depend on it.
+    executor: instead of threads, an object with submit(function, *arguments) whose futures have
+        result(), or with map(function, arguments): concurrent.futures, dask.distributed's Client.
+        What its workers are given and give back can be pickled.
+    keywords: of fit(), but for what is one a record: force, time as arrays.
+    Returns a BatchTable, the columns of `mindahl batch --output`.
+    Warns with FitWarning of what was assumed of columns and units and of every source that failed.
+    Raises InputError (a ValueError) or ValueError for keywords that break a rule whatever the sources
+        are, TypeError for one that fit() does not have.
+    """
+    bound = inspect.signature(fit).bind_partial(**keywords)  # TypeError for what fit() has not
+    bound.apply_defaults()
+    given = dict(bound.arguments)
+    _mindahl.check_request(request_and_arguments(given)[0])
+    strictness = ("adequate" if strict else "none") if isinstance(strict, bool) else strict
+    if strictness not in ("none", "adequate", "doubtful"):
+        raise ValueError(f"strict = {strict!r} is invalid: must be True, False or 'doubtful'")
+    tasks = [(source, f"record {k + 1}", strictness, given) for k, source in enumerate(sources)]
+    if executor is not None:
+        entries = _in_executor(executor, tasks)
+    else:
+        workers = (os.cpu_count() or 1) if threads is None else count("threads", threads, 1)
+        with ThreadPoolExecutor(workers) as pool:
+            entries = list(pool.map(_fit_one, tasks))
+    for entry in entries:
+        faults = [f"{entry.name}: {entry.fault}"] if entry.fault else []
+        for message in (*entry.notes, *faults):
+            warnings.warn(_mindahl.with_keywords(message), FitWarning, stacklevel=2)
+    return BatchTable(entries)
+
+
+Task = tuple[Any, str, str, dict[str, Any]]
+
+
+def _in_executor(executor: Any, tasks: list[Task]) -> list[_mindahl.BatchEntry]:
+    if hasattr(executor, "submit"):
+        return [future.result() for future in [executor.submit(_fit_one, task) for task in tasks]]
+    if hasattr(executor, "map"):
+        return list(executor.map(_fit_one, tasks))
+    raise ValueError(f"executor: a {type(executor).__name__} has neither submit() nor map()")
+
+
+def _fit_one(task: Task) -> _mindahl.BatchEntry:
+    source, name, strictness, given = task
+    if is_path(source):
+        name = path_text(source)
+    is_pair = isinstance(source, (tuple, list)) and len(source) == 2 and not is_frame(source)
+    source, force = source if is_pair else (source, given["force"])
+    try:
+        records, request, _ = prepared({**given, "source": source, "force": force})
+        if len(records) != 1:
+            raise ValueError(f"{name}: {len(records)} records: each is a source of its own")
+        return _mindahl.fit_one(records[0], request, strictness)
+    except ValueError as error:
+        return _mindahl.faulty_entry(name, str(error))

@@ -1,0 +1,310 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "mindahl/core/error.h"
+#include "mindahl/request/batch.h"
+#include "mindahl/request/contact_request.h"
+#include "mindahl/request/conversion.h"
+#include "mindahl/request/one_of.h"
+#include "mindahl/request/plan.h"
+#include "mindahl/request/recommendation.h"
+#include "mindahl/request/tradeoff.h"
+#include "mindahl/request/validation.h"
+#include "record.h"
+
+namespace mindahl::python {
+
+namespace py = pybind11;
+using request::BatchEntry;
+using request::ConversionRequest;
+using request::DriveRequest;
+using request::LawRequest;
+using request::PlanRequest;
+using request::RecommendationRequest;
+using request::Strictness;
+using request::ToJson;
+using request::ToText;
+
+namespace {
+
+/// The answer of a command: what it writes as JSON and what it prints.
+struct Answer {
+  std::string json;
+  std::string text;
+  bool established = true;  // its exit status is 0
+  std::vector<std::string> warnings;
+};
+
+/// Calls a function of the library, which other threads need not wait for.
+/// @param ask  is given what takes warnings
+template <typename Ask>
+Answer AnswerOf(Ask ask) {
+  const py::gil_scoped_release others_may_run;
+  Answer answer;
+  const auto made = ask([&](std::string_view warning) { answer.warnings.emplace_back(warning); });
+  answer.json = ToJson(made);
+  answer.text = ToText(made);
+  if constexpr (requires { made.established(); }) answer.established = made.established();
+  return answer;
+}
+
+std::vector<double> VectorOf(const Array& array) {
+  const std::span<const double> samples = SpanOf(array, "displacement");
+  return {samples.begin(), samples.end()};
+}
+
+Answer Contact(const request::ContactOptions& options) {
+  Validate(options);
+  return AnswerOf([&](const request::Tell& warn) {
+    const request::ContactParameters contact = ResolveContact(options);
+    for (const std::string& doubt : DoubtsAbout(options)) warn(doubt);
+    return contact;
+  });
+}
+
+/// Returns the answer, and the lines that the target reads, if it can have any.
+std::pair<Answer, std::optional<std::vector<std::string>>> Convert(
+    const ConversionRequest& request) {
+  std::optional<std::vector<std::string>> lines;
+  Answer answer = AnswerOf([&](const request::Tell&) {
+    request::ConvertedContact converted = MakeConversion(request);
+    if (!IsDiscreteElementCode(converted.target.target) || request.normal.normal_load) {
+      lines = InputLines(converted);
+    }
+    return converted;
+  });
+  return {std::move(answer), std::move(lines)};
+}
+
+Answer Plan(PlanRequest request, const std::string& initial_state,
+            const std::optional<NamedRecord>& record) {
+  request::RequireOneOf("--initial-state", initial_state,
+                        std::array<std::string_view, 3>{"virgin", "steady", "both"});
+  if (initial_state == "virgin") request.initial_state = models::InitialState::kVirgin;
+  if (initial_state == "steady") request.initial_state = models::InitialState::kSteady;
+  if (record) {
+    request.record = [&] { return record->file; };
+    request.record_name = record->name;
+  }
+  return AnswerOf([&](const request::Tell& warn) { return MakePlan(request, warn); });
+}
+
+void SetWanted(PlanRequest& request, const std::string& name, double value, bool is_relative) {
+  request.wanted[name] = {.value = value, .is_relative = is_relative};
+}
+
+/// @param displacement  [m], or empty: as the request's drive says
+Answer Recommend(RecommendationRequest request, const std::string& criterion,
+                 const Array& displacement) {
+  request.displacement = VectorOf(displacement);
+  request.asked.criterion = request::FindCriterion(criterion);
+  return AnswerOf([&](const request::Tell& warn) { return MakeRecommendation(request, warn); });
+}
+
+Answer RecommendForRecord(const NamedRecord& record) {
+  return AnswerOf([&](const request::Tell& warn) {
+    return request::RecommendForRecord(record.name, record.file.record, warn);
+  });
+}
+
+Answer Tradeoff(const LawRequest& law, const std::vector<std::string>& excitations,
+                const Array& array, const std::string& path_name) {
+  const std::vector<double> displacement = VectorOf(array);
+  const std::vector<std::string> names = request::ExcitationNames();
+  const std::vector<std::string_view> words(names.begin(), names.end());
+  for (const std::string& name : excitations) request::RequireOneOf("--excitation", name, words);
+  return AnswerOf([&](const request::Tell& warn) {
+    return request::MakeTradeoff({.law = law,
+                                  .excitations = excitations,
+                                  .displacement = displacement,
+                                  .path_name = path_name},
+                                 warn);
+  });
+}
+
+Answer Validate(std::size_t cases, std::uint64_t seed) {
+  return AnswerOf([&](const request::Tell&) {
+    request::Validation validation;
+    validation.options.cases = cases;
+    validation.options.seed = seed;
+    validation.report = identification::ValidateMapping(validation.options);
+    return validation;
+  });
+}
+
+BatchEntry FitOne(const NamedRecord& record, const request::FitRequest& request,
+                  const std::string& strict) {
+  const py::gil_scoped_release others_may_run;
+  const Strictness strictness = strict == "adequate"   ? Strictness::kAdequate
+                                : strict == "doubtful" ? Strictness::kDoubtful
+                                                       : Strictness::kNone;
+  return request::FitSource(request, record.name, strictness,
+                            [&](const request::FitRequest& own, const request::Tell& note) {
+                              std::vector<io::RecordFile> files = {record.file};
+                              request::KeepTimeWindow(own, record.name, files.front());
+                              for (const std::string& text : files.front().notes) note(text);
+                              return files;
+                            });
+}
+
+BatchEntry FaultyEntry(const std::string& name, const std::string& fault) {
+  BatchEntry entry;
+  entry.result.file = name;
+  entry.result.fault = fault;
+  return entry;
+}
+
+/// What goes from one process to another: name, fault, whether done, notes, and the fit's JSON.
+py::tuple StateOf(const BatchEntry& entry) {
+  return py::make_tuple(entry.result.file, entry.result.fault, entry.done, entry.notes,
+                        request::FitJson(entry));
+}
+
+BatchEntry EntryOf(const py::tuple& state) {
+  BatchEntry entry = FaultyEntry(state[0].cast<std::string>(), state[1].cast<std::string>());
+  entry.done = state[2].cast<bool>();
+  entry.notes = state[3].cast<std::vector<std::string>>();
+  request::SetFitJson(entry, state[4].cast<std::string>());
+  return entry;
+}
+
+py::dict ColumnsOf(const std::vector<BatchEntry>& entries) {
+  py::dict columns;
+  for (const request::BatchColumn& column : request::TableOf(entries)) {
+    columns[py::str(std::string(column.name))] = column.cells;
+  }
+  return columns;
+}
+
+void AddRequests(py::module_& module) {
+  py::class_<LawRequest>(module, "LawRequest")
+      .def(py::init<>())
+      .def_readwrite("sigma", &LawRequest::sigma)
+      .def_readwrite("alpha", &LawRequest::alpha)
+      .def_readwrite("slip_force", &LawRequest::slip_force)
+      .def_readwrite("contact", &LawRequest::contact);
+  py::class_<PlanRequest>(module, "PlanRequest")
+      .def(py::init<>())
+      .def_readwrite("law", &PlanRequest::law)
+      .def_readwrite("rig_stiffness", &PlanRequest::rig_stiffness)
+      .def_readwrite("force_noise", &PlanRequest::force_noise)
+      .def_readwrite("displacement_noise", &PlanRequest::displacement_noise)
+      .def_readwrite("autocorrelation", &PlanRequest::autocorrelation)
+      .def_readwrite("amplitudes", &PlanRequest::amplitudes)
+      .def_readwrite("load_ratios", &PlanRequest::load_ratios)
+      .def_readwrite("load_exponent", &PlanRequest::load_exponent)
+      .def_readwrite("samples_per_cycle", &PlanRequest::samples_per_cycle)
+      .def_readwrite("cycles", &PlanRequest::cycles)
+      .def_readwrite("with_terms", &PlanRequest::with)
+      .def("set_wanted", &SetWanted, py::arg("name"), py::arg("value"), py::arg("is_relative"));
+  py::class_<DriveRequest>(module, "DriveRequest")
+      .def(py::init<>())
+      .def_readwrite("waveform", &DriveRequest::waveform)
+      .def_readwrite("lambda_", &DriveRequest::lambda)
+      .def_readwrite("amplitude", &DriveRequest::amplitude)
+      .def_readwrite("path", &DriveRequest::path)
+      .def_readwrite("path_unit", &DriveRequest::path_unit)
+      .def_readwrite("seed", &DriveRequest::seed)
+      .def("set_excitation", [](DriveRequest& request, double cycles, std::size_t samples_per_cycle,
+                                double frequency, double growth) {
+        request.excitation.cycles = cycles;
+        request.excitation.samples_per_cycle = samples_per_cycle;
+        request.excitation.frequency = frequency;
+        request.excitation.growth = growth;
+      });
+}
+
+}  // namespace
+
+void AddAnswers(py::module_& module) {
+  AddRequests(module);
+  py::class_<Answer>(module, "Answer")
+      .def_readonly("json", &Answer::json)
+      .def_readonly("text", &Answer::text)
+      .def_readonly("established", &Answer::established)
+      .def_readonly("warnings", &Answer::warnings);
+  module.def("contact", &Contact, py::arg("options"));
+  module.def(
+      "convert",
+      [](double sigma, double alpha, double slip_force, double amplitude, const std::string& from,
+         const std::string& to, std::optional<double> least_amplitude,
+         std::optional<double> largest_amplitude, double tolerance, std::size_t elements,
+         double beta, std::optional<double> normal_load, std::optional<double> contact_radius,
+         double viscous) {
+        return Convert({.law = {.tangential_stiffness = sigma,
+                                .shape_exponent = alpha,
+                                .slip_force = slip_force},
+                        .from = from,
+                        .to = to,
+                        .options = {.amplitude = amplitude,
+                                    .tolerance = tolerance,
+                                    .elements = elements,
+                                    .beta = beta},
+                        .least_amplitude = least_amplitude,
+                        .largest_amplitude = largest_amplitude,
+                        .normal = {.normal_load = normal_load,
+                                   .contact_radius = contact_radius,
+                                   .viscous = viscous}});
+      },
+      py::kw_only(), py::arg("sigma"), py::arg("alpha"), py::arg("slip_force"),
+      py::arg("amplitude"), py::arg("from_law"), py::arg("to"), py::arg("least_amplitude"),
+      py::arg("largest_amplitude"), py::arg("tolerance"), py::arg("elements"), py::arg("beta"),
+      py::arg("normal_load"), py::arg("contact_radius"), py::arg("viscous"));
+  module.def("plan", &Plan, py::arg("request"), py::arg("initial_state"), py::arg("record"));
+  module.def(
+      "recommend",
+      [](const LawRequest& law, const DriveRequest& drive, double tolerance,
+         std::optional<double> cost, std::size_t transient_cycles, const std::string& criterion,
+         const Array& displacement) {
+        return Recommend({.law = law,
+                          .drive = drive,
+                          .displacement = {},
+                          .asked = {.tolerance = tolerance,
+                                    .largest_cost = cost,
+                                    .transient_cycles = transient_cycles}},
+                         criterion, displacement);
+      },
+      py::kw_only(), py::arg("law"), py::arg("drive"), py::arg("tolerance"), py::arg("cost"),
+      py::arg("transient_cycles"), py::arg("criterion"), py::arg("displacement"));
+  module.def("recommend_for_record", &RecommendForRecord, py::arg("record"));
+  module.def("tradeoff", &Tradeoff, py::arg("law"), py::arg("excitations"), py::arg("displacement"),
+             py::arg("path_name"));
+  module.def("validate", &Validate, py::arg("cases"), py::arg("seed"));
+  module.def(
+      "read_displacement_path",
+      [](const std::string& path, const std::string& unit) {
+        const std::vector<double> samples =
+            io::ReadDisplacementPath(path, {.column = "", .unit = unit});
+        return Array(static_cast<py::ssize_t>(samples.size()), samples.data());
+      },
+      py::arg("path"), py::arg("unit"));
+
+  py::class_<BatchEntry>(module, "BatchEntry")
+      .def_readonly("done", &BatchEntry::done)
+      .def_readonly("notes", &BatchEntry::notes)
+      .def_property_readonly("name", [](const BatchEntry& entry) { return entry.result.file; })
+      .def_property_readonly("fault", [](const BatchEntry& entry) { return entry.result.fault; })
+      .def(py::pickle(&StateOf, &EntryOf));
+  module.def("check_request",
+             [](const request::FitRequest& request) { request::MakeFitOptions(request); });
+  module.def("fit_one", &FitOne, py::arg("record"), py::arg("request"), py::arg("strict"));
+  module.def("faulty_entry", &FaultyEntry, py::arg("name"), py::arg("fault"));
+  module.def("batch_columns", &ColumnsOf, py::arg("entries"));
+  module.def("batch_csv",
+             [](const std::vector<BatchEntry>& entries) { return request::TableCsv(entries); });
+  module.def("batch_answer", [](const std::vector<BatchEntry>& entries) {
+    return Answer{.json = request::ToJson(entries, ""),
+                  .text = request::ToText(entries, ""),
+                  .established = request::AllDone(entries),
+                  .warnings = {}};
+  });
+}
+
+}  // namespace mindahl::python

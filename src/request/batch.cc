@@ -1,0 +1,330 @@
+#include "mindahl/request/batch.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <future>
+#include <new>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "core/probability.h"
+#include "mindahl/campaign/repeats.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
+#include "mindahl/core/version.h"
+#include "mindahl/io/csv_writer.h"
+#include "report/json_document.h"
+#include "report/statements.h"
+#include "request/json.h"
+
+namespace mindahl::request {
+
+struct FitDocument {
+  Json json;
+};
+
+namespace {
+
+/// A column of the table, and where `fit --json` has it.
+struct ColumnRow {
+  std::string_view name;
+  std::string_view pointer;
+};
+
+constexpr std::array kBatchColumns = {
+    ColumnRow{"samples", "/input/samples"},
+    ColumnRow{"model", "/model"},
+    ColumnRow{"initial_state", "/initial_state"},
+    ColumnRow{"adequacy", "/adequacy/verdict"},
+    ColumnRow{"cycles", "/input/cycles"},
+    ColumnRow{"amplitude", "/loop/amplitude"},
+    ColumnRow{"peak_force", "/loop/peak_force"},
+    ColumnRow{"half_gap", "/measured/half_gap/value"},
+    ColumnRow{"sliding_amplitude", "/measured/sliding_amplitude"},
+    ColumnRow{"energy_per_cycle", "/measured/energy_per_cycle"},
+    ColumnRow{"energy_ratio", "/measured/energy_ratio"},
+    ColumnRow{"sigma", "/parameters/sigma/value"},
+    ColumnRow{"sigma_error", "/parameters/sigma/standard_error"},
+    ColumnRow{"sigma_lower95", "/parameters/sigma/ci95/0"},
+    ColumnRow{"sigma_upper95", "/parameters/sigma/ci95/1"},
+    ColumnRow{"sigma_verdict", "/parameters/sigma/identifiability"},
+    ColumnRow{"alpha", "/parameters/alpha/value"},
+    ColumnRow{"alpha_error", "/parameters/alpha/standard_error"},
+    ColumnRow{"alpha_lower95", "/parameters/alpha/ci95/0"},
+    ColumnRow{"alpha_upper95", "/parameters/alpha/ci95/1"},
+    ColumnRow{"alpha_verdict", "/parameters/alpha/identifiability"},
+    ColumnRow{"slip_force", "/parameters/slip_force/value"},
+    ColumnRow{"slip_force_error", "/parameters/slip_force/standard_error"},
+    ColumnRow{"slip_force_lower95", "/parameters/slip_force/ci95/0"},
+    ColumnRow{"slip_force_upper95", "/parameters/slip_force/ci95/1"},
+    ColumnRow{"slip_force_verdict", "/parameters/slip_force/identifiability"},
+    ColumnRow{"rms", "/residuals/rms"},
+    ColumnRow{"r_squared", "/residuals/r_squared"},
+    ColumnRow{"slip_regime", "/loop/slip_regime"},
+    ColumnRow{"normal_load", "/contact/normal_load"},
+    ColumnRow{"friction_coefficient", "/contact/friction_coefficient/value"},
+    ColumnRow{"friction_coefficient_error", "/contact/friction_coefficient/standard_error"},
+    ColumnRow{"contact_radius", "/contact/contact_radius/value"},
+};
+
+/// A quantity that repeats of a test have in common, by the names of its columns.
+struct Repeated {
+  std::string_view name;
+  std::string_view verdict;
+  std::string_view unit;
+};
+constexpr std::array kRepeated = {Repeated{"sigma", "sigma_verdict", "N/m"},
+                                  Repeated{"alpha", "alpha_verdict", "-"},
+                                  Repeated{"slip_force", "slip_force_verdict", "N"},
+                                  Repeated{"friction_coefficient", "", "-"},
+                                  Repeated{"half_gap", "", "N"},
+                                  Repeated{"energy_per_cycle", "", "J"}};
+
+Json ValueAt(const BatchEntry& entry, std::string_view pointer) {
+  const Json::json_pointer at{std::string(pointer)};
+  if (!entry.fit || !entry.fit->json.contains(at)) return nullptr;
+  return entry.fit->json.at(at);
+}
+
+Json ValueOf(const BatchEntry& entry, std::string_view column) {
+  const auto found = std::ranges::find(kBatchColumns, column, &ColumnRow::name);
+  return found == kBatchColumns.end() ? Json(nullptr) : ValueAt(entry, found->pointer);
+}
+
+BatchCell CellOf(const Json& value) {
+  if (value.is_null()) return {};
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  return value.get<double>();
+}
+
+std::string CsvOf(const BatchCell& cell) {
+  if (const auto* text = std::get_if<std::string>(&cell)) {
+    return text->empty() ? "" : io::CsvCell(*text);
+  }
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
+  // As many digits as read back the same double.
+  if (const auto* number = std::get_if<double>(&cell)) return Json(*number).dump();
+  return "";
+}
+
+std::string WarningsOf(const BatchEntry& entry) {
+  std::vector<std::string> codes;
+  for (const Json& warning : ValueAt(entry, "/warnings")) codes.push_back(warning["code"]);
+  return fmt::format("{}", fmt::join(codes, " "));
+}
+
+/// True of what is measured without a model, which states no error.
+bool IsMeasured(const Repeated& quantity) {
+  return quantity.name == "half_gap" || quantity.name == "energy_per_cycle";
+}
+
+/// One standard error: of an interval that is inflated beyond the noise, a fraction of that.
+std::optional<double> StatedError(const BatchEntry& fit, const Repeated& quantity) {
+  if (IsMeasured(quantity)) return std::nullopt;
+  const std::string_view name = quantity.name;
+  const Json error = ValueOf(fit, std::string(name) + "_error");
+  if (!error.is_number() || !(error.get<double>() > 0)) return std::nullopt;
+  const Json lower = ValueOf(fit, std::string(name) + "_lower95");
+  const Json upper = ValueOf(fit, std::string(name) + "_upper95");
+  if (!lower.is_number() || !upper.is_number()) return error.get<double>();
+  constexpr double kWidth = 2 * kNormalQuantile95;  // in standard errors
+  return std::max(error.get<double>(), (upper.get<double>() - lower.get<double>()) / kWidth);
+}
+
+std::optional<campaign::Repeats> RepeatsOf(std::span<const BatchEntry> fits,
+                                           const Repeated& quantity) {
+  std::vector<double> values;
+  std::vector<double> errors;
+  for (const BatchEntry& fit : fits) {
+    const Json value = ValueOf(fit, quantity.name);
+    const std::optional<double> error = StatedError(fit, quantity);
+    const Json verdict = ValueOf(fit, quantity.verdict);
+    const bool is_known = verdict.is_null() || verdict == "identifiable" || verdict == "effective";
+    if (!fit.done || !value.is_number() || !is_known) continue;
+    if (!IsMeasured(quantity) && !error) continue;
+    values.push_back(value);
+    if (error) errors.push_back(*error);
+  }
+  return campaign::DescribeRepeats(values, errors);
+}
+
+struct FoundRepeats {
+  Repeated quantity;
+  campaign::Repeats repeats;
+};
+
+std::vector<FoundRepeats> AllRepeats(std::span<const BatchEntry> entries) {
+  std::vector<FoundRepeats> all;
+  for (const Repeated& quantity : kRepeated) {
+    if (const auto found = RepeatsOf(entries, quantity)) all.push_back({quantity, *found});
+  }
+  return all;
+}
+
+}  // namespace
+
+BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictness strictness,
+                     const ReadSource& read, const WritePage& write_page) {
+  BatchEntry entry;
+  entry.result.file = name;
+  FitRequest own = request;
+  own.files = {name};
+  const Tell note = [&](std::string_view text) { entry.notes.emplace_back(text); };
+  std::string& fault = entry.result.fault;
+  try {
+    Validate(own);
+    const report::Report report = FitRecords(own, read(own, note), note);
+    entry.fit = std::make_shared<FitDocument>(FitDocument{report::JsonDocument(report)});
+    entry.done = Established(report.fit, strictness);
+    entry.result.verdict = report::VerdictWord(report);
+    entry.result.parameters = report.fit.parameters;
+    if (write_page) entry.result.page = write_page(report);
+    if (!entry.done) {
+      fault = report.fit.converged ? "not established: the model is not adequate or a free "
+                                     "parameter not identifiable"
+                                   : report.fit.solver.message;
+    }
+  } catch (const InputError& error) {
+    fault = error.what();
+  } catch (const InvalidArgument& error) {
+    fault = fmt::format("{}: {}", name, error.what());
+  } catch (const std::bad_alloc&) {
+    fault = fmt::format("{}: {}", name, OutOfMemoryText());
+  }
+  // A page that cannot be written, too, leaves a file that is not done.
+  entry.done = entry.done && fault.empty();
+  return entry;
+}
+
+std::vector<BatchEntry> FitFiles(const FitRequest& request, Strictness strictness,
+                                 std::size_t threads,
+                                 const std::function<WritePage(std::size_t k)>& page_of,
+                                 const std::function<void(std::size_t)>& progress) {
+  MakeFitOptions(request);  // what is wrong with the options is no fault of a file
+  const std::vector<std::string>& files = request.files;
+  std::vector<BatchEntry> entries;
+  std::deque<std::future<BatchEntry>> at_work;
+  for (std::size_t next = 0; entries.size() < files.size();) {
+    while (next < files.size() && at_work.size() < threads) {
+      const auto fit = [&, k = next] {
+        return FitSource(request, files[k], strictness, &ReadRecords,
+                         page_of ? page_of(k) : WritePage());
+      };
+      try {
+        at_work.push_back(std::async(std::launch::async, fit));
+      } catch (const std::system_error&) {  // no other thread: those that there are will do
+        threads = std::max<std::size_t>(1, at_work.size());
+        at_work.push_back(std::async(std::launch::deferred, fit));
+      }
+      ++next;
+    }
+    entries.push_back(at_work.front().get());
+    at_work.pop_front();
+    if (progress) progress(entries.size());
+  }
+  return entries;
+}
+
+bool AllDone(std::span<const BatchEntry> entries) {
+  return std::ranges::all_of(entries, &BatchEntry::done);
+}
+
+std::vector<BatchColumn> TableOf(std::span<const BatchEntry> entries) {
+  std::vector<BatchColumn> table;
+  const auto add = [&](std::string_view name, const auto& cell_of) {
+    BatchColumn& column = table.emplace_back();
+    column.name = name;
+    for (const BatchEntry& entry : entries) column.cells.push_back(cell_of(entry));
+  };
+  add("file", [](const BatchEntry& entry) { return BatchCell(entry.result.file); });
+  add("done", [](const BatchEntry& entry) { return BatchCell(entry.done ? "yes" : "no"); });
+  for (const ColumnRow& row : kBatchColumns) {
+    add(row.name, [&](const BatchEntry& entry) { return CellOf(ValueAt(entry, row.pointer)); });
+  }
+  add("warnings", [](const BatchEntry& entry) { return BatchCell(WarningsOf(entry)); });
+  add("fault", [](const BatchEntry& entry) { return BatchCell(entry.result.fault); });
+  return table;
+}
+
+std::string TableCsv(std::span<const BatchEntry> entries) {
+  const std::vector<BatchColumn> table = TableOf(entries);
+  std::string text;
+  for (const BatchColumn& column : table) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", column.name);
+  }
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    for (std::size_t c = 0; c < table.size(); ++c) {
+      text += (c == 0 ? "\n" : ",") + CsvOf(table[c].cells[k]);
+    }
+  }
+  return text + "\n";
+}
+
+std::string ToText(std::span<const BatchEntry> entries, const std::string& output) {
+  const auto done = std::ranges::count_if(entries, &BatchEntry::done);
+  std::string text = fmt::format("{} of {} files fitted{}{}\n", done, entries.size(),
+                                 output.empty() ? "" : ", in ", output);
+  const std::vector<FoundRepeats> all = AllRepeats(entries);
+  if (!all.empty()) {
+    text += fmt::format("\nif these are repeats:\n  {:<22}{:>6}{:>14}{:>14}{:>14}\n", "", "files",
+                        "mean", "scatter", "stated error");
+  }
+  for (const auto& [quantity, found] : all) {
+    text += fmt::format("  {:<22}{:>6}{:>14.6g}{:>14.2g}{:>14}   {}\n", quantity.name, found.count,
+                        found.mean, found.standard_deviation,
+                        found.stated_error ? fmt::format("{:.2g}", *found.stated_error) : "-",
+                        found.InWords());
+  }
+  return text;
+}
+
+std::string ToJson(std::span<const BatchEntry> entries, const std::string& output) {
+  Json json;
+  json["schema"] = "mindahl.batch/1";
+  json["version"] = Version();
+  json["output"] = output.empty() ? Json() : Json(output);
+  json["files"] = Json::array();
+  for (const BatchEntry& entry : entries) {
+    const std::string& fault = entry.result.fault;
+    json["files"].push_back({{"file", entry.result.file},
+                             {"done", entry.done},
+                             {"fault", fault.empty() ? Json() : Json(fault)},
+                             {"fit", entry.fit ? entry.fit->json : Json()}});
+  }
+  json["repeats"] = Json::object();
+  for (const auto& [quantity, found] : AllRepeats(entries)) {
+    json["repeats"][std::string(quantity.name)] = {
+        {"files", found.count},
+        {"mean", found.mean},
+        {"standard_deviation", found.standard_deviation},
+        {"stated_error", NumberOrNull(found.stated_error)},
+        {"p_value", NumberOrNull(found.p_value)}};
+  }
+  return Dump(json);
+}
+
+std::string IndexPage(std::span<const BatchEntry> entries, const report::Provenance& provenance) {
+  std::vector<campaign::FileResult> results;
+  for (const BatchEntry& entry : entries) results.push_back(entry.result);
+  std::vector<campaign::RepeatedQuantity> repeated;
+  for (const auto& [quantity, found] : AllRepeats(entries)) {
+    repeated.push_back(
+        {.name = std::string(quantity.name), .unit = std::string(quantity.unit), .repeats = found});
+  }
+  return campaign::BatchIndexPage(results, repeated, provenance);
+}
+
+std::string FitJson(const BatchEntry& entry) { return entry.fit ? Dump(entry.fit->json) : ""; }
+
+void SetFitJson(BatchEntry& entry, const std::string& json) {
+  entry.fit.reset();
+  if (!json.empty()) entry.fit = std::make_shared<FitDocument>(FitDocument{Json::parse(json)});
+}
+
+}  // namespace mindahl::request

@@ -1,0 +1,206 @@
+#include "mindahl/request/track.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+
+#include "mindahl/campaign/changes.h"
+#include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/evolution.h"
+#include "mindahl/campaign/shared_alpha.h"
+#include "mindahl/core/version.h"
+#include "mindahl/report/quantity.h"
+#include "mindahl/report/units.h"
+#include "request/json.h"
+
+namespace mindahl::request {
+
+using campaign::CourseDescription;
+using campaign::TrackedQuantity;
+
+namespace {
+
+std::string_view UnitOf(const TrackedTest& test, std::string_view unit) {
+  return report::UnitIn(test.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
+}
+
+/// Returns the time histories that a figure shows: of friction coefficient and slip force, which
+/// say the same, the first where it is known.
+std::vector<campaign::Evolution> EvolutionsOf(const TrackedTest& test,
+                                              const std::vector<CourseDescription>& described) {
+  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
+  std::vector<campaign::Evolution> evolutions;
+  const auto is_known = [&](std::string_view name) {
+    const auto found = std::ranges::find(tracked, name, &TrackedQuantity::name);
+    const auto k = static_cast<std::size_t>(found - tracked.begin());
+    return !described[k].stretches.empty();
+  };
+  for (std::size_t k = 0; k < tracked.size(); ++k) {
+    const TrackedQuantity& quantity = tracked[k];
+    if (!quantity.is_drawn || described[k].stretches.empty()) continue;
+    if (quantity.name == "slip_force" && is_known("friction_coefficient")) continue;
+    evolutions.push_back(
+        {.name = std::string(quantity.name),
+         .unit = std::string(UnitOf(test, quantity.unit)),
+         .has_errors = quantity.has_standard_error && test.courses.have_errors()[k],
+         .course = test.courses.courses()[k],
+         .description = described[k]});
+  }
+  return evolutions;
+}
+
+}  // namespace
+
+void TrackedTest::Add(const campaign::CycleFit& fit) {
+  ++fits;
+  flagged += fit.flags.empty() ? 0 : 1;
+  for (const std::string& flag : fit.flags) ++flags[flag];
+  courses.Add(fit);
+  energy.Add(fit);
+}
+
+bool TrackedTest::established() const {
+  const auto failed = flags.find("not_converged");
+  return failed == flags.end() || failed->second != fits;
+}
+
+campaign::TestSummary SummaryOf(const TrackedTest& test,
+                                const std::vector<CourseDescription>& described) {
+  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
+  campaign::TestSummary summary{.files = test.files,
+                                .cycles = test.cycles,
+                                .samples = test.samples,
+                                .fits = test.fits,
+                                .unused_samples = test.unused_samples,
+                                .dissipated = test.energy.total(),
+                                .energy_counts = test.energy.counts(),
+                                .shared_alpha = test.shared_alpha,
+                                .evolutions = EvolutionsOf(test, described)};
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(std::string(flag.name));
+    if (found == test.flags.end()) continue;
+    summary.flags.push_back(
+        {.name = found->first, .meaning = std::string(flag.meaning), .cycles = found->second});
+  }
+  for (std::size_t k = 0; k < tracked.size(); ++k) {
+    const std::string name = report::WithUnit(tracked[k].name, UnitOf(test, tracked[k].unit));
+    for (const std::string& line : campaign::ChangeStatements(described[k])) {
+      summary.changes.push_back(fmt::format("{}: {}", name, line));
+    }
+  }
+  return summary;
+}
+
+std::string ToText(const TrackedTest& test, const std::vector<CourseDescription>& described) {
+  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
+  std::string text =
+      fmt::format("{} cycles of {} samples, {} fits{}{}\n", test.cycles, test.samples, test.fits,
+                  test.output.empty() ? "" : " in ", test.output);
+  if (test.resumed > 0) text += fmt::format("{} of them were there already\n", test.resumed);
+  if (test.unused_samples > 0) {
+    text += fmt::format("{} samples at the ends are part of no whole cycle\n", test.unused_samples);
+  }
+  text += fmt::format("{:.6g} J dissipated in all{}\n", test.energy.total(),
+                      campaign::InWords(test.energy.counts()));
+  if (test.shared_alpha) text += campaign::SharedAlphaInWords(*test.shared_alpha) + "\n";
+  if (test.flagged > 0) {
+    text += fmt::format("\n{} {} a flag:\n", test.flagged,
+                        test.flagged == 1 ? "cycle has" : "cycles have");
+    for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+      const auto found = test.flags.find(std::string(flag.name));
+      if (found == test.flags.end()) continue;
+      text += fmt::format("  {:<18}{:>8}   {}\n", flag.name, found->second, flag.meaning);
+    }
+  }
+  std::string courses;
+  std::string changes;
+  std::string small_trends;
+  for (std::size_t k = 0; k < tracked.size(); ++k) {
+    const campaign::CourseDescription& course = described[k];
+    if (course.stretches.empty()) continue;
+    const std::string name = report::WithUnit(tracked[k].name, UnitOf(test, tracked[k].unit));
+    courses += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
+                           course.stretches.back().at_end);
+    for (const std::string& line : campaign::ChangeStatements(course)) {
+      changes += fmt::format("  {:<21} {}\n", tracked[k].name, line);
+    }
+    for (const std::string& line : campaign::SmallTrendStatements(course)) {
+      small_trends += fmt::format("  {:<21} {}\n", tracked[k].name, line);
+    }
+  }
+  if (!courses.empty()) {
+    text +=
+        fmt::format("\n  {:<30}{:>14}{:>14}\n{}", "over the test", "at first", "at last", courses);
+    text += changes.empty() ? fmt::format("\nN{}.\n", campaign::kNothingChanged.substr(1))
+                            : "\nChanges:\n" + changes;
+    if (!small_trends.empty()) text += "\nBeyond chance, but less than 1 %:\n" + small_trends;
+  }
+  return text;
+}
+
+std::string ToJson(const TrackedTest& test, const std::vector<CourseDescription>& described) {
+  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
+  Json json;
+  json["schema"] = "mindahl.track/1";
+  json["version"] = Version();
+  json["input"] = {{"files", test.files},
+                   {"samples", test.samples},
+                   {"cycles", test.cycles},
+                   {"unused_samples", test.unused_samples},
+                   {"broken_rows", test.broken_rows}};
+  json["reversals"] = {{"gate", test.reversal_gate}, {"certain", test.is_gate_certain}};
+  json["output"] = test.output.empty() ? Json() : Json(test.output);
+  json["fits"] = test.fits;
+  json["flagged"] = test.flagged;
+  Json flags = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(std::string(flag.name));
+    flags[std::string(flag.name)] = found == test.flags.end() ? 0 : found->second;
+  }
+  json["flags"] = flags;
+  json["accumulated_energy"] = test.energy.total();
+  const campaign::EnergyCounts& counts = test.energy.counts();
+  json["energy_counts"] = {
+      {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
+  json["shared_alpha"] = nullptr;
+  if (test.shared_alpha) {
+    json["shared_alpha"] = {{"value", test.shared_alpha->mean()},
+                            {"standard_error", test.shared_alpha->standard_error()},
+                            {"cycles", test.shared_alpha->count()},
+                            {"scatter", test.shared_alpha->scatter()},
+                            {"p_value", test.shared_alpha->p_value()}};
+  }
+  Json quantities = Json::object();
+  for (std::size_t k = 0; k < tracked.size(); ++k) {
+    const campaign::CourseDescription& course = described[k];
+    if (course.stretches.empty()) continue;
+    Json stretches = Json::array();
+    for (const campaign::Stretch& stretch : course.stretches) {
+      stretches.push_back({{"first_cycle", stretch.first_cycle},
+                           {"last_cycle", stretch.last_cycle},
+                           {"at_start", stretch.at_start},
+                           {"at_end", stretch.at_end},
+                           {"slope", stretch.slope},
+                           {"slope_p_value", stretch.slope_p_value},
+                           {"trends", stretch.trends},
+                           {"time_constant", NumberOrNull(stretch.time_constant)}});
+    }
+    Json changes = Json::array();
+    for (const campaign::Change& change : course.changes) {
+      changes.push_back({{"kind", campaign::NameOf(change.kind)},
+                         {"cycle", change.cycle},
+                         {"ci95", {change.lower95, change.upper95}},
+                         {"before", change.before},
+                         {"after", change.after},
+                         {"p_value", change.p_value}});
+    }
+    quantities[std::string(tracked[k].name)] = {
+        {"unit", UnitOf(test, tracked[k].unit)}, {"stretches", stretches}, {"changes", changes}};
+  }
+  json["quantities"] = quantities;
+  return Dump(json);
+}
+
+}  // namespace mindahl::request

@@ -1,0 +1,205 @@
+"""plan(), recommend(), tradeoff(), validate(), contact(), convert() and batch() are the program's."""
+
+import csv
+import io
+import re
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+
+import numpy as np
+import pandas
+import pytest
+
+import mindahl
+from conftest import DATA, program
+
+LAW = {"sigma": 4e7, "slip_force": 40.0}
+LAW_OPTIONS = ["--sigma", "4e7", "--slip-force", "40"]
+CONTACT = {"friction": (0.3, 0.01), "normal_load": 50, "contact_radius": 2.5e-4, "compliance": 4.2e-11}
+CONTACT_OPTIONS = ["--friction", "0.3±0.01", "--normal-load", "50", "--contact-radius", "2.5e-4",
+                   "--compliance", "4.2e-11"]
+SPHERE = DATA / "mindlin_sphere_on_plane.csv"
+FAR = DATA / "far_from_slip.csv"
+
+
+def same_document(result, *options):
+    """The JSON byte for byte, and the text."""
+    assert result.to_json() == program(*options, "--json", "-")
+    assert result.text() == program(*options)
+    assert "<pre>" in result._repr_html_()
+
+
+@pytest.mark.parametrize("keywords, options", [
+    ({**LAW, "force_noise": 0.1, "want": {"alpha": 0.01, "slip_force": "1%"}},
+     [*LAW_OPTIONS, "--force-noise", "0.1", "--want", "alpha=0.01,slip_force=1%"]),
+    ({**CONTACT, "force_noise": 0.1, "initial_state": "steady", "amplitude": 1e-6},
+     [*CONTACT_OPTIONS, "--force-noise", "0.1", "--initial-state", "steady", "--amplitude", "1e-6"]),
+    ({**LAW, "alpha": 0.5, "force_noise": 0.1, "displacement_noise": 1e-9, "autocorrelation": 0.3,
+      "load_ratio": [0.5, 1, 2], "load_exponent": 0.4, "rig_stiffness": 1e9, "cycles": 2,
+      "with_": ["rig_stiffness", "viscous"], "samples_per_cycle": 80, "amplitude": [1e-6, 2e-6]},
+     [*LAW_OPTIONS, "--alpha", "0.5", "--force-noise", "0.1", "--displacement-noise", "1e-9",
+      "--autocorrelation", "0.3", "--load-ratio", "0.5,1,2", "--load-exponent", "0.4",
+      "--rig-stiffness", "1e9", "--cycles", "2", "--with", "rig_stiffness,viscous",
+      "--samples-per-cycle", "80", "--amplitude", "1e-6", "--amplitude", "2e-6"]),
+    ({"record": SPHERE, "cycles": 10}, ["--record", SPHERE, "--cycles", "10"]),
+])
+def test_plan_is_the_program_s(keywords, options):
+    result = mindahl.plan(**keywords)
+    same_document(result, "plan", *options)
+    loops = result.to_pandas()
+    assert list(loops["parameters_alpha_standard_error"]) == [
+        loop.parameters.alpha.standard_error for loop in result.loops]
+
+
+def test_plan_warns_of_a_record_and_says_what_is_not_reached():
+    with pytest.warns(mindahl.FitWarning, match="far_from_slip.csv: alpha is not identified"):
+        result = mindahl.plan(FAR, want={"slip_force": "0.0001%"})
+    assert not result.established
+    record = mindahl.read_csv(SPHERE)
+    pair = mindahl.plan((record.displacement, record.force))
+    assert pair.to_json() == mindahl.plan(record).to_json() == mindahl.plan(SPHERE).to_json()
+
+
+@pytest.mark.parametrize("keywords, options", [
+    ({"lambda_": 1.2, "cycles": 3}, ["--lambda", "1.2", "--cycles", "3"]),
+    ({"lambda_": 0.5, "cost": 20, "criterion": "energy", "transient_cycles": 1, "cycles": 4},
+     ["--lambda", "0.5", "--cost", "20", "--criterion", "energy", "--transient-cycles", "1",
+      "--cycles", "4"]),
+    ({"amplitude": 3e-6, "waveform": "random", "seed": 3, "tolerance": "30%", "criterion": "rms"},
+     ["--amplitude", "3e-6", "--waveform", "random", "--seed", "3", "--tolerance", "30%",
+      "--criterion", "rms"]),
+])
+def test_recommend_is_the_program_s(keywords, options):
+    result = mindahl.recommend(**LAW, **keywords)
+    same_document(result, "recommend", *LAW_OPTIONS, *options)
+    assert list(result.to_pandas()["model"]) == [candidate.model for candidate in result.candidates]
+
+
+def test_recommend_for_a_path_and_for_a_record(tmp_path):
+    _, displacement = mindahl.excitation("nested", amplitude=2e-6, cycles=2)
+    path = tmp_path / "path.csv"
+    path.write_text("\n".join(map(repr, displacement.tolist())) + "\n")
+    of_file = mindahl.recommend(path, **LAW)
+    same_document(of_file, "recommend", *LAW_OPTIONS, "--path", path)
+    of_array = mindahl.recommend(displacement, **LAW)
+    assert of_array.command is None  # no file is named
+    assert of_array.candidates == of_file.candidates
+    of_record = mindahl.recommend(record=SPHERE)
+    same_document(of_record, "recommend", "--record", SPHERE)
+    assert len(of_record.to_pandas()) == len(of_record.laws)
+
+
+def without_times(text):
+    """Without what this run measured: the times, and of the text the floor and the third column."""
+    return re.sub(r'"(measured|memory|arithmetic)_ns_per_sample": [^,\n]*', "", text)
+
+
+def test_tradeoff_is_the_program_s_but_for_what_is_timed():
+    result = mindahl.tradeoff(excitation="micro", **LAW)
+    expected = program("tradeoff", "--excitation", "micro", *LAW_OPTIONS, "--json", "-")
+    assert without_times(result.to_json()) == without_times(expected)
+    assert result.excitations[0].points[0].measured_ns_per_sample > 0
+    points = result.to_pandas()
+    assert len(points) == len(result.excitations[0].points)
+    assert set(points["excitation"]) == {"micro"}
+    assert len(result.to_pandas("model_regions")) == len(result.model_regions)
+
+
+def test_validate_is_the_program_s():
+    result = mindahl.validate(cases=2, seed=3)
+    same_document(result, "validate", "--cases", "2", "--seed", "3")
+    assert result.passed and result.established
+    assert list(result.to_pandas("coverage")["parameter"][:3]) == ["sigma", "alpha", "slip_force"]
+
+
+def test_contact_and_convert_are_the_program_s():
+    same_document(mindahl.contact(**CONTACT), "contact", *CONTACT_OPTIONS)
+    for to in ("dahl", "iwan"):
+        converted = mindahl.convert(**LAW, amplitude=1.2e-6, to=to, least_amplitude=1e-6)
+        same_document(converted, "convert", *LAW_OPTIONS, "--amplitude", "1.2e-6", "--to", to,
+                      "--least-amplitude", "1e-6")
+
+
+BATCH = [SPHERE, DATA / "partial_slip.csv", FAR, DATA / "not_there.csv", DATA / "load_series_20N.csv",
+         DATA / "load_series_50N.csv"]
+
+
+@pytest.fixture(scope="module")
+def batch_of_program(tmp_path_factory):
+    """Table and JSON of the program."""
+    output = tmp_path_factory.mktemp("batch") / "table.csv"
+    text = program("batch", *BATCH, "--output", output, "--terms", "none", "--json", "-")
+    return output.read_text(), text.replace(f'"output": "{output}"', '"output": null')
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+@pytest.mark.parametrize("executor", [None, ThreadPoolExecutor, ProcessPoolExecutor, "dask"])
+def test_batch_is_the_program_s_whatever_runs_it(batch_of_program, executor):
+    if executor is None:
+        table = mindahl.batch(BATCH, terms="none", threads=2)
+    elif executor == "dask":
+        distributed = pytest.importorskip("distributed", reason="python3-distributed is not installed")
+        with distributed.Client(processes=False, n_workers=1, dashboard_address=None) as client:
+            table = mindahl.batch(BATCH, terms="none", executor=client)
+    else:
+        with executor(2) as pool:
+            table = mindahl.batch(BATCH, terms="none", executor=pool)
+    assert table.to_csv() == batch_of_program[0]
+    assert table.to_json() == batch_of_program[1]
+
+
+def test_batch_has_typed_columns_and_says_what_failed(batch_of_program):
+    with pytest.warns(mindahl.FitWarning, match="not_there.csv: cannot read"):
+        table = mindahl.batch(BATCH, terms="none")
+    assert not table.established
+    assert list(table.faults) == [str(DATA / "not_there.csv")]
+    frame = table.to_pandas()
+    rows = list(csv.DictReader(io.StringIO(batch_of_program[0])))
+    assert frame["sigma"].dtype == np.float64
+    assert list(frame["file"]) == [row["file"] for row in rows]
+    for row, sigma in zip(rows, frame["sigma"]):
+        assert (row["sigma"] == "") == np.isnan(sigma)
+        assert row["sigma"] == "" or float(row["sigma"]) == sigma
+    assert table.report.files[0].fit.parameters.sigma.value == frame["sigma"][0]
+    assert "<table>" in table._repr_html_()
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_batch_takes_records_frames_and_arrays_and_the_keywords_of_fit():
+    record = mindahl.read_csv(SPHERE)
+    frame = pandas.read_csv(SPHERE, float_precision="round_trip")
+    table = mindahl.batch([SPHERE, record, frame, (record.displacement, record.force)], model="mindlin",
+                          normal_load=50, terms="none")
+    expected = mindahl.fit(record, model="mindlin", normal_load=50, terms="none")
+    assert list(expected.to_pandas()["name"]) == list(expected.parameters)
+    assert set(table["sigma"]) == {expected.sigma.value}
+    assert set(table["friction_coefficient"]) == {expected.contact.friction_coefficient.value}
+    strict = mindahl.batch([FAR], strict=True, terms="none")
+    assert "not established" in strict.faults[str(FAR)]
+
+
+@pytest.mark.parametrize("call, message", [
+    (lambda: mindahl.plan(**LAW), "force_noise missing"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpa": 1}), "want: 'alpa' is no parameter"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, want={"alpha": "much"}), r"want\['alpha'\] = 'much'"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, initial_state="old"), "initial_state: 'old'"),
+    (lambda: mindahl.plan(SPHERE, **LAW), "record excludes sigma"),
+    (lambda: mindahl.plan(**LAW, force_noise=1, with_="rig"), "with_: 'rig' cannot be planned"),
+    (lambda: mindahl.recommend(**LAW), "lambda_ or amplitude"),
+    (lambda: mindahl.recommend(**LAW, lambda_=1, criterion="least"), "criterion: 'least'"),
+    (lambda: mindahl.recommend(record=SPHERE, **LAW), "record excludes the contact"),
+    (lambda: mindahl.tradeoff(excitation="mikro"), "excitation: 'mikro'.*did you mean 'micro'"),
+    (lambda: mindahl.validate(cases=0), "cases = 0 is invalid: must be >= 1"),
+    (lambda: mindahl.batch([SPHERE], model="oak"), "model: 'oak'"),
+    (lambda: mindahl.batch([SPHERE], strict="very"), "strict = 'very' is invalid"),
+    (lambda: mindahl.batch([SPHERE], executor=3), "executor: a int has neither"),
+    (lambda: mindahl.validate(cases=2).to_pandas("lines"), "table = 'lines' is invalid"),
+])
+def test_what_breaks_a_rule_is_refused_in_one_line(call, message):
+    with pytest.raises(ValueError, match=message) as refused:
+        call()
+    assert "\n" not in str(refused.value)
+
+
+def test_a_keyword_that_fit_has_not_is_refused():
+    with pytest.raises(TypeError, match="modell"):
+        mindahl.batch([SPHERE], modell="dahl")
