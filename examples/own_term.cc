@@ -1,6 +1,6 @@
-// A force of one's own beside the contact's, fitted with it: the cubic force of a guide's flexure,
-// C·δ³. Any force that is known but for a factor is a column of the record, and its factor a
-// parameter like any other, with error, interval and verdict.
+// A force of one's own in addition to the contact's, fitted with it: the cubic force of a guide's
+// flexure, C·δ³. Any force that is known but for a factor is a column of the record, and its factor
+// a parameter like any other, with error, interval and verdict.
 #include <cmath>
 #include <cstdio>
 #include <optional>

@@ -146,7 +146,7 @@ void AddBatchCommand(CLI::App& app, Console& console) {
   CLI::App* command =
       app.add_subcommand("batch",
                          "Fits each file on its own, with any option of fit for all of them:\n"
-                         "one row a file, and the scatter between files beside their stated\n"
+                         "one row a file, and the scatter between files next to their stated\n"
                          "errors. A file that fails does not stop the others: exit status 3\n"
                          "when any did.");
   AddExamples(

@@ -121,7 +121,7 @@ void AddFitCommand(CLI::App& app, Console& console) {
   command
       ->add_option("--backbone", options->backbone_path,
                    "the force over the displacement of first loading, of no law's\n"
-                   "shape, with its 95 % band and the law beside it, as CSV")
+                   "shape, with its confidence band and the law, as CSV")
       ->type_name("PATH")
       ->group(group);
   command->add_option("--plot", options->plot_path, "loop and residuals as svg or png")

@@ -209,9 +209,8 @@ void FollowBehindGap(const SimulateOptions& options, const models::BranchLaw& la
 void RequireExactLaw(const SimulateOptions& options, std::string_view option, bool needs_memory) {
   const FrictionModel* model = models::FindFrictionModel(options.model);
   const bool is_joint = needs_memory && IsJoint(options);
-  const bool serves =
-      model != nullptr && !model->scaled_by_peak &&
-      (!needs_memory || model->memory == models::Memory::kReturnPoint || is_joint);
+  const bool serves = model != nullptr && !model->scaled_by_peak &&
+                      (!needs_memory || model->memory == models::Memory::kReturnPoint || is_joint);
   if (!serves || options.method != "exact") {
     throw InputError(fmt::format(
         "{} does not serve --model {} --method {}: use --model mindlin, mindlin-dahl, jenkins or "
@@ -322,7 +321,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   AddLawOptions(*command, options->law);
   command
       ->add_option("--asymmetry", options->asymmetry,
-                   "slip forces Tc(1 + A) where the motion is in the sense of positive\n"
+                   "slip forces Tc(1 + A) where the motion is in the direction of positive\n"
                    "displacement and Tc(1 - A) where it is not [-]")
       ->type_name("A")
       ->capture_default_str();

@@ -618,7 +618,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TrackCommandOptions>();
   CLI::App* command =
       app.add_subcommand("track",
-                         "Fits every cycle of a long record as it goes by, in memory that its\n"
+                         "Fits every cycle of a long record as it is read, in memory that its\n"
                          "length does not change: one row a cycle, and what changed over the\n"
                          "test. A run that was ended goes on with --resume. Exit status 3 when\n"
                          "no fit converged.");

@@ -93,7 +93,7 @@ void RequireOneLoad(const ScaledRecords& data) {
 
 void RequireOptions(const FitOptions& options) {
   if (options.model == nullptr || options.model->scaled_by_peak) {
-    throw InvalidArgument("the model cannot be fitted: it must be told the amplitude");
+    throw InvalidArgument("the model cannot be fitted: its amplitude must be given");
   }
   if (options.force_noise) RequirePositive("force noise [N]", *options.force_noise);
   if (!(options.confidence > 0 && options.confidence < 1)) {
@@ -170,7 +170,8 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
 void RequireToldAsymmetry(const Problem& problem) {
   if (!problem.parameters.asymmetry_is_confounded()) return;
   throw InvalidArgument(
-      "asymmetry cannot be told from force_offset: the contact had slipped before what is fitted, "
+      "asymmetry cannot be distinguished from force_offset: the contact had slipped before what is "
+      "fitted, "
       "and both are a force that is always there; give the force's zero where it is known, --fix "
       "force_offset=0, or fit a record from the unloaded contact on, its first loading left in, "
       "with --initial-state virgin");

@@ -239,7 +239,7 @@ std::string VerdictOn(const ModelSelection& selection, const Thresholds& thresho
     names.reserve(selection.indistinguishable.size());
     for (const std::size_t i : selection.indistinguishable) names.push_back(Label(scores[i]));
     verdict = fmt::format(
-        "The records do not tell apart {}: ΔAICc below {:g}{}. The simplest, {}, is reported.",
+        "The records do not distinguish {}: ΔAICc below {:g}{}. The simplest, {}, is reported.",
         fmt::join(names, ", "), thresholds.indistinguishable,
         selection.held_out_cycles > 0
             ? fmt::format(", and {} cycles held out are predicted alike to a standard error",
@@ -249,7 +249,7 @@ std::string VerdictOn(const ModelSelection& selection, const Thresholds& thresho
     const auto has_rig = [&](std::size_t i) { return scores[i].rig; };
     if (std::ranges::any_of(selection.indistinguishable, has_rig) &&
         !std::ranges::all_of(selection.indistinguishable, has_rig)) {
-      verdict += " Whether the rig gives way is open: measure its stiffness and fix it.";
+      verdict += " Whether the rig is compliant is open: measure its stiffness and fix it.";
     }
   } else {
     verdict = fmt::format("{} is the best", Label(chosen));

@@ -237,7 +237,7 @@ class HeaderFinder {
     const SampledRow& data = reading_.rows[data_];
     throw InputError(fmt::format(
         "{}:{}: '{}' is neither a row of data nor a header for the {} column{} of line {}: name "
-        "every column, or begin the line with '#' if it is a remark",
+        "every column, or begin the line with '#' if it is a comment",
         file_, row.cells.line, ForMessage(LineAt(text_, row.cells.offset)), reading_.columns,
         reading_.columns == 1 ? "" : "s", data.cells.line));
   }

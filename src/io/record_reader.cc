@@ -325,7 +325,7 @@ std::string PressureText(std::string_view column, std::string_view unit, const R
   return fmt::format(
       "{} is a pressure, in {}, and no {}: choose another column; a pressure times the area that "
       "it "
-      "acts on is a force beside the contact's, which --covariate takes",
+      "acts on is a force in addition to the contact's, which --covariate takes",
       column, unit, role.name);
 }
 

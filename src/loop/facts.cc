@@ -509,7 +509,7 @@ LoopFacts MeasureValid(const RecordView& record, Points reversals, int force_sen
 
 void RequireSense(int force_sense) {
   if (force_sense == 1 || force_sense == -1) return;
-  ThrowInvalid("force sense [-]", force_sense, "must be +1 or -1");
+  ThrowInvalid("force sign [-]", force_sense, "must be +1 or -1");
 }
 
 }  // namespace

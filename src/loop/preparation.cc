@@ -17,7 +17,7 @@ namespace {
 void RequireOptions(std::size_t records, const PreparationOptions& options) {
   if (records == 0) throw InvalidArgument("there is no record: a fit needs at least one");
   if (options.force_sense && *options.force_sense != 1 && *options.force_sense != -1) {
-    ThrowInvalid("force sense [-]", *options.force_sense, "must be +1 or -1");
+    ThrowInvalid("force sign [-]", *options.force_sense, "must be +1 or -1");
   }
   for (const auto& [range, what] :
        {std::pair(options.cycles, "cycles"), std::pair(options.samples, "samples")}) {

@@ -10,7 +10,7 @@
 namespace mindahl::report {
 
 inline constexpr const char* kWhyNotJudged =
-    "the record has too few samples for anything beside the model to be told";
+    "the record has too few samples to identify anything in addition to the model";
 
 /// True if the adequacy was judged: the fit did not fail, and omitted terms were tried.
 bool IsJudged(const Report& report);

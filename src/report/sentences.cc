@@ -72,7 +72,8 @@ std::string GlitchesLeftOut(const Finding& finding, const FitResult&, const Unit
 
 std::string PathTooLong(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "{}the way between the samples is {:.3g} times that of the strokes: there are reversals that "
+      "{}the path length between the samples is {:.3g} times that of the strokes: there are "
+      "reversals that "
       "were taken for noise, or noise that the contact is taken to follow; record the displacement "
       "with less noise, or give --reversal-gate or --displacement-noise",
       WhichRecord(finding), Needed(finding, "path_ratio"));
@@ -112,7 +113,8 @@ std::string SlipForceBoundedBelow(const Finding& finding, const FitResult& fit,
   if (Slides(fit)) {
     return fmt::format(
         "slip_force: the loop slides, but its force goes on changing there (T* = {}), which the "
-        "law takes for the way to slip: any larger slip force fits as well; the measured half gap "
+        "law takes for the travel to slip: any larger slip force fits as well; the measured half "
+        "gap "
         "stands",
         Quantity(Needed(finding, "peak_force"), units.force, 4));
   }
@@ -431,7 +433,7 @@ std::string LoadNotFollowed(const Finding& finding, const FitResult& fit, const 
 std::string RigNotTried(const Finding& finding, const FitResult&, const Units&) {
   const bool is_forced = finding.kind == "imposed_force";
   return fmt::format(
-      "alpha = {:.3g} may be that of Mindlin's contact, 1/3, in a rig that gives way, which cannot "
+      "alpha = {:.3g} may be that of Mindlin's contact, 1/3, in a compliant rig, which cannot "
       "be tried {}: sigma and alpha are those of contact and rig together; {}",
       Needed(finding, "alpha"),
       is_forced ? "in a fit of the displacement" : "under a load that varies",

@@ -41,10 +41,11 @@ std::vector<Field<Report>> RowsOf(const std::string& sense, const char* label,
 }  // namespace
 
 void AddSlipForceFields(FieldTable& table) {
-  table.Add(RowsOf("positive",
-                   "Tc(1 + A), where the motion is in the sense of positive displacement; absent, "
-                   "as is slip_forces.negative, unless the fit has an asymmetry",
-                   &SlipForces::positive));
+  table.Add(
+      RowsOf("positive",
+             "Tc(1 + A), where the motion is in the direction of positive displacement; absent, "
+             "as is slip_forces.negative, unless the fit has an asymmetry",
+             &SlipForces::positive));
   table.Add(RowsOf("negative", "Tc(1 − A), where it is not", &SlipForces::negative));
 }
 

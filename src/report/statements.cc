@@ -220,12 +220,12 @@ std::string LawStatement(const Report& report) {
   }
   const Units& units = report.units;
   if (!report.fit.Find("sigma")->is_known()) {
-    return fmt::format(
-        "{}{}", name(*choice.alternative),
-        choice.decided
-            ? fmt::format(" fits better (ΔAICc = {:.3g}, --model {})",
-                          choice.delta_aicc.value_or(0.0), choice.alternative->name)
-            : fmt::format(" or {}, which the record does not tell apart", name(*report.fit.model)));
+    return fmt::format("{}{}", name(*choice.alternative),
+                       choice.decided
+                           ? fmt::format(" fits better (ΔAICc = {:.3g}, --model {})",
+                                         choice.delta_aicc.value_or(0.0), choice.alternative->name)
+                           : fmt::format(" or {}, which the record does not distinguish",
+                                         name(*report.fit.model)));
   }
   const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
   std::string text = fmt::format(
@@ -233,7 +233,7 @@ std::string LawStatement(const Report& report) {
       name(*report.fit.model), name(*choice.alternative),
       choice.decided ? fmt::format("fits better (ΔAICc = {:.3g}, --model {})",
                                    choice.delta_aicc.value_or(0.0), choice.alternative->name)
-                     : std::string("the record does not tell from it"),
+                     : std::string("the record does not distinguish from it"),
       knows_slip_force ? "they are" : "it is",
       Quantity(choice.law.tangential_stiffness, units.stiffness, 5));
   if (knows_slip_force) text += " and " + Quantity(choice.law.slip_force, units.force, 5);
@@ -317,11 +317,12 @@ std::vector<std::string> ExponentStatements(const Report& report) {
         test.likelihood->likelihood_ratio, ChanceText(test.likelihood->p_value), verdict,
         rig.empty() ? ""
                     : fmt::format(" for a rigid rig, but tenable with a rig of {} "
-                                  "in series: the record does not tell which",
+                                  "in series: the record does not determine which",
                                   rig)));
   } else if (!rig.empty()) {
     statements.push_back(fmt::format(
-        "α = 1/3 with a rig of {} in series fits as well: the record does not tell which", rig));
+        "α = 1/3 with a rig of {} in series fits as well: the record does not determine which",
+        rig));
   }
   const std::string shapes = BranchShapesStatement(report.fit);
   if (!shapes.empty()) statements.push_back(shapes);

@@ -215,7 +215,7 @@ loop::CountRange ParseCountRange(std::string_view text, std::string_view option)
 void RequireOptionsOfDisplacement(const FitRequest& request) {
   const auto refuse = [](std::string_view option, std::string_view why) {
     throw InputError(
-        fmt::format("{} has no place beside --noise-in displacement: {}", option, why));
+        fmt::format("{} cannot be combined with --noise-in displacement: {}", option, why));
   };
   constexpr std::string_view kBeside = "it is of a force that is fitted; leave one of the two out";
   for (const auto& [name, text] : request.terms) {
@@ -299,7 +299,7 @@ void RequireKnownChoices(const FitRequest& request) {
 void RequireTrimAlone(const FitRequest& request) {
   if (request.trim != kAutomatic) return;
   const auto refuse = [](std::string_view option, std::string_view why) {
-    throw InputError(fmt::format("{} has no place beside --trim auto: {}", option, why));
+    throw InputError(fmt::format("{} cannot be combined with --trim auto: {}", option, why));
   };
   constexpr std::string_view kBoth = "both say which cycles count; leave one of the two out";
   if (!request.cycles.empty()) refuse("--cycles", kBoth);

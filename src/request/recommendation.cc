@@ -144,7 +144,8 @@ std::string RecordVerdict(const RecordRecommendation& priced) {
     return fmt::format("{}: the best, and nothing cheaper will do", LawName(choice));
   }
   return fmt::format(
-      "{}: the record does not tell it from {}, the best (dAICc = {:.2g}); what it lacks is {:.2g} "
+      "{}: the record does not distinguish it from {}, the best (dAICc = {:.2g}); what it lacks is "
+      "{:.2g} "
       "N "
       "rms, {}, beside noise of {:.2g} N",
       LawName(choice), LawName(best), choice.delta_aicc, choice.misfit,
@@ -362,7 +363,8 @@ std::string ToText(const RecordRecommendation& priced) {
       "{}: {} samples that say as much as {:.0f} independent ones; peak force {:.5g} N\n",
       priced.record, laws.samples, laws.effective_samples, laws.peak_force);
   text += fmt::format(
-      "asked: the cheapest law that the record does not tell from the best (dAICc below {:g})\n\n",
+      "asked: the cheapest law that the record does not distinguish from the best (dAICc below "
+      "{:g})\n\n",
       priced.indistinguishable);
   text += fmt::format("-> {}\n   as options of simulate: {}\n\n", RecordVerdict(priced),
                       OptionsOf(laws.scores[priced.choice]));
@@ -375,7 +377,7 @@ std::string ToText(const RecordRecommendation& priced) {
                           score.free_parameters);
       continue;
     }
-    std::string remark = score.told_apart ? "told apart" : "not told apart";
+    std::string remark = score.told_apart ? "distinguished" : "not distinguished";
     if (i == laws.best) remark = "best";
     if (i == priced.choice) remark += " <- this";
     text +=

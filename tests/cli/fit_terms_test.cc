@@ -572,7 +572,8 @@ INSTANTIATE_TEST_SUITE_P(
                "asymmetry and rig_stiffness of dahl"},
         Misuse{"AsymmetryOfACycledContact",
                {"--asymmetry", "fit", "--initial-state", "steady"},
-               "asymmetry cannot be told from force_offset: the contact had slipped before what is "
+               "asymmetry cannot be distinguished from force_offset: the contact had slipped "
+               "before what is "
                "fitted"},
         Misuse{"CovariateWithoutAValue",
                {"--covariate", "normal="},

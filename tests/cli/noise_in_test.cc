@@ -114,8 +114,9 @@ TEST_F(NoiseIn, DisplacementRefusesOptionsOfForceFitsInOneLine) {
     return outcome.err;
   };
   for (const char* option : {"--rig-stiffness", "--viscous", "--lag"}) {
-    EXPECT_THAT(refusal({option, "fit"}),
-                HasSubstr(std::string(option) + " has no place beside --noise-in displacement"));
+    EXPECT_THAT(
+        refusal({option, "fit"}),
+        HasSubstr(std::string(option) + " cannot be combined with --noise-in displacement"));
   }
   EXPECT_THAT(refusal({"--plateau-slope"}), HasSubstr("--plateau-slope has no place"));
   EXPECT_THAT(refusal({"--covariate", "time"}), HasSubstr("--covariate has no place"));

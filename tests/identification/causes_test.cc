@@ -45,7 +45,7 @@ struct Place {
   double force;      // of the contact, over Tc
 };
 
-/// A sine with something beside the contact's force.
+/// A sine with something in addition to the contact's force.
 Record With(const std::function<double(const Place&)>& beside, double frequency = 1.0) {
   Record record;
   for (int i = 0; i <= static_cast<int>(kCycles * kSamples); ++i) {

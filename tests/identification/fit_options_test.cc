@@ -50,11 +50,11 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Case> cases = {
       {[](FitOptions& o) { o.model = nullptr; },
-       "the model cannot be fitted: it must be told the amplitude"},
+       "the model cannot be fitted: its amplitude must be given"},
       {[](FitOptions& o) { o.model = &Model("simplified-dahl"); },
-       "the model cannot be fitted: it must be told the amplitude"},
+       "the model cannot be fitted: its amplitude must be given"},
       {[](FitOptions& o) { o.preparation.force_sense = 2; },
-       "force sense [-] = 2 is invalid: must be +1 or -1"},
+       "force sign [-] = 2 is invalid: must be +1 or -1"},
       {[](FitOptions& o) { o.force_noise = 0; },
        "force noise [N] = 0 is invalid: must be finite and > 0"},
       {[](FitOptions& o) { o.preparation.reversal_gate = -1; },

@@ -188,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
               "loop.csv:3:2: '' is not a number: fill in the cell or remove the row"},
         Fault{"EmptyFirstRow", "x,F\n,1\n1,2\n2,3\n",
               "loop.csv:2: ',1' is neither a row of data nor a header for the 2 columns of line 3: "
-              "name every column, or begin the line with '#' if it is a remark"},
+              "name every column, or begin the line with '#' if it is a comment"},
         Fault{"BothDecimalMarks", "x;F\n1,5;2\n3;4.5\n",
               "loop.csv:3:2: '4.5' has the decimal mark '.' and line 2 has ',': use one "
               "throughout"},
@@ -213,22 +213,23 @@ INSTANTIATE_TEST_SUITE_P(
               "loop.csv:2: a quotation mark opened here is never closed"},
         Fault{"HeaderShorterThanData", "x,F\n1,2,3\n4,5,6\n",
               "loop.csv:1: 'x,F' is neither a row of data nor a header for the 3 columns of line "
-              "2: name every column, or begin the line with '#' if it is a remark"},
+              "2: name every column, or begin the line with '#' if it is a comment"},
         Fault{"HeaderLongerThanData", "t,x,F\n1,2\n4,5\n",
               "loop.csv:1: 't,x,F' is neither a row of data nor a header for the 2 columns of line "
-              "2: name every column, or begin the line with '#' if it is a remark"},
+              "2: name every column, or begin the line with '#' if it is a comment"},
         Fault{"HeaderWithAnotherDelimiter", "x,F\n1 2\n4 5\n",
               "loop.csv:1: 'x,F' is neither a row of data nor a header for the 2 columns of line "
-              "2: name every column, or begin the line with '#' if it is a remark"},
-        Fault{"RemarkAboveDataWithoutHeader", "Measured today\n1,2\n4,5\n",
-              "loop.csv:1: 'Measured today' is neither a row of data nor a header for the 2 "
-              "columns of line 2: name every column, or begin the line with '#' if it is a remark"},
+              "2: name every column, or begin the line with '#' if it is a comment"},
+        Fault{
+            "RemarkAboveDataWithoutHeader", "Measured today\n1,2\n4,5\n",
+            "loop.csv:1: 'Measured today' is neither a row of data nor a header for the 2 "
+            "columns of line 2: name every column, or begin the line with '#' if it is a comment"},
         Fault{"KeyAndValueAboveDataWithoutHeader", "rate,200\n1,2\n4,5\n",
               "loop.csv:1: 'rate,200' is neither a row of data nor a header for the 2 columns of "
-              "line 2: name every column, or begin the line with '#' if it is a remark"},
+              "line 2: name every column, or begin the line with '#' if it is a comment"},
         Fault{"WordInFirstRowBelowHeader", "x,F\nabc,1\n1,2\n2,3\n",
               "loop.csv:2: 'abc,1' is neither a row of data nor a header for the 2 columns of "
-              "line 3: name every column, or begin the line with '#' if it is a remark"},
+              "line 3: name every column, or begin the line with '#' if it is a comment"},
         Fault{"OnlyAHeader", "# rig 3\nx [m],F [N]\n",
               "loop.csv:2: the file ends after its header, with no row of numbers below it: export "
               "the data too"},

@@ -285,7 +285,8 @@ INSTANTIATE_TEST_SUITE_P(
               "contact's, which --covariate takes"},
         Fault{"PressureAsAChosenUnit", "x [m],F\n1,2\n", Choose({}, {"", "MPa"}),
               "loop.csv: 'F' (column 2) is a pressure, in MPa, and no force: choose another "
-              "column; a pressure times the area that it acts on is a force beside the contact's, "
+              "column; a pressure times the area that it acts on is a force in addition to the "
+              "contact's, "
               "which --covariate takes"},
         Fault{"TorqueAgainstALength", "\nt,x [m],Torque [Nm]\n1,2,3\n", Choose({}),
               "loop.csv: 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in Nm do not go "

@@ -103,7 +103,7 @@ TEST(CauseSentence, HasSizeUnitFractionAndRemedy) {
   early.size = -0.0025;
   EXPECT_THAT(Sentence(early), StartsWith("a displacement that is read 2.5 ms after the force"));
   EXPECT_EQ(Sentence(Viscous()),
-            "a viscous force of -12 N s/m beside the contact's, which explains 93 % of the "
+            "a viscous force of -12 N s/m in addition to the contact's, which explains 93 % of the "
             "misfit: give --viscous fit");
   for (const std::string_view code : CauseCodes()) {
     const Cause cause = MadeCause(code, 0.125, "-");

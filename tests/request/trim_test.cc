@@ -207,7 +207,7 @@ TEST(TrimmedFit, IsRefusedTogetherWithOtherWindows) {
   FitRequest request;
   EXPECT_EQ(message(request), "");
   request.cycles = "2:3";
-  EXPECT_THAT(message(request), HasSubstr("--cycles has no place beside --trim auto"));
+  EXPECT_THAT(message(request), HasSubstr("--cycles cannot be combined with --trim auto"));
   request = {};
   request.samples = "2:30";
   EXPECT_THAT(message(request), HasSubstr("--samples has no place"));

@@ -140,7 +140,7 @@ constexpr std::array<Departure, 23> kDepartures = {{
      .option = "--inertia fit",
      .unit_by_sample = "N samples²/m"},
     {.code = "unequal_directions",
-     .meaning = "(1 ± size)·T, + where it is in the sense of a positive displacement; and of a "
+     .meaning = "(1 ± size)·T, + where it is in the direction of a positive displacement; and of a "
                 "virgin contact slip forces Tc(1 ± A)",
      .unit = "-",
      .option = "--asymmetry fit",

@@ -126,7 +126,8 @@ std::optional<SlopeScatter> FindSlopeScatter(const loop::PreparedRecords& prepar
                                              const Problem& problem, std::span<const double> theta,
                                              std::span<const double> residual, Response& response) {
   const ScaledRecords& data = *problem.data;
-  if (data.is_forced() || data.load_varies || problem.parameters.moves_contact()) return std::nullopt;
+  if (data.is_forced() || data.load_varies || problem.parameters.moves_contact())
+    return std::nullopt;
   double of_readings = 0.0;  // in units of the data
   for (const loop::PreparedRecord& record : prepared.records) {
     if (record.encoder_step > 0 || record.displacement_noise > 0) return std::nullopt;

@@ -116,7 +116,7 @@ double LoadRatioAt(const ScaledRecord& record, std::size_t sample) {
 void ReadForceOfJoint(const ScaledRecord& record, double asymmetry, std::span<double> t,
                       const ResponseColumns& columns) {
   const std::array by_state = {columns.log_rate, columns.shape_exponent, columns.unloaded,
-                               columns.lag};
+                               columns.moved};
   for (std::size_t i = 0; i < t.size(); ++i) {
     const double load = LoadRatioAt(record, i);
     const double slope = models::JointForceSlope(t[i], load, asymmetry);

@@ -104,7 +104,7 @@ constexpr std::array kTerms = {
          .scale = One},
     Term{.name = "asymmetry",
          .unit = "-",
-         .meaning = "A of slip forces Tc(1 + A) where the motion is in the sense of positive "
+         .meaning = "A of slip forces Tc(1 + A) where the motion is in the direction of positive "
                     "displacement and Tc(1 − A) where it is not",
          .presence = Presence::kOnDemand,
          .lowest = -kLargestAsymmetry,
@@ -112,8 +112,8 @@ constexpr std::array kTerms = {
          .scale = One,
          .option = "--asymmetry",
          .argument = "A|fit",
-         .help = "slip forces slip_force·(1 ± A) in the sense of positive and of\n"
-                 "negative displacement, A [-], or fit; told by a virgin branch,\n"
+         .help = "slip forces slip_force·(1 ± A) in the direction of positive and of\n"
+                 "negative displacement, A [-], or fit; identified by a virgin branch,\n"
                  "else it needs --fix force_offset=N"},
     Term{.name = "plateau_slope",
          .unit = "N/m",
@@ -125,7 +125,7 @@ constexpr std::array kTerms = {
          .scale = Stiffness,
          .column = Regressor::kDisplacement,
          .option = "--plateau-slope",
-         .help = "fit a force that grows with the displacement beside the contact's [N/m]"},
+         .help = "fit a force that grows with the displacement in addition to the contact's [N/m]"},
     Term{
         .name = "viscous",
         .unit = "N s/m",
@@ -311,7 +311,7 @@ constexpr std::array kTerms = {
          .of_column = true,
          .option = "--covariate",
          .argument = "COL[=C|fit]",
-         .help = "a force C·column beside the contact's, C [N/unit] of the column;\n"
+         .help = "a force C·column in addition to the contact's, C [N/unit] of the column;\n"
                  "default fit; columns by header name or 1-based number; repeatable"},
     Term{.name = "force_offset",
          .unit = "N",
