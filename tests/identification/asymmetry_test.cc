@@ -124,7 +124,7 @@ TEST(Asymmetry, IsRefusedForCycledContactWithFittedForceOffset) {
     for (const std::size_t begin : {160U, 180U, 200U, 215U, 280U}) {
       const Record loop = WithForceNoise(From(LoopOf(0.25, lambda, 4.25), begin), 0.6, generator);
       EXPECT_THAT(RefusalOf({loop}, WithAsymmetry()),
-                  AllOf(HasSubstr("cannot be told from force_offset"),
+                  AllOf(HasSubstr("cannot be distinguished from force_offset"),
                         HasSubstr("--fix force_offset=0"), HasSubstr("--initial-state virgin")))
           << "lambda " << lambda << " from " << begin;
     }

@@ -287,7 +287,7 @@ TEST(Advice, IsWithheldWhereTheProgramWouldRefuseIt) {
   EXPECT_EQ(Accepted(Stages(untimed), "--lag fit"), "--lag fit") << "in samples";
   FitOptions dahl;
   dahl.model = &Model("dahl");
-  EXPECT_EQ(Accepted(Stages(record, dahl), "--asymmetry fit"), "");
+  EXPECT_EQ(Accepted(Stages(record, dahl), "--asymmetry fit"), "--asymmetry fit");
   EXPECT_EQ(Accepted(Stages(record, {}, InitialState::kSteady), "--asymmetry fit"), "");
   FitOptions viscous;
   viscous.terms = {"viscous"};

@@ -281,7 +281,7 @@ INSTANTIATE_TEST_SUITE_P(
             "one of N, mN, uN, kN, MN, lbf, kgf, kip, or choose the unit with --force-unit"},
         Fault{"PressureInHeader", "x [m],p [bar]\n1,2\n", Choose({}, {"p", ""}),
               "loop.csv:1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force: choose "
-              "another column; a pressure times the area that it acts on is a force beside the "
+              "another column; a pressure times the area that it acts on is a force in addition to the "
               "contact's, which --covariate takes"},
         Fault{"PressureAsAChosenUnit", "x [m],F\n1,2\n", Choose({}, {"", "MPa"}),
               "loop.csv: 'F' (column 2) is a pressure, in MPa, and no force: choose another "
