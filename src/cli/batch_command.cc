@@ -39,6 +39,7 @@
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/csv_writer.h"
+#include "mindahl/io/digest.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/report/json.h"
 #include "mindahl/report/page.h"
@@ -67,6 +68,7 @@ struct FileFit {
   Json fit;              // of `fit --json`; null where there is none
   std::string fault;     // why not done
   std::string messages;  // notes and warnings of the run
+  std::string sha256;    // of the file; "" for what cannot be read twice
   campaign::FileResult result;
 };
 
@@ -168,6 +170,7 @@ FileFit FitFile(const FitRequest& batch, const std::string& file, Strictness str
   request.files = {file};
   std::ostringstream messages;
   try {
+    result.sha256 = io::Sha256OfFile(file).value_or("");
     const report::Report report = FitRecords(request, {messages, "batch"});
     result.fit = Json::parse(report::ToJson(report));
     result.done = Established(report.fit, strict);
@@ -246,15 +249,15 @@ std::string WarningsOf(const Json& fit) {
 std::string TableOf(const std::vector<std::string>& files, const std::vector<FileFit>& fits) {
   std::string table = "file,done";
   for (const BatchColumn& column : kColumns) table += fmt::format(",{}", column.name);
-  table += ",warnings,fault\n";
+  table += ",warnings,fault,version,sha256\n";
   for (std::size_t k = 0; k < files.size(); ++k) {
     const FileFit& fit = fits[k];
     table += fmt::format("{},{}", io::CsvCell(files[k]), fit.done ? "yes" : "no");
     for (const BatchColumn& column : kColumns) {
       table += "," + CellOf(ValueAt(fit.fit, column.pointer));
     }
-    table += fmt::format(",{},{}\n", WarningsOf(fit.fit),
-                         fit.fault.empty() ? "" : io::CsvCell(fit.fault));
+    table += fmt::format(",{},{},{},{}\n", WarningsOf(fit.fit),
+                         fit.fault.empty() ? "" : io::CsvCell(fit.fault), Version(), fit.sha256);
   }
   return table;
 }
