@@ -7,12 +7,14 @@
 
 fit() fits a record or several, track() every cycle of a long one; simulate() and ContactState
 compute the force of a contact, along excitation() or any motion; contact() predicts it from materials, convert() writes it as another
-law; read_csv() reads a record as the program does. docs/python.md has them with examples.
+law; read_csv() reads a record as the program does, read_mat(), read_hdf5() and read_excel() those of
+other programs; FitResult.load() reads a result that was written as JSON. docs/python.md has them with examples.
 """
 
 from ._contact import Conversion, Report, contact, convert, excitation, simulate
 from ._fit import fit
 from ._mindahl import ContactState, InputError, Record, __version__
+from ._readers import read_excel, read_hdf5, read_mat
 from ._records import read_csv
 from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Section
 from ._track import CycleTable, track
@@ -23,5 +25,5 @@ for _public in (ContactState, InputError, Record):
 __all__ = [
     "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning", "FittedRecord",
     "InputError", "Message", "Parameter", "Record", "Report", "Section", "__version__", "contact",
-    "convert", "excitation", "fit", "read_csv", "simulate", "track",
+    "convert", "excitation", "fit", "read_csv", "read_excel", "read_hdf5", "read_mat", "simulate", "track",
 ]

@@ -65,6 +65,10 @@ def fit(
     normal_load_column: Any = None, columns: Optional[Mapping[str, Any]] = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
+    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
+    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
+    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
+    normal_load_zero: float = 0.0, encoding: str = "", join: bool = False,
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     noise_in: str = "force", offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
@@ -99,6 +103,10 @@ def fit(
             displacement, force, time and normal_load_column choose others by name or number.
         fit("loop.csv"), fit(read_csv(...)): a file, or a record that was read.
         A list of any of these: one joint fit of the same contact, arrays in lists of one length.
+    displacement_gain, displacement_zero and those of force, time and normal_load: the quantity in
+        its unit is gain*(number - zero), as of a column in volts. encoding: of files, as iconv
+        calls it. join: a list is one record in pieces, as of a logger that begins a file with
+        every stroke.
     time: array [s], or column. normal_load_column: array [N], one a sample, or column.
     columns: further arrays by name beside displacement and force, for covariate.
 
@@ -162,6 +170,7 @@ def fit(
     request.samples = "" if samples is None else pair("samples", samples)
     request.skip_cycles = count("skip_cycles", skip_cycles, 0)
     request.trim = trim
+    request.join = join
     request.time_window = "" if time_window is None else pair("time_window", time_window)
     request.load_window = "" if load_window is None else pair("load_window", load_window)
     options = _mindahl.ContactOptions()
@@ -177,6 +186,10 @@ def fit(
         displacement=displacement, force=None, time=time, normal_load_column=normal_load_column,
         displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
         normal_load_unit=normal_load_unit, covariates=request.covariate_columns(),
+        calibration={"displacement": (displacement_gain, displacement_zero),
+                     "force": (force_gain, force_zero), "time": (time_gain, time_zero),
+                     "normal_load_column": (normal_load_gain, normal_load_zero)},
+        encoding=encoding,
         max_rows=count("max_rows", max_rows, 1),
         max_memory=None if max_memory is None else count("max_memory", max_memory, 1))
     request.columns = _mindahl.RecordColumns(
