@@ -1,8 +1,8 @@
 """The wheel of mindahl.
 
 The extension is built by CMake from the tree around this folder; where MINDAHL_PYTHON_BUILD_DIR
-names a package that is built already, build/ci/python/package, it is taken from there. Nothing is
-downloaded: pip install --no-index --no-deps --no-build-isolation ./python
+names a package that is built already, build/ci/python/package, it is taken from there. The libraries
+that the extension needs, Ceres' and others, go into the wheel beside it. Nothing is downloaded: pip install --no-index --no-deps --no-build-isolation ./python
 """
 
 import os
@@ -19,6 +19,21 @@ ROOT = Path(__file__).resolve().parent.parent
 VERSION = re.search(r"project\(mindahl VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())
 
 
+# What every Linux has that has a Python of this kind, by the policy of manylinux (PEP 600).
+SYSTEM = re.compile(r"(linux-vdso|ld-linux.*|lib(c|m|dl|rt|pthread|util|gcc_s|stdc\+\+))\.so.*")
+
+
+def bundle_libraries(extension, folder):
+    """Copies the libraries that the extension needs beside it, where its RPATH, $ORIGIN/libs, finds
+    them: the wheel needs no package of the system."""
+    listed = subprocess.run(["ldd", str(extension)], check=True, capture_output=True, text=True)
+    shutil.rmtree(folder, ignore_errors=True)
+    for name, path in re.findall(r"^\s*(\S+) => (\S+) \(", listed.stdout, re.M):
+        if not SYSTEM.fullmatch(name):
+            folder.mkdir(exist_ok=True)
+            shutil.copy2(Path(path).resolve(), folder / name)
+
+
 class BuildByCMake(build_ext):
     def build_extension(self, extension):
         target = Path(self.get_ext_fullpath(extension.name)).resolve()
@@ -29,6 +44,7 @@ class BuildByCMake(build_ext):
         if len(libraries) != 1:
             raise RuntimeError(f"{package}/mindahl holds {len(libraries)} extensions: build it anew")
         shutil.copy2(libraries[0], target)
+        bundle_libraries(target, target.parent / "libs")
 
     def build_package(self):
         build = Path(self.build_temp).resolve()
@@ -42,15 +58,8 @@ class BuildByCMake(build_ext):
 
 
 setup(
-    name="mindahl",
     version=VERSION.group(1),
-    description="Friction parameters of a contact from its measured hysteresis loop",
-    packages=["mindahl"],
-    package_data={"mindahl": ["py.typed", "*.pyi"]},
     ext_modules=[Extension("mindahl._mindahl", sources=[])],
     cmdclass={"build_ext": BuildByCMake},
-    python_requires=">=3.9",
-    install_requires=["numpy"],
-    extras_require={"plot": ["matplotlib"], "frames": ["pandas"]},
     zip_safe=False,
 )

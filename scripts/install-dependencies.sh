@@ -21,10 +21,11 @@ for group in "$@"; do
       packages+=(
         libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema man-db pkg-config
         pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
+        python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )
       ;;
-    --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
+    --checks) packages+=(clang-format clang-tidy-19 doxygen chromium mkdocs reuse) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
     --peers)
       packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts gnuplot-nox)

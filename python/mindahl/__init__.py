@@ -9,7 +9,8 @@ fit() fits a record or several, track() every cycle of a long one, batch() many 
 plan() says what should be measured, contact() predicts the force from materials, validate() tests the
 mapping. simulate() and ContactState compute the force of a contact, along excitation() or any motion;
 recommend() and tradeoff() say by which model and method, convert() writes it as another law;
-read_csv() reads a record as the program does. docs/python.md has them with examples.
+read_csv() reads a record as the program does, read_mat(), read_hdf5() and read_excel() those of
+other programs; FitResult.load() reads a result that was written as JSON. docs/python.md has them with examples.
 """
 
 from ._batch import BatchTable, batch
@@ -17,6 +18,7 @@ from ._contact import Conversion, contact, convert, excitation, simulate
 from ._design import plan, recommend, tradeoff, validate
 from ._fit import fit
 from ._mindahl import ContactState, InputError, JointState, Record, __version__
+from ._readers import read_excel, read_hdf5, read_mat
 from ._records import read_csv
 from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Report, Section
 from ._track import CycleTable, track
@@ -28,5 +30,5 @@ __all__ = [
     "BatchTable", "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning",
     "FittedRecord", "InputError", "JointState", "Message", "Parameter", "Record", "Report", "Section",
     "__version__", "batch", "contact", "convert", "excitation", "fit", "plan", "read_csv",
-    "recommend", "simulate", "tradeoff", "track", "validate",
+    "read_excel", "read_hdf5", "read_mat", "recommend", "simulate", "tradeoff", "track", "validate",
 ]

@@ -135,8 +135,28 @@ def array(name: str, values: Any, *, keep_missing: bool = False) -> Floats:
     return converted
 
 
+def is_quantity(value: Any) -> bool:
+    """Numbers with a unit, as pint has them."""
+    return hasattr(value, "magnitude") and hasattr(value, "to")
+
+
+def with_unit(name: str, value: Any, units: Sequence[str]) -> tuple[Any, Optional[str]]:
+    """Numbers and their unit: of a quantity of pint in the first of `units` that it can be in, of an
+    array of xarray that of its attribute "units"; None of what states none."""
+    if is_quantity(value):
+        for unit in units:
+            if value.check(value._REGISTRY.Quantity(1, unit).dimensionality):
+                return value.to(unit).magnitude, unit.replace("*", " ")
+        raise ValueError(f"{name} has the unit {value.units}: must be one of {', '.join(units)}")
+    attributes = getattr(value, "attrs", None)
+    unit = attributes.get("units") if isinstance(attributes, Mapping) else None
+    return value, unit if isinstance(unit, str) else None
+
+
 def is_array(value: Any) -> bool:
     """Numbers, and neither a path nor several arrays."""
+    if is_quantity(value):
+        return is_array(value.magnitude)
     if isinstance(value, np.ndarray):
         return bool(value.dtype != object)
     if hasattr(value, "to_numpy"):

@@ -66,6 +66,10 @@ def fit(
     normal_load_column: Any = None, columns: Optional[Mapping[str, Any]] = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
+    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
+    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
+    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
+    normal_load_zero: float = 0.0, encoding: str = "", join: bool = False,
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     noise_in: str = "force", offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
@@ -100,6 +104,10 @@ def fit(
             displacement, force, time and normal_load_column choose others by name or number.
         fit("loop.csv"), fit(read_csv(...)): a file, or a record that was read.
         A list of any of these: one joint fit of the same contact, arrays in lists of one length.
+    displacement_gain, displacement_zero and those of force, time and normal_load: the quantity in
+        its unit is gain*(number - zero), as of a column in volts. encoding: of files, as iconv
+        calls it. join: a list is one record in pieces, as of a logger that begins a file with
+        every stroke.
     time: array [s], or column. normal_load_column: array [N], one a sample, or column.
     columns: further arrays by name beside displacement and force, for covariate.
 
@@ -171,6 +179,7 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
         setattr(request, name, "" if given[name] is None else pair(name, given[name]))
     request.skip_cycles = count("skip_cycles", given["skip_cycles"], 0)
     request.trim = given["trim"]
+    request.join = given["join"]
     request.contact = contact_options(**{name: given[name] for name in _KNOWN})
     loads = given["normal_load"]
     if loads is not None:
@@ -178,7 +187,10 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
                                   for load in (loads if isinstance(loads, list) else [loads])])
     most = given["max_memory"]
     arguments = RecordArguments(
-        force=None, covariates=request.covariate_columns(),
+        force=None, covariates=request.covariate_columns(), encoding=given["encoding"],
+        calibration={role: (given[f"{name}_gain"], given[f"{name}_zero"]) for role, name in (
+            ("displacement", "displacement"), ("force", "force"), ("time", "time"),
+            ("normal_load_column", "normal_load"))},
         max_rows=count("max_rows", given["max_rows"], 1),
         max_memory=None if most is None else count("max_memory", most, 1),
         **{name: given[name] for name in (

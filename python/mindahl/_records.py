@@ -9,25 +9,54 @@ from typing import Any, Optional, Union
 import numpy as np
 
 from . import _mindahl
-from ._arguments import array, column_name, is_array, is_frame, path_text, several
+from ._arguments import (array, column_name, is_array, is_frame, is_quantity, path_text, several,
+                         with_unit)
 from ._mindahl import Record
 
 Column = Union[str, int]
+Calibration = Mapping[str, tuple[Optional[float], float]]
+"""Gain and zero of a column, by its role."""
+
+# What a quantity with a unit may be in, by its role.
+UNITS = {"displacement": ("m", "rad"), "force": ("N", "N*m"), "time": ("s",),
+         "normal_load_column": ("N",)}
 
 
 def columns_of(
     displacement: Optional[Column], force: Optional[Column], time: Optional[Column],
     normal_load_column: Optional[Column], displacement_unit: Optional[str],
     force_unit: Optional[str], time_unit: Optional[str], normal_load_unit: Optional[str],
-    covariates: Sequence[str] = (),
+    covariates: Sequence[str] = (), calibration: Optional[Calibration] = None, encoding: str = "",
 ) -> _mindahl.RecordColumns:
     def choice(name: str, column: Optional[Column], unit: Optional[str]) -> _mindahl.ColumnChoice:
-        return _mindahl.ColumnChoice(column_name(name, column), unit or "")
+        gain, zero = (calibration or {}).get(name, (None, 0.0))
+        return _mindahl.ColumnChoice(column_name(name, column), unit or "", gain, zero)
 
     return _mindahl.RecordColumns(
         choice("displacement", displacement, displacement_unit),
         choice("force", force, force_unit), choice("time", time, time_unit),
-        choice("normal_load_column", normal_load_column, normal_load_unit), list(covariates))
+        choice("normal_load_column", normal_load_column, normal_load_unit), list(covariates),
+        encoding)
+
+
+def record_options(
+    *, displacement: Optional[Column] = None,
+    force: Optional[Column] = None, time: Optional[Column] = None,
+    normal_load_column: Optional[Column] = None, displacement_unit: Optional[str] = None,
+    force_unit: Optional[str] = None, time_unit: Optional[str] = None,
+    normal_load_unit: Optional[str] = None, covariates: Sequence[str] = (),
+    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
+    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
+    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
+    normal_load_zero: float = 0.0, encoding: str = "",
+) -> _mindahl.RecordColumns:
+    """What read_csv() takes."""
+    return columns_of(
+        displacement, force, time, normal_load_column, displacement_unit, force_unit, time_unit,
+        normal_load_unit, covariates,
+        {"displacement": (displacement_gain, displacement_zero),
+         "force": (force_gain, force_zero), "time": (time_gain, time_zero),
+         "normal_load_column": (normal_load_gain, normal_load_zero)}, encoding)
 
 
 def read_csv(
@@ -36,6 +65,10 @@ def read_csv(
     normal_load_column: Optional[Column] = None, displacement_unit: Optional[str] = None,
     force_unit: Optional[str] = None, time_unit: Optional[str] = None,
     normal_load_unit: Optional[str] = None, covariates: Sequence[str] = (),
+    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
+    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
+    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
+    normal_load_zero: float = 0.0, encoding: str = "",
 ) -> Record:
     """Reads a hysteresis record from a CSV file as the program does.
 
@@ -45,12 +78,19 @@ def read_csv(
     displacement_unit, force_unit, time_unit, normal_load_unit: symbols such as "um" and "kN"; by
         default the header's, else m, N and s with a note.
     covariates: further columns, by name or number, kept in units of their own.
+    force_gain, force_zero and those of the others: the force in its unit is gain*(number - zero),
+        as of a column in volts.
+    encoding: as iconv calls it; by default UTF-8, or found by the first bytes.
     Returns a Record in SI units: displacement [m], force [N], time [s], normal_load [N].
     Raises InputError naming file, line and column.
     """
-    return _mindahl.read_csv(path_text(path), columns_of(
-        displacement, force, time, normal_load_column, displacement_unit, force_unit, time_unit,
-        normal_load_unit, covariates))
+    return _mindahl.read_csv(path_text(path), record_options(
+        displacement=displacement, force=force, time=time, normal_load_column=normal_load_column,
+        displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
+        normal_load_unit=normal_load_unit, covariates=covariates,
+        displacement_gain=displacement_gain, displacement_zero=displacement_zero,
+        force_gain=force_gain, force_zero=force_zero, time_gain=time_gain, time_zero=time_zero,
+        normal_load_gain=normal_load_gain, normal_load_zero=normal_load_zero, encoding=encoding))
 
 
 class RecordArguments:
@@ -61,13 +101,17 @@ class RecordArguments:
         displacement_unit: Optional[str], force_unit: Optional[str], time_unit: Optional[str],
         normal_load_unit: Optional[str], covariates: Sequence[str] = (),
         covariate_values: Optional[Mapping[str, Any]] = None, max_rows: Optional[int] = None,
-        max_memory: Optional[int] = None,
+        max_memory: Optional[int] = None, calibration: Optional[Calibration] = None,
+        encoding: str = "",
     ) -> None:
         self.roles = {"displacement": displacement, "force": force, "time": time,
                       "normal_load_column": normal_load_column}
         self.units = {"displacement_unit": displacement_unit, "force_unit": force_unit,
                       "time_unit": time_unit, "normal_load_unit": normal_load_unit}
         self.covariates = list(covariates)
+        self.calibration = {role: values for role, values in (calibration or {}).items()
+                            if values != (None, 0.0)}
+        self.encoding = encoding
         self.max_rows = max_rows
         """Of the files that are still to be read, all together."""
         self.max_memory = max_memory
@@ -79,7 +123,8 @@ class RecordArguments:
             if value is not None and not isinstance(value, (str, int, np.integer)):
                 raise ValueError(f"{role}: must be the name or the number of a column here, where "
                                  "the columns are in a file or a frame")
-        return columns_of(**self.roles, **self.units, covariates=self.covariates)
+        return columns_of(**self.roles, **self.units, covariates=self.covariates,
+                          calibration=self.calibration, encoding=self.encoding)
 
     def refuse_choices(self, what: str) -> None:
         given = [name for name, value in {**self.roles, **self.units}.items() if value is not None]
@@ -90,6 +135,19 @@ class RecordArguments:
         names = [str(column) for column in frame.columns]
         arrays = [array(name, frame.iloc[:, k].to_numpy(), keep_missing=True)
                   for k, name in enumerate(names)]
+        return _mindahl.record_of_columns(name, names, arrays, self.columns())
+
+    def of_dataset(self, dataset: Any, name: str) -> Record:
+        """A Dataset of xarray: its variables and coordinates of one dimension, with their units."""
+        names, arrays = [], []
+        for column, values in {**dataset.coords, **dataset.data_vars}.items():
+            if values.ndim == 1 and np.asarray(values).dtype.kind in "fiu":
+                unit = values.attrs.get("units")
+                names.append(f"{column} [{unit}]" if unit else str(column))
+                arrays.append(array(str(column), values, keep_missing=True))
+        if len({len(values) for values in arrays}) > 1:
+            raise ValueError(f"{name}: its variables have {', '.join(map(str, dataset.sizes))} for "
+                             "dimensions: select those of one")
         return _mindahl.record_of_columns(name, names, arrays, self.columns())
 
     def of_arrays(self, columns: Mapping[str, Any], name: str,
@@ -105,8 +163,13 @@ class RecordArguments:
                 continue
             unit = {"time": " [s]", "normal_load_column": " [N]"}.get(
                 role, "" if torsional else {"displacement": " [m]", "force": " [N]"}.get(role, ""))
+            values, stated = with_unit(role, columns[role], UNITS[role])
+            if stated is not None:
+                unit = f" [{stated}]"
+                if is_quantity(columns[role]) and self.units.get(f"{role}_unit") is not None:
+                    raise ValueError(f"{role}_unit: {role} has a unit of its own: leave it out")
             names.append(header + unit)
-            arrays.append(array(role, columns[role]))
+            arrays.append(array(role, values))
             choices[role] = len(names)
         for covariate, values in covariates.items():
             names.append(covariate)
@@ -116,7 +179,8 @@ class RecordArguments:
                 raise ValueError(f"{header} has {len(values)} samples and {names[0]} "
                                  f"{len(arrays[0])}: give as many of both")
         return _mindahl.record_of_columns(
-            name, names, arrays, columns_of(**choices, **self.units, covariates=self.covariates))
+            name, names, arrays, columns_of(**choices, **self.units, covariates=self.covariates,
+                                            calibration=self.calibration))
 
 
 def is_path(value: Any) -> bool:
@@ -195,5 +259,7 @@ def _read_record(source: Any, arguments: RecordArguments, name: str) -> Record:
         return record
     if is_frame(source):
         return arguments.of_frame(source, name)
+    if hasattr(source, "data_vars"):
+        return arguments.of_dataset(source, name)
     array(name, source)  # says why it is no array
     raise ValueError(f"{name}: a {type(source).__name__} is no array, data frame, record or file")

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from . import _mindahl
 from ._arguments import Floats
@@ -175,6 +176,28 @@ class FittedRecord:
     residual: Optional[Floats]
 
 
+class _StoredFit:
+    """A fit of which only the JSON is left."""
+
+    notes: tuple[str, ...] = ()
+    records: tuple[dict[str, Any], ...] = ()
+
+    def __init__(self, document: str) -> None:
+        self._document = document
+        self._parameters = FitResult(self).parameters
+        self.failed = not self._parameters
+
+    def json(self) -> str:
+        return self._document
+
+    def text(self) -> str:
+        return "\n".join(map(str, self._parameters.values())) or "the fit failed"
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"a result that was read from JSON has no {name}: it has no records; "
+                             "fit them again")
+
+
 class FitResult:
     """A fit: sigma, alpha, slip_force and every section of the report as attributes.
 
@@ -183,9 +206,23 @@ class FitResult:
         docs/contract.md lists them; result.to_dict() is the same as the program's JSON.
     """
 
-    def __init__(self, fitted: _mindahl.Fitted) -> None:
-        self._fitted = fitted
+    def __init__(self, fitted: Union[_mindahl.Fitted, _StoredFit]) -> None:
+        self._fitted: Any = fitted
         self._report: dict[str, Any] = json.loads(fitted.json())
+
+    @classmethod
+    def load(cls, path: Union[str, os.PathLike[str]]) -> FitResult:
+        """Reads a result that `mindahl fit --json` or to_json() wrote.
+
+        It has parameters, sections and warnings; no records, text, page or plot.
+        Raises ValueError for another document.
+        """
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        document = json.loads(text)
+        if not isinstance(document, dict) or document.get("schema") != "mindahl.fit/1":
+            raise ValueError(f"{os.fspath(path)}: is no result of a fit, of the schema mindahl.fit/1")
+        return cls(_StoredFit(text))
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):

@@ -111,6 +111,10 @@ def track(
     normal_load: Optional[float] = None, normal_load_column: Any = None,
     displacement_unit: Optional[str] = None, force_unit: Optional[str] = None,
     time_unit: Optional[str] = None, normal_load_unit: Optional[str] = None,
+    displacement_gain: Optional[float] = None, displacement_zero: float = 0.0,
+    force_gain: Optional[float] = None, force_zero: float = 0.0, time_gain: Optional[float] = None,
+    time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
+    normal_load_zero: float = 0.0, encoding: str = "", join: bool = False,
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
     offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
@@ -128,7 +132,8 @@ def track(
 ) -> CycleTable:
     """Fits every cycle of a long record on its own: one row a cycle.
 
-    source, force, displacement, time, normal_load_column and the units: as of fit(). A file is read
+    source, force, displacement, time, normal_load_column, units, gains, zeros and encoding: as of
+        fit(). join: a cycle does not end with its source. A file is read
         piece by piece, in memory that its length does not change; a list of sources is one test in
         this order, and a cycle ends with its source.
     normal_load: [N] of all cycles; by default the column's mean over each.
@@ -164,10 +169,17 @@ def track(
     request.shares_alpha = alpha == "shared"
     if broken_rows not in ("refuse", "skip"):
         raise ValueError(f"broken_rows = {broken_rows!r} is invalid: must be 'refuse' or 'skip'")
+    fit = request.fit
+    fit.join = join
+    request.fit = fit
     arguments = RecordArguments(
         displacement=displacement, force=None, time=time, normal_load_column=normal_load_column,
         displacement_unit=displacement_unit, force_unit=force_unit, time_unit=time_unit,
-        normal_load_unit=normal_load_unit)
+        normal_load_unit=normal_load_unit,
+        calibration={"displacement": (displacement_gain, displacement_zero),
+                     "force": (force_gain, force_zero), "time": (time_gain, time_zero),
+                     "normal_load_column": (normal_load_gain, normal_load_zero)},
+        encoding=encoding)
     files = _files_of(source)
     if files is None:
         if broken_rows == "skip":

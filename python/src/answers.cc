@@ -164,7 +164,7 @@ BatchEntry FaultyEntry(const std::string& name, const std::string& fault) {
 /// What goes from one process to another: name, fault, whether done, notes, and the fit's JSON.
 py::tuple StateOf(const BatchEntry& entry) {
   return py::make_tuple(entry.result.file, entry.result.fault, entry.done, entry.notes,
-                        request::FitJson(entry));
+                        request::FitJson(entry), entry.sha256);
 }
 
 BatchEntry EntryOf(const py::tuple& state) {
@@ -172,6 +172,7 @@ BatchEntry EntryOf(const py::tuple& state) {
   entry.done = state[2].cast<bool>();
   entry.notes = state[3].cast<std::vector<std::string>>();
   request::SetFitJson(entry, state[4].cast<std::string>());
+  entry.sha256 = state[5].cast<std::string>();
   return entry;
 }
 

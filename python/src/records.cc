@@ -76,18 +76,22 @@ py::object RecordColumn(const py::object& self) {
 
 void AddRecords(py::module_& module) {
   py::class_<ColumnChoice>(module, "ColumnChoice")
-      .def(py::init([](std::string column, std::string unit) {
-             return ColumnChoice{std::move(column), std::move(unit)};
-           }),
-           py::arg("column") = "", py::arg("unit") = "");
+      .def(py::init(
+               [](std::string column, std::string unit, std::optional<double> gain, double zero) {
+                 return ColumnChoice{std::move(column), std::move(unit), gain, zero};
+               }),
+           py::arg("column") = "", py::arg("unit") = "", py::arg("gain") = py::none(),
+           py::arg("zero") = 0.0);
   py::class_<RecordColumns>(module, "RecordColumns")
       .def(py::init([](ColumnChoice displacement, ColumnChoice force, ColumnChoice time,
-                       ColumnChoice normal_load, std::vector<std::string> covariates) {
-             return RecordColumns{std::move(displacement), std::move(force), std::move(time),
-                                  std::move(normal_load), std::move(covariates)};
+                       ColumnChoice normal_load, std::vector<std::string> covariates,
+                       std::string encoding) {
+             return RecordColumns{std::move(displacement), std::move(force),
+                                  std::move(time),         std::move(normal_load),
+                                  std::move(covariates),   std::move(encoding)};
            }),
            py::arg("displacement"), py::arg("force"), py::arg("time"), py::arg("normal_load"),
-           py::arg("covariates"));
+           py::arg("covariates"), py::arg("encoding") = "");
   py::class_<NamedRecord>(module, "Record",
                           "A hysteresis record in SI units, as it was read; arrays are read-only.")
       .def_readonly("name", &NamedRecord::name, "what messages and reports call it")

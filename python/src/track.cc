@@ -153,6 +153,7 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
                    const std::optional<campaign::PooledValue>& shared_alpha) {
   Run run(request, shared_alpha);
   const io::BrokenRows broken = skip_broken_rows ? io::BrokenRows::kSkip : io::BrokenRows::kRefuse;
+  io::JoinedTimes times;
   for (const std::string& file : files) {
     io::RecordStream stream(file, request.fit.columns, broken);
     RequireOneKind(run, stream.layout().is_torsional, files.front(), file);
@@ -165,10 +166,16 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
       run.Begin(campaign::ViewOf(piece), stream.layout().is_torsional, file);
     }
     while (piece.size() > 0) {
+      times.Shift(piece.time);
       run.Add(campaign::ViewOf(piece), piece.lines);
       if (!stream.Next(piece)) break;
     }
-    run.NextFile();
+    if (request.fit.join) {
+      times.NextFile();
+    } else {
+      run.NextFile();
+      times = {};
+    }
     run.SkipRows(stream.broken_rows());
     if (stream.broken_rows() > 0) {
       run.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}", stream.broken_rows(),
@@ -182,6 +189,7 @@ Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>
                      const std::optional<campaign::PooledValue>& shared_alpha) {
   constexpr std::size_t kMostOfHead = 1'000'000;
   Run run(request, shared_alpha);
+  io::JoinedTimes times;
   for (const NamedRecord& record : records) {
     const bool is_torsional = record.file.is_torsional;
     RequireOneKind(run, is_torsional, records.front().name, record.name);
@@ -195,9 +203,15 @@ Tracked TrackRecords(const TrackRequest& request, const std::vector<NamedRecord>
                  first(samples.normal_load)},
                 is_torsional, record.name);
     }
-    run.Add({samples.displacement, samples.force, samples.time, samples.normal_load},
-            record.file.lines);
-    run.NextFile();
+    std::vector<double> time = samples.time;
+    times.Shift(time);
+    run.Add({samples.displacement, samples.force, time, samples.normal_load}, record.file.lines);
+    if (request.fit.join) {
+      times.NextFile();
+    } else {
+      run.NextFile();
+      times = {};
+    }
   }
   std::vector<std::string> names;
   for (const NamedRecord& record : records) names.push_back(record.name);

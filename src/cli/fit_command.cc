@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,11 +11,17 @@
 #include "cli/examples.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
+#include "cli/json_output.h"
+#include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/provenance.h"
 #include "cli/text_output.h"
+#include "mindahl/core/error.h"
+#include "mindahl/core/version.h"
+#include "mindahl/identification/sweep.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
+#include "mindahl/io/record_reader.h"
 #include "mindahl/report/backbone.h"
 #include "mindahl/report/figure.h"
 #include "mindahl/report/json.h"
@@ -22,6 +30,7 @@
 #include "mindahl/report/residual_table.h"
 #include "mindahl/report/text.h"
 #include "mindahl/request/fit_records.h"
+#include "report/names.h"
 
 namespace mindahl::cli {
 namespace {
@@ -34,7 +43,13 @@ struct FitCommandOptions {
   std::string backbone_path;
   std::string plot_path;
   std::string report_path;
+  std::string sweep;  // "" for a record
+  io::ColumnChoice response;
+  std::optional<double> response_noise;
 };
+
+/// Chance of correlated residuals below which a sweep is doubtful.
+constexpr double kDoubtfulCorrelation = 0.01;
 
 /// @param provenance  asked for where a page is written: it reads the files once more
 void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
@@ -70,7 +85,136 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   }
 }
 
+identification::SweepOptions SweepOptionsOf(const FitCommandOptions& options) {
+  identification::SweepOptions sweep;
+  sweep.stiffness = options.sweep == "tangent" ? identification::SweepStiffness::kTangent
+                                               : identification::SweepStiffness::kSecant;
+  sweep.confidence = options.request.confidence;
+  sweep.response_noise = options.response_noise;
+  if (options.request.model == "mindlin") sweep.fixed["alpha"] = 1.0 / 3.0;
+  if (options.request.model == "jenkins") sweep.fixed["alpha"] = 0.0;
+  for (const auto& [name, value] : request::MakeFitOptions(options.request).fixed) {
+    sweep.fixed[name] = value;
+  }
+  return sweep;
+}
+
+/// Refuses what has no meaning for a sweep, which is no record.
+void RequireSweepOptions(const FitCommandOptions& options, const CLI::App& command) {
+  constexpr std::array<std::string_view, 18> kOfSweeps = {"strict",
+                                                          "help",
+                                                          "sweep",
+                                                          "response",
+                                                          "response-unit",
+                                                          "response-noise",
+                                                          "displacement",
+                                                          "force",
+                                                          "displacement-unit",
+                                                          "force-unit",
+                                                          "encoding",
+                                                          "displacement-gain",
+                                                          "displacement-zero",
+                                                          "force-gain",
+                                                          "force-zero",
+                                                          "fix",
+                                                          "model",
+                                                          "confidence"};
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    const std::string& name = option->get_lnames().front();
+    if (name == "json" || std::ranges::find(kOfSweeps, name) != kOfSweeps.end()) continue;
+    throw InputError(fmt::format("--{}: has no meaning with --sweep: leave it out", name));
+  }
+  const std::string& model = options.request.model;
+  if (model != "mindlin-dahl" && model != "mindlin" && model != "jenkins") {
+    throw InputError(
+        fmt::format("--model {}: a sweep is of a Masing law: mindlin-dahl, mindlin or "
+                    "jenkins",
+                    model));
+  }
+  if (options.request.files.size() != 1) {
+    throw InputError("--sweep: is of one file: fit each by itself");
+  }
+}
+
+void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console& console) {
+  RequireSweepOptions(options, command);
+  const std::string& file = options.request.files.front();
+  RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}},
+                     options.request.files);
+  const io::SweepFile sweep = io::ReadSweep(file, options.request.columns, options.response);
+  const Messages messages{console.err, "fit"};
+  for (const std::string& note : sweep.notes) messages.Note(note);
+  identification::SweepOptions asked = SweepOptionsOf(options);
+  asked.over_force = sweep.over_force;
+  asked.is_compliance = sweep.is_compliance;
+  const identification::SweepFit fit =
+      identification::FitSweep(sweep.amplitude, sweep.response, asked);
+  const bool is_doubtful = fit.correlation_p_value < kDoubtfulCorrelation;
+  const auto is_known = [](const auto& parameter) { return parameter.is_known(); };
+  const bool is_established = options.strict == Strictness::kNone ||
+                              (std::ranges::all_of(fit.parameters, is_known) &&
+                               (!is_doubtful || options.strict != Strictness::kAdequate));
+  console.exit_status = fit.converged && is_established ? kDone : kNotEstablished;
+  const std::string unit = sweep.is_compliance ? "m/N" : "N/m";
+  nlohmann::ordered_json json = {{"schema", "mindahl.sweep/1"},
+                                 {"version", Version()},
+                                 {"input",
+                                  {{"files", {file}},
+                                   {"points", sweep.amplitude.size()},
+                                   {"amplitude", sweep.over_force ? "force" : "displacement"},
+                                   {"response", sweep.is_compliance ? "compliance" : "stiffness"}}},
+                                 {"sweep", options.sweep},
+                                 {"confidence", asked.confidence}};
+  std::string text =
+      fmt::format("{} of {} points over the {} amplitude, {}\n\n",
+                  sweep.is_compliance ? "compliance" : "stiffness", sweep.amplitude.size(),
+                  sweep.over_force ? "force" : "displacement", options.sweep);
+  for (const identification::ParameterEstimate& parameter : fit.parameters) {
+    const auto end = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.5g}", *value) : std::string("…");
+    };
+    json["parameters"][parameter.name] = {
+        {"value", NumberOrNull(parameter.value)},
+        {"unit", parameter.unit},
+        {"standard_error", NumberOrNull(parameter.standard_error)},
+        {"ci95", {NumberOrNull(parameter.lower95), NumberOrNull(parameter.upper95)}},
+        {"status", report::Name(parameter.status)},
+        {"identifiability", parameter.status == identification::ParameterStatus::kFixed
+                                ? nlohmann::ordered_json(nullptr)
+                                : nlohmann::ordered_json(report::Name(parameter.identifiability))}};
+    text += parameter.status == identification::ParameterStatus::kFixed
+                ? fmt::format("  {:<12}{:>14.6g} {:<4}  held\n", parameter.name, parameter.value,
+                              parameter.unit)
+                : fmt::format("  {:<12}{:>14.6g} {:<4}  ({} … {})  {}\n", parameter.name,
+                              parameter.value, parameter.unit, end(parameter.lower95),
+                              end(parameter.upper95), report::Words(parameter.identifiability));
+  }
+  json["residuals"] = {{"rms", NumberOrNull(fit.rms)},
+                       {"r_squared", NumberOrNull(fit.r_squared)},
+                       {"degrees_of_freedom", fit.degrees_of_freedom},
+                       {"correlation_p_value", NumberOrNull(fit.correlation_p_value)}};
+  json["adequacy"] = {{"verdict", is_doubtful ? "doubtful" : "adequate"}};
+  json["solver"] = {
+      {"solver", "ceres::Solve"}, {"converged", fit.converged}, {"message", fit.message}};
+  text += fmt::format("\n  residuals {:.4g} {} rms, R² {:.6g}\n", fit.rms, unit, fit.r_squared);
+  if (is_doubtful) {
+    text += fmt::format(
+        "  doubtful: neighbouring residuals are correlated (p = {:.2g}), so the law misses the "
+        "course of the sweep and the intervals are too narrow\n",
+        fit.correlation_p_value);
+  }
+  if (!fit.converged) text += fmt::format("  not converged: {}\n", fit.message);
+  if (!options.json_path.empty()) WriteJson(json, options.json_path, console);
+  if (options.json_path != "-") console.out << text;
+}
+
 void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {
+  if (!options.sweep.empty()) return RunSweep(options, command, console);
+  if (!options.response.column.empty() || !options.response.unit.empty() ||
+      options.response_noise) {
+    throw InputError("--response: a record has none: add --sweep secant or --sweep tangent");
+  }
   const FitRequest& request = options.request;
   Validate(request.contact);
   RequireDistinctFiles(request.files);
@@ -108,7 +252,31 @@ void AddFitCommand(CLI::App& app, Console& console) {
   command->add_option("files", options->request.files, "CSV records of one contact")
       ->type_name("FILE")
       ->required();
+  AddJoin(*command, options->request);
   AddFitOptions(*command, options->request, NormalLoads::kOneAFile);
+  const std::string sweeps = "Amplitude sweeps";
+  command
+      ->add_option("--sweep", options->sweep,
+                   "the file holds a stiffness or compliance over the amplitude of a force or a\n"
+                   "displacement, as lock-in rigs report: secant, of the loop from end to end, or\n"
+                   "tangent, of a small oscillation at a force that was reached")
+      ->check(OneOf({"secant", "tangent"}))
+      ->group(sweeps);
+  command
+      ->add_option("--response", options->response.column,
+                   "column of the stiffness or compliance; default a recognised name. The\n"
+                   "amplitude's is --displacement or --force")
+      ->type_name("COL")
+      ->group(sweeps);
+  command
+      ->add_option("--response-unit", options->response.unit,
+                   "a force over a length, N/um, or the other way round; default the\n"
+                   "header's, else N/m or m/N")
+      ->type_name("UNIT")
+      ->group(sweeps);
+  AddOptional(*command, "--response-noise", options->response_noise,
+              "known standard deviation of a response [N/m] or [m/N]", "S")
+      ->group(sweeps);
   const std::string group = "Results";
   command->add_option("--json", options->json_path, "result as JSON; - for standard output alone")
       ->type_name("PATH")

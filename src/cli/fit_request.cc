@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/contact_options.h"
 #include "cli/one_of.h"
 #include "cli/text_output.h"
 #include "cli/whole_number.h"
@@ -135,6 +136,15 @@ std::string DescribeParameters() {
 
 }  // namespace
 
+void AddJoin(CLI::App& command, FitRequest& options) {
+  command
+      .add_flag("--join", options.join,
+                "the files are pieces of one record, in their order, as of a logger that\n"
+                "begins a file with every stroke: the contact remembers from one to the\n"
+                "next, and a clock that begins anew goes on")
+      ->group("Files");
+}
+
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   const std::string group(kColumnGroup);
   const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
@@ -150,17 +160,47 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   column("--time", columns.time, "time column; optional");
   column("--normal-load-column", columns.normal_load, "normal load column; optional");
   unit("--displacement-unit", columns.displacement,
-       "m, mm, um, nm, in; of an angle rad, mrad, deg, rev;\ndefault the header's, else m");
+       "m, cm, mm, um, nm, in, ft, mil; of an angle rad, mrad, deg, rev;\n"
+       "default the header's, else m");
   unit("--force-unit", columns.force,
-       "N, mN, uN, kN, MN, lbf, kgf, kip; of a torque 'N m', 'mN m', 'uN m',\n"
+       "N, mN, uN, kN, MN, lbf, kgf, gf, daN, kip; of a torque 'N m', 'mN m', 'uN m',\n"
        "'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
   unit("--time-unit", columns.time, "s, ms, us, min; default the header's, else s");
   unit("--normal-load-unit", columns.normal_load, "as --force-unit of a force");
+  const auto calibration = [&](const std::string& name, io::ColumnChoice& choice,
+                               const std::string& description) {
+    AddOptional(command, name + "-gain", choice.gain,
+                "factor G of the column: the " + description +
+                    " in its unit is G times (number - "
+                    "zero)\nwith the unit of --" +
+                    name.substr(2) +
+                    "-unit, else the header's where it "
+                    "is one, else SI",
+                "G")
+        ->group(group);
+    command.add_option(name + "-zero", choice.zero, "number in the column that stands for zero")
+        ->type_name("Z")
+        ->group(group);
+  };
+  calibration("--displacement", columns.displacement, "displacement");
+  calibration("--force", columns.force, "force");
+  calibration("--time", columns.time, "time");
+  calibration("--normal-load", columns.normal_load, "normal load");
+  command
+      .add_option("--encoding", columns.encoding,
+                  "of the files, as iconv calls it (latin1, sjis, utf-16le); default UTF-8,\n"
+                  "or found by their first bytes")
+      ->type_name("NAME")
+      ->group(group);
 }
 
 void RequireNoColumns(const io::RecordColumns& columns) {
   const auto require = [](const io::ColumnChoice& choice, std::string_view option) {
     const std::string_view given = choice.column.empty() ? choice.unit : choice.column;
+    if (choice.gain || choice.zero != 0) {
+      throw InputError(fmt::format("--{}-{}: there is no record to calibrate: give --record",
+                                   option, choice.gain ? "gain" : "zero"));
+    }
     if (given.empty()) return;
     throw InputError(fmt::format("--{}{} {}: there is no record to read a column of: give --record",
                                  option, choice.column.empty() ? "-unit" : "", given));

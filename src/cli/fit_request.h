@@ -20,6 +20,9 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads);
 /// The group of the columns in the help of a command.
 inline constexpr std::string_view kColumnGroup = "Columns and units";
 
+/// Adds --join.
+void AddJoin(CLI::App& command, FitRequest& options);
+
 /// Adds the options that say which columns of a record are read, and in what unit.
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns);
 

@@ -12,20 +12,43 @@
 
 namespace mindahl::cli {
 
-KeptCycles ReadKeptCycles(const std::string& path, std::string_view header,
-                          const std::function<void(const campaign::CycleTableEntry&)>& visit) {
+namespace {
+
+std::ifstream Open(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(fmt::format("cannot read '{}': {}", path, std::strerror(errno)));
+  return file;
+}
+
+campaign::CycleTableEntry ReadRow(std::string_view row, const KeptRows& rows) {
+  if (!row.starts_with(rows.before) || !row.ends_with(rows.after)) {
+    throw InputError("is of another test");
+  }
+  row.remove_prefix(rows.before.size());
+  row.remove_suffix(rows.after.size());
+  return campaign::ReadCycleTableRow(row);
+}
+
+}  // namespace
+
+void RequireHeader(const std::string& path, std::string_view header) {
+  std::ifstream file = Open(path);
   std::string line;
   std::getline(file, line);
-  if (line + '\n' != header) {
-    throw InputError(
-        fmt::format("--resume: {} is no table of such cycles, its first line is another: give "
-                    "another --output, or --overwrite",
-                    path));
-  }
+  if (line + '\n' == header) return;
+  throw InputError(
+      fmt::format("--resume: {} is no table of such cycles, its first line is another: give "
+                  "another --output, or --overwrite",
+                  path));
+}
+
+KeptCycles ReadKeptCycles(const std::string& path, const KeptRows& rows,
+                          const std::function<void(const campaign::CycleTableEntry&)>& visit) {
+  std::ifstream file = Open(path);
+  file.seekg(static_cast<std::streamoff>(rows.offset));
+  std::string line;
   KeptCycles kept;
-  kept.bytes = header.size();
+  kept.bytes = rows.offset;
   std::vector<std::string> batch;
   // A line without a line feed was being written when a run was killed, and is no row.
   while (std::getline(file, line) && !file.eof()) {
@@ -35,7 +58,7 @@ KeptCycles ReadKeptCycles(const std::string& path, std::string_view header,
     for (const std::string& row : batch) {
       ++kept.fits;
       try {
-        visit(campaign::ReadCycleTableRow(row));
+        visit(ReadRow(row, rows));
       } catch (const InputError& error) {
         throw InputError(fmt::format("--resume: {}:{}: {}: give another --output, or --overwrite",
                                      path, kept.fits + 1, error.what()));

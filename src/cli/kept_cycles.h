@@ -17,10 +17,19 @@ struct KeptCycles {
   std::string last_batch;    ///< its rows, to compare with
 };
 
-/// @param header  of the table that is to be written
+/// Says which rows of a table are those of a test, and what they hold besides its cycles' cells.
+struct KeptRows {
+  std::uintmax_t offset = 0;  ///< [bytes] of the table before the first one
+  std::string_view before;    ///< at the beginning of each
+  std::string_view after;     ///< at its end
+};
+
+/// @throws InputError where the first line of the file is another
+void RequireHeader(const std::string& path, std::string_view header);
+
 /// @param visit   is given every row that is kept
 /// @throws InputError where the file is no such table
-KeptCycles ReadKeptCycles(const std::string& path, std::string_view header,
+KeptCycles ReadKeptCycles(const std::string& path, const KeptRows& rows,
                           const std::function<void(const campaign::CycleTableEntry&)>& visit);
 
 }  // namespace mindahl::cli

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
@@ -41,6 +42,8 @@
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
+#include "mindahl/io/csv_writer.h"
+#include "mindahl/io/digest.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_stream.h"
@@ -71,8 +74,17 @@ struct TrackCommandOptions {
   std::string json_path;
   std::string plot_path;
   std::string report_path;
+  bool separate = false;
   bool resume = false;
   bool overwrite = false;
+};
+
+/// Says where the rows of a test stand in a table of several separate tests.
+struct RowPlace {
+  bool is_one_of_many = false;
+  std::string before;         // cells before those of a cycle
+  std::uintmax_t offset = 0;  // [bytes] of the table before the test's first row
+  bool has_rows = false;      // some of them are there, of a run that was ended
 };
 
 /// Holds the sums over all cycles of a run.
@@ -87,6 +99,11 @@ struct Totals {
     flagged += fit.flags.empty() ? 0 : 1;
     for (const std::string& flag : fit.flags) ++flags[flag];
     courses.Add(fit);
+  }
+  /// True if no fit converged.
+  [[nodiscard]] bool HasNone() const {
+    const auto failed = flags.find("not_converged");
+    return failed != flags.end() && failed->second == fits;
   }
 };
 
@@ -123,8 +140,9 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
 /// Returns a word of the options that rows depend on, FNV-1a (Fowler, Noll & Vo 1991) of their
 /// names and values: rows made with others are not gone on with, though the last ones be the same.
 std::uint64_t SeedOf(const CLI::App& command) {
-  constexpr std::array<std::string_view, 9> kOfNoRow = {
-      "help", "output", "json", "plot", "report", "resume", "overwrite", "threads", "files-from"};
+  constexpr std::array<std::string_view, 10> kOfNoRow = {
+      "help",   "output",    "json",    "plot",       "report",
+      "resume", "overwrite", "threads", "files-from", "shard"};
   std::uint64_t seed = 0xcbf29ce484222325U;
   const auto add = [&seed](std::string_view text) {
     for (const char character : text) {
@@ -155,26 +173,95 @@ void RequireUnitOf(std::string_view option, const io::ColumnChoice& choice,
       choice.unit, option == "--time-unit" ? "--time" : "--normal-load-column"));
 }
 
+nlohmann::ordered_json QuantitiesJson(const std::vector<campaign::CourseDescription>& courses,
+                                      bool is_torsional) {
+  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
+  const std::span<const campaign::TrackedQuantity> tracked = campaign::TrackedQuantities();
+  nlohmann::ordered_json quantities = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < tracked.size(); ++k) {
+    const campaign::CourseDescription& course = courses[k];
+    if (course.stretches.empty()) continue;
+    nlohmann::ordered_json stretches = nlohmann::ordered_json::array();
+    for (const campaign::Stretch& stretch : course.stretches) {
+      stretches.push_back(
+          {{"first_cycle", stretch.first_cycle},
+           {"last_cycle", stretch.last_cycle},
+           {"at_start", stretch.at_start},
+           {"at_end", stretch.at_end},
+           {"slope", stretch.slope},
+           {"slope_p_value", stretch.slope_p_value},
+           {"trends", stretch.trends},
+           {"time_constant", stretch.time_constant ? nlohmann::ordered_json(*stretch.time_constant)
+                                                   : nlohmann::ordered_json(nullptr)}});
+    }
+    nlohmann::ordered_json changes = nlohmann::ordered_json::array();
+    for (const campaign::Change& change : course.changes) {
+      changes.push_back({{"kind", campaign::NameOf(change.kind)},
+                         {"cycle", change.cycle},
+                         {"ci95", {change.lower95, change.upper95}},
+                         {"before", change.before},
+                         {"after", change.after},
+                         {"p_value", change.p_value}});
+    }
+    quantities[std::string(tracked[k].name)] = {{"unit", report::UnitIn(units, tracked[k].unit)},
+                                                {"stretches", stretches},
+                                                {"changes", changes}};
+  }
+  return quantities;
+}
+
+nlohmann::ordered_json FlagsJson(const Totals& totals) {
+  nlohmann::ordered_json flags = nlohmann::ordered_json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = totals.flags.find(std::string(flag.name));
+    flags[std::string(flag.name)] = found == totals.flags.end() ? 0 : found->second;
+  }
+  return flags;
+}
+
+nlohmann::ordered_json EnergyCountsJson(const campaign::EnergyCounts& counts) {
+  return {
+      {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
+}
+
 class TrackRun {
  public:
-  TrackRun(const TrackCommandOptions& options, const CLI::App& command, Console& console)
+  TrackRun(const TrackCommandOptions& options, const CLI::App& command, Console& console,
+           RowPlace place = {})
       : options_(options),
         command_(command),
         console_(console),
+        place_(std::move(place)),
         messages_{console.err, "track"},
-        energy_(options.average * options.every) {}
+        energy_(options.average * options.every),
+        end_(place_.offset) {}
 
   void Go();
+  /// Reads a record of one of many tests and writes its rows, up to its fault where it has one.
+  void TrackOneOfMany();
+
+  /// Returns why one of many tests ended before its record; empty where it did not.
+  [[nodiscard]] const std::string& fault() const { return fault_; }
+  [[nodiscard]] const Totals& totals() const { return totals_; }
+  [[nodiscard]] const campaign::DissipatedEnergy& energy() const { return energy_; }
+  [[nodiscard]] bool is_torsional() const { return is_torsional_; }
+  /// Returns the size [bytes] of the table with the test's last row.
+  [[nodiscard]] std::uintmax_t end() const { return end_; }
 
  private:
+  void Track();
+  void ReadFiles();
+  [[nodiscard]] bool EndsTheTestAlone() const;
+  [[nodiscard]] std::string After() const;
   void PoolAlpha();
   [[nodiscard]] FitOptions OptionsFor(const io::Samples& head, campaign::Reading& reading);
   void Begin(io::RecordStream& stream, const io::Samples& head);
   void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
+  void EndFile(campaign::Tracker& tracker);
   void SayReading() const;
   void RequireNoSignal() const;
   void Take(std::span<const CycleFit> fits);
-  [[noreturn]] void ThrowOther() const;
+  [[noreturn]] void ThrowOther();
   void SayProgress();
   void WriteSummary();
   /// Time histories that a figure of the test shows: of friction coefficient and slip force, which
@@ -190,18 +277,23 @@ class TrackRun {
   const TrackCommandOptions& options_;
   const CLI::App& command_;
   Console& console_;
+  RowPlace place_;
   Messages messages_;
   FitOptions fit_;
   bool is_torsional_ = false;
   std::string chosen_terms_;
   WhatWasRead reading_;
+  io::JoinedTimes times_;
   Totals totals_;
   campaign::DissipatedEnergy energy_;
   std::optional<campaign::PooledValue> shared_alpha_;
   std::optional<KeptCycles> kept_;  // until its last batch was made again
   std::size_t resumed_ = 0;         // fits that were there
   std::optional<io::AppendedFile> output_;
-  bool has_write_failed_ = false;               // or is at work
+  std::uintmax_t end_ = 0;         // [bytes] of the table that is written
+  bool has_write_failed_ = false;  // or is at work
+  bool is_refused_ = false;        // rows that are there are another run's
+  std::string fault_;
   std::optional<io::DeferredSignals> signals_;  // while rows are written
   std::optional<campaign::Tracker> tracker_;
   std::optional<Progress> progress_;
@@ -243,12 +335,15 @@ void TrackRun::PoolAlpha() {
       stream.Next(piece);
     }
     while (piece.size() > 0) {
+      times_.Shift(piece.time);
       tracker->Add(campaign::ViewOf(piece), piece.lines);
       if (!stream.Next(piece)) break;
     }
-    tracker->NextFile();
+    EndFile(*tracker);
   }
   tracker->Finish();
+  times_ = {};
+  reading_ = {};
   if (tracker->cycles() == 0) return;  // as the second pass will say
   campaign::RequireSharedAlpha(alpha);
   shared_alpha_ = alpha;
@@ -264,13 +359,23 @@ void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
   SayReading();
   const std::string header = campaign::CycleTableHeader(is_torsional_);
   std::error_code error;
-  if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
+  const bool has_rows =
+      place_.is_one_of_many
+          ? place_.has_rows
+          : options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error;
+  if (has_rows) {
+    if (!place_.is_one_of_many) RequireHeader(options_.output, header);
     campaign::DissipatedEnergy energy = energy_;
-    kept_ = ReadKeptCycles(options_.output, header, [&](const campaign::CycleTableEntry& entry) {
-      if (totals_.fits % campaign::kBatch == 0) energy_ = energy;  // before the last batch
-      energy.Add(entry.fit);
-      totals_.Add(entry.fit);
-    });
+    kept_ = ReadKeptCycles(options_.output,
+                           {.offset = place_.is_one_of_many ? place_.offset : header.size(),
+                            .before = place_.before,
+                            .after = After()},
+                           [&](const campaign::CycleTableEntry& entry) {
+                             if (totals_.fits % campaign::kBatch == 0)
+                               energy_ = energy;  // before the last batch
+                             energy.Add(entry.fit);
+                             totals_.Add(entry.fit);
+                           });
     resumed_ = kept_->fits;
     if (kept_->fits == 0) kept_.reset();
   }
@@ -301,28 +406,41 @@ void TrackRun::SayReading() const {
 /// The rows of a batch: appended; or, of the last that is kept, compared with what is there.
 void TrackRun::Take(std::span<const CycleFit> fits) {
   std::string rows;
+  const std::string after = After() + "\n";
   for (const CycleFit& fit : fits) {
     energy_.Add(fit);
-    rows += campaign::CycleTableRow(fit, energy_.total());
+    const std::string row = campaign::CycleTableRow(fit, energy_.total());
+    rows.append(place_.before).append(row, 0, row.size() - 1).append(after);
   }
   if (kept_) {
     if (rows != kept_->last_batch) ThrowOther();
+    has_write_failed_ = true;
     output_.emplace(options_.output, kept_->bytes);
+    has_write_failed_ = false;
+    end_ = kept_->bytes;
     kept_.reset();
     return;
   }
   has_write_failed_ = true;
   if (!output_) {
-    output_.emplace(options_.output, 0);
-    output_->Append(campaign::CycleTableHeader(is_torsional_));
+    output_.emplace(options_.output, place_.offset);
+    if (!place_.is_one_of_many) output_->Append(campaign::CycleTableHeader(is_torsional_));
   }
   output_->Append(rows);
   has_write_failed_ = false;
+  end_ += rows.size();
   for (const CycleFit& fit : fits) totals_.Add(fit);
   SayProgress();
 }
 
-void TrackRun::ThrowOther() const {
+/// Returns the cells after those of a cycle.
+std::string TrackRun::After() const {
+  if (!place_.is_one_of_many) return "";
+  return is_torsional_ ? ",torque" : ",force";
+}
+
+void TrackRun::ThrowOther() {
+  is_refused_ = true;
   throw InputError(fmt::format(
       "--resume: {} was made from another record or with other options, its rows {} to {} "
       "come out differently or what was read before them: give those, another "
@@ -346,57 +464,80 @@ void TrackRun::RequireNoSignal() const {
   if (signals_->noted() != 0) throw InputError("stopped by a signal");
 }
 
+/// Ends a cycle with its file, unless the files are joined.
+void TrackRun::EndFile(campaign::Tracker& tracker) {
+  if (options_.request.join) {
+    times_.NextFile();
+  } else {
+    reading_.unused_samples += tracker.NextFile();
+    times_ = {};
+  }
+}
+
 void TrackRun::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
   while (piece.size() > 0) {
     bytes_read_ = bytes_before_ + stream.bytes();
     reading_.samples += piece.size();
+    times_.Shift(piece.time);
     tracker_->Add(campaign::ViewOf(piece), piece.lines);
     RequireNoSignal();
     if (!stream.Next(piece)) break;
   }
-  reading_.unused_samples += tracker_->NextFile();
+  EndFile(*tracker_);
   reading_.broken_rows += stream.broken_rows();
   bytes_before_ += stream.bytes();
+  if (stream.footer_lines() > 0) {
+    messages_.Note(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
+                               file, stream.footer_lines()));
+  }
   if (stream.broken_rows() > 0) {
     messages_.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}",
                                stream.broken_rows(), file, stream.first_broken_row()));
   }
 }
 
-void TrackRun::Go() {
-  RequireTrackOptions(options_);
+void TrackRun::ReadFiles() {
+  const std::vector<std::string>& files = options_.request.files;
+  const io::BrokenRows broken = BrokenRowsOf(options_);
+  for (const std::string& file : files) {
+    io::RecordStream stream(file, options_.request.columns, broken);
+    for (const std::string& note : stream.layout().notes) messages_.Note(note);
+    if (tracker_ && stream.layout().is_torsional != is_torsional_) {
+      throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", files.front(),
+                                   is_torsional_ ? "torque" : "force", file,
+                                   is_torsional_ ? "force" : "torque"));
+    }
+    io::Samples first;
+    if (!tracker_) {
+      first = campaign::ReadHead(stream);
+      Begin(stream, first);
+    } else {
+      stream.Next(first);
+    }
+    ReadFile(file, std::move(first), stream);
+  }
+  if (options_.request.join) reading_.unused_samples += tracker_->NextFile();
+  tracker_->Finish();
+  if (kept_) ThrowOther();  // a record that ends before them
+  has_write_failed_ = true;
+  if (output_) output_->Finish();
+  has_write_failed_ = false;
+  RequireNoSignal();
+}
+
+void TrackRun::Track() {
   const std::vector<std::string>& files = options_.request.files;
   for (const std::string& file : files) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (!error) bytes_ += size;
   }
-  const io::BrokenRows broken = BrokenRowsOf(options_);
   if (options_.alpha == kSharedAlpha) PoolAlpha();
   signals_.emplace();
   try {
-    for (const std::string& file : files) {
-      io::RecordStream stream(file, options_.request.columns, broken);
-      for (const std::string& note : stream.layout().notes) messages_.Note(note);
-      if (tracker_ && stream.layout().is_torsional != is_torsional_) {
-        throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", files.front(),
-                                     is_torsional_ ? "torque" : "force", file,
-                                     is_torsional_ ? "force" : "torque"));
-      }
-      io::Samples first;
-      if (!tracker_) {
-        first = campaign::ReadHead(stream);
-        Begin(stream, first);
-      } else {
-        stream.Next(first);
-      }
-      ReadFile(file, std::move(first), stream);
-    }
-    tracker_->Finish();
-    if (kept_) ThrowOther();  // a record that ends before them
-    if (output_) output_->Finish();
-    RequireNoSignal();
+    ReadFiles();
   } catch (const InputError& error) {
+    if (EndsTheTestAlone()) throw;
     // Finished rows are kept, unless they are another run's, or there are none.
     const bool is_stopped = signals_->noted() != 0;
     if (!tracker_ && is_stopped) throw InputError("stopped by a signal before the first row");
@@ -406,8 +547,9 @@ void TrackRun::Go() {
       if (output_) output_->Finish();
     } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): the disk, as the first one says
     }
-    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume",
-                                 is_stopped ? "stopped by a signal" : error.what(), totals_.fits,
+    const std::string what = is_stopped ? "stopped by a signal" : error.what();
+    if (place_.is_one_of_many) throw InputError(what);
+    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume", what, totals_.fits,
                                  options_.output, is_stopped ? "" : "repair the fault and "));
   }
   signals_.reset();
@@ -416,9 +558,33 @@ void TrackRun::Go() {
   campaign::RequireCycles(reading_.cycles, options_.average, reading_.of_head,
                           *fit_.preparation.reversal_gate,
                           fmt::format("{}", fmt::join(files, ", ")));
-  const auto failed = totals_.flags.find("not_converged");
-  const bool none = failed != totals_.flags.end() && failed->second == totals_.fits;
-  console_.exit_status = none ? kNotEstablished : kDone;
+}
+
+/// True where an error is one of this test's record, and other tests can go on.
+bool TrackRun::EndsTheTestAlone() const {
+  const bool is_stopped = signals_ && signals_->noted() != 0;
+  return place_.is_one_of_many && !is_stopped && !has_write_failed_ && !is_refused_;
+}
+
+void TrackRun::TrackOneOfMany() {
+  try {
+    Track();
+  } catch (const InvalidArgument& error) {
+    if (!EndsTheTestAlone()) throw;
+    fault_ = fmt::format("{}: {}", options_.request.files.front(), error.what());
+  } catch (const InputError& error) {
+    if (!EndsTheTestAlone()) throw;
+    fault_ = error.what();
+  }
+  if (fault_.empty() || !tracker_) return;
+  tracker_->Finish();  // what was read before the fault
+  if (kept_) ThrowOther();
+  if (output_) output_->Finish();
+}
+
+void TrackRun::Go() {
+  Track();
+  console_.exit_status = totals_.HasNone() ? kNotEstablished : kDone;
   courses_ = totals_.courses.Describe();
   Draw();
   if (!options_.json_path.empty()) WriteJson(Json(), options_.json_path, console_);
@@ -548,16 +714,9 @@ nlohmann::ordered_json TrackRun::Json() const {
   json["output"] = options_.output;
   json["fits"] = totals_.fits;
   json["flagged"] = totals_.flagged;
-  nlohmann::ordered_json flags = nlohmann::ordered_json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = totals_.flags.find(std::string(flag.name));
-    flags[std::string(flag.name)] = found == totals_.flags.end() ? 0 : found->second;
-  }
-  json["flags"] = flags;
+  json["flags"] = FlagsJson(totals_);
   json["accumulated_energy"] = energy_.total();
-  const campaign::EnergyCounts& counts = energy_.counts();
-  json["energy_counts"] = {
-      {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
+  json["energy_counts"] = EnergyCountsJson(energy_.counts());
   json["shared_alpha"] = nullptr;
   if (shared_alpha_) {
     json["shared_alpha"] = {{"value", shared_alpha_->mean()},
@@ -566,37 +725,261 @@ nlohmann::ordered_json TrackRun::Json() const {
                             {"scatter", shared_alpha_->scatter()},
                             {"p_value", shared_alpha_->p_value()}};
   }
-  nlohmann::ordered_json quantities = nlohmann::ordered_json::object();
-  for (std::size_t k = 0; k < tracked_.size(); ++k) {
-    const campaign::CourseDescription& course = courses_[k];
-    if (course.stretches.empty()) continue;
-    nlohmann::ordered_json stretches = nlohmann::ordered_json::array();
-    for (const campaign::Stretch& stretch : course.stretches) {
-      stretches.push_back(
-          {{"first_cycle", stretch.first_cycle},
-           {"last_cycle", stretch.last_cycle},
-           {"at_start", stretch.at_start},
-           {"at_end", stretch.at_end},
-           {"slope", stretch.slope},
-           {"slope_p_value", stretch.slope_p_value},
-           {"trends", stretch.trends},
-           {"time_constant", stretch.time_constant ? nlohmann::ordered_json(*stretch.time_constant)
-                                                   : nlohmann::ordered_json(nullptr)}});
-    }
-    nlohmann::ordered_json changes = nlohmann::ordered_json::array();
-    for (const campaign::Change& change : course.changes) {
-      changes.push_back({{"kind", campaign::NameOf(change.kind)},
-                         {"cycle", change.cycle},
-                         {"ci95", {change.lower95, change.upper95}},
-                         {"before", change.before},
-                         {"after", change.after},
-                         {"p_value", change.p_value}});
-    }
-    quantities[std::string(tracked_[k].name)] = {
-        {"unit", UnitOf(tracked_[k].unit)}, {"stretches", stretches}, {"changes", changes}};
-  }
-  json["quantities"] = quantities;
+  json["quantities"] = QuantitiesJson(courses_, is_torsional_);
   return json;
+}
+
+/// Returns the first line of a table of separate tests: names without units, which are SI, so that
+/// queries need no quotes.
+std::string SeparateHeader() {
+  std::string header = "test,version,sha256,options,fault,";
+  bool is_unit = false;
+  for (const char character : campaign::CycleTableHeader(false)) {
+    if (character == ' ') continue;
+    if (character == '[') is_unit = true;
+    if (!is_unit && character != '\n') header += character;
+    if (character == ']') is_unit = false;
+  }
+  return header + ",kind\n";
+}
+
+/// Returns the text of a cell as io::CsvCell() writes it.
+std::string TextOfCell(std::string_view cell) {
+  if (!cell.starts_with('"')) return std::string(cell);
+  std::string text;
+  for (std::size_t at = 1; at + 1 < cell.size(); ++at) {
+    text += cell[at];
+    if (cell[at] == '"') ++at;  // one of two
+  }
+  return text;
+}
+
+/// Tracks tests one after the other into one table: of each its rows, then a row of its fault where
+/// it has one.
+class SeparateTests {
+ public:
+  SeparateTests(const TrackCommandOptions& options, const CLI::App& command, Console& console)
+      : options_(options), command_(command), console_(console), messages_{console.err, "track"} {}
+
+  void Go();
+
+ private:
+  /// Holds the cells before those of a cycle.
+  struct Cells {
+    std::string test;  // with the comma after it
+    std::string sha256;
+    std::string rest;  // from the version to the options
+  };
+
+  [[nodiscard]] Cells CellsOf(const std::string& file) const;
+  void ReadKept();
+  void Track(const std::string& file);
+  void AppendFault(const std::string& before, const std::string& fault);
+  void Note(const std::string& file, const std::string& fault, const Totals& totals,
+            const campaign::DissipatedEnergy& energy, bool is_torsional);
+  [[noreturn]] void ThrowOther(const std::string& row) const;
+  void WriteSummary() const;
+
+  const TrackCommandOptions& options_;
+  const CLI::App& command_;
+  Console& console_;
+  Messages messages_;
+  std::string options_word_ = fmt::format("{:016x}", SeedOf(command_));
+  std::string header_ = SeparateHeader();
+  std::uintmax_t end_ = header_.size();  // [bytes] of the table with the tests that are done
+  bool has_rows_ = false;                // of the next test, behind that
+  std::size_t done_ = 0;                 // tests
+  std::size_t kept_ = 0;                 // fits of those that were done already
+  std::size_t fits_ = 0;
+  std::size_t flagged_ = 0;
+  double energy_ = 0.0;
+  std::vector<std::string> faults_;
+  nlohmann::ordered_json tests_ = nlohmann::ordered_json::array();
+};
+
+SeparateTests::Cells SeparateTests::CellsOf(const std::string& file) const {
+  Cells cells{.test = io::CsvCell(file) + ",", .sha256 = "", .rest = ""};
+  try {
+    cells.sha256 = io::Sha256OfFile(file).value_or("");
+  } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): as the reader will say
+  }
+  cells.rest = fmt::format("{},{},{},", Version(), cells.sha256, options_word_);
+  return cells;
+}
+
+void SeparateTests::ThrowOther(const std::string& row) const {
+  throw InputError(
+      fmt::format("--resume: {} was made from other files, with other options or by another "
+                  "version, as its row '{:.60}…' says: give those, another --output, or "
+                  "--overwrite",
+                  options_.output, row));
+}
+
+/// Takes the tests that the table has: all of them but the last, which may have been ended, and
+/// none from one on that failed and whose record is another now.
+void SeparateTests::ReadKept() {
+  RequireHeader(options_.output, header_);
+  std::ifstream file(options_.output, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(end_));
+  std::string line;
+  bool has_line = std::getline(file, line) && !file.eof();
+  for (const std::string& name : options_.request.files) {
+    if (!has_line) return;
+    const Cells cells = CellsOf(name);
+    if (!line.starts_with(cells.test)) ThrowOther(line);
+    Totals totals;
+    campaign::DissipatedEnergy energy(options_.average * options_.every);
+    std::uintmax_t end = end_;
+    std::string fault;
+    bool is_another = false;
+    bool is_torsional = false;
+    for (; has_line && line.starts_with(cells.test);
+         has_line = std::getline(file, line) && !file.eof()) {
+      end += line.size() + 1;
+      std::string_view row = std::string_view(line).substr(cells.test.size());
+      if (!row.starts_with(cells.rest)) {
+        // The same but for the digest?
+        const std::string version = std::string(Version()) + ",";
+        const std::size_t comma = row.find(',', std::min(version.size(), row.size()));
+        if (!row.starts_with(version) || comma == std::string_view::npos ||
+            !row.substr(comma + 1).starts_with(options_word_ + ",")) {
+          ThrowOther(line);
+        }
+        is_another = true;
+        row.remove_prefix(comma + 1 + options_word_.size() + 1);
+      } else {
+        row.remove_prefix(cells.rest.size());
+      }
+      if (!row.starts_with(',')) {  // the cell of the fault, then nothing
+        fault = TextOfCell(row.substr(0, row.find_last_not_of(',') + 1));
+        continue;
+      }
+      const std::size_t last = row.rfind(',');
+      is_torsional = row.substr(last + 1) == "torque";
+      const campaign::CycleTableEntry entry = campaign::ReadCycleTableRow(row.substr(1, last - 1));
+      totals.Add(entry.fit);
+      energy.Add(entry.fit);
+    }
+    if (is_another && fault.empty()) ThrowOther(cells.test);
+    if (is_another) return;
+    has_rows_ = fault.empty() && !has_line;
+    if (has_rows_) return;
+    kept_ += totals.fits;
+    Note(name, fault, totals, energy, is_torsional);
+    end_ = end;
+  }
+  if (has_line) ThrowOther(line);
+}
+
+void SeparateTests::AppendFault(const std::string& before, const std::string& fault) {
+  const std::string header = campaign::CycleTableHeader(false);
+  const auto commas = static_cast<std::size_t>(std::ranges::count(header, ','));
+  const std::string row =
+      fmt::format("{}{}{}\n", before, io::CsvCell(fault), std::string(commas + 2, ','));
+  io::AppendedFile table(options_.output, end_);
+  table.Append(row);
+  table.Finish();
+  end_ += row.size();
+}
+
+void SeparateTests::Track(const std::string& file) {
+  const Cells cells = CellsOf(file);
+  TrackCommandOptions options = options_;
+  options.request.files = {file};
+  TrackRun run(options, command_, console_,
+               {.is_one_of_many = true,
+                .before = cells.test + cells.rest + ",",
+                .offset = end_,
+                .has_rows = std::exchange(has_rows_, false)});
+  run.TrackOneOfMany();
+  end_ = run.end();
+  if (!run.fault().empty()) {
+    AppendFault(cells.test + cells.rest, run.fault());
+    messages_.Warn(run.fault());
+  }
+  Note(file, run.fault(), run.totals(), run.energy(), run.is_torsional());
+}
+
+void SeparateTests::Note(const std::string& file, const std::string& fault, const Totals& totals,
+                         const campaign::DissipatedEnergy& energy, bool is_torsional) {
+  ++done_;
+  fits_ += totals.fits;
+  flagged_ += totals.flagged;
+  energy_ += energy.total();
+  if (!fault.empty()) faults_.push_back(fault);
+  if (!fault.empty() || totals.HasNone()) console_.exit_status = kNotEstablished;
+  if (options_.json_path.empty()) return;
+  tests_.push_back(
+      {{"file", file},
+       {"fault", fault.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fault)},
+       {"fits", totals.fits},
+       {"flagged", totals.flagged},
+       {"flags", FlagsJson(totals)},
+       {"accumulated_energy", energy.total()},
+       {"energy_counts", EnergyCountsJson(energy.counts())},
+       {"quantities", QuantitiesJson(totals.courses.Describe(), is_torsional)}});
+}
+
+void SeparateTests::WriteSummary() const {
+  std::string text = fmt::format("{} tests, {} fits in {}\n", done_, fits_, options_.output);
+  if (kept_ > 0) text += fmt::format("{} of them were there already\n", kept_);
+  text += fmt::format("{:.6g} J dissipated in all\n", energy_);
+  if (flagged_ > 0) {
+    text += fmt::format("{} {} a flag\n", flagged_, flagged_ == 1 ? "cycle has" : "cycles have");
+  }
+  if (!faults_.empty()) {
+    text +=
+        fmt::format("{} of the tests failed:\n  {}\n", faults_.size(), fmt::join(faults_, "\n  "));
+  }
+  console_.out << text;
+}
+
+void SeparateTests::Go() {
+  RequireTrackOptions(options_);
+  for (const auto& [option, path] :
+       {std::pair{"--plot", options_.plot_path}, std::pair{"--report", options_.report_path}}) {
+    if (path.empty()) continue;
+    throw InputError(
+        fmt::format("{} shows one test, and --separate makes many: track that one "
+                    "alone",
+                    option));
+  }
+  for (const std::string& file : options_.request.files) {
+    if (file != "-" && file.find_first_of("\r\n") == std::string::npos) continue;
+    throw InputError(
+        fmt::format("--separate: '{}': a test is called by the name of its file, of "
+                    "one line, and is read twice: give such files",
+                    file));
+  }
+  console_.exit_status = kDone;
+  std::error_code error;
+  if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
+    ReadKept();
+  } else {
+    io::AppendedFile table(options_.output, 0);
+    table.Append(header_);
+    table.Finish();
+  }
+  const std::vector<std::string>& files = options_.request.files;
+  while (done_ < files.size()) {
+    try {
+      Track(files[done_]);
+    } catch (const InputError& fatal) {
+      throw InputError(fmt::format("{}: {}; {} tests are done in {}: add --resume", files[done_],
+                                   fatal.what(), done_, options_.output));
+    }
+  }
+  if (!options_.json_path.empty()) {
+    WriteJson({{"schema", "mindahl.track_separate/1"},
+               {"version", Version()},
+               {"output", options_.output},
+               {"fits", fits_},
+               {"flagged", flagged_},
+               {"accumulated_energy", energy_},
+               {"tests", std::move(tests_)}},
+              options_.json_path, console_);
+  }
+  if (options_.json_path != "-") WriteSummary();
 }
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
@@ -609,6 +992,16 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
                       {"--report", options.report_path}},
                      read);
   if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
+  if (options.separate && options.request.join) {
+    throw InputError("--separate and --join contradict each other: give one of the two");
+  }
+  if (options.separate) return SeparateTests(options, command, console).Go();
+  if (!options.list.shard.empty()) {
+    throw InputError(
+        "--shard: the files are pieces of one test, whose cycles and energy count on from file to "
+        "file: add --separate where each is a test of its own");
+  }
+  RequireTrackOptions(options);
   TrackRun(options, command, console).Go();
 }
 
@@ -628,9 +1021,18 @@ void AddTrackCommand(CLI::App& app, Console& console) {
                "track.json"});
   command
       ->add_option("files", options->request.files,
-                   "CSV records of one test, in order; a cycle ends with its file")
+                   "CSV records of one test, in order; a cycle ends with its file. With\n"
+                   "--separate each is a test of its own")
       ->type_name("FILE");
   AddFilesFrom(*command, options->list);
+  command
+      ->add_flag("--separate", options->separate,
+                 "each file is a test of its own: one table of all, with columns for the\n"
+                 "test, the version, the SHA-256 of the file and why a test failed, which\n"
+                 "does not stop the others")
+      ->group("Files");
+  AddShard(*command, options->list);
+  AddJoin(*command, options->request);
   AddColumnOptions(*command, options->request.columns);
   AddModelOptions(*command, options->request);
   const std::string cycles = "Cycles";

@@ -15,14 +15,15 @@ struct Entry {
 };
 
 constexpr std::array kLengths = {
-    Entry{"m", 1, 1},    Entry{"mm", 1, 1e3},   Entry{"um", 1, 1e6},
-    Entry{"nm", 1, 1e9}, Entry{"in", 254, 1e4},
+    Entry{"m", 1, 1},    Entry{"mm", 1, 1e3},   Entry{"um", 1, 1e6},    Entry{"nm", 1, 1e9},
+    Entry{"cm", 1, 1e2}, Entry{"in", 254, 1e4}, Entry{"ft", 3048, 1e4}, Entry{"mil", 254, 1e7},
 };
 constexpr std::array kForces = {
-    Entry{"N", 1, 1},         Entry{"mN", 1, 1e3},
-    Entry{"uN", 1, 1e6},      Entry{"kN", 1e3, 1},
-    Entry{"MN", 1e6, 1},      Entry{"lbf", 4.4482216152605, 1},
-    Entry{"kgf", 9.80665, 1}, Entry{"kip", 4448.2216152605, 1},
+    Entry{"N", 1, 1},          Entry{"mN", 1, 1e3},
+    Entry{"uN", 1, 1e6},       Entry{"kN", 1e3, 1},
+    Entry{"MN", 1e6, 1},       Entry{"lbf", 4.4482216152605, 1},
+    Entry{"kgf", 9.80665, 1},  Entry{"kip", 4448.2216152605, 1},
+    Entry{"gf", 9.80665, 1e3}, Entry{"daN", 10, 1},
 };
 constexpr std::array kAngles = {
     Entry{"rad", 1, 1},
@@ -46,9 +47,24 @@ constexpr std::array kTimes = {
     Entry{"min", 60, 1},
 };
 
-/// "µ" has two code points, U+00B5 and U+03BC; both become "u", and a micron is a micrometre.
+struct Synonym {
+  std::string_view written;
+  std::string_view symbol;
+};
+// A mass that stands for a force is its weight.
+constexpr std::array kSynonyms = {
+    Synonym{"micron", "um"}, Synonym{"microns", "um"}, Synonym{"inch", "in"},
+    Synonym{"Inch", "in"},   Synonym{"inches", "in"},  Synonym{"\"", "in"},
+    Synonym{"feet", "ft"},   Synonym{"thou", "mil"},   Synonym{"g", "gf"},
+    Synonym{"kg", "kgf"},    Synonym{"kp", "kgf"},     Synonym{"lb", "lbf"},
+    Synonym{"lbs", "lbf"},   Synonym{"kips", "kip"},   Synonym{"sec", "s"},
+    Synonym{"msec", "ms"},
+};
+
+/// "µ" has two code points, U+00B5 and U+03BC; both become "u".
 std::string WithAsciiMicro(std::string_view symbol) {
-  if (symbol == "micron" || symbol == "microns") return "um";
+  const auto synonym = std::ranges::find(kSynonyms, symbol, &Synonym::written);
+  if (synonym != kSynonyms.end()) return std::string(synonym->symbol);
   for (const std::string_view micro : {"\u00b5", "\u03bc"}) {
     if (symbol.starts_with(micro)) return std::string("u").append(symbol.substr(micro.size()));
   }

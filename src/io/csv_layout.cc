@@ -120,7 +120,16 @@ std::vector<std::size_t> NumericColumns(const Reading& reading) {
 std::size_t FirstDataRow(const Reading& reading) {
   const std::vector<std::size_t> numeric = NumericColumns(reading);
   const auto may_be_data = [&](const SampledRow& row) {
-    return row.HasData() && row.CanHave(reading.columns);
+    if (!row.HasData()) return false;
+    if (row.CanHave(reading.columns)) return true;
+    // A row that has more than most, as an event of a logger, below a header that names them.
+    if (&row == &reading.rows.front()) return false;
+    const SampledRow& above = *(&row - 1);
+    return !numeric.empty() && row.cells.size() > reading.columns && above.IsText() &&
+           above.cells.size() >= row.cells.size() &&
+           std::ranges::all_of(numeric, [&](std::size_t column) {
+             return row.kinds[column] == NumberCell::Kind::kNumber;
+           });
   };
   auto first = std::ranges::find_if(reading.rows, [&](const SampledRow& row) {
     return may_be_data(row) && std::ranges::none_of(numeric, [&](std::size_t column) {
@@ -175,6 +184,7 @@ class HeaderFinder {
     CsvLayout layout;
     layout.delimiter = reading_.delimiter;
     layout.columns = reading_.columns;
+    layout.usual_columns = reading_.columns;
     const SampledRow& first = reading_.rows[data_];
     layout.data_offset = first.cells.offset;
     layout.data_line = first.cells.line;
@@ -209,7 +219,7 @@ class HeaderFinder {
     if (!row.IsText()) return std::nullopt;
     const CsvRow& data = reading_.rows[data_].cells;
     const std::size_t columns = std::max(row.cells.FilledSize(), data.FilledSize());
-    if (columns <= std::min(row.cells.size(), data.size())) {
+    if (columns <= row.cells.size() && (columns <= data.size() || AnyRowHas(columns))) {
       std::vector<std::string> cells;
       cells.reserve(columns);
       for (std::size_t cell = 0; cell < columns; ++cell) {
@@ -224,6 +234,17 @@ class HeaderFinder {
       }
     }
     return std::nullopt;
+  }
+
+  /// True if a row of data has so many cells, though the first one has fewer.
+  [[nodiscard]] bool AnyRowHas(std::size_t columns) const {
+    CsvTokenizer tokenizer(text_, reading_.delimiter, reading_.rows[data_].cells.offset,
+                           reading_.rows[data_].cells.line);
+    bool found = false;
+    for (CsvRow row; tokenizer.Next(row) && row.size() <= columns;) {
+      found = found || row.size() == columns;
+    }
+    return found;
   }
 
   static bool IsUnitsRow(const std::vector<std::string>& cells) {

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/clock.h"
 #include "io/csv_layout.h"
 #include "io/csv_tokenizer.h"
 #include "io/input_file.h"
@@ -43,16 +44,16 @@ void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t
 }
 
 /// Reads as far as a table can be made of it: to a zero byte, of which RequireText() says where.
-std::string ReadFile(const std::filesystem::path& path, const ReadLimits& limits) {
+std::string ReadFile(const std::filesystem::path& path, const ReadLimits& limits,
+                     TextInput& input) {
   const std::string name = NameOfInput(path);
-  const InputFile file = OpenInput(path);
   std::error_code is_no_file;
   const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
   std::string text;
   std::array<char, 1 << 16> block{};
   std::uintmax_t rows = 0;
   std::size_t line = 0;  // where the last begins
-  while (const std::size_t read = std::fread(block.data(), 1, block.size(), file.get())) {
+  while (const std::size_t read = input.Read(block.data(), block.size())) {
     const std::string_view piece(block.data(), read);
     text.append(piece);
     if (piece.find('\0') != std::string_view::npos) return text;
@@ -66,15 +67,11 @@ std::string ReadFile(const std::filesystem::path& path, const ReadLimits& limits
     rows += static_cast<std::uintmax_t>(std::ranges::count(piece, '\n'));
     RequireWithin(limits, rows, text.size(), name);
   }
-  if (std::ferror(file.get()) != 0) ThrowCannotRead(name);
   return text;
 }
 
 void RequireText(std::string_view text, const std::string& file) {
   if (text.empty()) throw InputError(fmt::format("{}: the file is empty", file));
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    throw InputError(fmt::format("{}: is UTF-16: save it as UTF-8", file));
-  }
   const std::size_t zero = text.find('\0');
   if (zero != std::string_view::npos) {
     throw InputError(fmt::format("{}:{}: is not text, it holds a zero byte: export it as CSV", file,
@@ -129,8 +126,25 @@ CsvTable ParseCsvTable(std::string text, std::string file) {
   CsvTokenizer tokenizer(table.text_, layout.delimiter, layout.data_offset, layout.data_line);
   CsvRow row;
   std::size_t cells_in_last_row = layout.columns;
+  bool may_have_footer = false;  // the data begin with a number
+  std::size_t footer = 0;        // rows at the end that begin with a text
+  std::string footer_fault;      // of the first of them, unless they are at the end of the file
   while (tokenizer.Next(row)) {
-    RequireNoExtraCells(row, layout.columns, table.file_);
+    if (table.lines_.empty()) may_have_footer = !BeginsFooter(row, decimal_comma);
+    if (may_have_footer && BeginsFooter(row, decimal_comma)) {
+      std::size_t column = 0;
+      const std::string fault = DescribeExtraCell(row, layout.columns, column);
+      if (!fault.empty() && footer_fault.empty()) {
+        footer_fault = fmt::format("{}:{}:{}: {}", table.file_, row.line, column + 1, fault);
+      }
+      ++footer;
+    } else {
+      if (!footer_fault.empty()) throw InputError(footer_fault);
+      footer = 0;
+      RequireNoExtraCells(row, layout.columns, table.file_);
+      cells_in_last_row = row.size();
+      if (row.size() < layout.columns) ++table.short_rows_;
+    }
     table.lines_.push_back(row.line);
     table.offsets_.push_back(row.offset);
     for (std::size_t column = 0; column < layout.columns; ++column) {
@@ -141,21 +155,48 @@ CsvTable ParseCsvTable(std::string text, std::string file) {
         decimal_marks.Add(cell.decimal_mark, row, column, table.file_);
       }
     }
-    cells_in_last_row = row.size();
   }
+  if (footer > 0) table.DropFooter(footer);
   if (tokenizer.EndedInQuotes()) ThrowOpenQuote(table.file_, row.line);
   const char last = table.text_.back();
-  if (cells_in_last_row < layout.columns && last != '\n' && last != '\r') {
+  if (cells_in_last_row < layout.usual_columns && last != '\n' && last != '\r') {
     throw InputError(
         fmt::format("{}:{}: the last row is cut short, with {} of {} cells: complete "
                     "the file or remove the row",
-                    table.file_, table.lines_.back(), cells_in_last_row, layout.columns));
+                    table.file_, table.lines_.back(), cells_in_last_row, layout.usual_columns));
   }
   return table;
 }
 
-CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits) {
-  return ParseCsvTable(ReadFile(path, limits), NameOfInput(path));
+CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits,
+                      const std::string& encoding) {
+  TextInput input(path, encoding);
+  CsvTable table = ParseCsvTable(ReadFile(path, limits, input), NameOfInput(path));
+  if (!input.note().empty()) table.notes_.insert(table.notes_.begin(), input.note());
+  return table;
+}
+
+void CsvTable::DropFooter(std::size_t rows) {
+  const std::size_t left = lines_.size() - rows;
+  notes_.push_back(fmt::format("{}:{}: {} below the data skipped, since {} with a text", file_,
+                               lines_[left], rows == 1 ? "a line" : fmt::format("{} lines", rows),
+                               rows == 1 ? "it begins" : "they begin"));
+  lines_.resize(left);
+  offsets_.resize(left);
+  for (std::vector<double>& values : values_) values.resize(left);
+}
+
+std::optional<std::vector<double>> CsvTable::Times(std::size_t column) const {
+  if (text_.empty() || HasNumbers(column)) return std::nullopt;
+  std::vector<double> times;
+  times.reserve(rows());
+  ClockReader clock;
+  for (const std::string& cell : Cells(column)) {
+    const std::optional<double> time = clock.Read(cell);
+    if (!time) return std::nullopt;
+    times.push_back(*time);
+  }
+  return times;
 }
 
 CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source) {
@@ -196,7 +237,7 @@ std::vector<std::string> CsvTable::Cells(std::size_t column) const {
   std::vector<std::string> texts;
   texts.reserve(rows());
   for (CsvRow row; texts.size() < rows() && tokenizer.Next(row);) {
-    texts.emplace_back(Trimmed(row[column]));
+    texts.emplace_back(column < row.size() ? Trimmed(row[column]) : std::string_view());
   }
   return texts;
 }

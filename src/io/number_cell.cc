@@ -121,6 +121,14 @@ std::string DescribeCellFault(const CsvRow& row, std::size_t column, std::size_t
   }
 }
 
+bool BeginsFooter(const CsvRow& row, bool decimal_comma) {
+  for (std::size_t cell = 0; cell < row.size(); ++cell) {
+    const NumberCell::Kind kind = ReadNumber(row[cell], decimal_comma).kind;
+    if (kind != NumberCell::Kind::kEmpty) return kind == NumberCell::Kind::kText;
+  }
+  return false;
+}
+
 std::string DescribeExtraCell(const CsvRow& row, std::size_t columns, std::size_t& column) {
   for (column = columns; column < row.size(); ++column) {
     if (Trimmed(row[column]).empty()) continue;

@@ -47,6 +47,10 @@ std::string_view Trimmed(std::string_view text);
 std::string DescribeCellFault(const CsvRow& row, std::size_t column, std::size_t columns,
                               Delimiter delimiter);
 
+/// True for a row that begins with a text, and not with a number or a mark of a missing one: at the
+/// end of a file it is no data.
+bool BeginsFooter(const CsvRow& row, bool decimal_comma);
+
 /// The first cell beyond the table's columns that holds something, described; "" where none does.
 std::string DescribeExtraCell(const CsvRow& row, std::size_t columns, std::size_t& column);
 

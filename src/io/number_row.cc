@@ -1,10 +1,14 @@
 #include "io/number_row.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <system_error>
 #include <utility>
 
+#include "io/message_text.h"
 #include "io/number_cell.h"
 
 namespace mindahl::io {
@@ -26,9 +30,10 @@ bool BeginsAsNumber(const char* at, const char* end) {
 }  // namespace
 
 NumberRowReader::NumberRowReader(Delimiter delimiter, std::size_t columns,
-                                 std::vector<std::size_t> wanted)
-    : delimiter_(delimiter), wanted_(std::move(wanted)), slots_(columns, -1) {
+                                 std::vector<std::size_t> wanted, std::optional<std::size_t> clock)
+    : delimiter_(delimiter), wanted_(std::move(wanted)), clock_(clock), slots_(columns, -1) {
   for (std::size_t k = 0; k < wanted_.size(); ++k) slots_[wanted_[k]] = static_cast<int>(k);
+  for (const std::size_t column : wanted_) last_wanted_ = std::max(last_wanted_, column);
 }
 
 NumberRowReader::Row NumberRowReader::Read(std::string_view line, std::size_t number,
@@ -52,6 +57,7 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
   if (by_blanks) at = SkipBlanks(at, end);
   for (std::size_t column = 0; column < slots_.size(); ++column) {
     if (column > 0) {  // at the delimiter that ends the cell before
+      if (at == end && column > last_wanted_) return TakeMark(has_point, number);
       if (at == end) return false;
       at = by_blanks ? SkipBlanks(at, end) : at + 1;
     }
@@ -76,6 +82,11 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
     if (at != end && (by_blanks ? !IsBlank(*at) : *at != delimiter)) return false;
   }
   if (at != end && SkipBlanks(at + (by_blanks ? 0 : 1), end) != end) return false;
+  return TakeMark(has_point, number);
+}
+
+/// False where a decimal point is the second mark of the file.
+bool NumberRowReader::TakeMark(bool has_point, std::size_t number) {
   if (has_point && mark_ != '.') {
     if (mark_ != '\0') return false;
     mark_ = '.';
@@ -89,14 +100,26 @@ NumberRowReader::Row NumberRowReader::ReadAny(std::string_view line, std::size_t
   CsvTokenizer tokenizer(line, delimiter_, 0, number);
   if (!tokenizer.Next(row_)) {
     if (!tokenizer.EndedInQuotes()) return Row::kNone;
+    may_be_footer_ = false;
     return Break(0, "a quotation mark opened here is never closed");
   }
+  const bool decimal_comma = delimiter_ != Delimiter::kComma;
+  may_be_footer_ = BeginsFooter(row_, decimal_comma);
   std::size_t extra = 0;
   std::string fault = DescribeExtraCell(row_, slots_.size(), extra);
   if (!fault.empty()) return Break(extra, std::move(fault));
-  const bool decimal_comma = delimiter_ != Delimiter::kComma;
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     const std::size_t column = wanted_[k];
+    if (column == clock_ && column < row_.size()) {
+      const std::optional<double> time = times_.Read(row_[column]);
+      if (!time) {
+        return Break(column, fmt::format("'{}' is not a time of day as the rows above have: write "
+                                         "it like 14:05:06.789, or remove the row",
+                                         ForMessage(row_[column])));
+      }
+      values[k] = *time;
+      continue;
+    }
     const NumberCell cell =
         column < row_.size() ? ReadNumber(row_[column], decimal_comma) : NumberCell{};
     if (cell.kind != NumberCell::Kind::kNumber) {

@@ -53,6 +53,7 @@ constexpr std::array kDisplacementAliases = {
     Alias{"auslenkung", 2},
     Alias{"déplacement", 1},
     Alias{"deplacement", 1},
+    Alias{"変位", 1},
 };
 constexpr std::array kForceAliases = {
     Alias{"tangential force", 0},
@@ -77,10 +78,13 @@ constexpr std::array kForceAliases = {
     Alias{"force tangentielle", 0},
     Alias{"effort tangentiel", 0},
     Alias{"effort", 1},
+    Alias{"摩擦力", 0},
+    Alias{"荷重", 1},
 };
 constexpr std::array kTimeAliases = {
-    Alias{"time", 0}, Alias{"time stamp", 0}, Alias{"timestamp", 0}, Alias{"elapsed time", 0},
-    Alias{"t", 1},    Alias{"zeit", 0},       Alias{"temps", 0},
+    Alias{"time", 0},      Alias{"time stamp", 0}, Alias{"timestamp", 0}, Alias{"elapsed time", 0},
+    Alias{"date/time", 0}, Alias{"date time", 0},  Alias{"datetime", 0},  Alias{"t", 1},
+    Alias{"zeit", 0},      Alias{"temps", 0},      Alias{"時間", 0},
 };
 constexpr std::array kNormalLoadAliases = {
     Alias{"normal load", 0},
@@ -136,6 +140,49 @@ constexpr Role kDrive{
     "displacement",   kDisplacementAliases, LengthOrAngleUnit, LengthOrAngleUnitSymbols, "m",
     "--displacement", "--displacement-unit"};
 
+/// Returns the unit of one quantity over another, "N/um".
+std::optional<Unit> RatioUnit(std::string_view symbol,
+                              std::optional<Unit> (*above)(std::string_view),
+                              std::optional<Unit> (*below)(std::string_view)) {
+  const std::size_t slash = symbol.find('/');
+  if (slash == std::string_view::npos) return std::nullopt;
+  const std::optional<Unit> numerator = above(symbol.substr(0, slash));
+  const std::optional<Unit> denominator = below(symbol.substr(slash + 1));
+  if (!numerator || !denominator) return std::nullopt;
+  return Unit{.symbol = std::string(symbol),
+              .numerator = numerator->numerator * denominator->denominator,
+              .denominator = numerator->denominator * denominator->numerator};
+}
+
+constexpr std::array kResponseAliases = {
+    Alias{"stiffness", 0},
+    Alias{"tangential stiffness", 0},
+    Alias{"contact stiffness", 0},
+    Alias{"secant stiffness", 0},
+    Alias{"tangent stiffness", 0},
+    Alias{"compliance", 0},
+    Alias{"contact compliance", 0},
+    Alias{"kt", 1},
+    Alias{"k", 1},
+    Alias{"K", 1},
+};
+constexpr Role kStiffness{
+    "stiffness",
+    kResponseAliases,
+    [](std::string_view symbol) { return RatioUnit(symbol, ForceUnit, LengthUnit); },
+    [] { return std::string("a force over a length, as N/um"); },
+    "N/m",
+    "--response",
+    "--response-unit"};
+constexpr Role kCompliance{
+    "compliance",
+    kResponseAliases,
+    [](std::string_view symbol) { return RatioUnit(symbol, LengthUnit, ForceUnit); },
+    [] { return std::string("a length over a force, as um/N"); },
+    "m/N",
+    "--response",
+    "--response-unit"};
+
 std::string LowerCase(std::string_view text) {
   std::string lower(text);
   std::ranges::transform(lower, lower.begin(), [](unsigned char character) {
@@ -169,8 +216,10 @@ bool IsVelocity(const ColumnName& column) {
 /// Finds columns and units in one table by name.
 class ColumnFinder {
  public:
-  explicit ColumnFinder(const CsvTable& table) : table_(table) {
-    for (const std::string& name : table.names()) split_.push_back(SplitColumnName(name));
+  explicit ColumnFinder(const CsvTable& table) : ColumnFinder(table, table.names()) {}
+  /// @param names  by which columns are recognised, in place of the table's
+  ColumnFinder(const CsvTable& table, const std::vector<std::string>& names) : table_(table) {
+    for (const std::string& name : names) split_.push_back(SplitColumnName(name));
   }
 
   /// The column, from 0, that the user calls `choice`.
@@ -336,7 +385,8 @@ class ColumnReader {
       : table_(table), finder_(finder), notes_(notes) {}
 
   /// @throws InputError when the choice's unit, or else the header's, is not one for the role.
-  Unit FindUnit(const Role& role, std::size_t column, const std::string& chosen) {
+  Unit FindUnit(const Role& role, std::size_t column, const ColumnChoice& choice) {
+    const std::string& chosen = choice.unit;
     if (!chosen.empty()) {
       if (const auto unit = role.find_unit(chosen)) return *unit;
       if (IsPressureUnit(chosen)) {
@@ -355,6 +405,7 @@ class ColumnReader {
       return {.symbol = std::string(role.si_unit)};
     }
     if (const auto unit = role.find_unit(stated)) return *unit;
+    if (choice.gain) return {.symbol = std::string(role.si_unit)};
     if (IsPressureUnit(stated)) {
       throw InputError(PressureText(
           fmt::format("{}:{}: {}", finder_.Header(), column + 1, finder_.Label(column)), stated,
@@ -391,11 +442,18 @@ class ColumnReader {
     return is_angle || is_torque;
   }
 
-  std::vector<double> Read(const Role& role, std::size_t column, const Unit& unit) {
+  std::vector<double> Read(const Role& role, std::size_t column, Unit unit,
+                           const ColumnChoice& choice) {
     const std::span<const double> numbers = table_.Numbers(column);
     std::vector<double> values(numbers.size());
+    if (choice.gain || choice.zero != 0) {
+      notes_.push_back(fmt::format("{}: {} [{}] is {}·({} − {})", table_.file(), role.name,
+                                   unit.symbol, choice.gain.value_or(1.0), finder_.Label(column),
+                                   choice.zero));
+    }
+    unit.numerator *= choice.gain.value_or(1.0);
     for (std::size_t row = 0; row < numbers.size(); ++row) {
-      values[row] = unit.ToSi(numbers[row]);
+      values[row] = unit.ToSi(numbers[row] - choice.zero);
       if (!std::isfinite(values[row])) {
         throw InputError(fmt::format("{}:{}:{}: {} = {} {} is too large: must be below 1.8e308 {}",
                                      table_.file(), table_.lines()[row], column + 1, role.name,
@@ -405,8 +463,12 @@ class ColumnReader {
     return values;
   }
 
-  ChosenColumn Describe(std::size_t column, const Unit& unit) const {
-    return {table_.names().empty() ? "" : table_.names()[column], column + 1, unit.symbol};
+  ChosenColumn Describe(std::size_t column, const Unit& unit, const ColumnChoice& choice) const {
+    return {.name = table_.names().empty() ? "" : table_.names()[column],
+            .number = column + 1,
+            .unit = unit.symbol,
+            .gain = choice.gain.value_or(1.0),
+            .zero = choice.zero};
   }
 
  private:
@@ -439,6 +501,15 @@ bool GoesToAndFro(std::span<const double> values) {
   }
   constexpr double kGoodPart = 0.4;
   return std::min(rise, fall) > kGoodPart * (greatest - least);
+}
+
+/// Returns a header cell without the word "amplitude".
+std::string WithoutAmplitude(const std::string& name) {
+  constexpr std::string_view kWord = "amplitude";
+  const std::size_t at = LowerCase(name).find(kWord);
+  if (at == std::string::npos || at == 0) return name;
+  std::string rest = name.substr(0, at - 1) + name.substr(at + kWord.size());
+  return rest;
 }
 
 /// Columns from 0, by role.
@@ -562,6 +633,7 @@ class RoleAssigner {
 std::string WhyUnusable(const CsvTable& table, const ColumnFinder& finder, const Role& role,
                         std::size_t column, const ColumnChoice& choice) {
   if (!table.HasNumbers(column)) return "holds no numbers";
+  if (choice.gain) return "";
   const std::string stated = choice.unit.empty() ? finder.HeaderUnit(column, role.unit_option) : "";
   if (IsPressureUnit(stated)) return fmt::format("is a pressure, in {}", stated);
   if (!stated.empty() && !role.find_unit(stated)) {
@@ -622,7 +694,7 @@ class CovariateReader {
 
   void Add(std::size_t column, const std::string& name, std::span<const double> numbers) {
     const std::string unit = finder_.HeaderUnit(column, kCovariate.unit_option);
-    file_.covariates.push_back({name, column + 1, unit});
+    file_.covariates.push_back({.name = name, .number = column + 1, .unit = unit});
     file_.record.covariates.push_back(
         {.name = name, .unit = unit, .values = {numbers.begin(), numbers.end()}});
   }
@@ -655,7 +727,7 @@ std::vector<double> ReadPathColumn(const CsvTable& table, const Role& role,
   }
   std::vector<std::string> notes;
   ColumnReader reader(table, finder, notes);
-  return reader.Read(role, column, reader.FindUnit(role, column, choice.unit));
+  return reader.Read(role, column, reader.FindUnit(role, column, choice), choice);
 }
 
 }  // namespace
@@ -665,9 +737,77 @@ std::optional<Unit> ForceOrTorqueUnit(std::string_view symbol) {
   return force ? force : TorqueUnit(symbol);
 }
 
+void JoinedTimes::Shift(std::vector<double>& times) {
+  if (times.empty()) return;
+  if (begins_ && times.front() + shift_ < last_) shift_ = last_ + step_ - times.front();
+  begins_ = false;
+  for (double& time : times) time += shift_;
+  if (times.size() > 1) step_ = times.back() - times[times.size() - 2];
+  last_ = times.back();
+}
+
+RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names) {
+  RecordFile joined = std::move(records.front());
+  joined.lines.clear();
+  JoinedTimes times;
+  times.Shift(joined.record.time);
+  for (std::size_t k = 1; k < records.size(); ++k) {
+    RecordFile& next = records[k];
+    const auto require = [&](bool same, std::string_view what) {
+      if (same) return;
+      throw InputError(
+          fmt::format("--join: one of {} and {} has {} and the other has not: pieces of "
+                      "one record have the same columns",
+                      names.front(), names[k], what));
+    };
+    require(next.time.has_value() == joined.time.has_value(), "a time");
+    require(next.normal_load.has_value() == joined.normal_load.has_value(), "a normal load");
+    require(next.is_torsional == joined.is_torsional, "a torque");
+    times.NextFile();
+    times.Shift(next.record.time);
+    const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    loop::Record& record = joined.record;
+    append(next.record.displacement, record.displacement);
+    append(next.record.force, record.force);
+    append(next.record.time, record.time);
+    append(next.record.normal_load, record.normal_load);
+    for (std::size_t c = record.covariates.size(); c-- > 0;) {
+      const auto same = std::ranges::find(next.record.covariates, record.covariates[c].name,
+                                          &loop::Covariate::name);
+      if (same != next.record.covariates.end()) {
+        append(same->values, record.covariates[c].values);
+      } else {
+        record.covariates.erase(record.covariates.begin() + static_cast<std::ptrdiff_t>(c));
+        joined.covariates.erase(joined.covariates.begin() + static_cast<std::ptrdiff_t>(c));
+      }
+    }
+    joined.notes.insert(joined.notes.end(), next.notes.begin(), next.notes.end());
+  }
+  return joined;
+}
+
+/// @throws InputError for a calibration that is none
+void RequireCalibration(const Role& role, const ColumnChoice& choice) {
+  if (std::isfinite(choice.gain.value_or(1.0)) && choice.gain != 0.0 &&
+      std::isfinite(choice.zero)) {
+    return;
+  }
+  throw InputError(
+      fmt::format("the gain {} and zero {} of the {} are invalid: must be finite, the "
+                  "gain not 0",
+                  choice.gain.value_or(1.0), choice.zero, role.name));
+}
+
 RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
+  RequireCalibration(kDisplacement, columns.displacement);
+  RequireCalibration(kForce, columns.force);
+  RequireCalibration(kTime, columns.time);
+  RequireCalibration(kNormalLoad, columns.normal_load);
   const ColumnFinder finder(table);
   RecordFile file;
+  file.notes = table.notes();
   if (table.preamble_rows() > 0) {
     file.notes.push_back(fmt::format("{}: {} row{} above the header skipped", finder.Header(),
                                      table.preamble_rows(), table.preamble_rows() == 1 ? "" : "s"));
@@ -677,13 +817,17 @@ RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
 
   const auto read = [&](const Role& role, std::size_t column, const ColumnChoice& choice,
                         std::vector<double>& values) {
-    const Unit unit = reader.FindUnit(role, column, choice.unit);
-    values = reader.Read(role, column, unit);
-    return reader.Describe(column, unit);
+    const Unit unit = reader.FindUnit(role, column, choice);
+    values = reader.Read(role, column, unit, choice);
+    return reader.Describe(column, unit, choice);
   };
   const auto read_optional = [&](const Role& role, std::optional<std::size_t> column,
                                  const ColumnChoice& choice,
                                  std::vector<double>& values) -> std::optional<ChosenColumn> {
+    if (!column && (choice.gain || choice.zero != 0)) {
+      throw InputError(fmt::format("{}: there is no column of the {} to calibrate: name it with {}",
+                                   table.file(), role.name, role.option));
+    }
     if (!column) return std::nullopt;
     if (choice.column.empty()) {
       const std::string fault = WhyUnusable(table, finder, role, *column, choice);
@@ -703,7 +847,18 @@ RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
                            columns.displacement, record.displacement);
   file.force =
       read(file.is_torsional ? kTorque : kForce, assigned.force, columns.force, record.force);
-  file.time = read_optional(kTime, assigned.time, columns.time, record.time);
+  std::optional<std::vector<double>> clock;
+  if (assigned.time) clock = table.Times(*assigned.time);
+  if (clock) {
+    record.time = std::move(*clock);
+    file.time = reader.Describe(*assigned.time, {.symbol = "s"}, {});
+    file.time->is_clock = true;
+    file.notes.push_back(fmt::format(
+        "{}: time {} holds times of day: taken as seconds since midnight of the first one's day",
+        table.file(), finder.Label(*assigned.time)));
+  } else {
+    file.time = read_optional(kTime, assigned.time, columns.time, record.time);
+  }
   file.normal_load = read_optional(file.is_torsional ? kLoadOfTorsion : kNormalLoad,
                                    assigned.normal_load, columns.normal_load, record.normal_load);
   if (table.MayHaveCommasForThousands(assigned.displacement) &&
@@ -712,6 +867,11 @@ RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
         "{}: every {} and {} is written like 1,234: the comma is taken for a decimal mark, as in "
         "1.234; leave it out where it separates thousands",
         table.file(), kDisplacement.name, kForce.name));
+  }
+  if (table.short_rows() > 0) {
+    file.notes.push_back(fmt::format("{}: {} of {} rows have no cell for {}: left out",
+                                     table.file(), table.short_rows(), table.rows(),
+                                     finder.Label(table.columns() - 1)));
   }
   CovariateReader covariates(table, finder, assigned, file);
   covariates.ReadChosen(columns.covariates);
@@ -730,7 +890,8 @@ std::string DescribeTimeFault(double time, double time_above, std::string_view u
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
   RecordFile file = RecordOfRows(table, columns);
   if (!file.time) return file;
-  const std::span<const double> times = table.NumbersOrNan(file.time->number - 1);
+  const std::span<const double> times =
+      file.time->is_clock ? file.record.time : table.NumbersOrNan(file.time->number - 1);
   for (std::size_t row = 1; row < times.size(); ++row) {
     const std::string fault = DescribeTimeFault(times[row], times[row - 1], file.time->unit);
     if (fault.empty()) continue;
@@ -742,7 +903,69 @@ RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns) {
 
 RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& columns,
                       const ReadLimits& limits) {
-  return RecordOf(ReadCsvTable(path, limits), columns);
+  return RecordOf(ReadCsvTable(path, limits, columns.encoding), columns);
+}
+
+SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
+                    const ColumnChoice& response) {
+  const CsvTable table = ReadCsvTable(path, {}, columns.encoding);
+  std::vector<std::string> names;
+  for (const std::string& name : table.names()) names.push_back(WithoutAmplitude(name));
+  const ColumnFinder finder(table, names);
+  SweepFile sweep;
+  sweep.notes = table.notes();
+  sweep.lines = table.lines();
+  std::vector<bool> taken(table.columns(), false);
+  const auto find = [&](const Role& role, const ColumnChoice& choice) {
+    std::optional<std::size_t> column;
+    if (!choice.column.empty()) {
+      column = finder.Chosen(choice.column, role);
+    } else {
+      column = finder.Recognized(role, taken);
+    }
+    if (column) taken[*column] = true;
+    return column;
+  };
+  const std::optional<std::size_t> responses = find(kStiffness, response);
+  std::optional<std::size_t> displacement;
+  std::optional<std::size_t> force;
+  if (columns.force.column.empty()) displacement = find(kDisplacement, columns.displacement);
+  if (columns.displacement.column.empty()) force = find(kForce, columns.force);
+  if (!responses) {
+    throw InputError(
+        fmt::format("{}: no column of a stiffness or compliance is recognised: name it "
+                    "with --response: {}",
+                    table.file(), finder.Listing()));
+  }
+  if (displacement.has_value() == force.has_value()) {
+    throw InputError(fmt::format(
+        "{}: {} of the amplitude is recognised: name the one with --displacement or --force: {}",
+        table.file(), force ? "more than one column" : "no column", finder.Listing()));
+  }
+  sweep.over_force = force.has_value();
+  ColumnReader reader(table, finder, sweep.notes);
+  const Role& role = sweep.over_force ? kForce : kDisplacement;
+  const ColumnChoice& choice = sweep.over_force ? columns.force : columns.displacement;
+  const std::size_t amplitudes = sweep.over_force ? *force : *displacement;
+  sweep.amplitude =
+      reader.Read(role, amplitudes, reader.FindUnit(role, amplitudes, choice), choice);
+  const std::string stated =
+      response.unit.empty() ? finder.HeaderUnit(*responses, kStiffness.unit_option) : response.unit;
+  sweep.is_compliance = stated.empty() ? finder.NameOf(*responses).starts_with("compliance")
+                                       : RatioUnit(stated, LengthUnit, ForceUnit).has_value();
+  const Role& kind = sweep.is_compliance ? kCompliance : kStiffness;
+  sweep.response =
+      reader.Read(kind, *responses, reader.FindUnit(kind, *responses, response), response);
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (const auto& [values, column] :
+         {std::pair{&sweep.amplitude, amplitudes}, std::pair{&sweep.response, *responses}}) {
+      if ((*values)[row] > 0) continue;
+      throw InputError(
+          fmt::format("{}:{}:{}: {} in SI units must be > 0 in a sweep: remove the row",
+                      table.file(), table.lines()[row], column + 1, (*values)[row]));
+    }
+  }
+  return sweep;
 }
 
 std::vector<double> ReadDisplacementPath(const std::filesystem::path& path,

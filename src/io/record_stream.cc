@@ -26,6 +26,9 @@ namespace {
 /// Size [bytes] of the first rows, by which the content of the columns is judged.
 constexpr std::size_t kJudged = LinePieces::kPiece / 8;
 
+/// Lines at the end of a file that are taken for a footer at the most.
+constexpr std::size_t kLongestFooter = 1000;
+
 /// Takes the first line off a text, without its end.
 std::string_view TakeLine(std::string_view& text) {
   const void* const found = std::memchr(text.data(), '\n', text.size());
@@ -44,12 +47,13 @@ struct RecordStream::State {
   struct StreamedColumn {
     std::size_t column;  // from 0
     Unit unit;
+    double zero;
     std::vector<double> Samples::*values;
     std::string_view name;
   };
 
   State(const std::filesystem::path& path, const RecordColumns& columns, BrokenRows policy)
-      : name(NameOfInput(path)), pieces(path), broken(policy) {
+      : name(NameOfInput(path)), pieces(path, columns.encoding), broken(policy) {
     Open(pieces.Next(), columns);
   }
 
@@ -57,7 +61,8 @@ struct RecordStream::State {
   std::string WholeRows(std::string_view text, const CsvLayout& found) const;
   bool Next(Samples& samples);
   void Read(std::string_view text, Samples& samples);
-  void MindBrokenRow(std::size_t column, const std::string& fault);
+  void MindBrokenRow(std::size_t row, std::size_t column, const std::string& fault);
+  void MindFooter();
 
   std::string name;
   LinePieces pieces;
@@ -67,6 +72,12 @@ struct RecordStream::State {
   NumberRowReader rows{Delimiter::kComma, 0, {}};  // of no columns until the layout is known
   std::string_view first;                          // rows of the first piece
   std::size_t line = 0;                            // last that was read
+  struct FooterLine {
+    std::size_t line;
+    std::size_t column;
+    std::string fault;
+  };
+  std::vector<FooterLine> footer;  // the last lines, that begin with a text
   std::size_t broken_rows = 0;
   std::string first_broken_row;
   std::string refusal;                                     // of a row that is reached next
@@ -84,9 +95,11 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
   const std::size_t judged = text.find('\n', found.data_offset + kJudged);
   const CsvTable table = ParseCsvTable(WholeRows(text.substr(0, judged), found), name);
   layout = RecordOfRows(table, columns);
-  const auto add = [&](const ChosenColumn& column, const std::optional<Unit>& unit,
+  if (!pieces.note().empty()) layout.notes.insert(layout.notes.begin(), pieces.note());
+  const auto add = [&](const ChosenColumn& column, std::optional<Unit> unit,
                        std::vector<double> Samples::*values, std::string_view what) {
-    channels.push_back({column.number - 1, *unit, values, what});
+    unit->numerator *= column.gain;
+    channels.push_back({column.number - 1, *unit, column.zero, values, what});
   };
   add(layout.displacement,
       layout.is_torsional ? AngleUnit(layout.displacement.unit)
@@ -103,7 +116,9 @@ void RecordStream::State::Open(std::string_view text, const RecordColumns& colum
   std::vector<std::size_t> wanted;
   wanted.reserve(channels.size());
   for (const StreamedColumn& channel : channels) wanted.push_back(channel.column);
-  rows = NumberRowReader(found.delimiter, table.columns(), std::move(wanted));
+  const bool has_clock = layout.time && layout.time->is_clock;
+  rows = NumberRowReader(found.delimiter, table.columns(), std::move(wanted),
+                         has_clock ? std::optional(layout.time->number - 1) : std::nullopt);
   layout.record = {};
   layout.lines.clear();
   layout.covariates.clear();
@@ -158,24 +173,32 @@ void RecordStream::State::Read(std::string_view text, Samples& samples) {
       case NumberRowReader::Row::kNone:
         continue;
       case NumberRowReader::Row::kBroken:
-        MindBrokenRow(rows.fault_column(), rows.fault());
+        if (rows.may_be_footer()) {  // unless data follow
+          footer.push_back({line, rows.fault_column(), rows.fault()});
+          if (footer.size() > kLongestFooter) MindFooter();
+        } else {
+          MindFooter();
+          MindBrokenRow(line, rows.fault_column(), rows.fault());
+        }
         continue;
       case NumberRowReader::Row::kNumbers:
+        MindFooter();
         break;
     }
+    if (!refusal.empty()) return;
     if (layout.time) {
       const double above = std::exchange(time, values[kTimeChannel]);
       const std::string fault = DescribeTimeFault(time, above, layout.time->unit);
       if (!fault.empty()) {
-        MindBrokenRow(channels[kTimeChannel].column, fault);
+        MindBrokenRow(line, channels[kTimeChannel].column, fault);
         continue;
       }
     }
     bool is_finite = true;
     for (std::size_t k = 0; k < channels.size(); ++k) {
-      const double value = channels[k].unit.ToSi(values[k]);
+      const double value = channels[k].unit.ToSi(values[k] - channels[k].zero);
       if (is_finite && !std::isfinite(value)) {
-        MindBrokenRow(channels[k].column,
+        MindBrokenRow(line, channels[k].column,
                       fmt::format("{} = {} {} is too large: must be below 1.8e308 in SI units",
                                   channels[k].name, values[k], channels[k].unit.symbol));
         is_finite = false;
@@ -190,8 +213,16 @@ void RecordStream::State::Read(std::string_view text, Samples& samples) {
   }
 }
 
-void RecordStream::State::MindBrokenRow(std::size_t column, const std::string& fault) {
-  const std::string message = fmt::format("{}:{}:{}: {}", name, line, column + 1, fault);
+/// Takes lines that begin with a text for broken rows, since data follow.
+void RecordStream::State::MindFooter() {
+  for (const FooterLine& row : footer) MindBrokenRow(row.line, row.column, row.fault);
+  footer.clear();
+}
+
+void RecordStream::State::MindBrokenRow(std::size_t row, std::size_t column,
+                                        const std::string& fault) {
+  if (!refusal.empty()) return;
+  const std::string message = fmt::format("{}:{}:{}: {}", name, row, column + 1, fault);
   if (broken == BrokenRows::kRefuse) {
     refusal = message;
   } else if (broken_rows++ == 0) {
@@ -208,6 +239,7 @@ const RecordFile& RecordStream::layout() const { return state_->layout; }
 bool RecordStream::Next(Samples& samples) { return state_->Next(samples); }
 std::size_t RecordStream::broken_rows() const { return state_->broken_rows; }
 const std::string& RecordStream::first_broken_row() const { return state_->first_broken_row; }
+std::size_t RecordStream::footer_lines() const { return state_->footer.size(); }
 std::uintmax_t RecordStream::bytes() const { return state_->pieces.bytes(); }
 
 }  // namespace mindahl::io

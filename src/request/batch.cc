@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <filesystem>
 #include <future>
 #include <new>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/csv_writer.h"
+#include "mindahl/io/digest.h"
 #include "report/json_document.h"
 #include "report/statements.h"
 #include "request/json.h"
@@ -178,6 +180,7 @@ BatchEntry FitSource(const FitRequest& request, const std::string& name, Strictn
   const Tell note = [&](std::string_view text) { entry.notes.emplace_back(text); };
   std::string& fault = entry.result.fault;
   try {
+    if (std::filesystem::is_regular_file(name)) entry.sha256 = io::Sha256OfFile(name).value_or("");
     Validate(own);
     const report::Report report = FitRecords(own, read(own, note), note);
     entry.fit = std::make_shared<FitDocument>(FitDocument{report::JsonDocument(report)});
@@ -249,6 +252,8 @@ std::vector<BatchColumn> TableOf(std::span<const BatchEntry> entries) {
   }
   add("warnings", [](const BatchEntry& entry) { return BatchCell(WarningsOf(entry)); });
   add("fault", [](const BatchEntry& entry) { return BatchCell(entry.result.fault); });
+  add("version", [](const BatchEntry&) { return BatchCell(std::string(Version())); });
+  add("sha256", [](const BatchEntry& entry) { return BatchCell(entry.sha256); });
   return table;
 }
 

@@ -393,6 +393,14 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
                           const Tell& note) {
   if (inputs.empty()) throw InputError("a fit needs a record: give one");
   RequireSameSize("names", request.files.size(), "records", inputs.size());
+  if (request.join && inputs.size() > 1) {
+    FitRequest joined = request;
+    joined.join = false;
+    joined.files = {fmt::format("{} … {}", request.files.front(), request.files.back())};
+    std::vector<RecordFile> one;
+    one.push_back(io::Joined(std::move(inputs), request.files));
+    return FitRecords(joined, std::move(one), note);
+  }
   RequireLoadsOfRecords(request);
   FitOptions options = MakeFitOptions(request);
   RequireColumns(request, inputs);

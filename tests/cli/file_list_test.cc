@@ -1,11 +1,13 @@
 #include "cli/file_list.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command_line.h"
@@ -115,6 +117,132 @@ TEST(TrackedFiles, AreTheSameFromAList) {
   EXPECT_THAT(none.Errors(), SizeIs(1));
   EXPECT_THAT(none.err, HasSubstr("FILE is required"));
   EXPECT_THAT(none.out, IsEmpty());
+}
+
+/// Five tests: of more than two batches of 64 cycles, of a few, one whose record breaks off in a
+/// row after its first batch, one that is not there, and one of a few cycles again.
+class SeparateTests : public ::testing::Test {
+ protected:
+  SeparateTests() {
+    for (const auto& [name, cycles] :
+         {std::pair{"long", 140}, {"short", 4}, {"broken", 90}, {"last", 5}}) {
+      files_.push_back(Path(name));
+      const Outcome made =
+          RunCommand({"simulate", "--sigma", "5e7", "--slip-force", std::to_string(50 + cycles % 7),
+                      "--amplitude", "2.5e-6", "--cycles", std::to_string(cycles),
+                      "--samples-per-cycle", "24", "--noise-force", "0.3", "-o", files_.back()});
+      EXPECT_EQ(made.status, kDone) << made.err;
+    }
+    whole_record_ = FileContent(files_[2]);
+    const std::size_t row = whole_record_.find('\n', whole_record_.size() * 5 / 6);
+    directory_.Write("broken", whole_record_.substr(0, row) + "\n0,nothing,0\n");
+    files_.insert(files_.end() - 1, Path("absent"));
+  }
+
+  std::string Path(const std::string& name) const { return (directory_.path() / name).string(); }
+
+  Outcome Track(const std::string& output, std::vector<std::string> more) const {
+    std::vector<std::string> words = {"track",      "--separate", "--output",
+                                      Path(output), "--json",     "-"};
+    words.insert(words.end(), files_.begin(), files_.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return RunCommand(words);
+  }
+
+  TemporaryDirectory directory_;
+  std::vector<std::string> files_;
+  std::string whole_record_;  // of the one that is broken
+};
+
+TEST_F(SeparateTests, HaveTheRowsOfEachTestTrackedAlone) {
+  const Outcome outcome = Track("all.csv", {});
+  EXPECT_EQ(outcome.status, kNotEstablished);
+  const std::vector<std::string> rows = testing::Lines(FileContent(Path("all.csv")));
+  EXPECT_EQ(rows[0].find('['), std::string::npos) << "names of columns need no quotes";
+  std::size_t row = 1;
+  for (const std::string& file : files_) {
+    const std::string alone = Path("alone.csv");
+    const Outcome single = RunCommand({"track", file, "--output", alone, "--overwrite"});
+    if (file != Path("absent")) {
+      const std::vector<std::string> expected = testing::Lines(FileContent(alone));
+      for (std::size_t k = 1; k < expected.size(); ++k, ++row) {
+        const std::string cells = expected[k].substr(0, expected[k].rfind(','));
+        EXPECT_THAT(rows[row], ::testing::StartsWith(file + ","));
+        EXPECT_THAT(rows[row], HasSubstr(",," + cells + ",")) << "no fault, then the same cells";
+        EXPECT_THAT(rows[row], ::testing::EndsWith(",force"));
+        EXPECT_EQ(testing::Cells(rows[row]).size(), testing::Cells(rows[0]).size());
+      }
+    }
+    if (single.status == kDone) continue;
+    EXPECT_THAT(rows[row], ::testing::StartsWith(file + ","));
+    EXPECT_THAT(rows[row++], HasSubstr(file == Path("absent") ? "cannot read" : "nothing"));
+  }
+  EXPECT_EQ(row, rows.size());
+  const nlohmann::json json = outcome.Json();
+  EXPECT_EQ(json["tests"].size(), files_.size());
+  EXPECT_EQ(json["fits"], rows.size() - 3);  // but for the header and two faults
+  EXPECT_TRUE(json["tests"][0]["fault"].is_null());
+  EXPECT_TRUE(json["tests"][2]["fault"].is_string());
+}
+
+TEST_F(SeparateTests, MakeTheTableOfAllWhateverTheNumberOfShards) {
+  Track("all.csv", {});
+  const std::string whole = FileContent(Path("all.csv"));
+  const std::size_t header = whole.find('\n') + 1;
+  for (const int parts : {1, 2, 3, 7}) {  // of the last, two have no test
+    std::string joined = whole.substr(0, header);
+    for (int part = 1; part <= parts; ++part) {
+      Track("part.csv", {"--overwrite", "--shard", fmt::format("{}/{}", part, parts)});
+      const std::string table = FileContent(Path("part.csv"));
+      EXPECT_EQ(table.substr(0, header), whole.substr(0, header));
+      joined += table.substr(header);
+    }
+    EXPECT_EQ(joined, whole) << parts;
+  }
+}
+
+TEST_F(SeparateTests, GoOnFromWhereverTheyWereKilled) {
+  const nlohmann::json summary = Track("all.csv", {}).Json();
+  const std::string whole = FileContent(Path("all.csv"));
+  const std::size_t step = whole.size() / 11;
+  for (std::size_t bytes = whole.size(); bytes > step; bytes -= step) {
+    directory_.Write("all.csv", whole.substr(0, bytes));
+    const Outcome outcome = Track("all.csv", {"--resume"});
+    EXPECT_EQ(outcome.status, kNotEstablished) << outcome.err;
+    EXPECT_EQ(FileContent(Path("all.csv")), whole) << bytes;
+    EXPECT_EQ(outcome.Json(), summary) << bytes;
+  }
+}
+
+TEST_F(SeparateTests, AreDoneAgainFromOneThatFailedOnceItsRecordIsRepaired) {
+  Track("all.csv", {});
+  directory_.Write("broken", whole_record_);
+  EXPECT_EQ(Track("all.csv", {"--resume"}).status, kNotEstablished) << "one is still absent";
+  Track("anew.csv", {});
+  EXPECT_EQ(FileContent(Path("all.csv")), FileContent(Path("anew.csv")));
+}
+
+TEST_F(SeparateTests, RefuseToGoOnWithWhatWasMadeOtherwise) {
+  Track("all.csv", {});
+  const std::string whole = FileContent(Path("all.csv"));
+  EXPECT_EQ(Track("all.csv", {"--resume", "--fix", "alpha=0.3"}).status, kBadInput);
+  EXPECT_EQ(Track("all.csv", {"--resume", "--shard", "2/2"}).status, kBadInput);
+  directory_.Write("short", whole_record_);
+  const Outcome changed = Track("all.csv", {"--resume"});
+  EXPECT_EQ(changed.status, kBadInput);
+  EXPECT_THAT(changed.err, HasSubstr("another --output"));
+  EXPECT_EQ(FileContent(Path("all.csv")), whole);
+  files_.resize(2);
+  EXPECT_EQ(Track("all.csv", {"--resume"}).status, kBadInput);
+  EXPECT_EQ(FileContent(Path("all.csv")), whole);
+}
+
+TEST_F(SeparateTests, AreAskedForWhereFilesAreSharded) {
+  const Outcome outcome =
+      RunCommand({"track", files_[0], files_[1], "--shard", "1/2", "--output", Path("one.csv")});
+  EXPECT_EQ(outcome.status, kBadInput);
+  EXPECT_THAT(outcome.err, HasSubstr("add --separate"));
+  EXPECT_EQ(Track("no.csv", {"--plot", Path("no.svg")}).status, kBadInput);
 }
 
 }  // namespace

@@ -99,8 +99,11 @@ COMMANDS = [
     ("tradeoff --excitation micro", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
+    ("fit sweep.csv --sweep tangent", 0),
+    ("fit sweep.csv --sweep tangent --model mindlin", 0),
     ("track long.csv --output cycles.csv --normal-load 50", 0),
     ("track long.csv --output again.csv --average 3", 0),
+    ("track long.csv twin.csv broken.csv --separate --output tests.csv", 3),
     ("batch loop.csv twin.csv data/partial_slip.csv --output table.csv --normal-load 50", 0),
     ("batch loop.csv broken.csv --output table2.csv", 3),
 ]
@@ -121,6 +124,8 @@ def make_files(directory, run):
           [f"{x},{(k * 7919 % 101) / 50 - 1}" for k, (_, x, _) in enumerate(cells)])
     write("loaded.csv", "time [s],displacement [m],force [N],normal load [N]",
           [f"{row},{50 + k % 3}" for k, row in enumerate(rows)])
+    write("sweep.csv", "force amplitude [N],stiffness [N/um]",
+          [f"{q},{40 * (1 - q / 60) ** 0.333 + (q * 7919 % 11) / 50}" for q in range(4, 55, 4)])
     write("broken.csv", "displacement [m],force [N]", ["0,0", "1e-6,much"])
     # Excursions of all sizes: no gate of the reversals is surer than another.
     steps_to_and_fro = random.Random(2)
@@ -245,10 +250,11 @@ def check_outputs(program):
             document = json.loads(done.stdout, parse_constant=lambda text: problems.append(
                 f"{line}: {text} is no JSON"))
             seen[document["schema"]] += 1
-            if document["schema"] != f"mindahl.{line.split()[0]}/1":
+            name = ("sweep" if "--sweep" in line else "track_separate" if "--separate" in line
+                    else line.split()[0])
+            if document["schema"] != f"mindahl.{name}/1":
                 problems.append(f"{line}: schema {document['schema']}")
             problems += [f"{line}: {fault}" for fault in faults(document)]
-            name = line.split()[0]
             keys[name].update(keys_of(document, SCHEMAS[name], SCHEMAS[name]))
     for name in SCHEMAS:
         if not seen[f"mindahl.{name}/1"]:

@@ -148,7 +148,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Prose", "Dear Sir,\nyours, truly\n",
               "loop.csv:2:1: 'yours' is not a number, nor has any other of the first 2 rows "
               "numbers: expected columns of numbers under an optional header"},
-        Fault{"Utf16", std::string("\xFF\xFEx\0,\0", 6), "loop.csv: is UTF-16: save it as UTF-8"},
+        Fault{"Utf16", std::string("\xFF\xFEx\0,\0", 6),
+              "loop.csv:1: is not text, it holds a zero byte: export it as CSV"},
         Fault{"Binary", std::string("x,F\n1,2\n\0\1", 10),
               "loop.csv:3: is not text, it holds a zero byte: export it as CSV"},
         Fault{"Word", "x,F\n1,2\n3,abc\n",

@@ -145,8 +145,8 @@ TEST(RecordReader, ReadsTimeAndNormalLoadThatAreAskedFor) {
   EXPECT_EQ(file.normal_load->unit, "kN");
 }
 
-TEST(RecordReader, LeavesOutUnaskedTimeOfClockWithNote) {
-  const std::string text = "time,x [m],F [N]\n12:00:01,1.5,2.5\n12:00:02,3.5,4.5\n";
+TEST(RecordReader, LeavesOutUnaskedTimeWithoutNumbersWithNote) {
+  const std::string text = "time,x [m],F [N]\nfirst,1.5,2.5\nsecond,3.5,4.5\n";
   EXPECT_FALSE(Read(text).time);
   EXPECT_EQ(Notes(text), (Strings{"loop.csv: time 'time' (column 1) holds no numbers: left out"}));
 }
@@ -154,8 +154,9 @@ TEST(RecordReader, LeavesOutUnaskedTimeOfClockWithNote) {
 TEST(RecordReader, LeavesOutUnaskedNormalLoadInUnknownUnitWithNote) {
   const std::string text = "normal [V],x [m],F [N]\n1.5,2.5,3.5\n";
   EXPECT_FALSE(Read(text).normal_load);
-  EXPECT_EQ(Notes(text), (Strings{"loop.csv: normal load 'normal [V]' (column 1) has the unit 'V', "
-                                  "not one of N, mN, uN, kN, MN, lbf, kgf, kip: left out"}));
+  EXPECT_EQ(Notes(text),
+            (Strings{"loop.csv: normal load 'normal [V]' (column 1) has the unit 'V', "
+                     "not one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN: left out"}));
 }
 
 // --- Units ---------------------------------------------------------------------------------------
@@ -274,14 +275,16 @@ INSTANTIATE_TEST_SUITE_P(
               "loop.csv: no column for the force: the file has 1 column"},
         Fault{"UnknownChosenUnit", "x,F\n1,2\n", Choose({"", "furlong"}),
               "loop.csv: the displacement unit 'furlong' is not known: must be one of m, mm, um, "
-              "nm, in"},
+              "nm, cm, in, ft, mil"},
         Fault{
             "UnknownUnitInHeader", "\nt,x [m],F [V]\n1,2,3\n", Choose({}),
             "loop.csv:2:3: the unit 'V' of 'F [V]' (column 3) is not known for the force: must be "
-            "one of N, mN, uN, kN, MN, lbf, kgf, kip, or choose the unit with --force-unit"},
+            "one of N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN, or choose the unit with "
+            "--force-unit"},
         Fault{"PressureInHeader", "x [m],p [bar]\n1,2\n", Choose({}, {"p", ""}),
               "loop.csv:1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force: choose "
-              "another column; a pressure times the area that it acts on is a force in addition to the "
+              "another column; a pressure times the area that it acts on is a force in addition to "
+              "the "
               "contact's, which --covariate takes"},
         Fault{"PressureAsAChosenUnit", "x [m],F\n1,2\n", Choose({}, {"", "MPa"}),
               "loop.csv: 'F' (column 2) is a pressure, in MPa, and no force: choose another "
@@ -314,22 +317,26 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"VelocityByItsUnit", "drive [mm/s],F\n1,2\n2,1\n", Choose({}),
               "loop.csv:2:1: 'drive [mm/s]' (column 1) is a velocity: name the column of the "
               "displacement with --displacement"},
-        Fault{"UnknownUnitInUnitsRow", "x,F\nfurlong,N\n1,2\n", Choose({}),
-              "loop.csv:1:1: the unit 'furlong' of 'x' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
-              "--displacement-unit"},
-        Fault{"UnknownUnitBehindSlash", "x / m/s,F\n1,2\n", Choose({}),
-              "loop.csv:1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
-              "--displacement-unit"},
-        Fault{"UnknownUnitBehindComma", "\"x, furlong\",F\n1,2\n", Choose({}),
-              "loop.csv:1:1: the unit 'furlong' of 'x, furlong' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
-              "--displacement-unit"},
-        Fault{"ForceUnitForDisplacement", "displacement_N,F\n1,2\n", Choose({}),
-              "loop.csv:1:1: the unit 'N' of 'displacement_N' (column 1) is not known for the "
-              "displacement: must be one of m, mm, um, nm, in, or choose the unit with "
-              "--displacement-unit"},
+        Fault{
+            "UnknownUnitInUnitsRow", "x,F\nfurlong,N\n1,2\n", Choose({}),
+            "loop.csv:1:1: the unit 'furlong' of 'x' (column 1) is not known for the "
+            "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
+            "--displacement-unit"},
+        Fault{
+            "UnknownUnitBehindSlash", "x / m/s,F\n1,2\n", Choose({}),
+            "loop.csv:1:1: the unit 'm/s' of 'x / m/s' (column 1) is not known for the "
+            "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
+            "--displacement-unit"},
+        Fault{
+            "UnknownUnitBehindComma", "\"x, furlong\",F\n1,2\n", Choose({}),
+            "loop.csv:1:1: the unit 'furlong' of 'x, furlong' (column 1) is not known for the "
+            "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
+            "--displacement-unit"},
+        Fault{
+            "ForceUnitForDisplacement", "displacement_N,F\n1,2\n", Choose({}),
+            "loop.csv:1:1: the unit 'N' of 'displacement_N' (column 1) is not known for the "
+            "displacement: must be one of m, mm, um, nm, cm, in, ft, mil, or choose the unit with "
+            "--displacement-unit"},
         Fault{"UnknownUnitOfTimeAskedFor", "time [h],x [m],F [N]\n1,2,3\n",
               Choose({}, {}, {"time", ""}),
               "loop.csv:1:1: the unit 'h' of 'time [h]' (column 1) is not known for the time: must "

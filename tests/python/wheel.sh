@@ -11,6 +11,14 @@ MINDAHL_PYTHON="$python" "$source/scripts/wheel.sh" "$scratch/wheel" "$build"
 "$python" -m pip --python "$scratch/venv/bin/python" install --quiet --no-index --no-deps \
   --no-build-isolation "$scratch"/wheel/mindahl-*.whl
 cd "$scratch"
+# Each library that the extension needs is in the wheel, or is one that every Linux has (PEP 600).
+extension="$(echo "$scratch"/venv/lib/python3*/site-packages/mindahl/_mindahl*.so)"
+outside="$(env -u LD_LIBRARY_PATH ldd "$extension" | awk '/=>/ {print $1, $3}' | grep -v " $scratch/" |
+  grep -Ev '^(linux-vdso|ld-linux[^ ]*|lib(c|m|dl|rt|pthread|util|gcc_s|stdc\+\+))\.so' || true)"
+if [ -n "$outside" ] || ! ls "${extension%/*}"/libs/libglog* >/dev/null; then
+  echo "wheel: needs libraries that are not in it: $outside" >&2
+  exit 1
+fi
 env -u PYTHONPATH "$scratch/venv/bin/python" - "$source/data/mindlin_sphere_on_plane.csv" \
   "$build/src/mindahl" "$scratch/venv" <<'SCRIPT'
 import json

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""The workflow on a small campaign: what it merges is what `mindahl track` says of each record, also
-where a shard fails once, and where the run is killed in the middle.
+"""The workflow on a small campaign: what it merges is what `mindahl track --separate` says of all
+records, whatever the number of shards, also where a shard fails once, where the run is killed in the
+middle, and as an array of Slurm.
 
 usage: campaign_test.py --program PATH --workflow FOLDER
 Ends with 77 where snakemake is not installed.
@@ -18,7 +19,9 @@ import tempfile
 import time
 from pathlib import Path
 
-CYCLES = {"new": 140, "worn": 70, "old": 3}  # more than two batches of 64, more than one, less
+# More than two batches of 64, less than one, more than one; and one whose record breaks off.
+CYCLES = {"new": 140, "old": 3, "worn": 70, "zero": 9}
+SHARD = {name: f"{k + 1}/{len(CYCLES)}" for k, name in enumerate(CYCLES)}
 
 
 def run(*words, **options):
@@ -32,6 +35,8 @@ def make_records(program, folder):
         run(program, "simulate", "--sigma", "5e7", "--slip-force", 60 - 3 * seed, "--amplitude",
             "2.5e-6", "--cycles", cycles, "--noise-force", "0.5", "--seed", seed, "-o",
             folder / f"{name}.csv")
+    with open(folder / "zero.csv", "a") as file:
+        file.write("0,nothing,0,0\n0,0,0\n")
 
 
 def write_program(path, text):
@@ -40,9 +45,10 @@ def write_program(path, text):
 
 
 class Campaign:
-    def __init__(self, snakemake, workflow, folder, results):
+    def __init__(self, snakemake, workflow, folder, results, shards=0):
         self.command = [snakemake, "--snakefile", workflow / "Snakefile", "--cores", "2", "--quiet",
-                        "--config", f"records={folder / 'records'}", f"results={results}"]
+                        "--config", f"records={folder / 'records'}", f"results={results}",
+                        f"shards={shards}"]
         self.folder = folder
         self.results = folder / results
         # Its locks and its caches belong to this test alone.
@@ -60,22 +66,42 @@ class Campaign:
         assert process.returncode == 0, output
         return output
 
-    def tables(self):
-        return {name: (self.results / "cycles" / f"{name}.csv").read_bytes() for name in CYCLES}
+    def table(self):
+        return (self.results / "campaign.csv").read_bytes()
 
 
 def check_tables(campaign, expected, what):
-    assert campaign.tables() == expected, f"{what}: the tables are not those of mindahl track"
+    assert campaign.table() == expected, f"{what}: the table is not that of mindahl track"
     with open(campaign.results / "campaign.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    counts = {name: sum(row["test"] == name for row in rows) for name in CYCLES}
+    counts = {name: sum(Path(row["test"]).stem == name and not row["fault"] for row in rows)
+              for name in CYCLES}
     # A cycle is what lies between the first turning point and the last.
     assert counts == {name: cycles - 1 for name, cycles in CYCLES.items()}, (what, counts)
     summary = json.loads((campaign.results / "campaign.json").read_text())
-    assert summary["fits"] == len(rows), what
-    energy = sum(float(row["energy [J]"]) for row in rows)
+    assert summary["fits"] == sum(counts.values()), what
+    assert [Path(file).stem for file in summary["failed"]] == ["zero"], (what, summary["failed"])
+    assert [row["fault"] for row in rows if row["fault"]] == [
+        test["fault"] for test in summary["tests"] if test["fault"]], what
+    energy = sum(float(row["energy"]) for row in rows if not row["fault"])
     assert abs(summary["accumulated_energy"] - energy) < 1e-12 * energy, what
     assert not any((campaign.results / "begun").iterdir()), f"{what}: something was left behind"
+
+
+def check_array(program, workflow, folder, expected):
+    """The script of an array of Slurm, as Slurm would run it, one task after the other."""
+    results = folder / "array"
+    tests = folder / "tests.txt"
+    tests.write_text("".join(f"{folder / 'records' / name}.csv\n" for name in CYCLES))
+    shards = 3
+    for task in range(1, shards + 1):
+        environment = {**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}",
+                       "SLURM_ARRAY_TASK_ID": str(task), "SLURM_ARRAY_TASK_COUNT": str(shards)}
+        run(workflow / "slurm_array.sh", tests, results, env=environment)
+    tables = sorted(results.glob("shard-*.csv"))
+    run(sys.executable, workflow / "merge_tables.py", folder / "array.csv", folder / "array.json",
+        *tables)
+    assert (folder / "array.csv").read_bytes() == expected, "the array's table is another"
 
 
 def main():
@@ -91,20 +117,26 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         make_records(program, folder / "records")
-        expected = {}
-        for test in CYCLES:
-            table = folder / f"{test}.csv"
-            run(program, "track", folder / "records" / f"{test}.csv", "--output", table)
-            expected[test] = table.read_bytes()
+        whole = folder / "whole.csv"
+        words = [program, "track", "--separate", "--output", whole]
+        done = subprocess.run([*words, *(folder / "records" / f"{name}.csv" for name in CYCLES)],
+                              capture_output=True, text=True)
+        assert done.returncode == 3, done.stderr  # zero.csv breaks off
+        expected = whole.read_bytes()
+        check_array(program, arguments.workflow.resolve(), folder, expected)
+        lines = expected.decode().splitlines(keepends=True)
+        for name in CYCLES:
+            rows = [line for line in lines if f"/{name}.csv," in line]
+            (folder / f"{name}.csv").write_text("".join([lines[0], *rows]))
 
         # One record fails at the first attempt, halfway: what it wrote is gone on with.
         broken = folder / "broken"
         write_program(broken, f'''
-case "$2" in
-  */worn.csv)
+case "$6" in
+  {SHARD['worn']})
     if [ ! -e "{folder}/failed" ]; then
       touch "{folder}/failed"
-      head -c 20000 "{folder}/worn.csv" > "$4"
+      head -c 20000 "{folder}/worn.csv" > "$8"
       exit 1
     fi;;
 esac
@@ -118,9 +150,9 @@ exec "{program}" "$@"
         # The whole run is killed while a record is being fitted, and started anew.
         stalled = folder / "stalled"
         write_program(stalled, f'''
-case "$2" in
-  */new.csv)
-    head -c 30000 "{folder}/new.csv" > "$4"
+case "$6" in
+  {SHARD['new']})
+    head -c 30000 "{folder}/new.csv" > "$8"
     touch "{folder}/stalled_now"
     exec sleep 600;;
 esac
@@ -139,8 +171,13 @@ exec "{program}" "$@"
         campaign.run(program)
         check_tables(campaign, expected, "a run that was killed")
         again = campaign.run(program)
-        assert campaign.tables() == expected, again
-    print("the workflow's tables are those of mindahl track: a failed record, a killed run")
+        assert campaign.table() == expected, again
+
+        campaign = Campaign(snakemake, arguments.workflow.resolve(), folder, "shards", shards=2)
+        campaign.run(program)
+        check_tables(campaign, expected, "two shards")
+    print("the workflow's table is that of mindahl track: a failed record, a killed run, two "
+          "shards, an array")
 
 
 if __name__ == "__main__":

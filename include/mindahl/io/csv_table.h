@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -55,6 +56,10 @@ class CsvTable {
   [[nodiscard]] std::size_t header_line() const { return header_line_; }
   /// Returns the number of rows of preamble above the header, blank lines and comments aside.
   [[nodiscard]] std::size_t preamble_rows() const { return preamble_rows_; }
+  /// Returns what was assumed of the file and left out below the data, a sentence each.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  /// Returns the number of rows with fewer cells than the table has columns.
+  [[nodiscard]] std::size_t short_rows() const { return short_rows_; }
   /// Returns the physical line of each data row.
   [[nodiscard]] const std::vector<std::size_t>& lines() const { return lines_; }
 
@@ -75,14 +80,21 @@ class CsvTable {
   /// that nothing in it distinguishes them from commas that separate thousands.
   [[nodiscard]] bool MayHaveCommasForThousands(std::size_t column) const;
 
+  /// Returns the times of a column whose every cell is a time of day, with or without a date, as
+  /// seconds since midnight of the first one's day; empty where they are not.
+  [[nodiscard]] std::optional<std::vector<double>> Times(std::size_t column) const;
+
   /// False when not one cell of the column is a number.
   [[nodiscard]] bool HasNumbers(std::size_t column) const;
 
  private:
   friend CsvTable ParseCsvTable(std::string text, std::string file);
+  friend CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits,
+                               const std::string& encoding);
   friend CsvTable TableOfColumns(std::vector<NamedColumn> columns, std::string source);
   [[noreturn]] void ThrowNotANumber(std::size_t row, std::size_t column) const;
   void RequireNoThousands(std::size_t column) const;
+  void DropFooter(std::size_t rows);
   /// Returns the cells as written, without blanks around them.
   [[nodiscard]] std::vector<std::string> Cells(std::size_t column) const;
 
@@ -93,6 +105,8 @@ class CsvTable {
   std::vector<std::string> units_;
   std::size_t header_line_ = 0;
   std::size_t preamble_rows_ = 0;
+  std::size_t short_rows_ = 0;
+  std::vector<std::string> notes_;
   std::vector<std::vector<double>> values_;  ///< columns; NaN where the cell is not a number
   std::vector<std::size_t> lines_;
   std::vector<std::size_t> offsets_;  ///< start of each data row in text_ [bytes]
@@ -119,10 +133,13 @@ class CsvTable {
 ///
 /// *Header.* The row above the data is the names row; or, when at least half of its cells are
 /// symbols of units, the units row, with the names row above it (or none, when all are). It has a
-/// text for every column; in a blank-separated file "Time [s]" is one, and so is whatever stands
+/// text for every column of a row of data, more than most of them have where some rows have more
+/// cells; in a blank-separated file "Time [s]" is one, and so is whatever stands
 /// between two or more blanks. What is above the header is preamble and skipped. A file whose first
 /// row is data has no header. Anything else above the data is an error: a comment there must begin
 /// with '#'.
+///
+/// *Footer.* Rows at the end that begin with a text are skipped, with a note.
 ///
 /// @param text  the file's content
 /// @param file  its name, for messages
@@ -131,10 +148,13 @@ class CsvTable {
 CsvTable ParseCsvTable(std::string text, std::string file);
 
 /// Parses a file as ParseCsvTable() does.
-/// @param path    kStandardInput reads that, called "standard input" in messages
+/// @param path      kStandardInput reads that, called "standard input" in messages
+/// @param encoding  as iconv calls it; "" for UTF-8, or UTF-16, Shift-JIS or Windows-1252 by the
+///   first bytes, with a note of the latter two
 /// @throws InputError also when the file cannot be read, and where it is beyond the limits: a file
 ///   that is too large, holds a zero byte or a line of more than 16 MiB is read no further
-CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits = {});
+CsvTable ReadCsvTable(const std::filesystem::path& path, const ReadLimits& limits = {},
+                      const std::string& encoding = {});
 
 /// Returns a table of columns that are in memory, to be read as a file with these names in its
 /// first line is; its lines are the rows, counted from 1.

@@ -15,6 +15,10 @@ namespace mindahl::io {
 struct ColumnChoice {
   std::string column;  ///< header name or 1-based number; "" = by recognised name
   std::string unit;    ///< symbol of core/units.h; "" = the header's, else SI
+  /// Calibration: the quantity in its unit is gain·(number − zero). With one, a header's unit that
+  /// is none of the quantity's, such as V, is the numbers' own.
+  std::optional<double> gain = std::nullopt;
+  double zero = 0.0;
 };
 
 struct RecordColumns {
@@ -23,6 +27,7 @@ struct RecordColumns {
   ColumnChoice time;
   ColumnChoice normal_load;
   std::vector<std::string> covariates = {};  ///< header names or 1-based numbers
+  std::string encoding = {};                 ///< of the file, as ReadCsvTable() takes it
 };
 
 /// A column as it was read.
@@ -30,6 +35,9 @@ struct ChosenColumn {
   std::string name;        ///< header cell as written; "" in a file without names
   std::size_t number = 0;  ///< 1-based
   std::string unit;        ///< symbol the numbers were taken to be in
+  double gain = 1.0;       ///< the quantity in that unit is gain·(number − zero)
+  double zero = 0.0;
+  bool is_clock = false;  ///< its cells are times of day
 };
 
 /// Locates a record within a file that holds several constant loads.
@@ -73,7 +81,7 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 ///   force         tangential force, friction force, lateral force, shear force, Tangentialkraft,
 ///                 Reibkraft, Reibungskraft, Querkraft, force tangentielle, effort tangentiel |
 ///                 force, friction, Kraft, effort | torque | Ft | F, f, Q | T | F_N
-///   time          time, time stamp, timestamp, elapsed time, Zeit, temps | t
+///   time          time, time stamp, timestamp, elapsed time, date/time, date time, Zeit, temps | t
 ///   normal load   normal load, normal force, Normalkraft, charge normale, force normale | normal,
 ///                 n load | Fn, F_N, N
 /// A displacement or force that is not recognised is column 1 or 2, or the only one left when that
@@ -84,6 +92,9 @@ inline constexpr std::size_t kMostOtherColumns = 8;
 /// *Units.* As chosen; else of the header, in the name (`x [um]`, `F (kN)`, `Position, mm`,
 /// `x / mm`, `disp_mm`) or in the units row; else m, N, s, with a note. An angle and a torque go
 /// together: one of the two has the other's unit, rad or N m, where it names none.
+///
+/// *Time.* A number, or a time of day with or without a date ("04/29/2022 12:11:14.596 PM"), read
+/// as seconds since midnight of the first one's day, with a note.
 ///
 /// *Covariates.* Those chosen, their numbers as they are; one is not recognised as a normal load
 /// besides. Then up to kMostOtherColumns of the
@@ -102,6 +113,47 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 /// Reads a table in memory as ReadRecord() reads a file.
 /// @throws InputError as ReadRecord()
 RecordFile RecordOf(const CsvTable& table, const RecordColumns& columns = {});
+
+/// Puts the times of files that are pieces of one record one after the other: where a file's clock
+/// begins anew, one step after the last time of the file before.
+class JoinedTimes {
+ public:
+  /// Declares that the times that follow are from another file.
+  void NextFile() { begins_ = true; }
+  /// @param times  [s], the next; changed
+  void Shift(std::vector<double>& times);
+
+ private:
+  bool begins_ = false;
+  double shift_ = 0.0;
+  double last_ = 0.0;
+  double step_ = 0.0;
+};
+
+/// Joins records, in their order, into one. Lines are left out; covariates are those of all.
+/// @param names  of their files, for messages
+/// @throws InputError where one has a time, a load or a torque and another has not
+RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names);
+
+/// A stiffness or compliance over the amplitude, as lock-in rigs report.
+struct SweepFile {
+  std::vector<double> amplitude;  ///< [m] or [N]
+  std::vector<double> response;   ///< [N/m] or [m/N]
+  bool over_force = false;        ///< amplitudes are forces
+  bool is_compliance = false;     ///< responses are displacements over forces
+  std::vector<std::size_t> lines;
+  std::vector<std::string> notes;
+};
+
+/// Reads a sweep.
+/// @param columns   of displacement or force, of which one has the amplitudes: the one that is
+/// chosen,
+///   or else that is recognised by its name, with or without "amplitude"
+/// @param response  column by name or number, else recognised: stiffness, k, kt, compliance; its
+///   unit is one of force over one of length ("N/um") or the other way round
+/// @throws InputError as ReadRecord(); for both amplitudes or none; for a value that is not > 0
+SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
+                    const ColumnChoice& response);
 
 /// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
 /// file.

@@ -54,6 +54,9 @@ class RecordStream {
   [[nodiscard]] std::size_t broken_rows() const;
   [[nodiscard]] const std::string& first_broken_row() const;
 
+  /// Returns, at the end, the number of lines below the data that begin with a text: a footer.
+  [[nodiscard]] std::size_t footer_lines() const;
+
   /// Returns the number of bytes read so far.
   [[nodiscard]] std::uintmax_t bytes() const;
 

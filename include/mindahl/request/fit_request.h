@@ -41,6 +41,7 @@ std::vector<std::string_view> ModelNames();
 struct FitRequest {
   std::vector<std::string> files;
   io::RecordColumns columns;
+  bool join = false;                        // the files are pieces of one record
   std::uint64_t max_rows = 20'000'000;      // of all files together
   std::optional<std::uint64_t> max_memory;  // [bytes]; else what the process may have
   std::string time_window;

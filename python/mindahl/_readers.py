@@ -1,0 +1,145 @@
+"""Records from files of other programs, each read by the library that exists for it."""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from . import _mindahl
+from ._arguments import array, path_text
+from ._mindahl import Record
+from ._records import read_csv, record_options
+
+Path = Union[str, os.PathLike[str]]
+Columns = dict[str, Any]
+
+
+def read_mat(path: Path, *, within: Optional[str] = None, **options: Any) -> Record:
+    """Reads a record from a MAT file (version 7 or before) by SciPy.
+
+    Every numeric vector of the file is a column, called by its variable, "test.x" in a struct; of a
+    matrix the columns, called "data_1", "data_2", .... Those of the length that most have make the
+    table.
+    within: only variables whose name begins so.
+    options: displacement, force, time, units and the others of read_csv().
+    Raises ImportError without scipy, ValueError for a file of version 7.3, which is HDF5.
+    """
+    from scipy.io import loadmat
+
+    try:
+        found = loadmat(path_text(path), squeeze_me=True, struct_as_record=True)
+    except NotImplementedError:
+        raise ValueError(f"{path_text(path)}: is a MAT file of version 7.3, which is HDF5: read it "
+                         "with read_hdf5()") from None
+    variables = {name: value for name, value in found.items() if not name.startswith("__")}
+    return _record(path, dict(_vectors(variables)), within, options)
+
+
+def read_hdf5(path: Path, *, within: Optional[str] = None, **options: Any) -> Record:
+    """Reads a record from an HDF5 file by h5py.
+
+    Every numeric dataset of one dimension is a column, called by its path without the first slash,
+    with the unit of its attribute "units", "unit" or "Unit"; of two dimensions the columns, of a
+    compound one the fields. Those of the length that most have make the table.
+    within: only datasets whose path begins so.
+    options: displacement, force, time, units and the others of read_csv().
+    Raises ImportError without h5py.
+    """
+    import h5py
+
+    columns: Columns = {}
+
+    def visit(name: str, node: Any) -> None:
+        if not isinstance(node, h5py.Dataset):
+            return
+        unit = next((node.attrs[key] for key in ("units", "unit", "Unit") if key in node.attrs), "")
+        unit = unit.decode() if isinstance(unit, bytes) else str(unit)
+        for column, values in _vectors({name: np.squeeze(node[()])}):
+            columns[f"{column} [{unit}]" if unit else column] = values
+
+    with h5py.File(path_text(path), "r") as file:
+        file.visititems(visit)
+    return _record(path, columns, within, options)
+
+
+def read_excel(path: Path, *, sheet: Optional[str] = None, **options: Any) -> Record:
+    """Reads a record from a sheet of an Excel workbook (xlsx) by openpyxl.
+
+    The sheet is read as a CSV file of its cells is: preamble, header, units and columns are found by
+    the same rules. Formulas have the values that Excel stored.
+    sheet: its name; by default the first.
+    options: displacement, force, time, units and the others of read_csv().
+    Raises ImportError without openpyxl, InputError naming row and column.
+    """
+    import openpyxl
+
+    book = openpyxl.load_workbook(path_text(path), read_only=True, data_only=True)
+    try:
+        if sheet is not None and sheet not in book.sheetnames:
+            raise ValueError(f"{path_text(path)}: has no sheet {sheet!r}: it has "
+                             f"{', '.join(book.sheetnames)}")
+        cells = book[sheet] if sheet is not None else book.worksheets[0]
+        with tempfile.TemporaryDirectory() as folder:
+            # So that messages name the workbook.
+            name = os.path.join(folder, os.path.basename(path_text(path)))
+            with open(name, "w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file)
+                for row in cells.iter_rows(values_only=True):
+                    writer.writerow([_cell_text(cell) for cell in row])
+            return read_csv(name, **options)
+    finally:
+        book.close()
+
+
+def _cell_text(cell: Any) -> str:
+    if cell is None:
+        return ""
+    if isinstance(cell, float):
+        return repr(cell)
+    if isinstance(cell, datetime.datetime):
+        return cell.isoformat(sep=" ")
+    return str(cell)
+
+
+def _vectors(variables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """The numeric vectors in variables, in structs, matrices and records of them."""
+    for name, value in variables.items():
+        values = np.asarray(value)
+        if values.dtype.names:
+            if values.ndim == 0:
+                yield from _vectors({f"{name}.{field}": values[field].item()
+                                     if values.dtype[field] == object else values[field]
+                                     for field in values.dtype.names})
+            elif values.ndim == 1:
+                yield from _vectors({f"{name}.{field}": values[field]
+                                     for field in values.dtype.names})
+        elif values.dtype.kind not in "fiu":
+            continue
+        elif values.ndim == 1:
+            yield name, values
+        elif values.ndim == 2:
+            for k in range(values.shape[1]):
+                yield f"{name}_{k + 1}", values[:, k]
+
+
+def _record(path: Path, columns: Columns, within: Optional[str],
+            options: Mapping[str, Any]) -> Record:
+    chosen = {name: values for name, values in columns.items()
+              if within is None or name.startswith(within)}
+    lengths = [len(values) for values in chosen.values() if len(values) > 1]
+    if not lengths:
+        raise ValueError(f"{path_text(path)}: holds no vector of numbers"
+                         + ("" if within is None else f" whose name begins with {within!r}")
+                         + f": it has {', '.join(columns) or 'none'}")
+    length = max(set(lengths), key=lambda size: (lengths.count(size), size))
+    table = {name: values for name, values in chosen.items() if len(values) == length}
+    return _mindahl.record_of_columns(
+        path_text(path), list(table),
+        [array(name, values, keep_missing=True) for name, values in table.items()],
+        record_options(**options))

@@ -1,0 +1,148 @@
+"""Records from MAT, HDF5 and Excel files, each made by the library that reads it, from xarray and pint;
+a result from its JSON. A library that is not installed is skipped."""
+import numpy as np
+import pytest
+
+import mindahl
+
+TIME = np.linspace(0.0, 2.0, 81)
+X = 2e-6 * np.sin(2 * np.pi * TIME)  # [m]
+FORCE = 20.0 * np.sin(2 * np.pi * TIME + 0.3)  # [N]
+
+
+def is_the_record(record, exact=True):
+    for found, expected in ((record.displacement, X), (record.force, FORCE), (record.time, TIME)):
+        # A unit is a factor that is not a power of two: two roundings.
+        np.testing.assert_allclose(found, expected, rtol=0 if exact else 4e-16, atol=0)
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_mat_files_are_read_by_name_in_structs_and_matrices(tmp_path):
+    scipy_io = pytest.importorskip("scipy.io")
+    path = tmp_path / "test.mat"
+    scipy_io.savemat(path, {"time": TIME, "x": X, "F": FORCE, "rate": 40.0, "who": "me"})
+    is_the_record(mindahl.read_mat(path))
+    scipy_io.savemat(path, {"run": {"time": TIME, "x": X, "F": FORCE}, "other": np.arange(5.0)})
+    is_the_record(mindahl.read_mat(path, within="run", time="run.time", displacement="run.x",
+                                   force="run.F"))
+    scipy_io.savemat(path, {"data": np.column_stack([TIME, X * 1e6, FORCE])})
+    is_the_record(mindahl.read_mat(path, time="data_1", displacement="data_2", force="data_3",
+                                   displacement_unit="um", force_unit="N"), exact=False)
+    scipy_io.savemat(path, {"name": "empty"})
+    with pytest.raises(ValueError, match="holds no vector of numbers"):
+        mindahl.read_mat(path)
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_hdf5_files_are_read_with_the_units_of_their_attributes(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "test.h5"
+    with h5py.File(path, "w") as file:
+        group = file.create_group("run 1")
+        for name, values, unit in (("time", TIME, "s"), ("displacement", X * 1e6, "um"),
+                                   ("force", FORCE, "N")):
+            group.create_dataset(name, data=values).attrs["units"] = unit
+        file.create_dataset("run 2", data=np.array(list(zip(TIME, X, FORCE)),
+                                                   dtype=[("time", "f8"), ("x", "f8"), ("F", "f8")]))
+        file.create_dataset("settings", data=np.arange(3.0))
+    record = mindahl.read_hdf5(path, within="run 1", time="run 1/time",
+                               displacement="run 1/displacement", force="run 1/force")
+    is_the_record(record, exact=False)
+    assert record.columns["displacement"]["unit"] == "um"
+    is_the_record(mindahl.read_hdf5(path, within="run 2", time="run 2.time",
+                                    displacement="run 2.x", force="run 2.F"))
+
+
+def test_excel_sheets_are_read_by_the_rules_of_csv_files(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    path = tmp_path / "test.xlsx"
+    book = openpyxl.Workbook()
+    book.active.append(["nothing here"])
+    sheet = book.create_sheet("run 1")
+    sheet.append(["Tribometer", "serial", "x-17"])
+    sheet.append([])
+    sheet.append(["time", "position", "friction"])
+    sheet.append(["s", "um", "N"])
+    for row in zip(TIME, X * 1e6, FORCE):
+        sheet.append([float(value) for value in row])
+    book.save(path)
+    record = mindahl.read_excel(path, sheet="run 1")
+    is_the_record(record, exact=False)
+    assert record.columns["force"]["unit"] == "N"
+    with pytest.raises(ValueError, match="has no sheet 'run 2': it has Sheet, run 1"):
+        mindahl.read_excel(path, sheet="run 2")
+    sheet["C7"] = "n/a"
+    book.save(path)
+    with pytest.raises(mindahl.InputError, match=r"test.xlsx:7:3: 'n/a' is not a number"):
+        mindahl.read_excel(path, sheet="run 1")
+
+
+def test_quantities_of_pint_are_fitted_in_their_units(sphere):
+    pint = pytest.importorskip("pint")
+    units = pint.UnitRegistry()
+    time, displacement, force = sphere
+    expected = mindahl.fit(displacement, force, time=time)
+    found = mindahl.fit((displacement * 1e6) * units.micrometer, (force / 1e3) * units.kilonewton,
+                        time=time * units.second)
+    for name in ("sigma", "alpha", "slip_force"):
+        tolerance = 1e-3 * expected.parameters[name].standard_error
+        assert found.parameters[name].value == pytest.approx(expected.parameters[name].value,
+                                                             abs=tolerance)
+    with pytest.raises(ValueError, match="force has the unit kilogram: must be one of N, N"):
+        mindahl.fit(displacement * units.meter, force * units.kilogram)
+    with pytest.raises(ValueError, match="has a unit of its own"):
+        mindahl.fit(displacement * units.meter, force, displacement_unit="um")
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_datasets_of_xarray_are_fitted_with_the_units_of_their_attributes(sphere):
+    xarray = pytest.importorskip("xarray")
+    time, displacement, force = sphere
+    expected = mindahl.fit(displacement * 1e6, force, time=time, displacement_unit="um")
+    dataset = xarray.Dataset(
+        {"displacement": ("time", displacement * 1e6, {"units": "um"}),
+         "force": ("time", force, {"units": "N"})}, coords={"time": ("time", time, {"units": "s"})})
+    of_dataset = mindahl.fit(dataset)
+    of_arrays = mindahl.fit(dataset["displacement"], dataset["force"], time=dataset["time"])
+    for name in ("sigma", "alpha", "slip_force"):
+        assert of_dataset.parameters[name].value == expected.parameters[name].value
+        assert of_arrays.parameters[name].value == expected.parameters[name].value
+
+
+def test_a_result_is_loaded_from_its_json(tmp_path, sphere):
+    result = mindahl.fit(*sphere[1:], time=sphere[0])
+    path = tmp_path / "fit.json"
+    path.write_text(result.to_json())
+    loaded = mindahl.FitResult.load(path)
+    assert loaded.to_dict() == result.to_dict()
+    assert loaded.to_json() == result.to_json()
+    assert loaded.sigma == result.sigma
+    assert loaded.adequacy.verdict == result.adequacy.verdict
+    assert repr(loaded) == repr(result)
+    assert "sigma = " in str(loaded)
+    assert loaded.records == ()
+    with pytest.raises(AttributeError, match="read from JSON has no page"):
+        loaded.page()
+    path.write_text('{"schema": "mindahl.contact/1"}')
+    with pytest.raises(ValueError, match="is no result of a fit"):
+        mindahl.FitResult.load(path)
+
+
+@pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
+def test_pieces_are_joined_and_columns_in_volts_calibrated(tmp_path, sphere):
+    time, displacement, force = sphere
+    expected = mindahl.fit(displacement, force, time=time, initial_state="virgin")
+    cut = len(time) // 3
+    pieces = []
+    for k, part in enumerate((slice(0, cut), slice(cut, None))):
+        path = tmp_path / f"stroke{k}.csv"
+        rows = np.column_stack([time[part] - time[part][0], displacement[part],
+                                force[part] / 8 + 0.5])
+        np.savetxt(path, rows, delimiter=",", fmt="%.17g", header="time [s],x [m],F [V]", comments="")
+        pieces.append(path)
+    found = mindahl.fit(pieces, join=True, force_gain=8.0, force_zero=0.5, initial_state="virgin")
+    assert len(found.records) == 1
+    for name in ("sigma", "alpha", "slip_force"):
+        tolerance = 1e-3 * expected.parameters[name].standard_error
+        assert found.parameters[name].value == pytest.approx(expected.parameters[name].value,
+                                                             abs=tolerance)
