@@ -53,8 +53,8 @@ void WithdrawInterval(ParameterEstimate& estimate) {
 }
 
 bool IsScaledByLoad(const FitResult& result) {
-  return result.model->memory == models::Memory::kNone && !result.records.empty() &&
-         result.WidestRecord().load_varies;
+  return !result.records.empty() && result.WidestRecord().load_varies &&
+         result.model->memory == models::Memory::kNone;
 }
 
 }  // namespace mindahl::identification

@@ -108,6 +108,20 @@ TEST(Simulate, PathMayHaveAHeaderAUnitAndFurtherColumns) {
               ElementsAre(0.004, -0.001));
 }
 
+TEST(Simulate, OfAJointIsItsStateTimesTheTorqueOfEitherSign) {
+  const TemporaryDirectory directory;
+  const std::string path =
+      directory.Write("joint.csv", "angle [mrad],torque [N m]\n1000,-2\n1000,4\n3000,0\n").string();
+  const Columns columns = Simulate({"--model", "dahl", "--alpha", "1", "--sigma", "3",
+                                    "--slip-force", "3", "--path", path, "--normal-load-column",
+                                    "torque", "--normal-load", "2", "--asymmetry", "0.5"});
+  // T = Tc·(|N|z + A·N·z²)/N̄ with z = 1 − e^(−δ), whatever the torque was in between.
+  const double z = 1 - std::exp(-1.0);
+  EXPECT_NEAR(columns.force[0], 3 * (z - 0.5 * z * z), kRounding);
+  EXPECT_NEAR(columns.force[1], 3 * (2 * z + z * z), kRounding);
+  EXPECT_EQ(columns.force[2], 0.0);
+}
+
 TEST(Simulate, ForcePathGivesTheDisplacementThatMakesTheForce) {
   const TemporaryDirectory directory;
   const std::string path = directory.Write("forces.csv", "F [mN]\n700\n-400\n0\n700\n").string();

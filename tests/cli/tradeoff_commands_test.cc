@@ -121,8 +121,8 @@ TEST(SimulateMethod, RefusesOptionsWithoutEffectNamingTheRemedy) {
            Refusal{{"--method", "leapfrog", "--amplitude", "1"}, "leapfrog"},
            Refusal{{"--path", path, "--normal-load-column", "load"}, "--normal-load missing"},
            Refusal{{"--path", path, "--normal-load-column", "load", "--normal-load", "1", "--model",
-                    "dahl"},
-                   "does not serve --model dahl"},
+                    "simplified-dahl"},
+                   "does not serve --model simplified-dahl"},
        }) {
     Words words = {"simulate", "--sigma", "1", "--slip-force", "1"};
     words.insert(words.end(), refusal.words.begin(), refusal.words.end());

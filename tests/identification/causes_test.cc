@@ -288,6 +288,8 @@ TEST(Advice, IsWithheldWhereTheProgramWouldRefuseIt) {
   FitOptions dahl;
   dahl.model = &Model("dahl");
   EXPECT_EQ(Accepted(Stages(record, dahl), "--asymmetry fit"), "--asymmetry fit");
+  dahl.terms = {"rig_stiffness"};
+  EXPECT_EQ(Accepted(Stages(record, dahl), "--asymmetry fit"), "");
   EXPECT_EQ(Accepted(Stages(record, {}, InitialState::kSteady), "--asymmetry fit"), "");
   FitOptions viscous;
   viscous.terms = {"viscous"};

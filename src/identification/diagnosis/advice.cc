@@ -87,9 +87,10 @@ std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
     accepted += accepted.empty() ? "" : " ";
     accepted += advised.words;
   }
-  // Another term may let the steady loop win, with which an asymmetry is refused.
-  if (!accepted.empty() && has_asymmetry && !options.initial_state &&
-      options.initial_states.empty() && !problem.parameters.any_zero_is_known()) {
+  // Another term may let the steady loop win, with which an asymmetry of Masing's law is refused.
+  if (!accepted.empty() && has_asymmetry && problem.model->memory == models::Memory::kReturnPoint &&
+      !options.initial_state && options.initial_states.empty() &&
+      !problem.parameters.any_zero_is_known()) {
     accepted += " --initial-state virgin";
   }
   return accepted;
