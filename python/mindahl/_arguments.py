@@ -54,20 +54,31 @@ def uncertain(name: str, value: Any) -> _mindahl.UncertainValue:
     return _mindahl.UncertainValue(number(name, value[0]), error)
 
 
-def pair(name: str, value: Any) -> str:
-    """(low, high) as the library writes ranges."""
+def pair(name: str, value: Any) -> tuple[Any, Any]:
+    """(low, high), of whatever kind."""
     if not isinstance(value, Sequence) or isinstance(value, (str, bytes)) or len(value) != 2:
         raise ValueError(f"{name} = {value!r} is invalid: must be a pair (low, high)")
-    texts = []
-    for end in value:
-        whole = hasattr(end, "__index__") and not isinstance(end, (bool, np.bool_))
-        texts.append(str(int(end)) if whole else repr(number(name, end)))
-    return ":".join(texts)
+    return value[0], value[1]
 
 
-def number_text(name: str, value: Any) -> str:
-    """A number with as many digits as read back the same, or "fit"."""
-    return "fit" if value == "fit" else repr(number(name, value))
+def interval(name: str, value: Any) -> Optional[tuple[float, float]]:
+    if value is None:
+        return None
+    low, high = pair(name, value)
+    return number(name, low), number(name, high)
+
+
+def counts(name: str, value: Any) -> Optional[tuple[int, int]]:
+    """Whole numbers from 1 on."""
+    if value is None:
+        return None
+    low, high = pair(name, value)
+    return count(name, low, 1), count(name, high, 1)
+
+
+def fitted_or_number(name: str, value: Any) -> Optional[float]:
+    """None of "fit"."""
+    return None if isinstance(value, str) and value == "fit" else number(name, value)
 
 
 def on_off(name: str, value: Union[bool, str]) -> str:
@@ -78,22 +89,15 @@ def on_off(name: str, value: Union[bool, str]) -> str:
     raise ValueError(f"{name} = {value!r} is invalid: must be True or False")
 
 
-def assignments(name: str, values: Optional[Mapping[str, Any]]) -> list[str]:
-    if values is None:
-        return []
-    if not isinstance(values, Mapping):
-        raise ValueError(f"{name} = {values!r} is invalid: must be a dict of parameters and numbers")
-    return [f"{parameter}={number(f'{name}[{parameter!r}]', value)!r}"
-            for parameter, value in values.items()]
+def mapping(name: str, values: Optional[Mapping[str, Any]], what: str) -> Mapping[str, Any]:
+    if values is not None and not isinstance(values, Mapping):
+        raise ValueError(f"{name} = {values!r} is invalid: must be a dict of parameters and {what}")
+    return values or {}
 
 
-def bounds(values: Optional[Mapping[str, Any]]) -> list[str]:
-    if values is None:
-        return []
-    if not isinstance(values, Mapping):
-        raise ValueError(f"bound = {values!r} is invalid: must be a dict of parameters and (low, high)")
-    return [f"{parameter}={pair(f'bound[{parameter!r}]', value)}"
-            for parameter, value in values.items()]
+def assignments(name: str, values: Optional[Mapping[str, Any]]) -> dict[str, float]:
+    return {parameter: number(f"{name}[{parameter!r}]", value)
+            for parameter, value in mapping(name, values, "numbers").items()}
 
 
 def column_name(name: str, value: Any) -> str:

@@ -7,21 +7,15 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 from . import _mindahl
-from ._arguments import (Uncertain, assignments, bounds, contact_options, count, names_of, number,
-                         number_text, on_off, optional_number, pair, uncertain)
+from ._arguments import (Uncertain, assignments, contact_options, count, counts, fitted_or_number,
+                         interval, mapping, names_of, number, on_off, optional_number, pair,
+                         uncertain)
 from ._mindahl import Record
 from ._records import Column, RecordArguments, records_of
 from ._result import FitResult, FitWarning
 
 Range = tuple[float, float]
 Asked = Union[float, str]
-
-
-def covariate_texts(covariate: Any) -> list[str]:
-    if isinstance(covariate, Mapping):
-        return [f"{name}={number_text(f'covariate[{name!r}]', value)}"
-                for name, value in covariate.items()]
-    return names_of(covariate)
 
 
 def request_of(
@@ -37,10 +31,18 @@ def request_of(
     request.force_sign = force_sign
     request.noise_in = noise_in
     request.offsets = on_off("offsets", offsets)
-    request.covariates = covariate_texts(covariate)
+    if isinstance(covariate, Mapping):
+        for column, value in covariate.items():
+            request.add_covariate(column, fitted_or_number(f"covariate[{column!r}]", value))
+    else:
+        for column in names_of(covariate):
+            request.add_covariate(column, None)
     request.fix = assignments("fix", fix)
     request.start = assignments("start", start)
-    request.bound = bounds(bound)
+    for parameter, value in mapping("bound", bound, "(low, high)").items():
+        low, high = pair(f"bound[{parameter!r}]", value)
+        request.set_bound(parameter, number(f"bound[{parameter!r}]", low),
+                          number(f"bound[{parameter!r}]", high))
     if term_choice is not None:
         request.term_choice = term_choice if isinstance(term_choice, str) else ",".join(term_choice)
     request.loss = loss
@@ -54,9 +56,11 @@ def request_of(
         asked = terms[option.removeprefix("--").replace("-", "_")]
         if asked is None or asked is False:
             continue
-        is_word = option == "--slip-position" and isinstance(asked, str)
-        request.set_term(name, "fit" if asked is True else
-                         asked if is_word else number_text(option, asked))
+        if option == "--slip-position" and isinstance(asked, str):
+            request.set_term(name, None, asked)
+        else:
+            value = None if asked is True else fitted_or_number(option, asked)
+            request.set_term(name, value, "")
     return request
 
 
@@ -167,8 +171,10 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
             "model", "initial_state", "force_sign", "noise_in", "offsets", "covariate", "fix",
             "start", "bound", "loss", "starts", "seed", "force_noise", "displacement_noise",
             "reversal_gate", "confidence")})
-    for name in ("cycles", "samples", "time_window", "load_window"):
-        setattr(request, name, "" if given[name] is None else pair(name, given[name]))
+    request.set_cycles(counts("cycles", given["cycles"]))
+    request.set_samples(counts("samples", given["samples"]))
+    request.set_time_window(interval("time_window", given["time_window"]))
+    request.set_load_window(interval("load_window", given["load_window"]))
     request.skip_cycles = count("skip_cycles", given["skip_cycles"], 0)
     request.trim = given["trim"]
     request.contact = contact_options(**{name: given[name] for name in _KNOWN})

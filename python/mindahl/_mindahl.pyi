@@ -69,32 +69,32 @@ class ContactOptions:
     friction: Optional[UncertainValue]
 
 class FitRequest:
-    time_window: str
     model: str
     initial_state: str
     force_sign: str
     noise_in: str
     offsets: str
-    covariates: list[str]
     term_choice: str
-    load_window: str
-    cycles: str
-    samples: str
     skip_cycles: int
     trim: str
     loss: str
     starts: int
     seed: int
-    fix: list[str]
-    start: list[str]
-    bound: list[str]
+    fix: dict[str, float]
+    start: dict[str, float]
     confidence: float
     force_noise: Optional[float]
     displacement_noise: Optional[float]
     reversal_gate: Optional[float]
     columns: RecordColumns
     contact: ContactOptions
-    def set_term(self, name: str, asked: str) -> None: ...
+    def set_term(self, name: str, value: Optional[float], form: str) -> None: ...
+    def add_covariate(self, column: str, value: Optional[float]) -> None: ...
+    def set_bound(self, name: str, lower: float, upper: float) -> None: ...
+    def set_time_window(self, window: Optional[tuple[float, float]]) -> None: ...
+    def set_load_window(self, window: Optional[tuple[float, float]]) -> None: ...
+    def set_cycles(self, range: Optional[tuple[int, int]]) -> None: ...
+    def set_samples(self, range: Optional[tuple[int, int]]) -> None: ...
     def set_normal_loads(self, loads: Sequence[UncertainValue]) -> None: ...
     def covariate_columns(self) -> list[str]: ...
 

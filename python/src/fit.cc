@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,10 +83,26 @@ py::list RecordsOf(const py::object& self) {
   return records;
 }
 
-void SetTerm(FitRequest& request, const std::string& name, const std::string& asked) {
+void SetTerm(FitRequest& request, const std::string& name, std::optional<double> value,
+             const std::string& form) {
   const identification::Term* term = identification::FindTerm(name);
   if (term == nullptr) throw InputError("there is no term '" + name + "'");
-  request.terms[term->name] = asked;
+  request.terms[term->name] = {.value = value, .form = form};
+}
+
+void AddCovariate(FitRequest& request, const std::string& column, std::optional<double> value) {
+  request.covariates.push_back({.column = column, .coefficient = value});
+}
+
+void SetBound(FitRequest& request, const std::string& name, double lower, double upper) {
+  request.bound[name] = {.lower = lower, .upper = upper};
+}
+
+/// A pair, or None, as an optional range.
+template <auto member, typename Number>
+void SetRange(FitRequest& request, const std::optional<std::pair<Number, Number>>& range) {
+  (request.*member).reset();
+  if (range) (request.*member) = {range->first, range->second};
 }
 
 void SetNormalLoads(FitRequest& request, const std::vector<UncertainValue>& loads) {
@@ -96,17 +113,17 @@ void SetNormalLoads(FitRequest& request, const std::vector<UncertainValue>& load
 
 void AddFit(py::module_& module) {
   AddRequest(module)
-      .def_readwrite("time_window", &FitRequest::time_window)
+      .def("set_time_window", &SetRange<&FitRequest::time_window, double>)
       .def_readwrite("model", &FitRequest::model)
       .def_readwrite("initial_state", &FitRequest::initial_state)
       .def_readwrite("force_sign", &FitRequest::force_sign)
       .def_readwrite("noise_in", &FitRequest::noise_in)
       .def_readwrite("offsets", &FitRequest::offsets)
-      .def_readwrite("covariates", &FitRequest::covariates)
+      .def("add_covariate", &AddCovariate, py::arg("column"), py::arg("value"))
       .def_readwrite("term_choice", &FitRequest::term_choice)
-      .def_readwrite("load_window", &FitRequest::load_window)
-      .def_readwrite("cycles", &FitRequest::cycles)
-      .def_readwrite("samples", &FitRequest::samples)
+      .def("set_load_window", &SetRange<&FitRequest::load_window, double>)
+      .def("set_cycles", &SetRange<&FitRequest::cycles, std::size_t>)
+      .def("set_samples", &SetRange<&FitRequest::samples, std::size_t>)
       .def_readwrite("skip_cycles", &FitRequest::skip_cycles)
       .def_readwrite("trim", &FitRequest::trim)
       .def_readwrite("loss", &FitRequest::loss)
@@ -114,14 +131,14 @@ void AddFit(py::module_& module) {
       .def_readwrite("seed", &FitRequest::seed)
       .def_readwrite("fix", &FitRequest::fix)
       .def_readwrite("start", &FitRequest::start)
-      .def_readwrite("bound", &FitRequest::bound)
+      .def("set_bound", &SetBound, py::arg("name"), py::arg("lower"), py::arg("upper"))
       .def_readwrite("confidence", &FitRequest::confidence)
       .def_readwrite("force_noise", &FitRequest::force_noise)
       .def_readwrite("displacement_noise", &FitRequest::displacement_noise)
       .def_readwrite("reversal_gate", &FitRequest::reversal_gate)
       .def_readwrite("columns", &FitRequest::columns)
       .def_readwrite("contact", &FitRequest::contact)
-      .def("set_term", &SetTerm, py::arg("name"), py::arg("asked"))
+      .def("set_term", &SetTerm, py::arg("name"), py::arg("value"), py::arg("form"))
       .def("set_normal_loads", &SetNormalLoads, py::arg("loads"))
       .def("covariate_columns", &request::CovariateColumns);
   py::class_<Fitted, std::shared_ptr<Fitted>>(module, "Fitted")

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/one_of.h"
@@ -20,6 +23,7 @@
 
 namespace mindahl::cli {
 
+using identification::Interval;
 using identification::Term;
 
 namespace {
@@ -28,6 +32,97 @@ using request::kFitIt;
 
 CLI::Validator OneOfWords(std::span<const std::string_view> words) {
   return cli::OneOf(std::vector<std::string>(words.begin(), words.end()));
+}
+
+double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
+  double value = 0.0;
+  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) {
+    throw InputError(fmt::format("{}: '{}' is not a number: write {}", option, text, form));
+  }
+  return value;
+}
+
+/// Returns "left<separator>right".
+std::pair<std::string_view, std::string_view> Split(std::string_view text, char separator,
+                                                    std::string_view option,
+                                                    std::string_view form) {
+  const std::size_t at = text.find(separator);
+  if (at == std::string_view::npos || at == 0 || at + 1 == text.size()) {
+    throw InputError(fmt::format("{}: '{}' is incomplete: write {}", option, text, form));
+  }
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+[[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
+  throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
+}
+
+/// Reads NAME=VALUE, each NAME once.
+template <typename Value, typename Parse>
+void ReadAssignments(const std::vector<std::string>& texts, std::string_view option,
+                     std::string_view form, std::map<std::string, Value>& assignments,
+                     Parse parse) {
+  assignments.clear();
+  for (const std::string& text : texts) {
+    const auto [name, value] = Split(text, '=', option, form);
+    if (!assignments.emplace(name, parse(value, option, form)).second) ThrowTwice(option, name);
+  }
+}
+
+Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form) {
+  const auto [lower, upper] = Split(text, ':', option, form);
+  return {ParseNumber(lower, option, form), ParseNumber(upper, option, form)};
+}
+
+loop::CountRange ParseCountRange(std::string_view text, std::string_view option,
+                                 std::string_view form) {
+  const auto [first, last] = Split(text, ':', option, form);
+  const auto count = [&](std::string_view digits) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (error == std::errc() && end == digits.data() + digits.size() && number >= 1) return number;
+    throw InputError(
+        fmt::format("{}: '{}' is not a whole number from 1 on: write {}", option, digits, form));
+  };
+  return {.first = count(first), .last = count(last)};
+}
+
+/// Reads COL, COL=fit or COL=C.
+request::CovariateRequest ParseCovariate(const std::string& text) {
+  constexpr std::string_view kForm = "COL[=C|fit], e.g. pressure=50";
+  const std::size_t at = text.rfind('=');
+  if (text.empty() || at == 0 || at + 1 == text.size()) {
+    throw InputError(fmt::format("--covariate: '{}' is incomplete: write {}", text, kForm));
+  }
+  request::CovariateRequest choice{.column = text.substr(0, at), .coefficient = {}};
+  if (at != std::string::npos && text.substr(at + 1) != kFitIt) {
+    choice.coefficient = ParseNumber(std::string_view(text).substr(at + 1), "--covariate", kForm);
+  }
+  return choice;
+}
+
+/// Reads fit, a number, or the form of a slip position.
+request::TermRequest ParseTerm(const std::string& text, const Term& term) {
+  if (term.option == "--slip-position") return {.value = {}, .form = text};
+  if (text == kFitIt) return {};
+  return {.value = ParseNumber(text, term.option,
+                               term.unit == "-" ? std::string("a number, or fit")
+                                                : fmt::format("a number in {}, or fit", term.unit)),
+          .form = {}};
+}
+
+/// Adds an option that is read into an optional range.
+template <typename Range, typename Parse>
+CLI::Option* AddRange(CLI::App& command, const std::string& name, std::optional<Range>& range,
+                      const std::string& form, const std::string& help, Parse parse) {
+  return command
+      .add_option_function<std::string>(
+          name,
+          [&range, name, form, parse](const std::string& text) { range = parse(text, name, form); },
+          help)
+      ->type_name("LO:HI");
 }
 
 void AddLimitOptions(CLI::App& command, FitRequest& options) {
@@ -50,26 +145,24 @@ void AddLimitOptions(CLI::App& command, FitRequest& options) {
 
 void AddWindowOptions(CLI::App& command, FitRequest& options) {
   const std::string group(kColumnGroup);
-  command.add_option("--time-window", options.time_window, "fit only samples from LO to HI [s]")
-      ->type_name("LO:HI")
+  AddRange(command, "--time-window", options.time_window, "LO:HI in seconds",
+           "fit only samples from LO to HI [s]", &ParseInterval)
       ->group(group);
-  command
-      .add_option("--load-window", options.load_window,
-                  "fit only samples under a normal load from LO to HI [N]; the others still make "
-                  "history")
-      ->type_name("LO:HI")
+  AddRange(command, "--load-window", options.load_window, "LO:HI in newtons",
+           "fit only samples under a normal load from LO to HI [N]; the others still make "
+           "history",
+           &ParseInterval)
       ->group(group);
-  command
-      .add_option("--cycles", options.cycles,
-                  "fit only samples of the cycles LO to HI, counted from 1;\n"
-                  "the others still make history")
-      ->type_name("LO:HI")
+  const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
+  AddRange(command, "--cycles", options.cycles, counted,
+           "fit only samples of the cycles LO to HI, counted from 1;\n"
+           "the others still make history",
+           &ParseCountRange)
       ->group(group);
-  command
-      .add_option("--samples", options.samples,
-                  "fit only the samples LO to HI of each record, counted from 1;\n"
-                  "the others still make history")
-      ->type_name("LO:HI")
+  AddRange(command, "--samples", options.samples, counted,
+           "fit only the samples LO to HI of each record, counted from 1;\n"
+           "the others still make history",
+           &ParseCountRange)
       ->group(group);
   command
       .add_option("--skip-cycles", options.skip_cycles,
@@ -92,20 +185,32 @@ void AddTermOptions(CLI::App& command, FitRequest& options, const std::string& g
     const std::string option(term.option);
     const std::string help(term.help);
     if (term.of_column) {
-      command.add_option(option, options.covariates, help)
+      command
+          .add_option_function<std::vector<std::string>>(
+              option,
+              [&options](const std::vector<std::string>& texts) {
+                options.covariates.clear();
+                for (const std::string& text : texts) {
+                  options.covariates.push_back(ParseCovariate(text));
+                }
+              },
+              help)
           ->type_name(std::string(term.argument))
           ->allow_extra_args(false)
           ->group(group);
     } else if (term.argument.empty()) {
       command
           .add_flag_callback(
-              option, [&options, &term] { options.terms[term.name] = kFitIt; }, help)
+              option, [&options, &term] { options.terms[term.name] = {}; }, help)
           ->group(group);
     } else {
       command
           .add_option_function<std::string>(
               option,
-              [&options, &term](const std::string& text) { options.terms[term.name] = text; }, help)
+              [&options, &term](const std::string& text) {
+                options.terms[term.name] = ParseTerm(text, term);
+              },
+              help)
           ->type_name(std::string(term.argument))
           ->group(group);
     }
@@ -239,15 +344,24 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
           },
           "no longer needed: a load that varies is followed by itself")
       ->group("");  // not shown
-  command.add_option("--fix", options.fix, DescribeParameters())
-      ->type_name("NAME=VALUE")
-      ->group(group);
-  command.add_option("--start", options.start, "start from a value instead of the data's")
-      ->type_name("NAME=VALUE")
-      ->group(group);
-  command.add_option("--bound", options.bound, "keep a parameter between two values")
-      ->type_name("NAME=LO:HI")
-      ->group(group);
+  const auto add_assignments = [&](const std::string& name, auto& target, const char* type,
+                                   const char* form, auto parse, const std::string& help) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            name,
+            [&target, name, form, parse](const std::vector<std::string>& texts) {
+              ReadAssignments(texts, name, form, target, parse);
+            },
+            help)
+        ->type_name(type)
+        ->group(group);
+  };
+  constexpr const char* kValue = "NAME=VALUE, e.g. alpha=0.3333";
+  add_assignments("--fix", options.fix, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
+  add_assignments("--start", options.start, "NAME=VALUE", kValue, &ParseNumber,
+                  "start from a value instead of the data's");
+  add_assignments("--bound", options.bound, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2",
+                  &ParseInterval, "keep a parameter between two values");
   command.add_option("--confidence", options.confidence, "confidence of every interval [-]")
       ->type_name("C")
       ->capture_default_str()

@@ -148,9 +148,9 @@ void RequireColumns(const FitRequest& request, const std::vector<RecordFile>& in
 /// @param names  written: those of the records
 std::vector<RecordFile> SplitLoads(const FitRequest& request, std::vector<RecordFile> inputs,
                                    std::vector<std::string>& names) {
-  const bool splits = request.contact.normal_loads.empty() && request.load_window.empty() &&
-                      request.samples.empty();
-  const bool trims = request.trim == kAutomatic && request.load_window.empty();
+  const bool splits =
+      request.contact.normal_loads.empty() && !request.load_window && !request.samples;
+  const bool trims = request.trim == kAutomatic && !request.load_window;
   names = request.files;
   if (!splits && !trims) return inputs;
   names.clear();
@@ -312,11 +312,10 @@ void Validate(const FitRequest& request) {
   RequireLoadsOfRecords(request);
   MakeFitOptions(request);
   CovariateColumns(request);
-  TimeWindow(request);
 }
 
 void KeepTimeWindow(const FitRequest& request, const std::string& name, RecordFile& record) {
-  const std::optional<Interval> window = TimeWindow(request);
+  const std::optional<Interval>& window = request.time_window;
   if (window) io::KeepTimeWindow(record, name, window->lower, window->upper);
 }
 

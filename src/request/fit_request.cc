@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <span>
 #include <utility>
 
@@ -18,7 +17,6 @@
 namespace mindahl::request {
 
 using identification::FitOptions;
-using identification::Interval;
 using identification::Loss;
 using identification::Term;
 
@@ -31,62 +29,20 @@ constexpr std::string_view kDriftOfDisplacement = "displacement_drift";
 // The term that has the option --slip-position.
 constexpr std::string_view kSlipPosition = "slip_slope";
 
-double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
-  double value = 0.0;
-  const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) {
-    throw InputError(fmt::format("{}: '{}' is not a number: write {}", option, text, form));
-  }
-  return value;
-}
-
-/// Returns "left<separator>right".
-std::pair<std::string_view, std::string_view> Split(std::string_view text, char separator,
-                                                    std::string_view option,
-                                                    std::string_view form) {
-  const std::size_t at = text.find(separator);
-  if (at == std::string_view::npos || at == 0 || at + 1 == text.size()) {
-    throw InputError(fmt::format("{}: '{}' is incomplete: write {}", option, text, form));
-  }
-  return {text.substr(0, at), text.substr(at + 1)};
-}
-
 [[noreturn]] void ThrowTwice(std::string_view option, std::string_view name) {
   throw InputError(fmt::format("{}: '{}' is given twice: give it once", option, name));
 }
 
-std::map<std::string, double> ParseAssignments(const std::vector<std::string>& texts,
-                                               std::string_view option) {
-  constexpr std::string_view kForm = "NAME=VALUE, e.g. alpha=0.3333";
-  std::map<std::string, double> assignments;
-  for (const std::string& text : texts) {
-    const auto [name, value] = Split(text, '=', option, kForm);
-    const double number = ParseNumber(value, option, kForm);
-    if (!assignments.emplace(name, number).second) ThrowTwice(option, name);
-  }
-  return assignments;
+void RequireOrdered(std::string_view option, double lower, double upper) {
+  if (lower < upper) return;
+  throw InputError(fmt::format("{}: '{}:{}' is empty: the first number must be the smaller", option,
+                               lower, upper));
 }
 
-Interval ParseInterval(std::string_view text, std::string_view option, std::string_view form) {
-  const auto [lower, upper] = Split(text, ':', option, form);
-  const Interval interval{ParseNumber(lower, option, form), ParseNumber(upper, option, form)};
-  if (!(interval.lower < interval.upper)) {
-    throw InputError(
-        fmt::format("{}: '{}' is empty: the first number must be the smaller", option, text));
-  }
-  return interval;
-}
-
-std::map<std::string, Interval> ParseBounds(const std::vector<std::string>& texts) {
-  constexpr std::string_view kForm = "NAME=LO:HI, e.g. alpha=0:2";
-  std::map<std::string, Interval> bounds;
-  for (const std::string& text : texts) {
-    const auto [name, interval] = Split(text, '=', "--bound", kForm);
-    const Interval parsed = ParseInterval(interval, "--bound", kForm);
-    if (!bounds.emplace(name, parsed).second) ThrowTwice("--bound", name);
-  }
-  return bounds;
+void RequireCounts(std::string_view option, const std::optional<loop::CountRange>& range) {
+  if (!range || (range->first >= 1 && range->first <= range->last)) return;
+  throw InputError(fmt::format("{}: '{}:{}' is empty: the first number must not be the larger",
+                               option, range->first, range->last));
 }
 
 /// Fits the other terms of a group, those that are not given.
@@ -106,9 +62,9 @@ void ApplySlipPosition(std::string_view text, FitOptions& fit) {
 }
 
 /// Applies the request for a term: to be fitted, or held at a given value.
-void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
+void ApplyTerm(const Term& term, const TermRequest& asked, FitOptions& fit) {
   const std::string name(term.name);
-  if (text == kFitIt) {
+  if (!asked.value) {
     if (fit.fixed.contains(name)) {
       throw InputError(fmt::format("{} {} contradicts --fix {}: give one of the two", term.option,
                                    term.argument.empty() ? "" : kFitIt, name));
@@ -116,50 +72,30 @@ void ApplyTerm(const Term& term, const std::string& text, FitOptions& fit) {
     fit.terms.push_back(name);
     return;
   }
-  const double value =
-      ParseNumber(text, term.option,
-                  term.unit == "-" ? std::string("a number, or fit")
-                                   : fmt::format("a number in {}, or fit", term.unit));
   (term.positive ? RequirePositive : RequireFinite)(fmt::format("{} [{}]", term.option, term.unit),
-                                                    value);
-  if (!fit.fixed.emplace(name, value).second) {
+                                                    *asked.value);
+  if (!fit.fixed.emplace(name, *asked.value).second) {
     throw InputError(
         fmt::format("{} and --fix {} say the same: give one of the two", term.option, name));
   }
 }
 
-struct CovariateChoice {
-  std::string column;
-  std::optional<double> value;  // empty: fitted
-};
-
-/// Parses COL, COL=fit or COL=C.
-CovariateChoice ParseCovariate(const std::string& text) {
-  constexpr std::string_view kForm = "COL[=C|fit], e.g. pressure=50";
-  const std::size_t at = text.rfind('=');
-  if (text.empty() || at == 0 || at + 1 == text.size()) {
-    throw InputError(fmt::format("--covariate: '{}' is incomplete: write {}", text, kForm));
-  }
-  CovariateChoice choice{.column = text.substr(0, at), .value = {}};
-  if (at != std::string::npos && text.substr(at + 1) != kFitIt) {
-    choice.value = ParseNumber(std::string_view(text).substr(at + 1), "--covariate", kForm);
-  }
-  return choice;
-}
-
-void ApplyCovariates(const std::vector<std::string>& texts, FitOptions& fit) {
-  for (const std::string& text : texts) {
-    const CovariateChoice choice = ParseCovariate(text);
+void ApplyCovariates(const std::vector<CovariateRequest>& covariates, FitOptions& fit) {
+  for (const CovariateRequest& choice : covariates) {
+    if (choice.column.empty()) {
+      throw InputError("--covariate: '' is no column: give its name or number");
+    }
     const std::string name = identification::NameOfCovariate(choice.column);
     const bool is_there = std::ranges::any_of(fit.covariates, [&](const std::string& other) {
       return identification::NameOfCovariate(other) == name;
     });
     if (is_there) ThrowTwice("--covariate", choice.column);
     fit.covariates.push_back(choice.column);
-    if (!choice.value) continue;
-    if (!fit.fixed.emplace(name, *choice.value).second) {
+    if (!choice.coefficient) continue;
+    if (!fit.fixed.emplace(name, *choice.coefficient).second) {
       throw InputError(
-          fmt::format("--covariate {} and --fix {} say the same: give one of the two", text, name));
+          fmt::format("--covariate {}={} and --fix {} say the same: give one of the two",
+                      choice.column, *choice.coefficient, name));
     }
   }
 }
@@ -195,22 +131,6 @@ void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
   }
 }
 
-loop::CountRange ParseCountRange(std::string_view text, std::string_view option) {
-  constexpr std::string_view kForm = "LO:HI, counted from 1, e.g. 2:5";
-  const auto [first, last] = Split(text, ':', option, kForm);
-  const auto count = [&](std::string_view digits) {
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (error == std::errc() && end == digits.data() + digits.size() && number >= 1) return number;
-    throw InputError(
-        fmt::format("{}: '{}' is not a whole number from 1 on: write {}", option, digits, kForm));
-  };
-  const loop::CountRange range{.first = count(first), .last = count(last)};
-  if (range.first <= range.last) return range;
-  throw InputError(
-      fmt::format("{}: '{}' is empty: the first number must not be the larger", option, text));
-}
-
 /// Refuses the options that do not apply to a fit of the displacement, by name.
 void RequireOptionsOfDisplacement(const FitRequest& request) {
   const auto refuse = [](std::string_view option, std::string_view why) {
@@ -218,7 +138,7 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
         fmt::format("{} cannot be combined with --noise-in displacement: {}", option, why));
   };
   constexpr std::string_view kBeside = "it is of a force that is fitted; leave one of the two out";
-  for (const auto& [name, text] : request.terms) {
+  for (const auto& [name, asked] : request.terms) {
     if (name != kDriftOfForce) refuse(identification::FindTerm(name)->option, kBeside);
   }
   if (!request.covariates.empty()) refuse("--covariate", kBeside);
@@ -302,8 +222,8 @@ void RequireTrimAlone(const FitRequest& request) {
     throw InputError(fmt::format("{} cannot be combined with --trim auto: {}", option, why));
   };
   constexpr std::string_view kBoth = "both say which cycles count; leave one of the two out";
-  if (!request.cycles.empty()) refuse("--cycles", kBoth);
-  if (!request.samples.empty()) refuse("--samples", kBoth);
+  if (request.cycles) refuse("--cycles", kBoth);
+  if (request.samples) refuse("--samples", kBoth);
   if (request.skip_cycles > 0) refuse("--skip-cycles", kBoth);
   if (request.noise_in == "displacement") {
     refuse("--noise-in displacement", "cycles are compared under a displacement that is imposed");
@@ -322,9 +242,8 @@ std::vector<std::string_view> ModelNames() {
 }
 
 bool ChoosesTermsByDefault(const FitRequest& request) {
-  const auto is_of_term = [](const std::string& assignment) {
-    const std::string name = assignment.substr(0, assignment.find('='));
-    const Term* term = identification::FindTerm(identification::TermNameOf(name));
+  const auto is_of_term = [](const auto& held) {
+    const Term* term = identification::FindTerm(identification::TermNameOf(held.first));
     return term != nullptr && term->presence == identification::Presence::kOnDemand;
   };
   return request.term_choice.empty() && request.files.size() <= 1 && request.terms.empty() &&
@@ -351,10 +270,11 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   for (const contact::UncertainValue& load : options.contact.normal_loads) {
     fit.normal_loads.push_back(load.value);
   }
-  if (!options.load_window.empty()) {
-    preparation.load_window =
-        ParseInterval(options.load_window, "--load-window", "LO:HI in newtons");
+  for (const auto& [option, window] :
+       {std::pair("--load-window", options.load_window), {"--time-window", options.time_window}}) {
+    if (window) RequireOrdered(option, window->lower, window->upper);
   }
+  preparation.load_window = options.load_window;
   preparation.skip_cycles = options.skip_cycles;
   fit.loss = FindLoss(options.loss);
   fit.starts = options.starts;
@@ -371,27 +291,32 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   fit.confidence = options.confidence;
   if (options.reversal_gate) RequireNonNegative("--reversal-gate [m]", *options.reversal_gate);
   preparation.reversal_gate = options.reversal_gate;
-  fit.fixed = ParseAssignments(options.fix, "--fix");
-  for (const auto& [name, text] : options.terms) {
+  fit.fixed = options.fix;
+  for (const auto& [name, asked] : options.terms) {
     const bool is_of_displacement =
         name == kDriftOfForce && fit.response() == loop::Channel::kDisplacement;
     if (name == kSlipPosition) continue;
-    ApplyTerm(*identification::FindTerm(is_of_displacement ? kDriftOfDisplacement : name), text,
+    ApplyTerm(*identification::FindTerm(is_of_displacement ? kDriftOfDisplacement : name), asked,
               fit);
   }
   // Those that bring others come last: what is given of these is known.
-  for (const auto& [name, text] : options.terms) {
-    if (name == kSlipPosition) ApplySlipPosition(text, fit);
+  for (const auto& [name, asked] : options.terms) {
+    if (name == kSlipPosition) ApplySlipPosition(asked.form, fit);
     if (name == "speed_exponent") ApplyCompanions("speed_exponent", name, fit);
     if (name == "slip_speed_exponent") ApplyCompanions("slip_speed", name, fit);
     if (name == "ripple_period") ApplyCompanions("ripple", name, fit);
   }
   ApplyTermNames(options, fit);
   ApplyCovariates(options.covariates, fit);
-  if (!options.cycles.empty()) preparation.cycles = ParseCountRange(options.cycles, "--cycles");
-  if (!options.samples.empty()) preparation.samples = ParseCountRange(options.samples, "--samples");
-  fit.start = ParseAssignments(options.start, "--start");
-  fit.bounds = ParseBounds(options.bound);
+  RequireCounts("--cycles", options.cycles);
+  RequireCounts("--samples", options.samples);
+  preparation.cycles = options.cycles;
+  preparation.samples = options.samples;
+  fit.start = options.start;
+  fit.bounds = options.bound;
+  for (const auto& [name, interval] : fit.bounds) {
+    RequireOrdered("--bound", interval.lower, interval.upper);
+  }
   const bool is_automatic = options.model == kAutomatic;
   RequireWithinBounds(fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, is_automatic, fit);
@@ -425,15 +350,8 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
 std::vector<std::string> CovariateColumns(const FitRequest& request) {
   std::vector<std::string> columns;
   columns.reserve(request.covariates.size());
-  for (const std::string& text : request.covariates) {
-    columns.push_back(ParseCovariate(text).column);
-  }
+  for (const CovariateRequest& choice : request.covariates) columns.push_back(choice.column);
   return columns;
-}
-
-std::optional<Interval> TimeWindow(const FitRequest& request) {
-  if (request.time_window.empty()) return std::nullopt;
-  return ParseInterval(request.time_window, "--time-window", "LO:HI in seconds");
 }
 
 }  // namespace mindahl::request

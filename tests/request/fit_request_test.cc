@@ -36,7 +36,7 @@ TEST(FitRequest, ChoosesNoModelForEachCycle) {
   EXPECT_THROW(MakeCycleFitOptions(request), InputError);
   request.model = "dahl";
   EXPECT_EQ(MakeCycleFitOptions(request).model->name, "dahl");
-  request.covariates = {"pressure"};
+  request.covariates = {{.column = "pressure", .coefficient = {}}};
   EXPECT_THROW(MakeCycleFitOptions(request), InputError);
 }
 

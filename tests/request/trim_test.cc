@@ -206,10 +206,10 @@ TEST(TrimmedFit, IsRefusedTogetherWithOtherWindows) {
   };
   FitRequest request;
   EXPECT_EQ(message(request), "");
-  request.cycles = "2:3";
+  request.cycles = {.first = 2, .last = 3};
   EXPECT_THAT(message(request), HasSubstr("--cycles cannot be combined with --trim auto"));
   request = {};
-  request.samples = "2:30";
+  request.samples = {.first = 2, .last = 30};
   EXPECT_THAT(message(request), HasSubstr("--samples has no place"));
   request = {};
   request.skip_cycles = 1;

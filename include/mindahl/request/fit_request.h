@@ -11,6 +11,7 @@
 
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/io/record_reader.h"
+#include "mindahl/loop/preparation.h"
 #include "mindahl/request/contact_request.h"
 
 /// Turns a user's request for a fit, in words and numbers, into the report that answers it: the
@@ -36,34 +37,46 @@ inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "ca
 /// Models that can be fitted, and kAutomatic.
 std::vector<std::string_view> ModelNames();
 
-/// Holds the options of `fit` on records, model and contact, as typed; docs/contract.md says what
-/// each may be.
+/// What is asked of a term.
+struct TermRequest {
+  std::optional<double> value;  ///< at which it is held; empty: it is fitted
+  std::string form;             ///< "linear" or "quadratic", of --slip-position alone
+};
+
+/// A column in proportion to which a force is added.
+struct CovariateRequest {
+  std::string column;
+  std::optional<double> coefficient;  ///< [N/unit of the column]; empty: it is fitted
+};
+
+/// Holds the options of `fit` on records, model and contact; docs/contract.md says what each may
+/// be.
 struct FitRequest {
   std::vector<std::string> files;
   io::RecordColumns columns;
-  std::uint64_t max_rows = 20'000'000;      // of all files together
-  std::optional<std::uint64_t> max_memory;  // [bytes]; else what the process may have
-  std::string time_window;
+  std::uint64_t max_rows = 20'000'000;                  // of all files together
+  std::optional<std::uint64_t> max_memory;              // [bytes]; else what the process may have
+  std::optional<identification::Interval> time_window;  // [s]
   std::string model = "mindlin-dahl";
   std::string initial_state = "auto";
   std::string force_sign = "auto";
   std::string noise_in = "force";
   std::string offsets = "on";
-  std::map<std::string_view, std::string> terms;  // what was asked of each, by its name
+  std::map<std::string_view, TermRequest> terms;  // by its name
   /// kAutomatic, kNoTerms or names of what is fitted; empty: as ChoosesTermsByDefault() says.
   std::string term_choice;
-  std::vector<std::string> covariates;
-  std::string load_window;
-  std::string cycles;
-  std::string samples;
+  std::vector<CovariateRequest> covariates;
+  std::optional<identification::Interval> load_window;  // [N]
+  std::optional<loop::CountRange> cycles;
+  std::optional<loop::CountRange> samples;
   std::size_t skip_cycles = 0;
   std::string trim = "off";
   std::string loss = "none";
   std::size_t starts = identification::FitOptions{}.starts;
   std::uint64_t seed = identification::FitOptions{}.seed;
-  std::vector<std::string> fix;
-  std::vector<std::string> start;
-  std::vector<std::string> bound;
+  std::map<std::string, double> fix;
+  std::map<std::string, double> start;
+  std::map<std::string, identification::Interval> bound;
   double confidence = 0.95;
   std::optional<double> force_noise;
   std::optional<double> displacement_noise;
@@ -86,8 +99,5 @@ identification::FitOptions MakeCycleFitOptions(const FitRequest& request);
 
 /// Returns the columns that are covariates, as the reader takes them.
 std::vector<std::string> CovariateColumns(const FitRequest& request);
-
-/// Returns the time window [s]; empty where every time counts.
-std::optional<identification::Interval> TimeWindow(const FitRequest& request);
 
 }  // namespace mindahl::request
