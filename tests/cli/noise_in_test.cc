@@ -118,9 +118,9 @@ TEST_F(NoiseIn, DisplacementRefusesOptionsOfForceFitsInOneLine) {
         refusal({option, "fit"}),
         HasSubstr(std::string(option) + " cannot be combined with --noise-in displacement"));
   }
-  EXPECT_THAT(refusal({"--plateau-slope"}), HasSubstr("--plateau-slope has no place"));
-  EXPECT_THAT(refusal({"--covariate", "time"}), HasSubstr("--covariate has no place"));
-  EXPECT_THAT(refusal({"--model", "auto"}), HasSubstr("--model auto has no place"));
+  EXPECT_THAT(refusal({"--plateau-slope"}), HasSubstr("--plateau-slope cannot be combined"));
+  EXPECT_THAT(refusal({"--covariate", "time"}), HasSubstr("--covariate cannot be combined"));
+  EXPECT_THAT(refusal({"--model", "auto"}), HasSubstr("--model auto cannot be combined"));
   EXPECT_THAT(refusal({"--force-noise", "0.1"}), HasSubstr("give --displacement-noise"));
   EXPECT_THAT(refusal({"--fix", "rig_stiffness=1e8"}),
               HasSubstr("rig_stiffness has no place in a fit of the displacement"));

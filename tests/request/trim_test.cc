@@ -210,13 +210,13 @@ TEST(TrimmedFit, IsRefusedTogetherWithOtherWindows) {
   EXPECT_THAT(message(request), HasSubstr("--cycles cannot be combined with --trim auto"));
   request = {};
   request.samples = {.first = 2, .last = 30};
-  EXPECT_THAT(message(request), HasSubstr("--samples has no place"));
+  EXPECT_THAT(message(request), HasSubstr("--samples cannot be combined"));
   request = {};
   request.skip_cycles = 1;
-  EXPECT_THAT(message(request), HasSubstr("--skip-cycles has no place"));
+  EXPECT_THAT(message(request), HasSubstr("--skip-cycles cannot be combined"));
   request = {};
   request.noise_in = "displacement";
-  EXPECT_THAT(message(request), HasSubstr("--noise-in displacement has no place"));
+  EXPECT_THAT(message(request), HasSubstr("--noise-in displacement cannot be combined"));
 }
 
 }  // namespace
