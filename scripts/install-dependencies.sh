@@ -22,6 +22,7 @@ for group in "$@"; do
         libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema man-db pkg-config
         pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
         python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
+        python3-nbclient python3-nbformat python3-ipykernel
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )
       ;;

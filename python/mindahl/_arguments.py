@@ -148,9 +148,9 @@ def with_unit(name: str, value: Any, units: Sequence[str]) -> tuple[Any, Optiona
     """Numbers and their unit: of a quantity of pint in the first of `units` that it can be in, of an
     array of xarray that of its attribute "units"; None of what states none."""
     if is_quantity(value):
-        for unit in units:
-            if value.check(value._REGISTRY.Quantity(1, unit).dimensionality):
-                return value.to(unit).magnitude, unit.replace("*", " ")
+        for symbol in units:
+            if value.check(value._REGISTRY.Quantity(1, symbol).dimensionality):
+                return value.to(symbol).magnitude, symbol.replace("*", " ")
         raise ValueError(f"{name} has the unit {value.units}: must be one of {', '.join(units)}")
     attributes = getattr(value, "attrs", None)
     unit = attributes.get("units") if isinstance(attributes, Mapping) else None

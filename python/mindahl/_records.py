@@ -180,7 +180,7 @@ class RecordArguments:
                                  f"{len(arrays[0])}: give as many of both")
         return _mindahl.record_of_columns(
             name, names, arrays, columns_of(**choices, **self.units, covariates=self.covariates,
-                                            calibration=self.calibration))
+                                            calibration=self.calibration, encoding=""))
 
 
 def is_path(value: Any) -> bool:

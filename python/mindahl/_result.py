@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from html import escape
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, cast
 
 from . import _mindahl
 from ._arguments import Floats
@@ -207,7 +207,7 @@ class FitResult:
     """
 
     def __init__(self, fitted: Union[_mindahl.Fitted, _StoredFit]) -> None:
-        self._fitted: Any = fitted
+        self._fitted = cast(_mindahl.Fitted, fitted)
         self._report: dict[str, Any] = json.loads(fitted.json())
 
     @classmethod

@@ -57,8 +57,10 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
   if (by_blanks) at = SkipBlanks(at, end);
   for (std::size_t column = 0; column < slots_.size(); ++column) {
     if (column > 0) {  // at the delimiter that ends the cell before
-      if (at == end && column > last_wanted_) return TakeMark(has_point, number);
-      if (at == end) return false;
+      if (at == end) {
+        if (column <= last_wanted_) return false;
+        break;
+      }
       at = by_blanks ? SkipBlanks(at, end) : at + 1;
     }
     if (slots_[column] < 0) {
@@ -82,11 +84,6 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
     if (at != end && (by_blanks ? !IsBlank(*at) : *at != delimiter)) return false;
   }
   if (at != end && SkipBlanks(at + (by_blanks ? 0 : 1), end) != end) return false;
-  return TakeMark(has_point, number);
-}
-
-/// False where a decimal point is the second mark of the file.
-bool NumberRowReader::TakeMark(bool has_point, std::size_t number) {
   if (has_point && mark_ != '.') {
     if (mark_ != '\0') return false;
     mark_ = '.';

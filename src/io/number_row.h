@@ -42,7 +42,6 @@ class NumberRowReader {
 
  private:
   bool ReadPlain(std::string_view line, std::size_t number, std::span<double> values);
-  bool TakeMark(bool has_point, std::size_t number);
   Row ReadAny(std::string_view line, std::size_t number, std::span<double> values);
   Row Break(std::size_t column, std::string fault);
 

@@ -182,10 +182,12 @@ void RecordStream::State::Read(std::string_view text, Samples& samples) {
         }
         continue;
       case NumberRowReader::Row::kNumbers:
-        MindFooter();
         break;
     }
-    if (!refusal.empty()) return;
+    if (!footer.empty()) {
+      MindFooter();
+      if (!refusal.empty()) return;
+    }
     if (layout.time) {
       const double above = std::exchange(time, values[kTimeChannel]);
       const std::string fault = DescribeTimeFault(time, above, layout.time->unit);

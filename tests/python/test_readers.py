@@ -10,10 +10,14 @@ X = 2e-6 * np.sin(2 * np.pi * TIME)  # [m]
 FORCE = 20.0 * np.sin(2 * np.pi * TIME + 0.3)  # [N]
 
 
-def is_the_record(record, exact=True):
+EXACT = 0.0
+UNIT = 4e-16  # a factor that is not a power of two: two roundings
+SHEET = 1e-15  # and a workbook has numbers of 16 digits
+
+
+def is_the_record(record, tolerance=EXACT):
     for found, expected in ((record.displacement, X), (record.force, FORCE), (record.time, TIME)):
-        # A unit is a factor that is not a power of two: two roundings.
-        np.testing.assert_allclose(found, expected, rtol=0 if exact else 4e-16, atol=0)
+        np.testing.assert_allclose(found, expected, rtol=tolerance, atol=0)
 
 
 @pytest.mark.filterwarnings("ignore::mindahl.FitWarning")
@@ -27,7 +31,7 @@ def test_mat_files_are_read_by_name_in_structs_and_matrices(tmp_path):
                                    force="run.F"))
     scipy_io.savemat(path, {"data": np.column_stack([TIME, X * 1e6, FORCE])})
     is_the_record(mindahl.read_mat(path, time="data_1", displacement="data_2", force="data_3",
-                                   displacement_unit="um", force_unit="N"), exact=False)
+                                   displacement_unit="um", force_unit="N"), tolerance=UNIT)
     scipy_io.savemat(path, {"name": "empty"})
     with pytest.raises(ValueError, match="holds no vector of numbers"):
         mindahl.read_mat(path)
@@ -47,7 +51,7 @@ def test_hdf5_files_are_read_with_the_units_of_their_attributes(tmp_path):
         file.create_dataset("settings", data=np.arange(3.0))
     record = mindahl.read_hdf5(path, within="run 1", time="run 1/time",
                                displacement="run 1/displacement", force="run 1/force")
-    is_the_record(record, exact=False)
+    is_the_record(record, tolerance=UNIT)
     assert record.columns["displacement"]["unit"] == "um"
     is_the_record(mindahl.read_hdf5(path, within="run 2", time="run 2.time",
                                     displacement="run 2.x", force="run 2.F"))
@@ -67,7 +71,7 @@ def test_excel_sheets_are_read_by_the_rules_of_csv_files(tmp_path):
         sheet.append([float(value) for value in row])
     book.save(path)
     record = mindahl.read_excel(path, sheet="run 1")
-    is_the_record(record, exact=False)
+    is_the_record(record, tolerance=SHEET)
     assert record.columns["force"]["unit"] == "N"
     with pytest.raises(ValueError, match="has no sheet 'run 2': it has Sheet, run 1"):
         mindahl.read_excel(path, sheet="run 2")
