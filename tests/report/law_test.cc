@@ -73,7 +73,7 @@ TEST(Law, ReportsContactUnderTheAlternativeLaw) {
                    0.75 * 0.75 * 0.75 * contact["equivalent_radius"]["value"].get<double>());
   const std::string text = ToText(report);
   EXPECT_THAT(text, AllOf(HasSubstr("law:  sigma and slip_force are of Masing's law"),
-                          HasSubstr("does not tell"), HasSubstr("30 N/µm"), HasSubstr("50 N"),
+                          HasSubstr("distinguish from it"), HasSubstr("30 N/µm"), HasSubstr("50 N"),
                           HasSubstr("contact radius"), HasSubstr("equivalent")));
 }
 
