@@ -176,7 +176,7 @@ TEST(ModelSelection, UnderMuchNoiseSeveralAreNamedAndTheSimplestIsReported) {
     EXPECT_LT(selection.scores[i].delta_aicc, 4.0);
     EXPECT_THAT(selection.verdict, HasSubstr(std::string(selection.scores[i].model->name)));
   }
-  EXPECT_THAT(selection.verdict, HasSubstr("do not tell apart"));
+  EXPECT_THAT(selection.verdict, HasSubstr("do not distinguish"));
 }
 
 TEST(ModelSelection, TheCriterionDoesNotTellAFreeShapeFromASoftRigInNoise) {
