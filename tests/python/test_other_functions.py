@@ -199,7 +199,7 @@ def test_a_joint_follows_the_torque_that_it_carries():
     # As above, times 1 + 2|A| and the largest torque over its mean.
     np.testing.assert_allclose(moved, force, rtol=0, atol=1e-12)
     fit = mindahl.fit(angle, force, normal_load_column=torque, model="dahl", asymmetry="fit",
-                      initial_state="virgin")
+                      initial_state="virgin", reversal_gate=0)
     assert abs(fit.asymmetry.value + 0.2) < 1e-9
     assert abs(fit.slip_force.value * 22 / 3 / np.abs(torque).mean() - 1) < 1e-9
     with pytest.raises(ValueError, match="load is of model dahl alone"):
@@ -263,7 +263,8 @@ def test_contact_gives_the_program_s_json():
     assert result.parameters.slip_force.value == pytest.approx(15.0, rel=1e-15)
 
 
-@pytest.mark.parametrize("to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps"])
+@pytest.mark.parametrize(
+    "to", ["masing", "dahl", "lugre", "bouc-wen", "iwan", "lammps", "mujoco", "mujoco-joint", "urdf", "sdf"])
 def test_convert_gives_the_program_s_json_and_lines(to):
     options = ["--sigma", SIGMA, "--slip-force", SLIP_FORCE, "--amplitude", 1.2e-6, "--to", to,
                "--largest-amplitude", 2e-6]
