@@ -20,7 +20,7 @@ constexpr std::array<const char*, 3> kNames = {"sigma", "alpha", "slip_force"};
 constexpr std::array<const char*, 3> kUnits = {"N/m", "-", "N"};
 constexpr double kLargestAlpha = 20.0;
 // Bounds of σ and Tc as factors of the greatest stiffness and force of the sweep.
-constexpr double kFarthest = 1e4;
+constexpr double kFarthestScale = 1e4;
 
 using Point = std::array<double, 3>;  // ln σ, α, ln Tc
 
@@ -125,9 +125,10 @@ class SweepProblem {
       }
     }
     // A force that was reached is not above Tc.
-    const double least_slip = options_.over_force ? force_ : force_ / kFarthest;
-    lower_ = {std::log(stiffness_ / kFarthest), 0.0, std::log(least_slip)};
-    upper_ = {std::log(stiffness_ * kFarthest), kLargestAlpha, std::log(force_ * kFarthest)};
+    const double least_slip = options_.over_force ? force_ : force_ / kFarthestScale;
+    lower_ = {std::log(stiffness_ / kFarthestScale), 0.0, std::log(least_slip)};
+    upper_ = {std::log(stiffness_ * kFarthestScale), kLargestAlpha,
+              std::log(force_ * kFarthestScale)};
     for (std::size_t k = 0; k < kNames.size(); ++k) {
       const auto found = options_.fixed.find(kNames[k]);
       if (found == options_.fixed.end()) continue;

@@ -84,7 +84,7 @@ TEST(Backlash, IsRecoveredFromASteadyLoopOfDahlsOwnLaw) {
   Record record =
       BehindGap("dahl", kDahl, Cycling(Wave::kSine, kReach, 8.25, kSamplesPerCycle), kGap);
   // From a turning point on, when the first loading is forgotten.
-  const auto cut = static_cast<std::ptrdiff_t>(record.size() / 8.25 * 6);
+  const auto cut = static_cast<std::ptrdiff_t>(static_cast<double>(record.size()) / 8.25 * 6);
   record.displacement.erase(record.displacement.begin(), record.displacement.begin() + cut);
   record.force.erase(record.force.begin(), record.force.begin() + cut);
   FitOptions options = WithBacklash("dahl");
