@@ -57,10 +57,14 @@ def request_of(
         if asked is None or asked is False:
             continue
         if option == "--slip-position" and isinstance(asked, str):
-            request.set_term(name, None, asked)
+            request.set_term(name, None, asked, None)
+        elif option == "--rig-stiffness" and isinstance(asked, tuple):
+            value, uncertainty = pair("rig_stiffness", asked)
+            request.set_term(name, number("rig_stiffness", value), "",
+                             number("rig_stiffness", uncertainty))
         else:
             value = None if asked is True else fitted_or_number(option, asked)
-            request.set_term(name, value, "")
+            request.set_term(name, value, "", None)
     return request
 
 
@@ -75,7 +79,8 @@ def fit(
     time_zero: float = 0.0, normal_load_gain: Optional[float] = None,
     normal_load_zero: float = 0.0, encoding: str = "", join: bool = False,
     model: str = "mindlin-dahl", initial_state: str = "auto", force_sign: str = "auto",
-    noise_in: str = "force", offsets: Union[bool, str] = True, rig_stiffness: Optional[Asked] = None,
+    noise_in: str = "force", offsets: Union[bool, str] = True,
+    rig_stiffness: Optional[Union[Asked, tuple[float, float]]] = None,
     plateau_slope: bool = False, viscous: Optional[Asked] = None, lag: Optional[Asked] = None,
     asymmetry: Optional[Asked] = None, drift: bool = False,
     speed_exponent: Optional[Asked] = None, inertia: Optional[Asked] = None,
@@ -122,7 +127,8 @@ def fit(
             displacement is fitted, and residuals are in [m].
         offsets: of force [N] and displacement [m], fitted unless False.
         rig_stiffness [N/m], viscous [N s/m], lag [s], asymmetry [-] of slip forces
-            slip_force·(1 ± asymmetry): a known value, or "fit".
+            slip_force·(1 ± asymmetry): a known value, or "fit"; of the rig also (K, U), U its standard
+            uncertainty, for a rig that is fitted about K.
         speed_exponent [-], of a force C·sgn(v)|v|^m in place of the viscous one, inertia [kg],
             ripple: period [m] of a force over the position; backlash: width [m] of a gap before
             the contact that is crossed at zero force; likewise.

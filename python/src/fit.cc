@@ -84,10 +84,11 @@ py::list RecordsOf(const py::object& self) {
 }
 
 void SetTerm(FitRequest& request, const std::string& name, std::optional<double> value,
-             const std::string& form) {
+             const std::string& form, std::optional<double> standard_uncertainty) {
   const identification::Term* term = identification::FindTerm(name);
   if (term == nullptr) throw InputError("there is no term '" + name + "'");
-  request.terms[term->name] = {.value = value, .form = form};
+  request.terms[term->name] = {
+      .value = value, .standard_uncertainty = standard_uncertainty, .form = form};
 }
 
 void AddCovariate(FitRequest& request, const std::string& column, std::optional<double> value) {
@@ -139,7 +140,8 @@ void AddFit(py::module_& module) {
       .def_readwrite("columns", &FitRequest::columns)
       .def_readwrite("join", &FitRequest::join)
       .def_readwrite("contact", &FitRequest::contact)
-      .def("set_term", &SetTerm, py::arg("name"), py::arg("value"), py::arg("form"))
+      .def("set_term", &SetTerm, py::arg("name"), py::arg("value"), py::arg("form"),
+           py::arg("standard_uncertainty") = py::none())
       .def("set_normal_loads", &SetNormalLoads, py::arg("loads"))
       .def("covariate_columns", &request::CovariateColumns);
   py::class_<Fitted, std::shared_ptr<Fitted>>(module, "Fitted")

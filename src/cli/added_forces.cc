@@ -30,11 +30,12 @@ void RequireForces(const AddedForces& forces) {
   if (!forces.ripple && forces.ripple_amplitude != 0) {
     throw InputError("--ripple-amplitude needs a period: add --ripple PERIOD");
   }
-  if (!(std::abs(forces.slip_slope) + std::abs(forces.slip_curvature) < 1)) {
+  if (!(std::abs(forces.slip_slope) + std::abs(forces.slip_curvature) +
+            std::abs(forces.slip_trend) <
+        1)) {
     throw InputError(
-        "--slip-slope and --slip-curvature: together they must be below 1, for the slip force to "
-        "be "
-        "positive over the whole motion");
+        "--slip-slope, --slip-curvature and --slip-trend: together they must be below 1, for the "
+        "slip force to be positive over the whole motion");
   }
 }
 
@@ -52,6 +53,10 @@ void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
   add("--slip-slope", forces.slip_slope,
       "m1 of forces times 1 + m1·x + m2·x², x the position from −1\nto 1 [-]", "M1");
   add("--slip-curvature", forces.slip_curvature, "m2, likewise [-]", "M2");
+  add("--slip-trend", forces.slip_trend,
+      "K of forces times 1 + K·τ, τ the time from −1 at the record's\nbeginning to 1 at its end "
+      "[-]",
+      "K");
   add("--plateau-slope", forces.plateau_slope, "of a force slope·δ [N/m]", "K");
   add("--plateau-curvature", forces.plateau_curvature, "of a force curvature·δ² [N/m²]", "K");
   add("--ripple", forces.ripple, "period of a force over the position [m]", "PERIOD");
@@ -70,6 +75,7 @@ void AddForces(const AddedForces& forces, std::span<const double> time,
   const double half = (highest - lowest) / 2;
   const std::vector<double> velocity = RateOf(time, displacement);
   const std::vector<double> acceleration = RateOf(time, velocity);
+  const double duration = time.empty() ? 0.0 : time.back() - time.front();
   double direction = 1.0;
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (i > 0 && displacement[i] != displacement[i - 1]) {
@@ -77,7 +83,10 @@ void AddForces(const AddedForces& forces, std::span<const double> time,
     }
     const double from_middle = displacement[i] - middle;
     const double position = half > 0 ? from_middle / half : 0.0;
-    force[i] *= 1 + position * (forces.slip_slope + forces.slip_curvature * position);
+    const double elapsed = time[i] - time.front();
+    const double tau = duration > 0 ? 2 * elapsed / duration - 1 : 0.0;
+    force[i] *= 1 + position * (forces.slip_slope + forces.slip_curvature * position) +
+                forces.slip_trend * tau;
     force[i] += forces.inertia * acceleration[i] +
                 from_middle * (forces.plateau_slope + forces.plateau_curvature * from_middle);
     if (forces.viscous != 0) {

@@ -13,6 +13,7 @@ struct AddedForces {
   double inertia = 0.0;            // [kg]
   double slip_slope = 0.0;         // m₁ [-]
   double slip_curvature = 0.0;     // m₂ [-]
+  double slip_trend = 0.0;         // K [-]
   double plateau_slope = 0.0;      // [N/m]
   double plateau_curvature = 0.0;  // [N/m²]
   std::optional<double> ripple;    // λ [m]

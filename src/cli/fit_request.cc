@@ -108,6 +108,15 @@ request::CovariateRequest ParseCovariate(const std::string& text) {
 request::TermRequest ParseTerm(const std::string& text, const Term& term) {
   if (term.option == "--slip-position") return {.value = {}, .form = text};
   if (text == kFitIt) return {};
+  const auto has = [&](std::string_view separator) {
+    return text.find(separator) != std::string::npos;
+  };
+  if (term.name == "rig_stiffness" && (has("±") || has("+-") || has("+/-"))) {
+    const contact::UncertainValue stated = ParseUncertainValue(text, term.option);
+    RequirePositive(fmt::format("{}: standard uncertainty [{}]", term.option, term.unit),
+                    stated.standard_error);
+    return {.value = stated.value, .standard_uncertainty = stated.standard_error, .form = {}};
+  }
   return {.value = ParseNumber(text, term.option,
                                term.unit == "-" ? std::string("a number, or fit")
                                                 : fmt::format("a number in {}, or fit", term.unit)),

@@ -112,6 +112,12 @@ void RequireOptions(const FitOptions& options) {
     ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
   }
   if (options.starts < 1) ThrowInvalid("starts [-]", 0, "must be >= 1");
+  if (!options.stated.empty() &&
+      (options.loss != Loss::kNone || options.response() != loop::Channel::kForce)) {
+    throw InvalidArgument(
+        "a stated uncertainty has no place in a fit with a robust loss or of the displacement: "
+        "state the value alone");
+  }
 }
 
 void RequireInitialStates(const FitOptions& options, std::size_t records) {
@@ -800,6 +806,7 @@ FitOptions OptionsAlone(const FitOptions& options, const FitResult& series, std:
     alone.preparation.held_out = {options.preparation.held_out[r]};
   }
   alone.start.clear();
+  alone.stated.clear();
   std::erase_if(alone.terms,
                 [](const std::string& name) { return FindTerm(name)->scope == Scope::kContact; });
   // A record's own lose their number, those of the others go.
@@ -897,6 +904,20 @@ void SolveAgain(Candidate& candidate, const FitOptions& options, SearchBuffers& 
   buffers.solver.Solve(start, SolverOptionsOf(options), *candidate.solution);
 }
 
+/// Returns the noise of the force [N] against which stated values weigh: as it is known, else what
+/// a fit with the values held leaves.
+double StatedNoise(std::span<const RecordView> records, const FitOptions& options) {
+  if (options.force_noise) return *options.force_noise;
+  FitOptions held = options;
+  held.stated.clear();
+  for (const auto& [name, stated] : options.stated) {
+    std::erase(held.terms, name);
+    held.start.erase(name);
+    held.fixed.emplace(name, stated.value);
+  }
+  return Fitter(held).Fit(records, Depth::kEstimate).rms;
+}
+
 }  // namespace
 
 struct Fitter::State {
@@ -953,6 +974,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   ScaledRecords data = Scale(prepared, given, &arena);
   AddCovariates(given.covariates, depth >= Depth::kIntervals, prepared, given.offsets, data);
   AddColumnsOfTerms(given, data);
+  data.stated_noise = given.stated.empty() ? 0.0 : StatedNoise(records, given) / data.force;
   if (HasTerm(given, "lag")) SetClocks(data);
   ThinnedRecords thin(data, &arena);
   const Attempt attempt{given, prepared, data, thin, buffers, &arena};

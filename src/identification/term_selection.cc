@@ -1,6 +1,7 @@
 #include "mindahl/identification/term_selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -39,9 +40,11 @@ struct TermCandidate {
 
   [[nodiscard]] std::size_t size() const { return terms.size() + (covariate.empty() ? 0 : 1); }
   [[nodiscard]] bool is_lag() const { return considered.name == "lag"; }
+  [[nodiscard]] bool is_drag() const { return considered.name == "drag"; }
   [[nodiscard]] bool is_of_speed() const {
     return std::ranges::any_of(terms, [](const std::string& term) {
-      return term == "viscous" || term == "speed_exponent" || term == "slip_speed";
+      return term == "viscous" || term == "speed_exponent" || term == "slip_speed" ||
+             term == "drag_fraction";
     });
   }
 };
@@ -153,36 +156,50 @@ std::vector<TermCandidate> ListTermCandidates(std::span<const RecordView> record
   return candidates;
 }
 
-/// Where the search for the terms of a candidate begins: where its linear step ends, but for a rig,
-/// which is infinitely far from none.
-/// @param law  the fit without them
-std::map<std::string, double> StartsOf(const TermScore& score, const FitResult& law) {
-  constexpr double kHardlyCompliant = 10.0;  // times the contact's stiffness
-  std::map<std::string, double> starts = score.values;
-  const auto rig = starts.find("rig_stiffness");
-  if (rig != starts.end()) rig->second = kHardlyCompliant * law.law.tangential_stiffness;
-  return starts;
-}
-
-/// True if a fit has a slip force that another one has lost: the interval that was closed is open,
-/// or, of a loop that mostly slides, Tc left the half gap that was measured by more than a quarter.
+/// True if the interval of the slip force was closed and is open.
 /// @param widest_ratio  of the ends of an interval that is closed
-bool LosesSlipForce(const FitResult& without, const FitResult& with, double widest_ratio) {
-  constexpr double kMostlySlides = 0.5;  // energy ratio
-  constexpr double kRunsAway = 1.25;     // times the half gap
+bool OpensSlipForce(const FitResult& without, const FitResult& with, double widest_ratio) {
   const auto is_closed = [&](const FitResult& fit) {
     const ParameterEstimate& slip_force = *fit.Find("slip_force");
     return slip_force.lower95 && slip_force.upper95 &&
            *slip_force.upper95 <= widest_ratio * *slip_force.lower95;
   };
-  if (is_closed(without) && !is_closed(with)) return true;
-  const loop::LoopFacts& facts = without.WidestRecord().facts;
+  return is_closed(without) && !is_closed(with);
+}
+
+/// True if, of a loop that mostly slides, Tc left the half gap that was measured by more than a
+/// quarter.
+bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
+  constexpr double kMostlySlides = 0.5;  // energy ratio
+  constexpr double kRunsAway = 1.25;     // times the half gap
   if (!facts.half_gap || !(facts.energy_ratio > kMostlySlides)) return false;
-  const auto is_that_of_the_gap = [&](const FitResult& fit) {
-    const double ratio = fit.law.slip_force / std::abs(*facts.half_gap);
+  const auto is_that_of_the_gap = [&](double slip_force) {
+    const double ratio = slip_force / std::abs(*facts.half_gap);
     return ratio <= kRunsAway && ratio >= 1 / kRunsAway;
   };
   return is_that_of_the_gap(without) && !is_that_of_the_gap(with);
+}
+
+/// True if the search of a term stopped at a bound of the program's own: no parameter would be
+/// known. Where a contact that slides was unloaded is no such term, and others end where the theory
+/// does.
+bool StopsAtLimit(const FitResult& fit) {
+  constexpr std::array<std::string_view, 11> kMayEnd = {"sigma",
+                                                        "alpha",
+                                                        "slip_force",
+                                                        "rig_stiffness",
+                                                        "slip_speed",
+                                                        "slip_speed_exponent",
+                                                        "drag_fraction",
+                                                        "drag_exponent",
+                                                        "backlash",
+                                                        "ripple_period",
+                                                        "displacement_offset"};
+  return std::ranges::any_of(fit.parameters, [&](const ParameterEstimate& estimate) {
+    const bool is_at_bound = estimate.status == ParameterStatus::kAtLowerBound ||
+                             estimate.status == ParameterStatus::kAtUpperBound;
+    return is_at_bound && std::ranges::find(kMayEnd, TermNameOf(estimate.name)) == kMayEnd.end();
+  });
 }
 
 /// True if a term cannot be negative: a mass or a damping that is stands for something else.
@@ -239,6 +256,21 @@ void IncludeAlternatives(std::span<const Alternative> alternatives, const Thresh
   Judge(fit.parameters, fit.findings);
 }
 
+/// Drops the causes whose remedy was tried and refused: advice that would be followed in vain.
+void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
+  const TermGroup* group = FindTermGroup(refused.name);
+  const std::string_view option =
+      group != nullptr ? FindTerm(group->terms.front())->option : std::string_view();
+  std::erase_if(causes, [&](const Cause& cause) {
+    constexpr std::string_view kOfColumn = "--covariate ";
+    if (group == nullptr) {
+      return cause.option.starts_with(kOfColumn) &&
+             NameOfCovariate(cause.option.substr(kOfColumn.size())) == refused.name;
+    }
+    return !option.empty() && cause.option.find(option) != std::string::npos;
+  });
+}
+
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -246,6 +278,7 @@ class Selection {
       : records_(records), selection_(options), result_(result) {}
 
   void Run(const FitOptions& options);
+  bool RunNamed(FitOptions options, std::span<const std::string> names);
 
  private:
   /// A candidate that was scored in a round.
@@ -271,7 +304,10 @@ class Selection {
   bool Round(std::vector<TermCandidate>& candidates, CandidateModel& base, FitResult& judged);
   void AddMeasuredGap(std::vector<TermCandidate>& candidates, CandidateModel& base,
                       FitResult& judged);
-  bool Accept(CandidateModel& model, FitResult& judged);
+  bool Accept(const CandidateModel& base, const CandidateModel& model, FitResult& judged);
+  [[nodiscard]] std::optional<FitOptions> WithinMeasuredForce(const FitResult& fit,
+                                                              const FitOptions& options) const;
+  void FitLast(const CandidateModel& base);
   void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
   [[nodiscard]] double SquaresOf(double rms) const { return SumOfSquares(rms, samples_); }
   [[nodiscard]] bool MayFit(std::size_t more) const {
@@ -287,6 +323,8 @@ class Selection {
   std::vector<Part> parts_;
   std::size_t folds_ = 0;
   std::vector<std::vector<bool>> held_out_;
+  loop::LoopFacts facts_;    // of the widest record
+  double load_ratio_ = 1.0;  // likewise
 };
 
 FitOptions Selection::With(const TermCandidate& candidate, FitOptions options) const {
@@ -320,8 +358,28 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, Fit
     return std::nullopt;  // not identifiable here, or the rig is softer than the loop
   }
   if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;
+  if (const std::optional<FitOptions> within = WithinMeasuredForce(model.fit, model.options)) {
+    std::map<std::string, double> at_bound = starts;
+    at_bound["slip_force"] = within->bounds.at("slip_force").upper;
+    return FitFrom(model, *within, at_bound);
+  }
   model.sum_of_squares = SquaresOf(model.fit.rms);
   return model;
+}
+
+/// Returns the options with a slip force no larger than the largest force of a loop that slides
+/// over most of its stroke, where the fit has a slip force that it carries nowhere.
+std::optional<FitOptions> Selection::WithinMeasuredForce(const FitResult& fit,
+                                                         const FitOptions& options) const {
+  const double peak_force = facts_.peak_force / load_ratio_;
+  if (!SlidesOverMostOfStroke(facts_, options.thresholds) ||
+      options.bounds.contains("slip_force") || options.fixed.contains("slip_force") ||
+      peak_force >= options.thresholds.mobilised_by_asymptote * fit.law.slip_force) {
+    return std::nullopt;
+  }
+  FitOptions within = options;
+  within.bounds["slip_force"] = {0.0, peak_force};
+  return within;
 }
 
 /// Prepares the records for all candidates at once. What a lag leaves out is left out for all: else
@@ -431,6 +489,10 @@ std::vector<Selection::TermTrial> Selection::ScoreCandidates(std::vector<TermCan
 bool Selection::IsRefused(const TermTrial& trial, std::span<const TermTrial> trials) const {
   ConsideredTerm& considered = trial.candidate->considered;
   if (considered.obstacle == "confounded") return true;
+  // Beside a slip force of the speed a further force of speed and the slip force at rest are
+  // confounded; a drag is that force with the slip force that at v₀.
+  const bool has_slip_speed = std::ranges::find(result_.added, "slip_speed") != result_.added.end();
+  if (trial.candidate->is_drag() && !has_slip_speed) return true;
   const bool is_of_knee =
       trial.candidate->is_lag() && std::ranges::any_of(trials, [&](const TermTrial& other) {
         return other.candidate->is_of_speed() && other.sum_of_squares < 2 * trial.sum_of_squares;
@@ -485,28 +547,30 @@ void Selection::KeepAlternatives(const TermTrial& added, std::span<const TermTri
 /// Moves to the model with the best candidate that is no chance; false where there is none.
 bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
                       FitResult& judged) {
-  constexpr std::size_t kMostTried = 3;  // fits a round
+  constexpr std::size_t kMostTried = 4;  // fits a round
   const std::vector<TermTrial> trials = ScoreCandidates(candidates, base, judged);
   const double chance =
       selection_.chance / static_cast<double>(std::max<std::size_t>(trials.size(), 1));
   // A simpler candidate is taken where a larger one would not leave that much less.
   const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
-  std::size_t tried = 0;
-  std::vector<const TermCandidate*> fitted;
+  std::map<const TermCandidate*, std::optional<CandidateModel>> fitted;
   for (const TermTrial& best : trials) {
     const ConsideredTerm& wanted = best.candidate->considered;
     if (parts_.empty() && !(best.rank < 0)) continue;
     if (!(wanted.p_value < chance) || wanted.gain < selection_.smallest_gain) continue;
     if (IsRefused(best, trials)) continue;
     for (const TermTrial* trial : WithSimpler(best, trials)) {
-      if (std::ranges::find(fitted, trial->candidate) != fitted.end()) continue;
-      constexpr std::size_t kOfCandidate = 2;  // fits: of it, and with intervals
-      if (tried == kMostTried || !MayFit(kOfCandidate + 1)) return false;
-      ++tried;
-      fitted.push_back(trial->candidate);
       ConsideredTerm& considered = trial->candidate->considered;
-      std::optional<CandidateModel> model =
-          FitFrom(base, With(*trial->candidate, base.options), StartsOf(trial->score, base.fit));
+      if (!considered.obstacle.empty()) continue;
+      auto found = fitted.find(trial->candidate);
+      if (found == fitted.end()) {
+        if (fitted.size() == kMostTried || !MayFit(2)) return false;
+        found = fitted
+                    .emplace(trial->candidate, FitFrom(base, With(*trial->candidate, base.options),
+                                                       trial->score.values))
+                    .first;
+      }
+      std::optional<CandidateModel>& model = found->second;
       if (!model || !(model->sum_of_squares < base.sum_of_squares)) continue;
       if (trial != &best && model->sum_of_squares > nearly * best.sum_of_squares) continue;
       const double gain = 1 - std::sqrt(model->sum_of_squares / base.sum_of_squares);
@@ -515,7 +579,7 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
         considered.obstacle = "unphysical";
         continue;
       }
-      if (!Accept(*model, judged)) {
+      if (!Accept(base, *model, judged)) {
         considered.obstacle = "confounded";
         continue;
       }
@@ -549,7 +613,7 @@ void Selection::AddMeasuredGap(std::vector<TermCandidate>& candidates, Candidate
   const double ratio = evidence.LikelihoodRatio(base.sum_of_squares, model->sum_of_squares);
   const double gain = 1 - std::sqrt(model->sum_of_squares / base.sum_of_squares);
   if (gain < selection_.smallest_gain || !(PValueOfChiSquared(ratio, 1.0) < selection_.chance) ||
-      IsUnphysical(model->fit) || !Accept(*model, judged)) {
+      IsUnphysical(model->fit) || !Accept(base, *model, judged)) {
     return;
   }
   gap->considered.gain = gain;
@@ -559,16 +623,24 @@ void Selection::AddMeasuredGap(std::vector<TermCandidate>& candidates, Candidate
   base = std::move(*model);
 }
 
-/// True if a larger model keeps the slip force of the one that was judged, which it then replaces.
-bool Selection::Accept(CandidateModel& model, FitResult& judged) {
+/// True if a larger model keeps the slip force of the smaller one. Of a loop that slides over most
+/// of its stroke the half gap is enough to see that, and the estimates are; otherwise, or where the
+/// residuals are nearly white, the larger model is judged, and replaces the one that was.
+bool Selection::Accept(const CandidateModel& base, const CandidateModel& model, FitResult& judged) {
+  constexpr double kNearlyWhite = 1.2;  // mean square over the variance of the white part
+  const FitResult& fit = model.fit;
+  if (LeavesHalfGap(facts_, base.fit.law.slip_force, fit.law.slip_force)) return false;
+  if (StopsAtLimit(fit) && !StopsAtLimit(base.fit)) return false;
+  const bool is_white = fit.rms * fit.rms <= kNearlyWhite * WhiteVariance(fit);
+  if (SlidesOverMostOfStroke(facts_, model.options.thresholds) && !is_white) return true;
   ++result_.estimates;
-  Fitter fitter(ContinuedFrom(model.fit, model.options));
+  Fitter fitter(ContinuedFrom(fit, model.options));
   const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
   // At a limit of the search no parameter would be known.
   const bool is_limited = now.FindFinding("search_limit") != nullptr;
   if (!IsFitted(now) || IsUnphysical(now)) return false;
   if (is_limited && judged.FindFinding("search_limit") == nullptr) return false;
-  if (LosesSlipForce(judged, now, model.options.thresholds.widest_ratio)) return false;
+  if (OpensSlipForce(judged, now, model.options.thresholds.widest_ratio)) return false;
   judged = now;
   return true;
 }
@@ -585,6 +657,8 @@ void Selection::Run(const FitOptions& options) {
 
   std::vector<TermCandidate> candidates = ListTermCandidates(records_, options, result_.fit);
   MakeScores(options, result_.fit, candidates);
+  facts_ = result_.fit.WidestRecord().facts;
+  load_ratio_ = result_.fit.WidestRecord().load_ratio;
   CandidateModel base;
   base.fit = result_.fit;
   std::optional<CandidateModel> start = FitFrom(base, options, {});
@@ -599,6 +673,23 @@ void Selection::Run(const FitOptions& options) {
   while (judged.adequacy.verdict != AdequacyVerdict::kAdequate &&
          result_.added.size() < selection_.most_terms && Round(candidates, base, judged)) {
   }
+  if (!result_.added.empty()) {
+    FitResult law = std::move(result_.fit);
+    FitLast(base);
+    const bool is_of_no_use = selection_.only_for_use && result_.fit.adequacy.use == Use::kNone;
+    if (!IsFitted(result_.fit) || is_of_no_use) {
+      result_.fit = std::move(law);
+      result_.added.clear();
+      for (TermCandidate& candidate : candidates) candidate.considered.added = false;
+    } else {
+      result_.options.terms = base.options.terms;
+      result_.options.covariates = base.options.covariates;
+    }
+  }
+  for (const TermCandidate& candidate : candidates) {
+    const ConsideredTerm& considered = candidate.considered;
+    if (!considered.obstacle.empty()) DropCausesOf(considered, result_.fit.adequacy.causes);
+  }
   for (const TermCandidate& candidate : candidates)
     result_.considered.push_back(candidate.considered);
   std::ranges::stable_sort(result_.considered, std::greater(), &ConsideredTerm::gain);
@@ -606,21 +697,30 @@ void Selection::Run(const FitOptions& options) {
     return std::ranges::find(result_.added, term.name) - result_.added.begin();
   };
   std::ranges::stable_sort(result_.considered, {}, place);
-  if (selection_.only_for_use && judged.adequacy.use == Use::kNone) {
-    for (ConsideredTerm& term : result_.considered) term.added = false;
-    result_.added.clear();
-  }
-  if (result_.added.empty()) return;
-  result_.options = base.options;
+}
+
+/// Fits the chosen model at full depth from where it is. A slip force that was kept within the
+/// measured force is let go where the model is adequate.
+void Selection::FitLast(const CandidateModel& base) {
   FitOptions from_here = base.options;
   for (const ParameterEstimate& parameter : base.fit.parameters) {
     if (parameter.status != ParameterStatus::kFixed) {
       from_here.start[parameter.name] = parameter.value;
     }
   }
-  ++result_.estimates;
-  Fitter last(from_here);
-  result_.fit = last.Fit(records_, Depth::kThorough);
+  const auto fit = [&] {
+    ++result_.estimates;
+    Fitter last(from_here);
+    result_.fit = last.Fit(records_, Depth::kThorough);
+  };
+  fit();
+  const bool is_bounded_by_user = result_.options.bounds.contains("slip_force");
+  const bool is_bounded = from_here.bounds.contains("slip_force") && !is_bounded_by_user;
+  if (is_bounded && IsFitted(result_.fit) &&
+      result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate) {
+    from_here.bounds.erase("slip_force");
+    fit();
+  }
   std::erase_if(alternatives_, [&](const Alternative& alternative) {
     return std::ranges::find(result_.added, alternative.name) != result_.added.end();
   });
@@ -629,12 +729,46 @@ void Selection::Run(const FitOptions& options) {
   }
 }
 
+/// Adds the named terms one after the other, each from the solution without it.
+/// @returns false where one of them cannot be fitted
+bool Selection::RunNamed(FitOptions options, std::span<const std::string> names) {
+  result_.options = options;
+  std::vector<TermCandidate> candidates;
+  for (const std::string& name : names) {
+    TermCandidate& candidate = candidates.emplace_back();
+    candidate.considered.name = name;
+    for (const std::string_view term : FindTermGroup(name)->terms) {
+      if (std::erase(options.terms, std::string(term)) > 0) candidate.terms.emplace_back(term);
+    }
+  }
+  ++result_.estimates;
+  CandidateModel base{.options = options, .fit = Fitter(options).Fit(records_, Depth::kErrors)};
+  if (!IsFitted(base.fit) || !base.fit.converged) return false;
+  MakeScores(options, base.fit, candidates);
+  held_out_ = options.preparation.held_out;
+  facts_ = base.fit.WidestRecord().facts;
+  load_ratio_ = base.fit.WidestRecord().load_ratio;
+  samples_ = CountedSamples(base.fit, records_);
+  for (const TermCandidate& candidate : candidates) {
+    scores_->StepFrom(base.fit, base.options, {}, 0);
+    const std::optional<TermScore> score = scores_->Of(With(candidate, base.options));
+    if (!score) return false;
+    std::optional<CandidateModel> model =
+        FitFrom(base, With(candidate, base.options), score->values);
+    if (!model) return false;
+    base = std::move(*model);
+  }
+  FitLast(base);
+  return IsFitted(result_.fit);
+}
+
 }  // namespace
 
 std::span<const TermGroup> TermGroups() {
   static const std::vector<TermGroup> groups = {
       {"viscous", {"viscous"}},
       {"speed_exponent", {"speed_exponent", "viscous"}},
+      {"drag", {"drag_fraction", "drag_exponent"}},
       {"inertia", {"inertia"}},
       {"plateau_slope", {"plateau_slope"}},
       {"slip_speed", {"slip_speed", "slip_speed_exponent"}},
@@ -676,7 +810,13 @@ TermSelection SelectTerms(std::span<const RecordView> records, const FitOptions&
   }
   RequireNonNegative("smallest gain [-]", selection.smallest_gain);
   TermSelection result;
-  Selection(records, selection, result).Run(options);
+  if (selection.named.empty()) {
+    Selection(records, selection, result).Run(options);
+  } else if (!options.start.empty() ||
+             !Selection(records, selection, result).RunNamed(options, selection.named)) {
+    Fitter all_at_once(options);
+    result.fit = all_at_once.Fit(records, Depth::kThorough);
+  }
   return result;
 }
 

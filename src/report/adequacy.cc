@@ -222,7 +222,9 @@ std::string MisfitSentence(const Report& report) {
                                      is_of_force ? "force" : "displacement",
                                      Quantity(adequacy.misfit, report.units.response, 3));
   if (adequacy.misfit_over_half_gap) {
-    sentence += fmt::format(" ({:.2g} % of the half gap)", 100 * *adequacy.misfit_over_half_gap);
+    const double percent = 100 * *adequacy.misfit_over_half_gap;
+    sentence += percent < 100 ? fmt::format(" ({:.2g} % of the half gap)", percent)
+                              : fmt::format(" ({:.0f} % of the half gap)", percent);
   }
   const double repeats = report.fit.WidestRecord().structure.repeatable_share;
   if (repeats > 0) {

@@ -103,7 +103,9 @@ const std::vector<Field<identification::TermSelection>>& TermSelectionFields() {
        }},
       {"held_out_parts", "", "cycles or strokes held out, each predicted once",
        [](const Item& item) { return Count(item.held_out_parts); }},
-      {"fits", "", "fits that were made, the first and the last included; at most 15",
+      {"fits", "",
+       "fits that were made, nearly all of them estimates, the first and the last included; at "
+       "most 40",
        [](const Item& item) { return Count(item.estimates); }},
   };
   return fields;

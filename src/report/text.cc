@@ -56,11 +56,24 @@ ParameterWords ParameterInWords(const ParameterEstimate& estimate) {
           fmt::format("{} … {}", limit(estimate.lower95), limit(estimate.upper95))};
 }
 
-std::string ParameterTable(const FitResult& fit, const Style& style) {
-  std::string text =
+/// The table of the parameters: what belongs on the first screen, and what follows.
+struct ParameterTables {
+  std::string first;
+  std::string rest;
+};
+
+/// Tabulates the parameters of the contact first, and the others with them where these are few.
+ParameterTables TabulateParameters(const FitResult& fit, const Style& style) {
+  constexpr std::array<std::string_view, 6> kOfContact = {
+      "sigma", "alpha", "slip_force", "rig_stiffness", "load_exponent", "asymmetry"};
+  constexpr std::size_t kFew = 6;  // rows
+  const std::string head =
       style.Strong(fmt::format("{:<22} {:<27} {:<24} {}", "parameter", "value ± std error",
                                ConfidenceWords(fit) + " interval", "verdict")) +
       "\n";
+  std::string of_contact;
+  std::string others;
+  std::size_t rows = 0;
   std::vector<std::string> held;
   std::vector<std::string> open;
   for (const ParameterEstimate& estimate : fit.parameters) {
@@ -74,12 +87,26 @@ std::string ParameterTable(const FitResult& fit, const Style& style) {
       continue;
     }
     const ParameterWords words = ParameterInWords(estimate);
-    text += fmt::format("{:<22} {:<27} {:<24} {}\n", estimate.name, words.value, words.interval,
-                        style.Judged(JudgementOf(estimate), VerdictWords(estimate)));
+    const bool is_of_contact = std::ranges::find(kOfContact, estimate.name) != kOfContact.end();
+    (is_of_contact ? of_contact : others) +=
+        fmt::format("{:<22} {:<27} {:<24} {}\n", estimate.name, words.value, words.interval,
+                    style.Judged(JudgementOf(estimate), VerdictWords(estimate)));
+    ++rows;
   }
-  if (!open.empty()) text += Wrapped(fmt::format("not identifiable: {}", fmt::join(open, ", ")), 2);
-  if (held.empty()) return text;
-  return text + Wrapped(fmt::format("held, not fitted: {}", fmt::join(held, ", ")), 2);
+  ParameterTables tables{.first = head + of_contact, .rest = {}};
+  if (rows <= kFew) {
+    tables.first += others;
+  } else {
+    tables.rest = "\n" + head + others;
+  }
+  if (!open.empty()) {
+    tables.first += Wrapped(fmt::format("not identifiable: {}", fmt::join(open, ", ")), 2);
+  }
+  if (!held.empty()) {
+    tables.rest += (rows <= kFew ? "\n" : "") +
+                   Wrapped(fmt::format("held, not fitted: {}", fmt::join(held, ", ")), 2);
+  }
+  return tables;
 }
 
 std::string SelectionText(const identification::ModelSelection& selection, const Units& units) {
@@ -345,21 +372,23 @@ std::string ToText(const Report& report, const TextOptions& options) {
     const std::string terms = TermsText(*report.terms);
     if (!terms.empty()) text += Wrapped(terms, 2);
   }
-  text += "\n" + ParameterTable(fit, style);
-  const std::string wide = WideIntervalStatement(fit, report.units);
-  if (!wide.empty()) text += Wrapped(wide, 2);
+  const ParameterTables tables = TabulateParameters(fit, style);
+  text += "\n" + tables.first;
   const std::string slip_forces = SlipForcesStatement(report);
   if (!slip_forces.empty()) text += Wrapped(slip_forces, 13);
-  std::string rest = OtherCausesText(report);
+  std::string rest = tables.rest;
+  const std::string wide = WideIntervalStatement(fit, report.units);
+  if (!wide.empty()) rest += Wrapped(wide, 2);
+  rest += OtherCausesText(report);
   if (report.selection) rest += "\n" + SelectionText(*report.selection, report.units);
   rest += "\n" + FitText(report) + MeasuredText(report) + MemoryText(report) + ResidualText(report);
   // For an inadequate model no curve is shown, and nothing that follows from it.
   if (fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate) {
     return text + rest + NotesText(report);
   }
-  text += "\n" + LoopText(report) + LawText(report);
+  const std::string loop = "\n" + LoopText(report) + LawText(report);
   if (report.is_torsional()) {
-    return text + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) + rest +
+    return text + Wrapped(std::string("no contact: ") + kWhyNoContact, 2) + loop + rest +
            NotesText(report);
   }
   text += "\n" + style.Strong("contact (Mindlin-Dahl mapping)") + "\n" + ContactText(report);
@@ -369,7 +398,7 @@ std::string ToText(const Report& report, const TextOptions& options) {
   section(LoadSeriesText(report));
   section(HertzText(report));
   rest += "\n" + style.Strong("is it Mindlin's contact?") + "\n" + MappingText(report);
-  return text + rest + NotesText(report);
+  return text + loop + rest + NotesText(report);
 }
 
 }  // namespace mindahl::report

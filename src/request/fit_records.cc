@@ -256,6 +256,10 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
       if (by_default && terms->considered.empty()) terms.reset();
       return fit;
     }
+    const std::vector<std::string> named = NamedTerms(request);
+    if (!named.empty() && options.response() == loop::Channel::kForce) {
+      return identification::SelectTerms(records, options, {.named = named}).fit;
+    }
     return identification::Fit(records, options, identification::Depth::kThorough);
   } catch (const identification::TooFewSamples& error) {
     throw InputError(fmt::format("{}: {}", fmt::join(request.files, ", "), error.what()));

@@ -74,6 +74,11 @@ void ApplyTerm(const Term& term, const TermRequest& asked, FitOptions& fit) {
   }
   (term.positive ? RequirePositive : RequireFinite)(fmt::format("{} [{}]", term.option, term.unit),
                                                     *asked.value);
+  if (asked.standard_uncertainty && !fit.fixed.contains(name)) {
+    fit.terms.push_back(name);
+    fit.stated[name] = {*asked.value, *asked.standard_uncertainty};
+    return;
+  }
   if (!fit.fixed.emplace(name, *asked.value).second) {
     throw InputError(
         fmt::format("{} and --fix {} say the same: give one of the two", term.option, name));
@@ -100,20 +105,15 @@ void ApplyCovariates(const std::vector<CovariateRequest>& covariates, FitOptions
   }
 }
 
-/// Names of groups of terms, each of which is fitted; nothing where they are chosen or none.
+/// Fits the groups of terms that are named.
 void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
-  if (request.term_choice.empty() || request.term_choice == kNoTerms ||
-      request.term_choice == kAutomatic) {
-    return;
-  }
   std::vector<std::string_view> names = {kAutomatic, kNoTerms};
   for (const identification::TermGroup& group : identification::TermGroups()) {
     names.push_back(group.name);
   }
   std::vector<std::string_view> given;
-  for (std::string_view left = request.term_choice;;) {
-    const std::size_t comma = left.find(',');
-    const std::string_view name = left.substr(0, comma);
+  const std::vector<std::string> named = NamedTerms(request);
+  for (const std::string_view name : named) {
     RequireOneOf("--terms", name, names);
     if (std::ranges::find(given, name) != given.end()) ThrowTwice("--terms", name);
     given.push_back(name);
@@ -126,8 +126,6 @@ void ApplyTermNames(const FitRequest& request, FitOptions& fit) {
                                    identification::FindTerm(term)->option));
     }
     ApplyCompanions(name, "", fit);
-    if (comma == std::string_view::npos) return;
-    left.remove_prefix(comma + 1);
   }
 }
 
@@ -250,6 +248,18 @@ bool ChoosesTermsByDefault(const FitRequest& request) {
          request.covariates.empty() && std::ranges::none_of(request.fix, is_of_term) &&
          request.model != kAutomatic && request.loss == kLosses.front() &&
          request.noise_in == kNoiseIn.front();
+}
+
+std::vector<std::string> NamedTerms(const FitRequest& request) {
+  const std::string_view choice = request.term_choice;
+  std::vector<std::string> names;
+  if (choice.empty() || choice == kNoTerms || choice == kAutomatic) return names;
+  for (std::size_t begin = 0; begin <= choice.size();) {
+    const std::size_t comma = std::min(choice.find(',', begin), choice.size());
+    names.emplace_back(choice.substr(begin, comma - begin));
+    begin = comma + 1;
+  }
+  return names;
 }
 
 FitOptions MakeFitOptions(const FitRequest& options) {

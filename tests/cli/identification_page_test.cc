@@ -44,6 +44,7 @@ std::string Words(const Term& term) {
     case Presence::kReported:
       return fmt::format("`{}`, else 0", term.option);
     case Presence::kOnDemand:
+      if (term.name.starts_with("drag_")) return "`--terms drag`";
       return term.option.empty() ? "with the row above" : fmt::format("`{}`", term.option);
     case Presence::kLoadSeries:
       return "loads that differ";

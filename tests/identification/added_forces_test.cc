@@ -163,6 +163,38 @@ TEST(AddedForces, SlipForceOfTheSpeedIsRecoveredAtTheSpeedInTheMiddle) {
   EXPECT_NEAR(ValueOf(fit, "slip_speed_exponent"), kExponent, kAtRest);
 }
 
+TEST(AddedForces, DragIsRecoveredAndTcIsItsSumWithTheContactsForceInTheMiddle) {
+  // A slip force of 60 N and 40 N of drag at the speed in the middle: 100 N, of which 0.4.
+  Record record = Loop();
+  const std::vector<double> velocity = Velocity(record);
+  constexpr double kDrag = 40.0;
+  constexpr double kExponent = 0.5;
+  double sum = 0.0;
+  double path = 0.0;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    if (std::abs(record.displacement[i]) > kReach / 3) continue;
+    const double step = std::abs(record.displacement[i] - record.displacement[i - 1]);
+    sum += step * std::abs(velocity[i]);
+    path += step;
+  }
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double ratio = std::abs(velocity[i]) / (sum / path);
+    record.force[i] += std::copysign(kDrag * std::pow(ratio, kExponent), velocity[i]);
+  }
+  FitOptions options;
+  options.terms = {"drag_fraction", "drag_exponent"};
+  const FitResult fit = FitOne(record, options);
+  EXPECT_TRUE(fit.converged) << fit.solver.message;
+  constexpr double kAtRest = 1e-3;  // as above
+  const double together = kLaw.slip_force + kDrag;
+  EXPECT_NEAR(fit.law.slip_force, together, kAtRest * together);
+  EXPECT_NEAR(ValueOf(fit, "drag_fraction"), kDrag / together, kAtRest);
+  EXPECT_NEAR(ValueOf(fit, "drag_exponent"), kExponent, 10 * kAtRest);
+  // Its stiffness is that of the branch, of which the slip force's fraction is seen.
+  EXPECT_NEAR(fit.law.tangential_stiffness * kLaw.slip_force / together, kLaw.tangential_stiffness,
+              10 * kAtRest * kLaw.tangential_stiffness);
+}
+
 TEST(AddedForces, RestInTheMiddleDoesNotChangeTheSpeedOfTheSlipForce) {
   Record record = Loop();
   const std::vector<double> velocity = Velocity(record);
@@ -243,10 +275,11 @@ TEST(AddedForces, MassIsRecovered) {
 
 FitOptions AllOfThem() {
   FitOptions options;
-  options.terms = {"slip_speed",     "slip_speed_exponent", "viscous",         "speed_exponent",
-                   "inertia",        "slip_slope",          "slip_curvature",  "slip_trend",
-                   "plateau_slope",  "plateau_curvature",   "ripple_period",   "ripple_cosine_up",
-                   "ripple_sine_up", "ripple_cosine_down",  "ripple_sine_down"};
+  options.terms = {"slip_speed",     "slip_speed_exponent", "viscous",          "speed_exponent",
+                   "inertia",        "slip_slope",          "slip_curvature",   "slip_trend",
+                   "plateau_slope",  "plateau_curvature",   "ripple_period",    "ripple_cosine_up",
+                   "ripple_sine_up", "ripple_cosine_down",  "ripple_sine_down", "drag_fraction",
+                   "drag_exponent"};
   return options;
 }
 
@@ -258,6 +291,7 @@ std::vector<double> PointOf(const Problem& problem) {
     theta.push_back(parameter.fixed ? parameter.theta : 0.1 + 0.01 * static_cast<double>(p));
     if (parameter.term->name == "sigma") theta.back() = 1.5;
     if (parameter.term->name == "speed_exponent") theta.back() = 0.6;
+    if (parameter.term->name == "drag_exponent") theta.back() = 0.7;
     if (parameter.term->name == "ripple_period") theta.back() = std::log(0.4);
   }
   return theta;

@@ -65,7 +65,8 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
       {[](FitOptions& o) { o.fixed["stiffness"] = 1; },
        "parameter 'stiffness' is unknown: must be one of sigma, alpha, slip_force, rig_stiffness, "
        "load_exponent, asymmetry, plateau_slope, viscous, speed_exponent, inertia, slip_slope, "
-       "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, plateau_curvature, "
+       "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, drag_fraction, "
+       "drag_exponent, plateau_curvature, "
        "ripple_period, "
        "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},
@@ -73,7 +74,8 @@ TEST(FitOptions, EachOptionThatBreaksARuleIsNamedWithItsValueAndTheRule) {
        "parameter 'force_offset_2' is unknown: did you mean 'force_offset'? must be one of sigma, "
        "alpha, slip_force, rig_stiffness, load_exponent, asymmetry, plateau_slope, viscous, "
        "speed_exponent, inertia, slip_slope, "
-       "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, plateau_curvature, "
+       "slip_curvature, slip_speed, slip_speed_exponent, slip_trend, drag_fraction, "
+       "drag_exponent, plateau_curvature, "
        "ripple_period, "
        "ripple_cosine_up, ripple_sine_up, ripple_cosine_down, ripple_sine_down, lag, backlash, "
        "force_offset, displacement_offset, force_drift"},

@@ -76,6 +76,64 @@ TEST(ModelTerms, RigStiffnessIsRecoveredWithAGivenShapeAndWithAFreeOne) {
   }
 }
 
+TEST(ModelTerms, StatedRigIsBetweenOneThatIsHeldAndOneThatIsFitted) {
+  Generator generator(3);
+  const Record record = WithForceNoise(SprungLoop(kMindlin, kRig), 0.2, generator);
+  constexpr double kOff = 1.04;  // the rig is stated 4 % too stiff
+  const auto fit_with = [&](double relative) {
+    FitOptions options;
+    options.terms = {"rig_stiffness"};
+    options.stated["rig_stiffness"] = {kOff * kRig, relative * kOff * kRig};
+    return FitOne(record, options);
+  };
+  const auto covers = [](const FitResult& fit, const char* name, double truth) {
+    const ParameterEstimate& estimate = *fit.Find(name);
+    return estimate.lower95 && estimate.upper95 && *estimate.lower95 <= truth &&
+           truth <= *estimate.upper95;
+  };
+  FitOptions held;
+  held.fixed["rig_stiffness"] = kOff * kRig;
+  const FitResult of_held = FitOne(record, held);
+  const FitResult sharp = fit_with(1e-6);
+  // The stated reading is a million times as precise as the record: what it leaves of the rig.
+  constexpr double kAlmostHeld = 1e-5;
+  EXPECT_NEAR(sharp.Find("rig_stiffness")->value, kOff * kRig, kAlmostHeld * kRig);
+  EXPECT_NEAR(sharp.law.tangential_stiffness, of_held.law.tangential_stiffness,
+              10 * kAlmostHeld * of_held.law.tangential_stiffness);
+
+  const FitResult stated = fit_with(0.03);
+  EXPECT_TRUE(stated.converged);
+  EXPECT_TRUE(covers(stated, "rig_stiffness", kRig));
+  EXPECT_TRUE(covers(stated, "sigma", kMindlin.tangential_stiffness));
+  EXPECT_TRUE(covers(stated, "alpha", kMindlin.shape_exponent));
+  // What the record says of the rig only adds to what is stated.
+  EXPECT_LE(*stated.Find("rig_stiffness")->standard_error, 1.01 * 0.03 * kOff * kRig);
+  EXPECT_GT(*stated.Find("sigma")->standard_error, *of_held.Find("sigma")->standard_error);
+
+  FitOptions fitted;
+  fitted.terms = {"rig_stiffness"};
+  const FitResult open = FitOne(record, fitted);
+  const FitResult vague = fit_with(1e3);
+  constexpr double kHardlyStated = 1e-3;
+  EXPECT_NEAR(std::log(vague.Find("rig_stiffness")->value / open.Find("rig_stiffness")->value), 0,
+              kHardlyStated);
+}
+
+TEST(ModelTerms, StatedValuesAreOfTheRigAndOfPlainFits) {
+  const Record record = SprungLoop(kMindlin, kRig);
+  FitOptions options;
+  options.terms = {"rig_stiffness"};
+  options.stated["rig_stiffness"] = {kRig, 0.0};
+  EXPECT_THAT(RefusalOf(record, options),
+              HasSubstr("standard uncertainty of rig_stiffness [N/m] = 0"));
+  options.stated["rig_stiffness"] = {kRig, 0.03 * kRig};
+  options.loss = Loss::kHuber;
+  EXPECT_THAT(RefusalOf(record, options), HasSubstr("a stated uncertainty has no place"));
+  options.loss = Loss::kNone;
+  options.stated["sigma"] = {1e7, 1e5};
+  EXPECT_THAT(RefusalOf(record, options), HasSubstr("sigma cannot be stated"));
+}
+
 TEST(ModelTerms, StiffnessOfContactAndRigTogetherIsKnownBetterThanEither) {
   // 1/σ_app = 1/σ + 1/k_r is the slope after each reversal.
   constexpr double kTogether = 1 / (1 / kMindlin.tangential_stiffness + 1 / kRig);

@@ -137,6 +137,38 @@ TEST(TermSelection, SlipForceOfTheSpeedIsAddedAndTcIsThatOfTheHalfGap) {
   EXPECT_LT(selection.fit.law.slip_force, half_gap * 1.5);
 }
 
+TEST(TermSelection, ForceOfSpeedThatWouldTakeTheSlipForceIsNotAdded) {
+  // Most of the force is of speed: a slip force at rest is a quarter of the half gap.
+  Record record = Clean();
+  const double largest = kReach * 2 * std::numbers::pi / kPeriod;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] +=
+        std::copysign(3 * kLaw.slip_force * std::sqrt(std::abs(SpeedAt(i)) / largest), SpeedAt(i));
+  }
+  const TermSelection selection = Select(Noisy(record, 10));
+  const double half_gap = *selection.fit.WidestRecord().facts.half_gap;
+  EXPECT_GT(selection.fit.law.slip_force, half_gap / 1.25);
+  EXPECT_LT(selection.fit.law.slip_force, half_gap * 1.25);
+  EXPECT_FALSE(TermOf(selection, "speed_exponent").added);
+}
+
+TEST(TermSelection, NamedTermsAreAddedWithoutJudgementAndFitAsWellAsTogether) {
+  const double viscous = 0.06 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
+  Record record = Clean();
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += viscous * SpeedAt(i);
+  const Record noisy = Noisy(record, 11);
+  FitOptions options;
+  options.terms = {"viscous", "slip_trend"};  // of which nothing is in the record
+  const TermSelection named =
+      SelectTerms(std::vector{noisy}, options, {.named = {"viscous", "slip_trend"}});
+  const FitResult together = Fit(std::vector{noisy}, options);
+  ASSERT_NE(named.fit.Find("slip_trend"), nullptr);
+  constexpr double kSameMinimum = 1e-6;  // of the rms: ten thousand times the tolerance of the cost
+  EXPECT_LE(named.fit.rms, (1 + kSameMinimum) * together.rms);
+  // The law, two terms, and with intervals.
+  EXPECT_EQ(named.estimates, 4u);
+}
+
 TEST(TermSelection, NegativeDampingIsNotAdded) {
   const double viscous = -0.1 * kLaw.slip_force / (kReach * 2 * std::numbers::pi / kPeriod);
   Record record = Clean();

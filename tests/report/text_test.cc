@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -28,6 +30,82 @@ TEST(Text, BeginsWithSummaryFollowedByEvidence) {
   EXPECT_LT(contact, measured);
   EXPECT_LT(measured, mapping);
   EXPECT_LT(mapping, text.size());
+}
+
+/// The first lines of a text.
+std::string Screen(const std::string& text, std::size_t lines) {
+  std::size_t end = 0;
+  for (std::size_t line = 0; line < lines && end < text.size(); ++line) {
+    end = std::min(text.find('\n', end), text.size() - 1) + 1;
+  }
+  return text.substr(0, end);
+}
+
+/// A doubtful fit that is of use, with eight more terms than the law has.
+ReportInput DoubtfulInput() {
+  ReportInput input = MadeInput();
+  identification::Adequacy& adequacy = input.fit.adequacy;
+  adequacy.verdict = identification::AdequacyVerdict::kDoubtful;
+  adequacy.use = identification::Use::kQuantitative;
+  adequacy.tried = 21;
+  adequacy.p_value = 1e-4;
+  adequacy.misfit = 1.2;
+  adequacy.misfit_over_half_gap = 0.03;
+  for (const auto& [code, option] :
+       {std::pair("viscous_force", "--viscous fit"), std::pair("running_in", "--slip-trend fit")}) {
+    identification::Cause& cause = adequacy.causes.emplace_back();
+    cause.code = code;
+    cause.option = option;
+    cause.explains = 0.3;
+  }
+  for (const char* name : {"plateau_slope", "viscous", "slip_slope", "slip_curvature", "slip_trend",
+                           "plateau_curvature", "force_offset", "displacement_offset"}) {
+    input.fit.parameters.push_back(mindahl::testing::MadeParameter(name, "N", 1.0, 0.01));
+  }
+  const std::size_t count = input.fit.parameters.size();
+  input.fit.correlation.assign(count * count, 0.0);
+  for (identification::ParameterEstimate& estimate : input.fit.parameters) {
+    estimate.includes_discrepancy = true;
+    estimate.identifiability = Identifiability::kEffective;
+  }
+  input.known.tangential_compliance = 4.2e-11;
+  input.known.normal_load = 100.0;
+  return input;
+}
+
+TEST(Text, OfAUsableFitHasVerdictUseParametersContactAndNextStepOnTheFirstScreen) {
+  constexpr std::size_t kLines = 24;  // of a terminal
+  const std::string text = ToText(MakeReport(DoubtfulInput()));
+  const std::string screen = Screen(text, kLines);
+  for (const char* shown : {"doubtful, quantitative: ", "(3 % of the half gap)",
+                            "\nnext: ", "--viscous fit", "\nsigma ", "\nalpha ", "\nslip_force ",
+                            "\ncontact (Mindlin-Dahl mapping)", "\nfriction coefficient"}) {
+    EXPECT_THAT(screen, HasSubstr(shown));
+  }
+  for (const char* later : {"\nslip_trend ", "\nor like ", "\nmeasured: ", "\nresiduals"}) {
+    EXPECT_THAT(screen, Not(HasSubstr(later)));
+    EXPECT_THAT(text, HasSubstr(later));
+  }
+}
+
+TEST(Text, OfAFitThatIsOfNoUseHasTenLines) {
+  constexpr std::ptrdiff_t kLines = 10;
+  ReportInput input = DoubtfulInput();
+  input.fit.adequacy.verdict = identification::AdequacyVerdict::kInadequate;
+  input.fit.adequacy.use = identification::Use::kNone;
+  input.fit.adequacy.misfit_over_half_gap = 1.7;
+  for (identification::ParameterEstimate& estimate : input.fit.parameters) {
+    estimate.includes_discrepancy = false;
+    estimate.identifiability = Identifiability::kNotIdentifiable;
+  }
+  const std::string text = ToText(MakeReport(std::move(input)));
+  EXPECT_LE(std::ranges::count(text, '\n'), kLines) << text;
+  EXPECT_THAT(text, StartsWith("inadequate"));
+  for (const char* shown :
+       {"(170 % of the", "\nnext: ", "--viscous fit", "\nmeasured: ", "\nreversals: "}) {
+    EXPECT_THAT(text, HasSubstr(shown));
+  }
+  EXPECT_THAT(text, Not(HasSubstr("slip_force")));
 }
 
 TEST(Text, HasParametersInUnitsThatSuitThem) {

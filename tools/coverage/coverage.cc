@@ -461,6 +461,10 @@ std::vector<Scenario> Scenarios() {
        .first_is_virgin = true,
        .finds_state = true},
       {.name = "rig of 3 sigma fitted, lambda 1.5", .lambda = 1.5, .rig = 3.0},
+      {.name = "rig of 3 sigma stated to 3 %, which is drawn, lambda 1.2",
+       .lowest_coverage = 0.93,
+       .rig = 3.0,
+       .rig_uncertainty = 0.03},
       {.name = "30 samples a cycle, late by 1.5 samples: lag fitted",
        .samples_per_cycle = 30,
        .steps_a_reading = 20,
@@ -562,6 +566,10 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   } else {
     known.force_noise = ForceNoise(scenario);
   }
+  if (scenario.rig_uncertainty > 0) {
+    const double stiffness = RigOf(scenario).stiffness;
+    known.stated["rig_stiffness"] = {stiffness, scenario.rig_uncertainty * stiffness};
+  }
   const identification::FitResult at_truth = identification::Fit(clean, known);
   for (std::size_t k = 0; k < parameters; ++k) {
     bound[k] = at_truth.Find(names[k])->standard_error.value_or(0.0);
@@ -580,7 +588,13 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
     for (std::size_t r = 0; r < clean.size(); ++r) {
       records.push_back(NoisyRecord(scenario, scenario.loads[r], clean[r], normal));
     }
-    const identification::FitResult fit = identification::Fit(records, options);
+    FitOptions of_loop = options;
+    if (scenario.rig_uncertainty > 0) {
+      const double value =
+          RigOf(scenario).stiffness * std::exp(scenario.rig_uncertainty * normal());
+      of_loop.stated["rig_stiffness"] = {value, scenario.rig_uncertainty * value};
+    }
+    const identification::FitResult fit = identification::Fit(records, of_loop);
     const bool is_adequate = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
     coverage.doubted += is_adequate ? 0.0 : 1 / static_cast<double>(loops);
     coverage.rejected += fit.adequacy.p_value < 0.05 ? 1 / static_cast<double>(loops) : 0.0;

@@ -60,6 +60,7 @@ struct Scenario {
   bool first_is_virgin = false;     ///< of the records; the others have no first cycle
   bool finds_state = false;         ///< is the initial state left to the fit?
   double rig = 0.0;                 ///< stiffness in series over σ, which is fitted; 0: rigid
+  double rig_uncertainty = 0.0;     ///< standard, over its stiffness, of what is stated of the rig
   double asymmetry = 0.0;   ///< of the slip forces in the two senses, for which the fit has a term
   double load_swing = 0.0;  ///< of the load about its mean, at twice the drive's frequency
   double peak_share = 0.0;  ///< T*/Tc where the force is imposed, in the place of λ

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "kind.h"
 #include "simulation.h"
@@ -140,6 +142,61 @@ Loop CurvedDisplacement(const Truth& truth, std::size_t level, Draws& draws) {
   return {record, expected};
 }
 
+/// The force's clock goes faster than the displacement's: readings of one row drift apart.
+Loop ForceClockIsFast(const Truth& truth, std::size_t level, Draws& draws) {
+  Truth driven = truth;
+  driven.cycles = 8;
+  const Record record = Measured(driven, draws);
+  const double rate = 1 + At(level, {0.0005, 0.001, 0.002});
+  std::vector<double> force;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double place = rate * static_cast<double>(i);
+    const auto before = static_cast<std::size_t>(place);
+    if (before + 1 >= record.size()) break;
+    const double between = place - static_cast<double>(before);
+    force.push_back((1 - between) * record.force[before] + between * record.force[before + 1]);
+  }
+  Record read = Part(record, 0, force.size());
+  read.force = std::move(force);
+  return {read, AllOf(driven.law)};
+}
+
+/// A hysteresis of readings, −1 … 1: a play's that slips over a fifth of their half range.
+std::vector<double> HysteresisOf(const std::vector<double>& readings, double half_range) {
+  const double play = half_range / 10;
+  std::vector<double> hysteresis;
+  double middle = readings.front();
+  for (const double reading : readings) {
+    middle = std::clamp(middle, reading - play, reading + play);
+    hysteresis.push_back((reading - middle) / play);
+  }
+  return hysteresis;
+}
+
+/// A reading that comes after its quantity: stiffer at once after each turn.
+Loop DisplacementHysteresis(const Truth& truth, std::size_t level, Draws& draws) {
+  Record record = Measured(truth, draws);
+  const double half_width = At(level, {0.005, 0.02, 0.08}) * Amplitude(truth);
+  const std::vector<double> hysteresis = HysteresisOf(record.displacement, Amplitude(truth));
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.displacement[i] -= half_width * hysteresis[i];
+  }
+  Expected expected = AllOf(truth.law);
+  expected.sigma.reset();
+  return {record, expected};
+}
+
+Loop ForceHysteresis(const Truth& truth, std::size_t level, Draws& draws) {
+  Record record = Measured(truth, draws);
+  const double half_width = At(level, {0.005, 0.02, 0.08}) * truth.law.slip_force;
+  const std::vector<double> hysteresis = HysteresisOf(record.force, truth.law.slip_force);
+  for (std::size_t i = 0; i < record.size(); ++i) record.force[i] += half_width * hysteresis[i];
+  Expected expected = AllOf(truth.law);
+  expected.sigma->highest *= 1 + At(level, {0.05, 0.2, 0.8});
+  expected.slip_force->highest += half_width;
+  return {record, expected};
+}
+
 }  // namespace
 
 std::vector<Kind> ChannelKinds() {
@@ -164,6 +221,12 @@ std::vector<Kind> ChannelKinds() {
        "2, 10, 30 % of Tc/sigma against the motion; asked are the apparent stiffness and Tc"},
       {"curved displacement sensor", Half::kHeldOut, CurvedDisplacement,
        "cubic, 1, 5, 20 % at X; sigma, of which the gain is part, is not asked"},
+      {"clock of the force is fast", Half::kHeldOut, ForceClockIsFast,
+       "by 0.05, 0.1, 0.2 %, over eight cycles"},
+      {"hysteresis of the displacement sensor", Half::kHeldOut, DisplacementHysteresis,
+       "0.5, 2, 8 % of X; sigma is not asked"},
+      {"hysteresis of the force sensor", Half::kHeldOut, ForceHysteresis,
+       "0.5, 2, 8 % of Tc; Tc and sigma may be with or without it"},
   };
 }
 

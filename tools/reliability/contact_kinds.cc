@@ -66,6 +66,38 @@ Loop PowerLawSpectrum(const Truth& truth, std::size_t level, Draws& draws) {
   return {record, StiffnessAndSlipForce(sigma, truth.law.slip_force)};
 }
 
+/// Branches that begin softer than they go on: a spring that hardens over a third of the way to
+/// slip in series with the contact's elements.
+Loop HardeningBranch(const Truth& truth, std::size_t level, Draws& draws) {
+  const double softer = At(level, {0.05, 0.2, 0.5});
+  const double length = SlipDisplacement(truth.law) / 3;
+  Record record =
+      Drive(Sine(truth, draws), [&](std::span<const double> displacement, std::span<double> force) {
+        // A turn at every reversal: the contact follows the way that the spring leaves it.
+        std::vector<double> moved(displacement.size(), displacement.front());
+        double from = displacement.front();
+        double carried = 0.0;
+        double direction = 0.0;
+        double base = displacement.front();
+        for (std::size_t i = 1; i < displacement.size(); ++i) {
+          const double step = displacement[i] - displacement[i - 1];
+          if (step * direction < 0 || (direction == 0 && step != 0)) {
+            direction = step < 0 ? -1.0 : 1.0;
+            from = displacement[i - 1];
+            base = moved[i - 1];
+          }
+          const double travel = std::abs(displacement[i] - from);
+          carried = travel - softer * length * (1 - std::exp(-travel / length));
+          moved[i] = base + direction * carried;
+        }
+        Masing(truth.law)(moved, force);
+      });
+  AddNoise(record, truth, draws);
+  Expected expected = StiffnessAndSlipForce(truth.law.tangential_stiffness, truth.law.slip_force);
+  expected.sigma->lowest *= 1 - softer;
+  return {record, expected};
+}
+
 Loop SixtyAsperities(const Truth& truth, std::size_t level, Draws& draws) {
   constexpr std::size_t kAsperities = 60;
   const double spread = At(level, {0.2, 0.5, 1.0});
@@ -192,6 +224,8 @@ std::vector<Kind> ContactKinds() {
        "reach 3, 1.5, 1; sigma may be that of the virgin contact or of a reversal"},
       {"power-law spectrum", Half::kDevelopment, PowerLawSpectrum,
        "Segalman's four parameters, exponent -0.2, -0.5, -0.8; asked are sigma and Tc"},
+      {"hardening branch", Half::kHeldOut, HardeningBranch,
+       "stiffness 5, 20, 50 % lower after each reversal; sigma may be either"},
       {"sixty asperities", Half::kHeldOut, SixtyAsperities,
        "log-normal sigma and Tc, spread 0.2, 0.5, 1; asked are their sums"},
       {"friction falls with velocity", Half::kDevelopment, VelocityWeakening,

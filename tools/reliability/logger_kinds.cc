@@ -38,6 +38,15 @@ void DropOut(Record& record, std::size_t rows, const Truth& truth, Draws& draws)
   }
 }
 
+/// Only the force reads 0 in the file.
+Loop ZerosInTheForce(const Truth& truth, std::size_t level, Draws& draws) {
+  Record record = Measured(truth, draws);
+  for (std::size_t k = CountOf(record, At(level, {0.002, 0.01, 0.05})); k > 0; --k) {
+    record.force[draws.Index(record.size())] = -truth.force_sense * truth.force_offset;
+  }
+  return {record, AllOf(truth.law)};
+}
+
 Truth Lengthy(const Truth& truth) {
   Truth lengthy = truth;
   lengthy.cycles = 50;
@@ -151,6 +160,7 @@ std::vector<Kind> LoggerKinds() {
       {"spikes of the displacement", Half::kHeldOut, DisplacementSpikes,
        "1, 5, 20 samples off by 0.5 to 4 X", false},
       {"drop-outs", Half::kDevelopment, DropOuts, "0.2, 1, 5 % of the rows read 0, 0", false},
+      {"zeros in the force", Half::kHeldOut, ZerosInTheForce, "0.2, 1, 5 % of the rows"},
       {"held rows", Half::kHeldOut, HeldRows, "2, 6, 20 % of the rows, a tenth of a stroke each"},
       {"held force", Half::kDevelopment, HeldForce,
        "2, 6, 20 % of the rows, a tenth of a stroke each"},

@@ -26,6 +26,21 @@ Loop SeriesSpring(const Truth& truth, std::size_t level, Draws& draws) {
   return {record, StiffnessAndSlipForce(apparent, truth.law.slip_force)};
 }
 
+/// A rig whose compliance falls with the force, as of joints that close: 1/k at no force, half of
+/// it at Tc.
+Loop HardeningRig(const Truth& truth, std::size_t level, Draws& draws) {
+  Record record = Ideal(truth, draws);
+  const double stiffness = At(level, {20, 3, 0.7}) * truth.law.tangential_stiffness;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double carried = std::abs(record.force[i]) / truth.law.slip_force;
+    record.displacement[i] += record.force[i] / (stiffness * (1 + carried));
+  }
+  AddNoise(record, truth, draws);
+  Expected expected = StiffnessAndSlipForce(truth.law.tangential_stiffness, truth.law.slip_force);
+  expected.sigma->lowest = 1 / (1 / truth.law.tangential_stiffness + 1 / stiffness);
+  return {record, expected};
+}
+
 /// A drive that pushes the contact by either face of a gap.
 class LooseDrive {
  public:
@@ -179,6 +194,8 @@ std::vector<Kind> RigKinds() {
   return {
       {"rig in series", Half::kDevelopment, SeriesSpring,
        "a spring of 20, 3, 0.7 sigma; asked are the stiffness of both and Tc"},
+      {"hardening rig", Half::kHeldOut, HardeningRig,
+       "a spring of 20, 3, 0.7 sigma that doubles up to Tc; sigma may be with or without it"},
       {"backlash", Half::kHeldOut, Backlash, "a gap of 1, 5, 20 % of X"},
       {"rig with hysteresis", Half::kDevelopment, RigWithHysteresis,
        "in series, compliance 5, 20, 80 % of the contact's; asked are the stiffness of both and "

@@ -19,6 +19,12 @@ using loop::Interval;
 /// Sets the weight of large residuals: full, or less (reweighting.h has the constants).
 enum class Loss { kNone, kHuber, kCauchy, kTukey };
 
+/// What is known of a parameter, and how well: a normal law of its logarithm.
+struct StatedValue {
+  double value = 0.0;                 ///< in the parameter's unit, > 0
+  double standard_uncertainty = 0.0;  ///< likewise
+};
+
 /// Sets what is fitted and how. Parameters have the names of Terms(); with several records those of
 /// a record are numbered from 1: force_offset_2.
 struct FitOptions {
@@ -64,7 +70,9 @@ struct FitOptions {
   /// Its scale comes from the residuals, or is the known noise.
   Loss loss = Loss::kNone;
 
-  std::map<std::string, double> fixed;     ///< parameter held at a value
+  std::map<std::string, double> fixed;  ///< parameter held at a value
+  /// Terms that are fitted with what is known of them as one more reading: rig_stiffness.
+  std::map<std::string, StatedValue> stated;
   std::map<std::string, double> start;     ///< replaces the starting value found from the data
   std::map<std::string, Interval> bounds;  ///< replaces the default bounds
 

@@ -23,11 +23,14 @@ struct TermSelectionOptions {
   /// Least fraction by which the error of prediction falls with a term that is added, unless the
   /// model is adequate with it.
   double smallest_gain = 0.03;
-  std::size_t most_terms = 5;  ///< that are added
-  std::size_t most_fits = 15;  ///< in all
+  std::size_t most_terms = 7;  ///< that are added
+  std::size_t most_fits = 40;  ///< in all, nearly all of them at Depth::kEstimate
   /// Adds none to a law that is of quantitative use by itself, nor where the law is of no use with
   /// them either.
   bool only_for_use = false;
+  /// Names of groups that the options have: they are added one after the other, each from the
+  /// solution without it, and are not judged. Nothing is selected then.
+  std::vector<std::string> named = {};
 };
 
 /// A term, or a few that are one, that a record may require.
@@ -56,7 +59,6 @@ struct ConsideredTerm {
 };
 
 struct TermSelection {
-  bool is_automatic = true;  ///< false: the user named them
   std::vector<ConsideredTerm>
       considered;  ///< those added first, in their order; then by their gain
   std::vector<std::string> added;
@@ -72,7 +74,7 @@ struct TermSelection {
 /// Otherwise every candidate for which there are data is scored by one Gauss-Newton step from the
 /// present solution: on cycles held out of that step, on strokes where there are fewer than four
 /// cycles; where there are fewer than four strokes AICc decides. In the order of their scores, up
-/// to two are fitted, where the paired gain of prediction is no chance (one-sided t of the
+/// to four are fitted, where the paired gain of prediction is no chance (one-sided t of the
 /// logarithms of the ratios of errors, with the correlation of folds, Nadeau & Bengio 2003) and
 /// worth `smallest_gain`. The first is added that lowers the rms by as much, and by which the slip
 /// force is not lost. The rounds end when none is added, the model is adequate, or `most_fits` are

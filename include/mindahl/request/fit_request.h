@@ -40,7 +40,9 @@ std::vector<std::string_view> ModelNames();
 /// What is asked of a term.
 struct TermRequest {
   std::optional<double> value;  ///< at which it is held; empty: it is fitted
-  std::string form;             ///< "linear" or "quadratic", of --slip-position alone
+  /// Of the value, about which it is then fitted; of rig_stiffness alone. Empty: it is exact.
+  std::optional<double> standard_uncertainty = {};
+  std::string form;  ///< "linear" or "quadratic", of --slip-position alone
 };
 
 /// A column in proportion to which a force is added.
@@ -89,6 +91,9 @@ struct FitRequest {
 /// itself: of one record, where neither a term or a column is asked for, nor a choice of models, a
 /// robust loss or a fit of the displacement.
 bool ChoosesTermsByDefault(const FitRequest& request);
+
+/// Returns the names that --terms gives; none where terms are chosen or none.
+std::vector<std::string> NamedTerms(const FitRequest& request);
 
 /// @throws InvalidArgument or InputError naming the option that breaks a rule, or two that
 /// contradict each other

@@ -12,6 +12,7 @@
 #include "core/probability.h"
 #include "identification/diagnosis/grade.h"
 #include "mindahl/identification/contact_amplitude.h"
+#include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {
@@ -212,11 +213,30 @@ std::optional<Finding> FindUnknownPast(const Problem& problem, const Solution& s
   return Finding{.code = "unknown_past", .parameters = {"alpha", "slip_force"}, .kind = "cut"};
 }
 
+namespace {
+
+/// True if a contact that was unloaded at the bound of the search slides before its record begins:
+/// nothing depends on where beyond the bound it was.
+bool SlidesBeforeRecord(const Problem& problem, const Solution& solution, std::size_t p) {
+  constexpr double kSlides = 0.99;  // of Tc
+  const Parameter& parameter = problem.parameters[p];
+  if (problem.data->is_forced() || parameter.term->name != OriginTerm(problem.data->excitation)) {
+    return false;
+  }
+  const double first = problem.data->records[parameter.record].displacement.front();
+  const double travel = std::abs(solution.theta[p] - first) * problem.data->length;
+  const models::BranchLaw law = problem.parameters.LawAt(solution.theta);
+  return models::BackboneForce(law, travel) >= kSlides * law.slip_force;
+}
+
+}  // namespace
+
 std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& solution) {
   for (const std::size_t p : problem.parameters.free()) {
     const Parameter& parameter = problem.parameters[p];
     const bool is_limit_of_law = parameter.term->positive || p == kShape;
     if (is_limit_of_law || !IsSearchLimit(parameter, solution.side[p])) continue;
+    if (SlidesBeforeRecord(problem, solution, p)) continue;
     Finding finding{.code = "search_limit",
                     .parameters = {problem.parameters.NameOf(p)},
                     .numbers = {{"bound", parameter.ToValue(solution.theta[p])}}};

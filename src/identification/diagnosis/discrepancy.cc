@@ -320,6 +320,7 @@ void CoverSlipFactor(const Problem& problem, const Solution& solution, FitResult
         const double log_ratio = record.log_speed[i] - std::log(record.units.reference_speed);
         factor += of_speed * std::expm1(theta_of("slip_speed_exponent") * log_ratio);
       }
+      factor -= theta_of("drag_fraction");
       factors.Include(factor);
     }
   }

@@ -6,9 +6,6 @@
 #include "identification/intervals.h"
 
 namespace mindahl::identification {
-namespace {
-
-/// Variance [N² or m²] of the white part of the residuals that count.
 double WhiteVariance(const FitResult& result) {
   constexpr double kOfWhiteNoise = 1.5;  // mean square of (r₋₁ + r₊₁)/2 − r₀ over its variance
   double squares = 0.0;
@@ -23,8 +20,6 @@ double WhiteVariance(const FitResult& result) {
   }
   return count > 0 ? squares / (kOfWhiteNoise * count) : 0.0;
 }
-
-}  // namespace
 
 bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thresholds) {
   constexpr double kOfPeak = 0.5;  // less is no plateau: the strokes were not separated

@@ -31,6 +31,9 @@ double ScaleOfMisfit(const FitResult& result, const Thresholds& thresholds);
 /// of its neighbours (Gasser, Sroka & Jennen-Steinmetz 1986).
 double MissedForce(const FitResult& result);
 
+/// Returns the variance [N² or m²] of the white part of the residuals that count.
+double WhiteVariance(const FitResult& result);
+
 /// Returns those of the named parameters whose interval does not include what the model misses.
 std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<std::string> names);
 

@@ -474,10 +474,10 @@ std::size_t FittedCovariates(const Problem& problem) {
       problem.parameters, [](const Parameter& parameter) { return parameter.term->of_column; }));
 }
 
-/// True if a column is, within a twentieth of its deviation, a linear function of time,
-/// displacement, force and load: it adds nothing, or is the force in another unit.
+/// True if a column is, within a fifth of its deviation, a linear function of time, displacement,
+/// force and load: it adds nothing, or is the force in another unit or as it was commanded.
 bool RepeatsTheOthers(const ScaledRecords& data, std::size_t covariate) {
-  constexpr double kOwnPart = 0.05;
+  constexpr double kOwnPart = 0.2;
   for (const ScaledRecord& record : data.records) {
     const auto rows = static_cast<Eigen::Index>(record.size());
     Eigen::MatrixXd others = Eigen::MatrixXd::Zero(rows, 5);

@@ -181,8 +181,21 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   result.determined.assign(count, true);
   if (count == 0) return result;
 
+  // What is stated of a parameter is one more reading, with the noise of the others.
+  Eigen::MatrixXd stated = Eigen::MatrixXd::Zero(0, size);
+  for (std::size_t j = 0; j < count; ++j) {
+    const double root_weight = problem.parameters[result.columns[j]].stated_root_weight;
+    if (!(root_weight > 0)) continue;
+    stated = Eigen::MatrixXd::Zero(1, size);
+    stated(0, static_cast<Eigen::Index>(j)) = root_weight;
+  }
   const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
   Eigen::MatrixXd triangle = TriangleOf(jacobian);
+  if (stated.rows() > 0) {
+    Eigen::MatrixXd rows(triangle.rows() + stated.rows(), size);
+    rows << triangle, stated;
+    triangle = TriangleOf(rows);
+  }
   Eigen::VectorXd norms = triangle.colwise().norm();
   for (double& norm : norms) norm = norm == 0 ? 1.0 : norm;
   // Columns are scaled to one, whatever their units.
@@ -197,12 +210,14 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   result.absorbed = static_cast<double>(half.cols());
   if (!is_white) {
     const Eigen::MatrixXd orthonormal = jacobian * (inverse_norms.asDiagonal() * half);
-    const Eigen::MatrixXd product =
+    Eigen::MatrixXd product =
         displacement.residuals.size() > 0
             ? CorrelatedProduct(*problem.data, noise.autocorrelation, noise, displacement,
                                 orthonormal)
             : CorrelatedProduct(*problem.data, noise.autocorrelation, orthonormal);
     result.absorbed = product.trace();
+    const Eigen::MatrixXd of_stated = stated * (inverse_norms.asDiagonal() * half);
+    product += of_stated.transpose() * of_stated;
     root = half * RootOf(product);
   }
   const Eigen::MatrixXd in_theta = inverse_norms.asDiagonal() * root;

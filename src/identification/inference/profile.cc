@@ -146,8 +146,11 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
   profile.ranges = RangesAt(best);
   const Parameter& parameter = problem.parameters[kSlipForce];
   const double critical = estimates.quantile() * estimates.quantile();  // of F(1, ν)
-  HeldParameter held(problem, kSlipForce, best, noise, estimates, SolverOptionsOf(options),
-                     buffers);
+  // Of many terms some lie at bounds in most of these searches, which are not searched twice.
+  constexpr std::size_t kMany = 8;
+  SolverOptions search = SolverOptionsOf(options);
+  search.is_rough = problem.parameters.free().size() > kMany;
+  HeldParameter held(problem, kSlipForce, best, noise, estimates, search, buffers);
   LikelihoodProfile& likelihood = profile.likelihood;
   likelihood.critical = critical;
   likelihood.points.push_back({.law = LawOf(problem.parameters, best.theta)});

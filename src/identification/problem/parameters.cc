@@ -148,9 +148,11 @@ BoundSide SideOf(double theta, double lower, double upper) {
 
 bool IsSearchLimit(const Parameter& parameter, BoundSide side) {
   if (parameter.fixed || parameter.bounded_by_user || side == BoundSide::kInside) return false;
-  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed, no gap.
+  // Ends of the theory's: Jenkins' α, no slip force at rest, a logarithm of the speed, no gap, no
+  // drag.
   const std::string_view name = parameter.term->name;
   if (name == "alpha" || name == "slip_speed_exponent") return side == BoundSide::kUpper;
+  if (name.starts_with("drag_")) return false;
   if (name == "slip_speed") return side == BoundSide::kLower;
   if (ContactMotionOf(*parameter.term) == ContactMotion::kBehindGap)
     return side == BoundSide::kUpper;
@@ -187,7 +189,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
       }
     }
   }
-  ApplyOptions(options);
+  ApplyOptions(options, data.stated_noise);
   RequireShapedColumns();
   RequireOneMotion();
   if (options.model->memory == models::Memory::kReturnPoint) {
@@ -372,7 +374,7 @@ Parameter& Parameters::Find(std::string_view name) {
   throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
 }
 
-void Parameters::ApplyOptions(const FitOptions& options) {
+void Parameters::ApplyOptions(const FitOptions& options, double stated_noise) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name, options.response());
     if (term == nullptr ||
@@ -415,6 +417,17 @@ void Parameters::ApplyOptions(const FitOptions& options) {
     }
     Hold(parameter, value);
     parameter.absent = false;
+  }
+  for (const auto& [name, stated] : options.stated) {
+    Parameter& parameter = Find(name);
+    RequireInDomain(parameter, name, stated.value);
+    RequirePositive(fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit),
+                    stated.standard_uncertainty);
+    if (parameter.term->name != "rig_stiffness" || parameter.fixed) {
+      throw InvalidArgument(fmt::format("{} cannot be stated: only rig_stiffness, fitted", name));
+    }
+    parameter.theta = parameter.stated_theta = parameter.ToTheta(stated.value);
+    parameter.stated_root_weight = stated_noise * stated.value / stated.standard_uncertainty;
   }
   for (const auto& [name, value] : options.start) {
     const Parameter& parameter = Find(name);

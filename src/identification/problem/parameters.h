@@ -38,6 +38,12 @@ struct Parameter {
   bool confounded = false;  // held at 0, as an offset that is fitted says the same
   bool assumed = false;     // held, not where the file has its zero, but where the record begins
 
+  /// θ that is stated, and the root weight of θ's difference from it as one more residual; 0 where
+  /// nothing is stated.
+  double stated_theta = 0.0;
+  double stated_root_weight = 0.0;
+
+  [[nodiscard]] bool is_stated() const { return stated_root_weight > 0; }
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;
 };
@@ -143,7 +149,7 @@ class Parameters {
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
-  void ApplyOptions(const FitOptions& options);
+  void ApplyOptions(const FitOptions& options, double stated_noise);
   void RequireShapedColumns() const;
   void RequireOneMotion() const;
   void HoldConfoundedAsymmetry();

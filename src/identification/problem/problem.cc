@@ -52,6 +52,8 @@ constexpr std::array kLawRows = {
     LawRow{"slip_speed", &ResponseColumns::slip_speed, 0.25},
     LawRow{"slip_speed_exponent", &ResponseColumns::slip_speed_exponent, 0.25},
     LawRow{"slip_trend", &ResponseColumns::slip_trend, 0.25},
+    LawRow{"drag_fraction", &ResponseColumns::drag_fraction, 0.25},
+    LawRow{"drag_exponent", &ResponseColumns::drag_exponent, 0.25},
 };
 
 }  // namespace
@@ -153,7 +155,10 @@ void Response::Bind(const Problem& problem) {
   slip_speed_exponent_ = problem.parameters.PositionOf("slip_speed_exponent", 0);
   slip_goes_by_speed_ = !problem.parameters[slip_speed_].absent;
   slip_trend_ = problem.parameters.PositionOf("slip_trend", 0);
-  slip_varies_ = slip_goes_by_speed_ || !problem.parameters[slip_slope_].absent ||
+  drag_fraction_ = problem.parameters.PositionOf("drag_fraction", 0);
+  drag_exponent_ = problem.parameters.PositionOf("drag_exponent", 0);
+  has_drag_ = !problem.parameters[drag_fraction_].absent;
+  slip_varies_ = slip_goes_by_speed_ || has_drag_ || !problem.parameters[slip_slope_].absent ||
                  !problem.parameters[slip_curvature_].absent ||
                  !problem.parameters[slip_trend_].absent;
   moves_ = problem.parameters.PositionOfMotion();
@@ -402,6 +407,7 @@ double Response::SlipFactor(const ScaledRecord& record, const LawPoint& at,
     factor += at.theta[slip_speed_] *
               std::expm1(at.theta[slip_speed_exponent_] * LogSpeedRatio(record, sample));
   }
+  if (has_drag_) factor -= at.theta[drag_fraction_];
   return factor;
 }
 
@@ -413,6 +419,8 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
   const double of_speed = at.theta[slip_speed_];
   const double exponent = at.theta[slip_speed_exponent_];
   const double trend = at.theta[slip_trend_];
+  const double drag = has_drag_ ? at.theta[drag_fraction_] : 0.0;
+  const double log_reference = std::log(record.units.reference_speed);
   const std::array scaled = {t,
                              columns.log_rate,
                              columns.shape_exponent,
@@ -427,7 +435,7 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
     if (!columns.slip_curvature.empty()) columns.slip_curvature[i] = t[i] * position * position;
     if (!columns.slip_trend.empty()) columns.slip_trend[i] = t[i] * record.time[i];
     if (slip_goes_by_speed_) {
-      const double log_ratio = LogSpeedRatio(record, i);
+      const double log_ratio = record.log_speed[i] - log_reference;
       const double change = std::expm1(exponent * log_ratio);
       factor += of_speed * change;
       if (!columns.slip_speed.empty()) columns.slip_speed[i] = t[i] * change;
@@ -435,9 +443,20 @@ void Response::ScaleBySlipForce(std::size_t r, const LawPoint& at, std::span<dou
         columns.slip_speed_exponent[i] = t[i] * of_speed * log_ratio * (1 + change);
       }
     }
+    double dragged = 0.0;
+    if (has_drag_) {
+      // (v/v₀)^m along the motion, which has no memory.
+      const double log_ratio = record.log_speed[i] - log_reference;
+      const double direction = record.velocity[i] * std::exp(-record.log_speed[i]);
+      dragged = direction * std::exp(at.theta[drag_exponent_] * log_ratio);
+      if (!columns.drag_fraction.empty()) columns.drag_fraction[i] = dragged - t[i];
+      if (!columns.drag_exponent.empty()) columns.drag_exponent[i] = drag * dragged * log_ratio;
+      factor -= drag;
+    }
     for (const std::span<double> column : scaled) {
       if (!column.empty()) column[i] *= factor;
     }
+    t[i] += drag * dragged;
   }
 }
 

@@ -68,14 +68,17 @@ struct ResponseColumns {
   std::span<double> slip_speed;
   std::span<double> slip_speed_exponent;
   std::span<double> slip_trend;
+  std::span<double> drag_fraction;
+  std::span<double> drag_exponent;
 };
 inline constexpr std::array kResponseColumns = {
-    &ResponseColumns::log_rate,   &ResponseColumns::shape_exponent,
-    &ResponseColumns::unloaded,   &ResponseColumns::log_spring_travel,
-    &ResponseColumns::moved,      &ResponseColumns::asymmetry,
-    &ResponseColumns::slip_slope, &ResponseColumns::slip_curvature,
-    &ResponseColumns::slip_speed, &ResponseColumns::slip_speed_exponent,
-    &ResponseColumns::slip_trend};
+    &ResponseColumns::log_rate,     &ResponseColumns::shape_exponent,
+    &ResponseColumns::unloaded,     &ResponseColumns::log_spring_travel,
+    &ResponseColumns::moved,        &ResponseColumns::asymmetry,
+    &ResponseColumns::slip_slope,   &ResponseColumns::slip_curvature,
+    &ResponseColumns::slip_speed,   &ResponseColumns::slip_speed_exponent,
+    &ResponseColumns::slip_trend,   &ResponseColumns::drag_fraction,
+    &ResponseColumns::drag_exponent};
 
 /// One summand of ∂(scale·t)/∂θ over the scale: factor·column, where no column stands for t itself.
 struct Sensitivity {
@@ -167,8 +170,11 @@ class Response {
   std::size_t slip_speed_ = 0;
   std::size_t slip_speed_exponent_ = 0;
   std::size_t slip_trend_ = 0;
+  std::size_t drag_fraction_ = 0;
+  std::size_t drag_exponent_ = 0;
   bool slip_varies_ = false;  // over positions, speeds or time
   bool slip_goes_by_speed_ = false;
+  bool has_drag_ = false;
   // For a problem with a term that moves the contact:
   std::size_t moves_ = 0;  // its position
   bool has_moved_ = false;

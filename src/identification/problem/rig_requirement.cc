@@ -47,7 +47,7 @@ double StiffnessOfLoop(const loop::PreparedRecord& record, double sense) {
 
 void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRecords& records) {
   const auto rig = options.fixed.find("rig_stiffness");
-  if (rig == options.fixed.end() || !(rig->second > 0)) return;
+  if (rig == options.fixed.end() || !(rig->second > 0)) return;  // one that is stated is fitted
   for (const loop::PreparedRecord& record : records.records) {
     const double stiffness = StiffnessOfLoop(record, records.force_sense);
     if (rig->second > stiffness) continue;

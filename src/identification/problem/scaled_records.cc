@@ -460,7 +460,8 @@ ScaledRecords Scale(const loop::PreparedRecords& records, const FitOptions& opti
 }
 
 void AddColumnsOfTerms(const FitOptions& options, ScaledRecords& data) {
-  const bool asks_slip_speed = HasTerm(options, "slip_speed_exponent");
+  const bool asks_slip_speed =
+      HasTerm(options, "slip_speed_exponent") || HasTerm(options, "drag_exponent");
   const bool asks_power = HasTerm(options, "speed_exponent") || asks_slip_speed;
   const bool asks_acceleration = HasTerm(options, "inertia");
   const auto is_ripple = [](std::string_view name) { return name.starts_with("ripple_"); };

@@ -70,7 +70,7 @@ void ProjectedResidual::ChooseSearched() {
   const Parameter& slip_force = parameters[kSlipForce];
   const Parameter& rig = parameters[kRig];
   const auto is_tied = [](const Parameter& parameter) {
-    return parameter.fixed || parameter.bounded_by_user;
+    return parameter.fixed || parameter.bounded_by_user || parameter.is_stated();
   };
   scale_is_linear_ = is_forced() ? !is_tied(stiffness)
                                  : !slip_force.fixed && !is_tied(stiffness) &&
@@ -235,7 +235,9 @@ double ProjectedResidual::Regress(double log_rate, bool is_free, double held_sca
     if (!(best > 0)) scale_ = lower;
   }
   Subtract(scale_, response_values_, measured_, residual_);
-  const double cost = Dot(residual_, residual_);
+  const Parameter& rig = problem_->parameters[kRig];
+  const double off = rig.stated_root_weight * (theta_[kRig] - rig.stated_theta);
+  const double cost = Dot(residual_, residual_) + off * off;
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
@@ -341,6 +343,11 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
       const auto other = static_cast<Eigen::Index>(k);
       normal_(row, other) = normal_(other, row) = Dot(column, Derivative(k));
     }
+    const Parameter& parameter = problem_->parameters[searched_[j].parameter];
+    if (!parameter.is_stated()) continue;
+    const double weight = parameter.stated_root_weight * parameter.stated_root_weight;
+    normal_(row, row) += weight;
+    gradient_[row] += weight * (u[j] - parameter.stated_theta);
   }
   return cost;
 }

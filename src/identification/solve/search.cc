@@ -64,7 +64,8 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
   for (const std::size_t p : parameters.free()) {
     // Only terms that an option names; their further coefficients stay with them.
     const Term& term = *parameters[p].term;
-    if (term.presence == Presence::kOnDemand && !term.option.empty()) terms.push_back(p);
+    const bool is_on_demand = term.presence == Presence::kOnDemand && !term.option.empty();
+    if (is_on_demand && !parameters[p].is_stated()) terms.push_back(p);
   }
   if (terms.empty()) return;
   Solution& solution = buffers.smaller[std::min(terms.size(), kMostNested) - 1];
@@ -187,7 +188,8 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Search
   if (!options.start.empty() || !std::isfinite(best.sum_of_squares)) return;
   Rivals rivals(options, buffers, best, descents);
   const Parameters& parameters = candidate.problem.parameters;
-  if (parameters.has_rig() && !parameters[kRig].fixed) SearchOtherRigs(rivals);
+  const Parameter& rig = parameters[kRig];
+  if (!rig.absent && !rig.fixed && !rig.is_stated()) SearchOtherRigs(rivals);
   if (IsAmongKinks(parameters, best)) SearchAcrossKinks(candidate.problem, rivals);
 }
 

@@ -109,8 +109,9 @@ class Plane {
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
       const Parameter& rig = parameters[kRig];
-      const double stiffness =
-          rig.fixed ? std::exp(rig.theta) : look.reach * (1 + look.rig_ratio) / look.rig_ratio;
+      const double stiffness = rig.fixed || rig.is_stated()
+                                   ? std::exp(rig.theta)
+                                   : look.reach * (1 + look.rig_ratio) / look.rig_ratio;
       const double softer = 1 / look.reach - 1 / stiffness;
       const double contact = softer <= 0.1 / look.reach ? 10 * look.reach : 1 / softer;
       point.log_rate = std::log(contact);
@@ -132,7 +133,7 @@ class Plane {
       return;
     }
     if (!parameters[kStiffness].fixed) theta_[kStiffness] = point.log_rate + theta_[kSlipForce];
-    if (parameters.has_rig() && !parameters[kRig].fixed) {
+    if (parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].is_stated()) {
       theta_[kRig] = theta_[kSlipForce] - point.log_travel;
     }
     if (parameters[kStiffness].fixed && !parameters[kSlipForce].fixed) {
@@ -280,7 +281,8 @@ using Looks = std::array<Look, kRows.size()>;
 void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, double hopeless,
                 Looks& best) {
   const Parameter& shape = parameters[kShape];
-  const bool rig_is_open = parameters.has_rig() && !parameters[kRig].fixed;
+  const bool rig_is_open =
+      parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].is_stated();
   const auto look_at = [&](std::size_t group, double reach, double alpha) {
     if (!rig_is_open) {
       KeepBetter(best[group], plane, {.reach = reach, .shape = alpha, .guess = guess});
