@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -46,6 +47,7 @@
 #include "identification/solve/search.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
+#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/too_few_samples.h"
@@ -445,7 +447,7 @@ void FillLawEnergy(const Attempt& attempt, FitResult& result) {
     const double first = displacement[fit.facts.cycles.front().start] - displacement.front();
     fit.law_energy = EnergyOfCycles(*result.model, result.LawOf(fit), result.rig,
                                     {.asymmetry = asymmetry->value,
-                                     .amplitude = fit.facts.amplitude,
+                                     .amplitude = AmplitudeBehindGap(result, fit.facts.amplitude),
                                      .first_direction = first < 0 ? -1 : 1,
                                      .cycles = fit.facts.cycles.size()});
   }
@@ -522,10 +524,16 @@ void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));
 }
 
+void Append(std::vector<Finding>& findings, std::vector<Finding> more) {
+  std::ranges::move(more, std::back_inserter(findings));
+}
+
 /// Adequacy, and intervals that cover what its causes would change.
-void ConsiderDepartures(const Problem& problem, const Solution& solution, const Noise& noise,
-                        const DisplacementEffect& displacement, const Estimates& estimates,
-                        const FitOptions& options, SearchBuffers& buffers, FitResult& result) {
+/// @param is_limited  did the search end at a limit of its own?
+void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& displacement,
+                        bool is_limited, const FitOptions& options, SearchBuffers& buffers,
+                        FitResult& result) {
+  const auto& [problem, solution, noise, estimates] = fitted;
   const Thresholds& thresholds = options.thresholds;
   // Rounding errors are no noise: nothing is to be learnt from what they look like.
   const double rms =
@@ -533,11 +541,10 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
   if (rms < kOnlyRounding) {
     result.adequacy.verdict = AdequacyVerdict::kAdequate;
     result.adequacy.tried = 1;
-    GradeUse(thresholds, result);
+    result.adequacy = GradeUse(thresholds, result);
     return;
   }
-  AdequacyTest test =
-      TestAdequacy(problem, solution, noise, displacement, estimates, thresholds, buffers.response);
+  AdequacyTest test = TestAdequacy(fitted, displacement, thresholds, buffers.response);
   // A load that varies would have to be read as late.
   if (IsDoubtful(test, thresholds) && !problem.data->load_varies && !problem.data->is_forced()) {
     TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
@@ -556,22 +563,19 @@ void ConsiderDepartures(const Problem& problem, const Solution& solution, const 
                          options.loss != Loss::kNone,
                          result.adequacy.verdict != AdequacyVerdict::kAdequate, buffers.response),
       options, result.adequacy);
-  if (const auto limit = FindSearchLimit(problem, solution)) {
-    Append(result.findings, limit);
-    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
-  }
+  if (is_limited) result.adequacy.verdict = AdequacyVerdict::kDoubtful;
   if (const auto slow = FindSlowResiduals(result, thresholds)) {
     Append(result.findings, slow);
     result.adequacy.verdict = AdequacyVerdict::kDoubtful;
   }
-  GradeUse(thresholds, result);
+  result.adequacy = GradeUse(thresholds, result);
   if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
   const std::vector<ParameterEstimate> plain = result.parameters;
   WidenByDepartures(problem, solution, causes,
                     StudentQuantile(test.degrees_of_freedom, options.confidence),
                     result.parameters);
-  CoverPlateau(result, thresholds);
-  CoverDiscrepancy(problem, solution, estimates, plain, thresholds, result);
+  result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
+  result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
 }
 
 /// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
@@ -590,10 +594,10 @@ std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const 
 }
 
 /// Compares branches with each other, under the fitted law and the other one.
-MemoryTest CompareBranches(const Problem& problem, const Solution& solution,
-                           const LawComparison& laws, const Noise& noise,
-                           const DisplacementEffect& displacement, const Estimates& estimates,
-                           const Thresholds& thresholds, Response& response) {
+MemoryTest CompareBranches(const FittedProblem& fitted_problem, const LawComparison& laws,
+                           const DisplacementEffect& displacement, const Thresholds& thresholds,
+                           Response& response) {
+  const auto& [problem, solution, noise, estimates] = fitted_problem;
   const FittedLaw fitted{&problem, &solution, estimates.jacobian(), estimates.residual()};
   if (!laws.other) return TestMemory(fitted, nullptr, noise, displacement, thresholds, response);
   const Problem& problem_of_other = laws.other->problem;
@@ -640,57 +644,96 @@ void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& r
 }
 
 /// Replaces intervals of Tc and σ by those of the likelihood where the parabola may fail.
-void WidenByProfiles(const Attempt& attempt, const Problem& problem, const Solution& solution,
-                     const Noise& noise, const Estimates& estimates, FitResult& result) {
-  const FitOptions& options = attempt.options;
-  SearchBuffers& buffers = attempt.buffers;
+void WidenByProfiles(const FittedProblem& fitted, const FitOptions& options, SearchBuffers& buffers,
+                     FitResult& result) {
   const double peak_force = result.PeakForce();
-  if (NeedsSlipForceProfile(problem, solution, noise, estimates, peak_force / result.law.slip_force,
-                            options, buffers)) {
-    SlipForceProfile profile =
-        ProfileSlipForce(problem, solution, noise, estimates, options, buffers);
-    WidenByProfile(problem, profile, estimates.quantile(), peak_force, result);
-    for (Finding& finding : FindOpenSlipForce(result, profile)) {
-      result.findings.push_back(std::move(finding));
-    }
+  const double quantile = fitted.estimates.quantile();
+  if (NeedsSlipForceProfile(fitted, peak_force / result.law.slip_force, options, buffers)) {
+    SlipForceProfile profile = ProfileSlipForce(fitted, options, buffers);
+    const double carried = CarriedForce(fitted.problem, result, peak_force);
+    result.parameters =
+        WidenByProfile(fitted.problem, profile, quantile, carried, std::move(result.parameters));
+    Append(result.findings, FindOpenSlipForce(result, profile));
     result.slip_force_profile = std::move(profile.likelihood);
   }
-  ProfileBesideRig(problem, solution, noise, estimates, options, buffers, result);
-  if (const auto ranges =
-          ProfileSmallShape(problem, solution, noise, estimates, options, buffers)) {
-    IncludeSmallShape(problem, *ranges, result);
+  result.parameters = ProfileBesideRig(fitted, options, buffers, std::move(result.parameters));
+  if (const auto ranges = ProfileSmallShape(fitted, options, buffers)) {
+    result.parameters = IncludeSmallShape(fitted.problem, *ranges, std::move(result.parameters));
   }
-  if (StiffnessIsOpenAbove(problem, solution, noise, estimates, options, buffers)) {
+  if (StiffnessIsOpenAbove(fitted, options, buffers)) {
     OpenAbove(result.parameters[kStiffness], IntervalSource::kProfile);
     result.findings.push_back(FoundOpenStiffness());
   }
 }
 
-/// Fills the results of Depth::kErrors.
-/// @param at  the problem by all its free parameters, at the solution
-void InferErrors(const Attempt& attempt, const Problem& problem, const Solution& solution,
-                 Linearization at, Noise& noise, const DisplacementErrors& displacement_errors,
-                 FitResult& result) {
-  MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
-  const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
-  const Estimates estimates(problem, solution, noise, displacement, attempt.options.thresholds,
-                            std::move(at));
-  FillErrors(problem, estimates, result);
-  WidenByProfiles(attempt, problem, solution, noise, estimates, result);
-  CoverSlipFactor(problem, solution, result);
-  KeepAboveCarriedForce(result);
-  Append(result.findings, FindSearchLimit(problem, solution));
-  Append(result.findings, FindUnseenLoop(result, attempt.options.thresholds));
-  Append(result.findings, FindUntoldAsymmetry(result, attempt.options.thresholds));
-  for (Finding& finding : FindWideIntervals(result, attempt.options.thresholds)) {
-    result.findings.push_back(std::move(finding));
+/// Tests α = 1/3, with a rig and branch by branch.
+void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
+  const FitOptions& options = attempt.options;
+  const Problem& problem = fitted.problem;
+  result.branch_shapes = FitBranchShapes(fitted, attempt.buffers.response);
+  result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
+  if (!result.mindlin_test) return;
+  if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
+    result.parameters = WidenByRanges(problem, ProfileShape(fitted, options, attempt.buffers),
+                                      fitted.estimates.quantile(), std::move(result.parameters));
+    Include(
+        result.parameters[kShape],
+        {.source = IntervalSource::kProfile, .lower = kMindlinExponent, .upper = kMindlinExponent});
   }
-  Append(result.findings, FindExtrapolated(result, attempt.options.thresholds));
-  DropNeedless(result.parameters, result.findings);
-  Judge(result.parameters, result.findings);
+  if (const auto rig =
+          TryRig(fitted, attempt.thin, *result.mindlin_test, options, attempt.buffers)) {
+    result.mindlin_test->rig_stiffness = rig->rig_stiffness;
+    result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
+  }
+  const bool is_forced = problem.data->is_forced();
+  if ((problem.data->load_varies || is_forced) &&
+      WantsRig(problem, fitted.solution, *result.mindlin_test, options.thresholds)) {
+    result.findings.push_back({.code = "rig_not_tried",
+                               .parameters = {"sigma", "alpha"},
+                               .numbers = {{"alpha", result.law.shape_exponent}},
+                               .kind = is_forced ? "imposed_force" : "varying_load"});
+  }
 }
 
-/// Noise, errors, intervals, residuals and, at full depth, profiles and tests.
+/// Extends intervals to the other initial state and to another minimum, which the record does not
+/// exclude.
+void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const Candidate* rival,
+                 std::span<const Descent> descents, FitResult& result) {
+  const auto& [problem, solution, noise, estimates] = fitted;
+  const double peak_force = result.PeakForce();
+  const auto cover = [&](const Rival& other) {
+    return CoverRival(fitted.problem, other, fitted.noise, attempt.options.thresholds, peak_force,
+                      attempt.buffers.response, result.parameters);
+  };
+  if (rival != nullptr) {
+    Append(result.findings, FoundUndecidedPast(cover({rival->problem, *rival->solution,
+                                                      IntervalSource::kInitialState})));
+  }
+  for (const Descent& descent : descents) {
+    if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
+    Append(result.findings,
+           FoundSeveralMinima(cover({problem, descent.solution, IntervalSource::kOtherMinimum})));
+    break;  // one says it
+  }
+}
+
+/// Compares Masing's law with Dahl's own, and branches with each other.
+void CompareModels(const Attempt& attempt, const FittedProblem& fitted,
+                   const DisplacementEffect& displacement, FitResult& result) {
+  const Problem& problem = fitted.problem;
+  const LawComparison laws =
+      CompareLaws(problem, fitted.solution, result, attempt.options, attempt.buffers);
+  if (result.depth >= Depth::kThorough && laws.is_comparable && CanCompareBranches(problem)) {
+    result.memory = CompareBranches(fitted, laws, displacement, attempt.options.thresholds,
+                                    attempt.buffers.response);
+    Append(result.findings, FindContradictedLaw(*result.memory, laws.choice, *result.model));
+  }
+  result.law_choice = ReportedLaw(laws.choice, result.adequacy.verdict);
+  Append(result.findings, FindOtherLaw(result.law_choice));
+}
+
+/// Noise, errors, intervals and residuals and, by the depth, adequacy, profiles and tests: each
+/// depth does what the one before does, and more.
 /// @param at     the problem by all its free parameters, at the solution
 /// @param rival     the other initial state, where the record hardly determines it; else null
 /// @param descents  what other starts of this problem led to
@@ -698,84 +741,47 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
            Linearization at, Noise& noise, const DisplacementErrors& displacement_errors,
            const Candidate* rival, std::span<const Descent> descents, FitResult& result) {
   const FitOptions& options = attempt.options;
+  const Thresholds& thresholds = options.thresholds;
   SearchBuffers& buffers = attempt.buffers;
+  const bool is_judged = result.depth >= Depth::kIntervals;
+  const bool is_tested = result.depth >= Depth::kFull;
   MeasureNoise(attempt, problem, solution, {at.residual.data(), problem.size()}, noise, result);
   const DisplacementEffect displacement = EffectOf(displacement_errors, problem, solution, noise);
-  const Estimates estimates(problem, solution, noise, displacement, options.thresholds,
-                            std::move(at));
+  const Estimates estimates(problem, solution, noise, displacement, thresholds, std::move(at));
+  const FittedProblem fitted{problem, solution, noise, estimates};
   FillErrors(problem, estimates, result);
-  WidenByProfiles(attempt, problem, solution, noise, estimates, result);
-  if (result.depth >= Depth::kFull) {
-    result.branch_shapes = FitBranchShapes(problem, solution, noise, estimates, buffers.response);
-    result.mindlin_test = TestMindlin(problem, solution, noise, estimates, options, buffers);
-    if (result.mindlin_test) {
-      if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
-        WidenByRanges(problem, ProfileShape(problem, solution, noise, estimates, options, buffers),
-                      estimates.quantile(), result);
-        Include(result.parameters[kShape], {.source = IntervalSource::kProfile,
-                                            .lower = kMindlinExponent,
-                                            .upper = kMindlinExponent});
-      }
-      const std::optional<RigAlternative> rig =
-          TryRig(problem, attempt.thin, solution, *result.mindlin_test, noise, estimates, options,
-                 buffers);
-      if (rig) {
-        result.mindlin_test->rig_stiffness = rig->rig_stiffness;
-        result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
-      }
-      const bool is_forced = problem.data->is_forced();
-      if ((problem.data->load_varies || is_forced) &&
-          WantsRig(problem, solution, *result.mindlin_test, options.thresholds)) {
-        result.findings.push_back({.code = "rig_not_tried",
-                                   .parameters = {"sigma", "alpha"},
-                                   .numbers = {{"alpha", result.law.shape_exponent}},
-                                   .kind = is_forced ? "imposed_force" : "varying_load"});
-      }
+  WidenByProfiles(fitted, options, buffers, result);
+  if (is_tested) TestShape(attempt, fitted, result);
+  if (is_judged) CoverRivals(attempt, fitted, rival, descents, result);
+  const std::optional<Finding> limit = FindSearchLimit(problem, solution);
+  Append(result.findings, limit);
+  if (is_judged) {
+    ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
+  }
+  result.parameters[kStiffness] =
+      CoverSlipFactor(problem, solution, std::move(result.parameters[kStiffness]));
+  result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
+  Append(result.findings, FindUnseenLoop(result, thresholds));
+  Append(result.findings, FindWideIntervals(result, thresholds));
+  if (is_judged) {
+    if (!options.initial_state && options.initial_states.empty()) {
+      Append(result.findings, FindUnknownPast(problem, solution, thresholds));
     }
+    Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, thresholds));
+    Append(result.findings, FindFewPlaces(problem, thresholds));
   }
-  if (rival != nullptr) {
-    Append(result.findings,
-           FoundUndecidedPast(CoverRival(
-               problem, {rival->problem, *rival->solution, IntervalSource::kInitialState}, noise,
-               options.thresholds, result.PeakForce(), buffers.response, result.parameters)));
+  Append(result.findings, FindUntoldAsymmetry(result, thresholds));
+  if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));
+  Append(result.findings, FindExtrapolated(result, thresholds));
+  if (is_judged) {
+    Append(result.findings, FindMisfit(result, thresholds));
+    Append(result.findings, FindEnergyContradiction(result, thresholds));
   }
-  for (const Descent& descent : descents) {
-    if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
-    Append(result.findings,
-           FoundSeveralMinima(CoverRival(
-               problem, {problem, descent.solution, IntervalSource::kOtherMinimum}, noise,
-               options.thresholds, result.PeakForce(), buffers.response, result.parameters)));
-    break;  // one says it
+  result.findings = WithoutNeedless(result.parameters, std::move(result.findings));
+  if (is_judged && IsInadequate(result, thresholds)) {
+    result = WithoutInadequate(std::move(result), thresholds);
   }
-  ConsiderDepartures(problem, solution, noise, displacement, estimates, options, buffers, result);
-  CoverSlipFactor(problem, solution, result);
-  KeepAboveCarriedForce(result);
-  Append(result.findings, FindUnseenLoop(result, options.thresholds));
-  for (Finding& finding : FindWideIntervals(result, options.thresholds)) {
-    result.findings.push_back(std::move(finding));
-  }
-  if (!options.initial_state && options.initial_states.empty()) {
-    Append(result.findings, FindUnknownPast(problem, solution, options.thresholds));
-  }
-  Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, options.thresholds));
-  Append(result.findings, FindFewPlaces(problem, options.thresholds));
-  Append(result.findings, FindUntoldAsymmetry(result, options.thresholds));
-  Append(result.findings, FindShapeLimitedByLoad(problem, solution));
-  Append(result.findings, FindExtrapolated(result, options.thresholds));
-  Append(result.findings, FindMisfit(result, options.thresholds));
-  Append(result.findings, FindEnergyContradiction(result, options.thresholds));
-  DropNeedless(result.parameters, result.findings);
-  if (IsInadequate(result, options.thresholds)) WithdrawInadequate(result, options.thresholds);
-  if (result.depth >= Depth::kFull) {
-    const LawComparison laws = CompareLaws(problem, solution, result, options, buffers);
-    const bool is_asked = result.depth >= Depth::kThorough;
-    if (is_asked && laws.is_comparable && CanCompareBranches(problem)) {
-      result.memory = CompareBranches(problem, solution, laws, noise, displacement, estimates,
-                                      options.thresholds, buffers.response);
-      Append(result.findings, FindContradictedLaw(*result.memory, laws.choice, *result.model));
-    }
-    SayLaw(laws.choice, result);
-  }
+  if (is_tested) CompareModels(attempt, fitted, displacement, result);
   Judge(result.parameters, result.findings);
 }
 
@@ -989,7 +995,7 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   const bool is_judged = depth >= Depth::kIntervals;
   if (is_judged) {
     result.findings = FindInRecords(result.records, given.thresholds, data.excitation);
-    for (Finding& finding : FindVaryingLoads(data)) result.findings.push_back(std::move(finding));
+    Append(result.findings, FindVaryingLoads(data));
   }
   std::vector<Descent>* const recorded = is_judged ? &descents : nullptr;
   std::optional<Candidate> rival;
@@ -1122,13 +1128,10 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
     scatter = FindSlopeScatter(prepared, best->problem, solution.theta,
                                {at.residual.data(), best->problem.size()}, buffers.response);
   }
-  if (is_judged) {
+  if (depth >= Depth::kErrors) {
     Infer(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
           rival && !fits_turns ? &*rival : nullptr,
           fits_turns || is_weighted ? std::span<const Descent>() : descents, result);
-  } else if (depth == Depth::kErrors) {
-    InferErrors(attempt, best->problem, solution, std::move(at), noise, displacement_errors,
-                result);
   }
   if (depth >= Depth::kFull && data.is_load_series) FitRecordsAlone(records, given, result);
 }

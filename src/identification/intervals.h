@@ -1,9 +1,13 @@
 #pragma once
 
+#include <vector>
+
 #include "mindahl/identification/fit_result.h"
 
 /// The one place where the interval of an estimate is written, the union of its parts.
 namespace mindahl::identification {
+
+using ParameterEstimates = std::vector<ParameterEstimate>;
 
 /// Begins the interval anew with one part. An end that is not finite is open.
 void SetInterval(ParameterEstimate& estimate, IntervalPart part);

@@ -232,17 +232,17 @@ TEST(Contradictions, SlipForceIsNotBelowTheForceThatWasCarried) {
   fit.force_noise = 0.1;
   FitResult with_lag = fit;
   with_lag.parameters.emplace_back().name = "lag";
-  KeepAboveCarriedForce(fit);
+  fit.parameters[2] = KeepAboveCarriedForce(fit);
   EXPECT_NEAR(*fit.parameters[2].lower95, 7.8 - 2 * 0.2 - 0.1, 1e-12);
   EXPECT_EQ(fit.parameters[2].upper95, 30.0);
   EXPECT_TRUE(fit.parameters[2].IsSetBy(IntervalSource::kCarriedForce));
   // All of the interval, or a limit of an estimate, below what was carried is no answer.
   SetInterval(fit.parameters[2], {.source = IntervalSource::kParabola, .lower = 4.0, .upper = 6.0});
   fit.parameters[2].value = 5.0;
-  KeepAboveCarriedForce(fit);
+  fit.parameters[2] = KeepAboveCarriedForce(fit);
   EXPECT_FALSE(fit.parameters[2].lower95 || fit.parameters[2].upper95);
   // A lag opens the loop too.
-  KeepAboveCarriedForce(with_lag);
+  with_lag.parameters[2] = KeepAboveCarriedForce(with_lag);
   EXPECT_EQ(with_lag.parameters[2].lower95, 88e-6);
 }
 

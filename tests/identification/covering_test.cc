@@ -20,7 +20,7 @@ TEST(CoverPlateau, BringsThePlateauToTheReferenceLoad) {
     result.records[0].facts.half_gap = kLoadRatio * plateau;
     Thresholds thresholds;
     thresholds.mobilised_by_asymptote = 0.5;
-    CoverPlateau(result, thresholds);
+    result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
     EXPECT_DOUBLE_EQ(*result.parameters[kSlipForce].lower95, std::min(1.9, plateau));
     EXPECT_DOUBLE_EQ(*result.parameters[kSlipForce].upper95, std::max(2.1, plateau));
   }

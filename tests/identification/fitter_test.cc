@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "identification/sample_loop.h"
@@ -147,6 +148,16 @@ TEST(Fitter, LeavesNothingOfAFitBeforeOneThatFails) {
   }
 }
 
+/// A wide interval may be needless beside what a deeper fit finds; an inadequate model takes back
+/// what names a parameter.
+void ExpectFindingsAmong(const FitResult& fit, const FitResult& deeper) {
+  if (deeper.FindFinding("model_inadequate") != nullptr) return;
+  for (const Finding& finding : fit.findings) {
+    if (finding.kind == "wide") continue;
+    EXPECT_NE(deeper.FindFinding(finding.code), nullptr) << std::string_view(finding.code);
+  }
+}
+
 TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
   for (const std::vector<Record>& records : Assortment()) {
     const std::vector<RecordView> views(records.begin(), records.end());
@@ -176,6 +187,9 @@ TEST(Fitter, EachDepthHasTheValuesOfTheOneBefore) {
     EXPECT_TRUE(intervals.branch_shapes.empty());
     EXPECT_EQ(errors.residuals.effective_samples, full.residuals.effective_samples);
     EXPECT_EQ(intervals.residuals.effective_samples, full.residuals.effective_samples);
+    ExpectFindingsAmong(errors, intervals);
+    ExpectFindingsAmong(intervals, full);
+    EXPECT_LE(errors.slip_force_profile.has_value(), intervals.slip_force_profile.has_value());
   }
 }
 

@@ -21,6 +21,7 @@ FitResult SlidingFit(double energy_ratio = 0.8) {
   facts.half_gap = 8.0;
   facts.energy_ratio = energy_ratio;
   fit.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  fit.residuals.r_squared = 0.9;
   return fit;
 }
 
@@ -101,7 +102,7 @@ TEST(Grade, UseFollowsTheMisfitOverTheHalfGap) {
                                     Case{1.19, Use::kIndicative}, Case{1.21, Use::kNone}}) {
     FitResult fit = SlidingFit();
     SetResiduals(std::vector<double>(5, missed), fit);
-    GradeUse(Thresholds(), fit);
+    fit.adequacy = GradeUse(Thresholds(), fit);
     EXPECT_EQ(fit.adequacy.use, use) << missed;
     EXPECT_NEAR(fit.adequacy.misfit, missed, kRounding);
     ASSERT_TRUE(fit.adequacy.misfit_over_half_gap);
@@ -113,7 +114,7 @@ TEST(Grade, WithoutAGapUseIsJudgedByTheLargestForce) {
   FitResult fit = SlidingFit();
   fit.records[0].facts.half_gap = -0.3;
   SetResiduals(std::vector<double>(5, 0.49), fit);
-  GradeUse(Thresholds(), fit);
+  fit.adequacy = GradeUse(Thresholds(), fit);
   EXPECT_FALSE(fit.adequacy.misfit_over_half_gap);
   EXPECT_EQ(fit.adequacy.use, Use::kQuantitative);
 }
@@ -121,8 +122,8 @@ TEST(Grade, WithoutAGapUseIsJudgedByTheLargestForce) {
 TEST(Grade, LoopThatIsNotSeenIsOfNoUse) {
   FitResult fit = SlidingFit();
   SetResiduals(std::vector<double>(5, 0.1), fit);
-  fit.findings.push_back({.code = "loop_not_seen"});
-  GradeUse(Thresholds(), fit);
+  fit.residuals.r_squared = 0.05;
+  fit.adequacy = GradeUse(Thresholds(), fit);
   EXPECT_EQ(fit.adequacy.use, Use::kNone);
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 // Verdicts from estimates and findings alone, by precedence.
@@ -133,13 +134,13 @@ TEST(Judge, EarlierVerdictIsForgotten) {
 
 std::vector<std::string> KeptOf(std::span<const ParameterEstimate> estimates,
                                 std::vector<Finding> findings) {
-  DropNeedless(estimates, findings);
   std::vector<std::string> kept;
-  for (const Finding& finding : findings) kept.emplace_back(finding.code);
+  for (const Finding& finding : WithoutNeedless(estimates, std::move(findings)))
+    kept.emplace_back(finding.code);
   return kept;
 }
 
-TEST(DropNeedless, KeepsAWideIntervalUnlessAnotherFindingSaysAsMuchOfIt) {
+TEST(WithoutNeedless, KeepsAWideIntervalUnlessAnotherFindingSaysAsMuchOfIt) {
   const std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
   const Finding wide{.code = "alpha_not_identifiable", .parameters = {"alpha"}, .kind = "wide"};
   const Finding rig{.code = "shape_or_rig", .parameters = {"sigma", "alpha"}};
@@ -155,7 +156,7 @@ TEST(DropNeedless, KeepsAWideIntervalUnlessAnotherFindingSaysAsMuchOfIt) {
       << "which calls α identifiable";
 }
 
-TEST(DropNeedless, KeepsAnEnergyThatContradictsAnAnswer) {
+TEST(WithoutNeedless, KeepsAnEnergyThatContradictsAnAnswer) {
   std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
   const Finding energy{.code = "energy_contradiction",
                        .parameters = {"sigma", "alpha", "slip_force"}};
@@ -167,7 +168,15 @@ TEST(DropNeedless, KeepsAnEnergyThatContradictsAnAnswer) {
   EXPECT_THAT(KeptOf(estimates, {shape, energy}), ElementsAre("no_model_fits"));
 }
 
-TEST(WithdrawInadequate, IsNeverReportedWithZeroMisfit) {
+TEST(WithoutNeedless, KeepsAnOpenSlipForceUnlessItsIntervalIncludesTheDiscrepancy) {
+  std::array estimates = {Known("sigma"), Known("alpha"), Known("slip_force")};
+  const Finding open{.code = "slip_force_bounded_below", .parameters = {"slip_force"}};
+  EXPECT_THAT(KeptOf(estimates, {open}), ElementsAre("slip_force_bounded_below"));
+  estimates[2].includes_discrepancy = true;
+  EXPECT_THAT(KeptOf(estimates, {open}), ElementsAre());
+}
+
+TEST(WithoutInadequate, IsNeverReportedWithZeroMisfit) {
   // No omitted term explains it, and what comes back in every stroke is 0.8 of the variance.
   FitResult result;
   result.rms = 3.0;
@@ -175,7 +184,7 @@ TEST(WithdrawInadequate, IsNeverReportedWithZeroMisfit) {
   result.records[0].structure.repeatable_share = 0.8;
   result.findings = {{.code = "no_model_fits", .parameters = {"sigma", "alpha"}}};
   result.branch_shapes = {{.branch = "unloading", .samples = 100, .shape_exponent = 0.4}};
-  WithdrawInadequate(result, {});
+  result = WithoutInadequate(std::move(result), {});
   EXPECT_TRUE(result.branch_shapes.empty()) << "an alpha of a model that is none of the record's";
   EXPECT_EQ(result.adequacy.verdict, AdequacyVerdict::kInadequate);
   EXPECT_NEAR(result.adequacy.misfit, 3.0 * std::sqrt(0.8), 1e-12);

@@ -131,8 +131,9 @@ TEST(TestAdequacy, CountsEveryColumnOfATermInItsAicc) {
   const testing::WeightedFit weighted = testing::FitWeighted(stages);
   const Estimates estimates(stages.problem, weighted.solution, weighted.noise, {}, {},
                             stages.buffers.response);
-  const AdequacyTest test = TestAdequacy(stages.problem, weighted.solution, weighted.noise, {},
-                                         estimates, {}, stages.buffers.response);
+  const AdequacyTest test =
+      TestAdequacy({stages.problem, weighted.solution, weighted.noise, estimates}, {}, {},
+                   stages.buffers.response);
   const DepartureColumns columns = ColumnsOfDepartures(
       stages.problem, weighted.solution.theta, stages.buffers.response, stages.problem.size());
   const Evidence evidence(stages.data.counted, test.effective_samples);

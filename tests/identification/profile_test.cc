@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "identification/stages.h"
@@ -77,7 +78,7 @@ TEST(Profile, LooksAtTheEndsOfTheParabolaInOneStepAsInMany) {
       if (half > stages.options.thresholds.parabola_error) continue;
       ++asked;
       const auto ratios = [&](double last_gain) {
-        return RatiosAtEnds(stages.problem, best, noise, estimates, stages.options, last_gain,
+        return RatiosAtEnds({stages.problem, best, noise, estimates}, stages.options, last_gain,
                             stages.buffers);
       };
       const std::array<double, 2> quick = ratios(kLastGainAtEnds);
@@ -112,7 +113,9 @@ FitResult Widened(const SlipForceProfile& profile, double peak_force, bool shape
         result.parameters[1].upper95 = std::nullopt;
     result.parameters[1].interval.clear();
   }
-  WidenByProfile(stages.problem, profile, 2.0, peak_force, result);
+  const double carried = CarriedForce(stages.problem, result, peak_force);
+  result.parameters =
+      WidenByProfile(stages.problem, profile, 2.0, carried, std::move(result.parameters));
   return result;
 }
 
@@ -166,7 +169,7 @@ TEST(Profile, EndsWhereTheLikelihoodRatioIsCritical) {
     const double share = estimates.WhiteShare(kSlipForce);
     EXPECT_EQ(share<0.5, rho> 0);
     const SlipForceProfile profile =
-        ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
+        ProfileSlipForce({stages.problem, best, noise, estimates}, stages.options, stages.buffers);
     EXPECT_FALSE(profile.open_above);
     for (const double end : {profile.ranges.slip_force.lower, profile.ranges.slip_force.upper}) {
       FitOptions held;
@@ -196,7 +199,7 @@ TEST(Profile, IsOpenWhereTheBoundOfTheShapeEndsTheValley) {
     const Noise noise = KnownNoise(variance, stages.data.counted);
     const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
     const SlipForceProfile profile =
-        ProfileSlipForce(stages.problem, best, noise, estimates, stages.options, stages.buffers);
+        ProfileSlipForce({stages.problem, best, noise, estimates}, stages.options, stages.buffers);
     if (variance > 1e-5) {
       EXPECT_EQ(SideOf(stages.problem.parameters[kShape], profile.ranges.shape_exponent.upper),
                 BoundSide::kUpper);
@@ -231,7 +234,7 @@ TEST(Profile, IsAskedForAtABoundAndNotForAHeldSlipForce) {
   const Noise noise = KnownNoise(1e-6, stages.data.counted);
   const auto needed = [&] {
     const Estimates estimates(stages.problem, best, noise, {}, {}, stages.buffers.response);
-    return NeedsSlipForceProfile(stages.problem, best, noise, estimates, 1.0, stages.options,
+    return NeedsSlipForceProfile({stages.problem, best, noise, estimates}, 1.0, stages.options,
                                  stages.buffers);
   };
   EXPECT_FALSE(needed());

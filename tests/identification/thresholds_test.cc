@@ -84,8 +84,7 @@ FitResult Made() { return testing::MadeFit(/*peak_force=*/20.0); }
 Use UseAt(const Thresholds& thresholds, double misfit) {
   FitResult result = Made();
   result.adequacy.misfit = misfit * result.PeakForce();
-  GradeUse(thresholds, result);
-  return result.adequacy.use;
+  return GradeUse(thresholds, result).use;
 }
 
 std::string MisfitOf(const Thresholds& thresholds, double misfit, double share) {
@@ -231,7 +230,7 @@ bool RigIsFound(const Thresholds& thresholds, const Record& record, double p_val
   const Noise noise = KnownNoise(variance, stages.data.counted);
   const Estimates estimates(stages.problem, best, noise, {}, thresholds, stages.buffers.response);
   ThinnedRecords thin(stages.data, Stages::Memory());
-  return TryRig(stages.problem, thin, best, MindlinTest{0.0, p_value, {}}, noise, estimates,
+  return TryRig({stages.problem, best, noise, estimates}, thin, MindlinTest{0.0, p_value, {}},
                 stages.options, stages.buffers)
       .has_value();
 }
@@ -249,16 +248,16 @@ class SlipForceCase {
   /// Standard error of ln θ at unit variance.
   double UnitError(std::size_t parameter) { return EstimatesAt(1.0).ErrorOfTheta(parameter); }
   bool NeedsProfile(double variance, double peak_share) {
-    return NeedsSlipForceProfile(stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance),
+    return NeedsSlipForceProfile({stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance)},
                                  peak_share, stages_.options, stages_.buffers);
   }
   bool IsOpenAbove(double variance) {
-    return ProfileSlipForce(stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance),
+    return ProfileSlipForce({stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance)},
                             stages_.options, stages_.buffers)
         .open_above;
   }
   bool RigidPasses(double variance) {
-    return StiffnessIsOpenAbove(stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance),
+    return StiffnessIsOpenAbove({stages_.problem, best_, NoiseAt(variance), EstimatesAt(variance)},
                                 stages_.options, stages_.buffers);
   }
   [[nodiscard]] double sum_of_squares() const { return best_.sum_of_squares; }

@@ -12,7 +12,6 @@
 #include "core/probability.h"
 #include "identification/diagnosis/grade.h"
 #include "identification/diagnosis/main_strokes.h"
-#include "identification/intervals.h"
 
 namespace mindahl::identification {
 namespace {
@@ -228,11 +227,12 @@ namespace {
 
 /// Widens σ and α by what leaving out a part of the strokes changes, and σ by the stiffness that
 /// the record itself has after its reversals.
-void CoverShape(const Problem& problem, const Solution& solution, const Estimates& estimates,
-                const Thresholds& thresholds, FitResult& result) {
+void CoverShape(const FittedProblem& fitted, const Thresholds& thresholds,
+                ParameterEstimates& parameters) {
+  const auto& [problem, solution, noise, estimates] = fitted;
   const std::vector<double> spread = SpreadWithoutParts(problem, estimates, thresholds);
   for (const std::size_t p : {kStiffness, kShape}) {
-    ParameterEstimate& estimate = result.parameters[p];
+    ParameterEstimate& estimate = parameters[p];
     const std::size_t place = PlaceOf(problem, p);
     if (place >= spread.size() || !estimate.lower95 || !estimate.upper95) continue;
     const Parameter& parameter = problem.parameters[p];
@@ -245,7 +245,7 @@ void CoverShape(const Problem& problem, const Solution& solution, const Estimate
                        .lower = std::max(std::min(one, other), least),
                        .upper = std::max(one, other)});
   }
-  ParameterEstimate& stiffness = result.parameters[kStiffness];
+  ParameterEstimate& stiffness = parameters[kStiffness];
   if (stiffness.status == ParameterStatus::kFixed || !stiffness.lower95 || !stiffness.upper95) {
     return;
   }
@@ -260,12 +260,14 @@ void CoverShape(const Problem& problem, const Solution& solution, const Estimate
 
 }  // namespace
 
-void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Estimates& estimates,
-                      std::span<const ParameterEstimate> plain, const Thresholds& thresholds,
-                      FitResult& result) {
-  CoverShape(problem, solution, estimates, thresholds, result);
-  ParameterEstimate& slip_force = result.parameters[kSlipForce];
-  for (ParameterEstimate& estimate : result.parameters) {
+ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
+                                    std::span<const ParameterEstimate> plain,
+                                    const Thresholds& thresholds, const FitResult& result) {
+  const auto& [problem, solution, noise, estimates] = fitted;
+  ParameterEstimates parameters = result.parameters;
+  CoverShape(fitted, thresholds, parameters);
+  ParameterEstimate& slip_force = parameters[kSlipForce];
+  for (ParameterEstimate& estimate : parameters) {
     const bool is_closed = estimate.lower95 && estimate.upper95;
     estimate.includes_discrepancy = estimate.status != ParameterStatus::kFixed && is_closed &&
                                     result.adequacy.use != Use::kNone;
@@ -279,7 +281,7 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
   }
   const std::optional<double> half_gap = MeasuredHalfGap(result);
   const bool is_free = slip_force.status != ParameterStatus::kFixed;
-  if (!is_free || !half_gap || !SlidesOverMostOfStroke(facts, thresholds)) return;
+  if (!is_free || !half_gap || !SlidesOverMostOfStroke(facts, thresholds)) return parameters;
 
   const std::vector<double> steps = SlipForceOfParts(problem, estimates, thresholds);
   // The gap is a mean over parts of the strokes in each of which the model misses so much.
@@ -299,11 +301,11 @@ void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Es
   SetInterval(slip_force,
               {.source = IntervalSource::kDiscrepancy, .lower = range.lower, .upper = range.upper});
   slip_force.includes_discrepancy = true;
-  std::erase_if(result.findings,
-                [](const Finding& finding) { return finding.code == "slip_force_bounded_below"; });
+  return parameters;
 }
 
-void CoverSlipFactor(const Problem& problem, const Solution& solution, FitResult& result) {
+ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& solution,
+                                  ParameterEstimate stiffness) {
   const Parameters& parameters = problem.parameters;
   const auto theta_of = [&](std::string_view name) {
     return solution.theta[parameters.PositionOf(name, 0)];
@@ -324,11 +326,11 @@ void CoverSlipFactor(const Problem& problem, const Solution& solution, FitResult
       factors.Include(factor);
     }
   }
-  ParameterEstimate& stiffness = result.parameters[kStiffness];
-  if (factors.lower == factors.upper || !stiffness.lower95 || !stiffness.upper95) return;
+  if (factors.lower == factors.upper || !stiffness.lower95 || !stiffness.upper95) return stiffness;
   Include(stiffness, {.source = IntervalSource::kDiscrepancy,
                       .lower = std::max(factors.lower, 0.0) * *stiffness.lower95,
                       .upper = factors.upper * *stiffness.upper95});
+  return stiffness;
 }
 
 }  // namespace mindahl::identification

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "identification/inference/estimates.h"
+#include "identification/intervals.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/fit_result.h"
@@ -35,9 +36,10 @@ std::vector<double> SpreadWithoutParts(const Problem& problem, const Estimates& 
 std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& estimates,
                                        const Thresholds& thresholds);
 
-/// Replaces the interval of Tc where the measured loop slides over most of its stroke. It becomes
-/// the union of the fitted value, the measured half gap with its margin, and, as far as they lie
-/// between that half gap and T*, each with the margin,
+/// Returns the estimates with intervals that cover the model discrepancy. That of Tc is replaced
+/// where the measured loop slides over most of its stroke: it becomes the union of the fitted
+/// value, the measured half gap with its margin, and, as far as they lie between that half gap and
+/// T*, each with the margin,
 ///   - the interval so far, of noise and of the causes that explain what the model misses,
 ///   - what a further part of the strokes would ask for, by Student's law of SlipForceOfParts().
 /// A loop that slides has carried its slip force: no less than the gap in the middle of the stroke,
@@ -48,13 +50,14 @@ std::vector<double> StiffnessOfWindows(const Problem& problem, const Estimates& 
 ///
 /// Of a loop that does not slide a lower limit of Tc is no less than the force that it carried.
 /// @param plain  estimates with the intervals that the model itself gives
-void CoverDiscrepancy(const Problem& problem, const Solution& solution, const Estimates& estimates,
-                      std::span<const ParameterEstimate> plain, const Thresholds& thresholds,
-                      FitResult& result);
+ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
+                                    std::span<const ParameterEstimate> plain,
+                                    const Thresholds& thresholds, const FitResult& result);
 
-/// Extends the interval of σ by what it is at the reversals, where a slip force depends on
-/// position, speed or time: such a force multiplies that of the contact, and with it the stiffness
-/// after a reversal, at rest and at the ends of the stroke.
-void CoverSlipFactor(const Problem& problem, const Solution& solution, FitResult& result);
+/// Returns σ with its interval extended by what it is at the reversals, where a slip force depends
+/// on position, speed or time: such a force multiplies that of the contact, and with it the
+/// stiffness after a reversal, at rest and at the ends of the stroke.
+ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& solution,
+                                  ParameterEstimate stiffness);
 
 }  // namespace mindahl::identification

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identification/diagnosis/diagnosis.h"
 #include "identification/intervals.h"
 
 namespace mindahl::identification {
@@ -60,18 +61,19 @@ std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<s
   return names;
 }
 
-void GradeUse(const Thresholds& thresholds, FitResult& result) {
-  Adequacy& adequacy = result.adequacy;
+Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
+  Adequacy adequacy = result.adequacy;
   const double missed = MissedForce(result);
   const std::optional<double> half_gap = MeasuredHalfGap(result);
   adequacy.misfit = missed;
   adequacy.misfit_over_half_gap.reset();
   if (half_gap) adequacy.misfit_over_half_gap = missed / *half_gap;
   const double ratio = half_gap ? missed / *half_gap : missed / ScaleOfMisfit(result, thresholds);
-  const bool is_seen = result.FindFinding("loop_not_seen") == nullptr;
+  const bool is_seen = !FindUnseenLoop(result, thresholds);
   adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative
                  : is_seen && ratio <= thresholds.failing_misfit    ? Use::kIndicative
                                                                     : Use::kNone;
+  return adequacy;
 }
 
 }  // namespace mindahl::identification

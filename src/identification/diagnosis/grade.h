@@ -37,7 +37,8 @@ double WhiteVariance(const FitResult& result);
 /// Returns those of the named parameters whose interval does not include what the model misses.
 std::vector<std::string> WithoutEffective(const FitResult& result, std::vector<std::string> names);
 
-/// Writes `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use is judged by T*.
-void GradeUse(const Thresholds& thresholds, FitResult& result);
+/// Returns the adequacy with `misfit`, `misfit_over_half_gap` and `use`. Without a half gap the use
+/// is judged by T*.
+Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result);
 
 }  // namespace mindahl::identification

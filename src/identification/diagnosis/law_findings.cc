@@ -1,25 +1,32 @@
 #include "identification/diagnosis/law_findings.h"
 
-#include <utility>
-
 namespace mindahl::identification {
 
-void SayLaw(const std::optional<LawChoice>& choice, FitResult& result) {
-  if (!choice) return;
-  const bool other_is_better = choice->decided && choice->preferred == choice->alternative;
-  const bool is_inadequate = result.adequacy.verdict == AdequacyVerdict::kInadequate;
-  if (is_inadequate && !other_is_better) return;
-  result.law_choice = choice;
-  if (choice->decided && !other_is_better) return;
-  Finding finding{
-      .code = other_is_better ? FindingCode("other_law_fits_better") : FindingCode("law_undecided"),
-      .parameters = {"sigma", "slip_force"},
-      .numbers = {{"sigma", choice->law.tangential_stiffness},
-                  {"alpha", choice->law.shape_exponent},
-                  {"slip_force", choice->law.slip_force}},
-      .kind = choice->alternative->name};
+namespace {
+
+bool PrefersOther(const LawChoice& choice) {
+  return choice.decided && choice.preferred == choice.alternative;
+}
+
+}  // namespace
+
+std::optional<LawChoice> ReportedLaw(const std::optional<LawChoice>& choice,
+                                     AdequacyVerdict verdict) {
+  const bool is_inadequate = verdict == AdequacyVerdict::kInadequate;
+  return choice && is_inadequate && !PrefersOther(*choice) ? std::nullopt : choice;
+}
+
+std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice) {
+  if (!choice || (choice->decided && !PrefersOther(*choice))) return std::nullopt;
+  Finding finding{.code = PrefersOther(*choice) ? FindingCode("other_law_fits_better")
+                                                : FindingCode("law_undecided"),
+                  .parameters = {"sigma", "slip_force"},
+                  .numbers = {{"sigma", choice->law.tangential_stiffness},
+                              {"alpha", choice->law.shape_exponent},
+                              {"slip_force", choice->law.slip_force}},
+                  .kind = choice->alternative->name};
   if (choice->delta_aicc) finding.numbers.emplace_back("delta_aicc", *choice->delta_aicc);
-  result.findings.push_back(std::move(finding));
+  return finding;
 }
 
 std::optional<Finding> FindContradictedLaw(const MemoryTest& memory,

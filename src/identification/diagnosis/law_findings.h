@@ -8,10 +8,13 @@
 
 namespace mindahl::identification {
 
-/// Puts the choice between Masing's law and Dahl's own into the result, with a finding where the
-/// record does not make it, or makes it against the fitted law. Of a model that is inadequate only
-/// the latter is said: the other law may be why.
-void SayLaw(const std::optional<LawChoice>& choice, FitResult& result);
+/// Returns what is reported of the choice between Masing's law and Dahl's own: of a model that is
+/// inadequate only a choice against it, as the other law may be why.
+std::optional<LawChoice> ReportedLaw(const std::optional<LawChoice>& choice,
+                                     AdequacyVerdict verdict);
+
+/// Finds the other law, of a choice that is reported, where it fits better or as well.
+std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);
 
 /// `memory_contradicts_law` where branches, compared with each other, are of one law's memory alone
 /// and the other law fits better all the same.

@@ -88,9 +88,9 @@ bool IsOnTheEdge(const AdequacyTest& test) {
 
 }  // namespace
 
-AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
-                          const DisplacementEffect& displacement, const Estimates& estimates,
+AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect& displacement,
                           const Thresholds& thresholds, Response& response) {
+  const auto& [problem, solution, noise, estimates] = fitted;
   const Eigen::MatrixXd jacobian = WithoutBounds(problem, solution, estimates.jacobian());
   const Eigen::VectorXd& residual = estimates.residual();
   const auto samples = static_cast<double>(problem.data->counted);

@@ -40,8 +40,7 @@ struct AdequacyTest {
 
 /// @param displacement  what drawn errors of the displacement do to the residuals: that is noise
 /// too
-AdequacyTest TestAdequacy(const Problem& problem, const Solution& solution, const Noise& noise,
-                          const DisplacementEffect& displacement, const Estimates& estimates,
+AdequacyTest TestAdequacy(const FittedProblem& fitted, const DisplacementEffect& displacement,
                           const Thresholds& thresholds, Response& response);
 
 /// Returns the shift of a parameter by a term, in halves of its 95 % interval; 0 where it is open.

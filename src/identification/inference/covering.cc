@@ -50,21 +50,24 @@ bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Soluti
   });
 }
 
-void CoverPlateau(FitResult& result, const Thresholds& thresholds) {
-  ParameterEstimate& slip_force = result.parameters[kSlipForce];
+ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds) {
+  ParameterEstimate slip_force = result.parameters[kSlipForce];
   const RecordFit& widest = result.WidestRecord();
-  if (result.response == loop::Channel::kDisplacement) return;  // of a contact that never slips
-  if (IsScaledByLoad(result)) return;
+  if (result.response == loop::Channel::kDisplacement) return slip_force;  // never slips
+  if (IsScaledByLoad(result)) return slip_force;
   const bool slips = result.PeakForce() >= thresholds.mobilised_by_asymptote * slip_force.value;
-  if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95) return;
+  if (!widest.facts.half_gap || !slips || !slip_force.lower95 || !slip_force.upper95)
+    return slip_force;
   const double half_gap = *widest.facts.half_gap / widest.load_ratio;
   Include(slip_force, {.source = IntervalSource::kPlateau, .lower = half_gap, .upper = half_gap});
+  return slip_force;
 }
 
-void KeepAboveCarriedForce(FitResult& result) {
+ParameterEstimate KeepAboveCarriedForce(const FitResult& result) {
+  ParameterEstimate slip_force = result.parameters[kSlipForce];
   const RecordFit& widest = result.WidestRecord();
-  if (result.response == loop::Channel::kDisplacement || !widest.facts.half_gap) return;
-  if (IsScaledByLoad(result)) return;
+  if (result.response == loop::Channel::kDisplacement || !widest.facts.half_gap) return slip_force;
+  if (IsScaledByLoad(result)) return slip_force;
   const bool has_other =
       std::ranges::any_of(result.parameters, [](const ParameterEstimate& estimate) {
         return estimate.name == "viscous" || estimate.name == "lag" ||
@@ -75,18 +78,18 @@ void KeepAboveCarriedForce(FitResult& result) {
   const bool may_have_other = std::ranges::any_of(result.adequacy.causes, [&](const Cause& cause) {
     return std::ranges::find(kTurnWithMotion, cause.code) != kTurnWithMotion.end();
   });
-  ParameterEstimate& slip_force = result.parameters[kSlipForce];
-  if (has_other || may_have_other || slip_force.includes_discrepancy) return;
+  if (has_other || may_have_other || slip_force.includes_discrepancy) return slip_force;
   const double carried = *widest.facts.half_gap -
                          2 * widest.facts.half_gap_standard_deviation.value_or(0.0) -
                          result.ResponseNoise();
-  if (!(carried > 0)) return;
+  if (!(carried > 0)) return slip_force;
   const double least = carried / widest.load_ratio;
   if (slip_force.value < least && !(slip_force.upper95 > least)) {
     WithdrawInterval(slip_force);
   } else {
     RaiseLowerEnd(slip_force, IntervalSource::kCarriedForce, std::min(least, slip_force.value));
   }
+  return slip_force;
 }
 
 }  // namespace mindahl::identification

@@ -33,14 +33,15 @@ std::vector<std::string> CoverRival(const Problem& problem, const Rival& rival, 
 bool IsAnotherMinimum(const Problem& problem, const Solution& best, const Solution& other,
                       const Noise& noise, std::span<const ParameterEstimate> estimates);
 
-/// Extends the interval of Tc to half of the measured gap between the branches, where the shape of
-/// the loop is doubtful and the record slips.
-void CoverPlateau(FitResult& result, const Thresholds& thresholds);
+/// Returns Tc with its interval extended to half of the measured gap between the branches, where
+/// the shape of the loop is doubtful and the record slips.
+ParameterEstimate CoverPlateau(const FitResult& result, const Thresholds& thresholds);
 
-/// Raises the lower end of Tc to the half gap that was measured between the strokes, less two of
-/// its standard deviations between cycles and one of the noise: the contact carried that force in
-/// either direction, so that it slips at no less. Where the model has no other force that turns
-/// with the motion (a viscous one, a covariate, a lag), and no cause is one.
-void KeepAboveCarriedForce(FitResult& result);
+/// Returns Tc with the lower end of its interval raised to the half gap that was measured between
+/// the strokes, less two of its standard deviations between cycles and one of the noise: the
+/// contact carried that force in either direction, so that it slips at no less. Where the model has
+/// no other force that turns with the motion (a viscous one, a covariate, a lag), and no cause is
+/// one.
+ParameterEstimate KeepAboveCarriedForce(const FitResult& result);
 
 }  // namespace mindahl::identification

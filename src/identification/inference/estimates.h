@@ -68,6 +68,15 @@ class Estimates {
   std::optional<LocalUncertainty> held_;  // with others held at bounds, where any are
 };
 
+/// A problem with its solution, and what follows from it of noise and errors: what every later
+/// stage asks. All outlive it.
+struct FittedProblem {
+  const Problem& problem;
+  const Solution& solution;
+  const Noise& noise;
+  const Estimates& estimates;
+};
+
 ParameterStatus StatusOf(const Parameter& parameter, BoundSide side);
 
 }  // namespace mindahl::identification

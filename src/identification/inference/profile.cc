@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "identification/intervals.h"
@@ -21,15 +22,14 @@ constexpr double kRigid = 1e3;
 /// The likelihood with one parameter held, the others fitted again. The solver is its own.
 class HeldParameter {
  public:
-  HeldParameter(const Problem& problem, std::size_t parameter, const Solution& best,
-                const Noise& noise, const Estimates& estimates, const SolverOptions& options,
+  HeldParameter(const FittedProblem& fitted, std::size_t parameter, const SolverOptions& options,
                 SearchBuffers& buffers)
-      : problem_(problem.WithFixed(parameter, best.theta[parameter])),
+      : problem_(fitted.problem.WithFixed(parameter, fitted.solution.theta[parameter])),
         parameter_(parameter),
-        best_(best),
-        variance_(noise.variance),
-        evidence_(noise.samples,
-                  static_cast<double>(noise.samples) * estimates.WhiteShare(parameter)),
+        best_(fitted.solution),
+        variance_(fitted.noise.variance),
+        evidence_(fitted.noise.samples, static_cast<double>(fitted.noise.samples) *
+                                            fitted.estimates.WhiteShare(parameter)),
         options_(options),
         solver_(buffers.solver) {
     solver_.Bind(problem_, buffers.response);
@@ -102,15 +102,16 @@ void Widen(ParameterEstimate& estimate, const Parameter& parameter, const Range&
 
 }  // namespace
 
-std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best, const Noise& noise,
-                                   const Estimates& estimates, const FitOptions& options,
+std::array<double, 2> RatiosAtEnds(const FittedProblem& fitted, const FitOptions& options,
                                    double last_gain, SearchBuffers& buffers) {
+  const Estimates& estimates = fitted.estimates;
   const double critical = estimates.quantile() * estimates.quantile();
   SolverOptions search = SolverOptionsOf(options);
   // The parabola predicts the cost at the ends.
   search.predicts_last = true;
-  search.last_step = last_gain * noise.variance / (best.sum_of_squares + critical * noise.variance);
-  HeldParameter held(problem, kSlipForce, best, noise, estimates, search, buffers);
+  const double variance = fitted.noise.variance;
+  search.last_step = last_gain * variance / (fitted.solution.sum_of_squares + critical * variance);
+  HeldParameter held(fitted, kSlipForce, search, buffers);
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
   const auto ratio_at = [&](double step) {
     const std::vector<double> start = estimates.Beside(kSlipForce, step);
@@ -120,12 +121,12 @@ std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best,
   return {below, ratio_at(half)};
 }
 
-bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
-                           const Estimates& estimates, double peak_share, const FitOptions& options,
-                           SearchBuffers& buffers) {
-  if (problem.parameters[kSlipForce].fixed) return false;
+bool NeedsSlipForceProfile(const FittedProblem& fitted, double peak_share,
+                           const FitOptions& options, SearchBuffers& buffers) {
+  if (fitted.problem.parameters[kSlipForce].fixed) return false;
+  const Solution& best = fitted.solution;
   const Thresholds& thresholds = options.thresholds;
-  const double half = estimates.quantile() * estimates.ErrorOfTheta(kSlipForce);
+  const double half = fitted.estimates.quantile() * fitted.estimates.ErrorOfTheta(kSlipForce);
   const bool inside = best.side[kSlipForce] == BoundSide::kInside &&
                       best.side[kStiffness] == BoundSide::kInside &&
                       best.side[kShape] == BoundSide::kInside;
@@ -134,15 +135,17 @@ bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const N
     return true;
   }
   return std::ranges::any_of(
-      RatiosAtEnds(problem, best, noise, estimates, options, kLastGainAtEnds, buffers),
+      RatiosAtEnds(fitted, options, kLastGainAtEnds, buffers),
       [&](double ratio) { return !(std::abs(ratio - 1) <= thresholds.parabola_departure); });
 }
 
-SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, const Noise& noise,
-                                  const Estimates& estimates, const FitOptions& options,
+SlipForceProfile ProfileSlipForce(const FittedProblem& fitted, const FitOptions& options,
                                   SearchBuffers& buffers) {
+  const Problem& problem = fitted.problem;
+  const Solution& best = fitted.solution;
+  const Estimates& estimates = fitted.estimates;
   SlipForceProfile profile;
-  const double fitted = best.theta[kSlipForce];
+  const double at_best = best.theta[kSlipForce];
   profile.ranges = RangesAt(best);
   const Parameter& parameter = problem.parameters[kSlipForce];
   const double critical = estimates.quantile() * estimates.quantile();  // of F(1, ν)
@@ -150,7 +153,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(options);
   search.is_rough = problem.parameters.free().size() > kMany;
-  HeldParameter held(problem, kSlipForce, best, noise, estimates, search, buffers);
+  HeldParameter held(fitted, kSlipForce, search, buffers);
   LikelihoodProfile& likelihood = profile.likelihood;
   likelihood.critical = critical;
   likelihood.points.push_back({.law = LawOf(problem.parameters, best.theta)});
@@ -165,7 +168,7 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
     std::vector<double> grid;
     for (const double multiple : kGrid) {
       const double theta = std::log(multiple);
-      const bool ahead = upwards ? theta > fitted : theta < fitted;
+      const bool ahead = upwards ? theta > at_best : theta < at_best;
       if (ahead && theta >= parameter.lower && theta <= parameter.upper) grid.push_back(theta);
     }
     if (!upwards) std::ranges::reverse(grid);
@@ -215,9 +218,9 @@ SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, 
   return profile;
 }
 
-bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const Noise& noise,
-                          const Estimates& estimates, const FitOptions& options,
+bool StiffnessIsOpenAbove(const FittedProblem& fitted, const FitOptions& options,
                           SearchBuffers& buffers) {
+  const auto& [problem, best, noise, estimates] = fitted;
   if (problem.parameters[kStiffness].fixed) return false;
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kStiffness);
   // If only rounding is left, the parabola has the derivatives at a corner.
@@ -227,8 +230,7 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
   if (half <= options.thresholds.rigid_error && is_inside && !only_rounding) {
     return false;
   }
-  HeldParameter held(problem, kStiffness, best, noise, estimates, SolverOptionsOf(options),
-                     buffers);
+  HeldParameter held(fitted, kStiffness, SolverOptionsOf(options), buffers);
   std::vector<double> start = best.theta;
   start[kStiffness] += std::log(kRigid);
   return held.At(start[kStiffness], start) < estimates.quantile() * estimates.quantile();
@@ -236,20 +238,22 @@ bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const No
 
 namespace {
 
-ParameterEstimate& FindIn(FitResult& result, std::string_view name) {
-  return *std::ranges::find(result.parameters, name, &ParameterEstimate::name);
+ParameterEstimate& FindIn(ParameterEstimates& parameters, std::string_view name) {
+  return *std::ranges::find(parameters, name, &ParameterEstimate::name);
 }
 
 }  // namespace
 
-ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const Noise& noise,
-                            const Estimates& estimates, const FitOptions& options,
+ProfiledRanges ProfileShape(const FittedProblem& fitted, const FitOptions& options,
                             SearchBuffers& buffers) {
+  const Problem& problem = fitted.problem;
+  const Solution& best = fitted.solution;
+  const Estimates& estimates = fitted.estimates;
   constexpr double kStep = 0.05;
   ProfiledRanges ranges = RangesAt(best);
   const Parameter& shape = problem.parameters[kShape];
   const double critical = estimates.quantile() * estimates.quantile();
-  HeldParameter held(problem, kShape, best, noise, estimates, SolverOptionsOf(options), buffers);
+  HeldParameter held(fitted, kShape, SolverOptionsOf(options), buffers);
   for (const double step : {-kStep, kStep}) {
     std::vector<double> start = best.theta;
     while (start[kShape] + step >= shape.lower && start[kShape] + step <= shape.upper) {
@@ -262,9 +266,11 @@ ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const 
   return ranges;
 }
 
-std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const Solution& best,
-                                                const Noise& noise, const Estimates& estimates,
+std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
                                                 const FitOptions& options, SearchBuffers& buffers) {
+  const Problem& problem = fitted.problem;
+  const Solution& best = fitted.solution;
+  const Estimates& estimates = fitted.estimates;
   const Parameter& shape = problem.parameters[kShape];
   const bool is_at_zero = !shape.fixed && best.side[kShape] == BoundSide::kLower &&
                           shape.ToValue(best.theta[kShape]) == 0;
@@ -272,7 +278,7 @@ std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const So
   constexpr double kFirst = 1.0 / 256;
   constexpr int kBetween = 3;  // bisections between the last that is allowed and the next
   const double critical = estimates.quantile() * estimates.quantile();
-  HeldParameter held(problem, kShape, best, noise, estimates, SolverOptionsOf(options), buffers);
+  HeldParameter held(fitted, kShape, SolverOptionsOf(options), buffers);
   ProfiledRanges ranges = RangesAt(best);
   std::vector<double> from = best.theta;
   const auto is_allowed = [&](double alpha) {
@@ -310,27 +316,27 @@ constexpr double kParabolic = 0.5;
 /// θ where the likelihood of a parameter reaches the critical one on one side of the best fit; the
 /// bound where it does not before; nothing where it does not for a factor of a thousand.
 /// @param towards  −1 or 1
-std::optional<double> LikelihoodEnd(HeldParameter& held, const Problem& problem,
-                                    std::size_t parameter, const Solution& best,
-                                    const Estimates& estimates, double towards) {
+std::optional<double> LikelihoodEnd(HeldParameter& held, const FittedProblem& fitted,
+                                    std::size_t parameter, double towards) {
+  const Estimates& estimates = fitted.estimates;
   constexpr int kMostLooks = 12;
   constexpr double kClose = 0.01;       // of the root of F over the critical one
   constexpr double kLeastGrowth = 0.3;  // the next step is at most 1/0.3 times the last
   const double farthest = std::log(kRigid);
-  const Parameter& of = problem.parameters[parameter];
-  const double fitted = best.theta[parameter];
+  const Parameter& of = fitted.problem.parameters[parameter];
+  const double from = fitted.solution.theta[parameter];
   const double limit =
-      towards < 0 ? std::max(of.lower, fitted - farthest) : std::min(of.upper, fitted + farthest);
+      towards < 0 ? std::max(of.lower, from - farthest) : std::min(of.upper, from + farthest);
   const double critical = estimates.quantile() * estimates.quantile();
   double step = std::min({estimates.quantile() * estimates.ErrorOfTheta(parameter), kParabolic,
-                          std::abs(limit - fitted)});
+                          std::abs(limit - from)});
   std::vector<double> start = estimates.Beside(parameter, towards * step);
   double inside = 0.0;
   double root_inside = 0.0;
   std::optional<double> outside;
   double root_outside = 0.0;
   for (int look = 0; look < kMostLooks; ++look) {
-    start[parameter] = fitted + towards * step;
+    start[parameter] = from + towards * step;
     const double root = std::sqrt(held.At(start[parameter], start) / critical);
     start = held.solution().theta;
     if (std::abs(root - 1) < kClose) break;
@@ -346,27 +352,29 @@ std::optional<double> LikelihoodEnd(HeldParameter& held, const Problem& problem,
       constexpr double kFromEnds = 0.1;  // a kink is not stepped towards for ever
       step = inside + std::clamp(fraction, kFromEnds, 1 - kFromEnds) * (*outside - inside);
     } else {
-      if (step >= std::abs(limit - fitted)) {
+      if (step >= std::abs(limit - from)) {
         const bool is_bound = limit == (towards < 0 ? of.lower : of.upper);
         return is_bound ? std::optional(limit) : std::nullopt;
       }
-      step = std::min(step / std::max(root, kLeastGrowth), std::abs(limit - fitted));
+      step = std::min(step / std::max(root, kLeastGrowth), std::abs(limit - from));
     }
   }
-  return fitted + towards * step;
+  return from + towards * step;
 }
 
 }  // namespace
 
-void ProfileBesideRig(const Problem& problem, const Solution& best, const Noise& noise,
-                      const Estimates& estimates, const FitOptions& options, SearchBuffers& buffers,
-                      FitResult& result) {
+ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOptions& options,
+                                    SearchBuffers& buffers, ParameterEstimates parameters) {
+  const Problem& problem = fitted.problem;
+  const Solution& best = fitted.solution;
+  const Estimates& estimates = fitted.estimates;
   const Parameter& rig = problem.parameters[kRig];
-  if (rig.absent || rig.fixed || best.side[kRig] != BoundSide::kInside) return;
+  if (rig.absent || rig.fixed || best.side[kRig] != BoundSide::kInside) return parameters;
   const double half = estimates.quantile() * estimates.ErrorOfTheta(kRig);
-  if (!std::isfinite(half)) return;
+  if (!std::isfinite(half)) return parameters;
   {
-    HeldParameter held(problem, kRig, best, noise, estimates, SolverOptionsOf(options), buffers);
+    HeldParameter held(fitted, kRig, SolverOptionsOf(options), buffers);
     const double critical = estimates.quantile() * estimates.quantile();
     const bool is_short = half < kParabolic;
     const bool is_parabola =
@@ -375,50 +383,52 @@ void ProfileBesideRig(const Problem& problem, const Solution& best, const Noise&
           return std::abs(held.At(start[kRig], start) / critical - 1) <=
                  options.thresholds.parabola_departure;
         });
-    if (is_parabola) return;
+    if (is_parabola) return parameters;
   }
   for (const std::size_t p : {kRig, kStiffness, kShape, kSlipForce}) {
     const bool is_inside = best.side[p] == BoundSide::kInside;
     if (problem.parameters[p].fixed || !is_inside || !std::isfinite(estimates.ErrorOfTheta(p))) {
       continue;
     }
-    ParameterEstimate& estimate = FindIn(result, problem.parameters.NameOf(p));
+    ParameterEstimate& estimate = FindIn(parameters, problem.parameters.NameOf(p));
     if (!estimate.lower95 || !estimate.upper95) continue;
-    HeldParameter held(problem, p, best, noise, estimates, SolverOptionsOf(options), buffers);
+    HeldParameter held(fitted, p, SolverOptionsOf(options), buffers);
     IntervalPart part{.source = IntervalSource::kProfile};
     const auto value_of = [&](std::optional<double> theta) {
       return theta ? std::optional(problem.parameters[p].ToValue(*theta)) : std::nullopt;
     };
-    part.lower = value_of(LikelihoodEnd(held, problem, p, best, estimates, -1.0));
-    part.upper = value_of(LikelihoodEnd(held, problem, p, best, estimates, 1.0));
+    part.lower = value_of(LikelihoodEnd(held, fitted, p, -1.0));
+    part.upper = value_of(LikelihoodEnd(held, fitted, p, 1.0));
     SetInterval(estimate, part);
     if (!part.lower || !part.upper) estimate.standard_error.reset();
   }
+  return parameters;
 }
 
-void IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges, FitResult& result) {
+ParameterEstimates IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges,
+                                     ParameterEstimates parameters) {
   const auto include = [&](const char* name, std::size_t p, const Range& range) {
-    Include(FindIn(result, name), {.source = IntervalSource::kSmallShape,
-                                   .lower = problem.parameters[p].ToValue(range.lower),
-                                   .upper = problem.parameters[p].ToValue(range.upper)});
+    Include(FindIn(parameters, name), {.source = IntervalSource::kSmallShape,
+                                       .lower = problem.parameters[p].ToValue(range.lower),
+                                       .upper = problem.parameters[p].ToValue(range.upper)});
   };
   include("sigma", kStiffness, ranges.stiffness);
   include("alpha", kShape, ranges.shape_exponent);
   include("slip_force", kSlipForce, ranges.slip_force);
+  return parameters;
 }
 
-void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double quantile,
-                   FitResult& result) {
-  Widen(FindIn(result, "sigma"), problem.parameters[kStiffness], ranges.stiffness, quantile);
-  Widen(FindIn(result, "alpha"), problem.parameters[kShape], ranges.shape_exponent, quantile);
-  Widen(FindIn(result, "slip_force"), problem.parameters[kSlipForce], ranges.slip_force, quantile);
+ParameterEstimates WidenByRanges(const Problem& problem, const ProfiledRanges& ranges,
+                                 double quantile, ParameterEstimates parameters) {
+  const auto widen = [&](const char* name, std::size_t p, const Range& range) {
+    Widen(FindIn(parameters, name), problem.parameters[p], range, quantile);
+  };
+  widen("sigma", kStiffness, ranges.stiffness);
+  widen("alpha", kShape, ranges.shape_exponent);
+  widen("slip_force", kSlipForce, ranges.slip_force);
+  return parameters;
 }
 
-namespace {
-
-/// The force [N] that the contact is seen to carry, the more of two: the fitted one less twice the
-/// error of the fit, and the measured peak less a standard deviation of its white noise: half the
-/// distance between the medians of a few ends is known to about half of that.
 double CarriedForce(const Problem& problem, const FitResult& result, double peak_force) {
   if (problem.data->is_forced() || result.records.empty()) return peak_force;
   if (IsScaledByLoad(result)) return 0.0;
@@ -435,25 +445,23 @@ double CarriedForce(const Problem& problem, const FitResult& result, double peak
   return std::min(peak_force, carried / widest.load_ratio);
 }
 
-}  // namespace
-
-void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, double quantile,
-                    double peak_force, FitResult& result) {
-  ParameterEstimate& alpha = FindIn(result, "alpha");
-  ParameterEstimate& slip_force = FindIn(result, "slip_force");
-  WidenByRanges(problem, profile.ranges, quantile, result);
-  if (!profile.open_above) return;
+ParameterEstimates WidenByProfile(const Problem& problem, const SlipForceProfile& profile,
+                                  double quantile, double carried, ParameterEstimates parameters) {
+  parameters = WidenByRanges(problem, profile.ranges, quantile, std::move(parameters));
+  if (!profile.open_above) return parameters;
+  ParameterEstimate& alpha = FindIn(parameters, "alpha");
+  ParameterEstimate& slip_force = FindIn(parameters, "slip_force");
   OpenAbove(slip_force, IntervalSource::kProfile);
   // A contact that carried T* has at least that slip force, unless the fit is too poor to say; and
   // no more where it is the bound of α that ends the valley.
   const bool by_bound = alpha.status == ParameterStatus::kAtUpperBound;
   const double profiled = by_bound ? 0.0 : slip_force.lower95.value_or(0.0);
-  const double carried = CarriedForce(problem, result, peak_force);
   if (carried < slip_force.value) {
     SetInterval(slip_force,
                 {.source = IntervalSource::kProfile, .lower = std::max(profiled, carried)});
   }
   if (alpha.status != ParameterStatus::kFixed) OpenAbove(alpha, IntervalSource::kProfile);
+  return parameters;
 }
 
 }  // namespace mindahl::identification

@@ -5,6 +5,7 @@
 
 #include "identification/inference/estimates.h"
 #include "identification/inference/evidence.h"
+#include "identification/intervals.h"
 #include "identification/solve/search.h"
 #include "mindahl/identification/likelihood_profile.h"
 
@@ -43,8 +44,7 @@ struct SlipForceProfile {
 /// @param last_gain  of F: a step that gains less is the last of a search, and its gain is taken as
 ///   predicted. The searches start from the parabola's own minima, and are off by less than a fifth
 ///   of it
-std::array<double, 2> RatiosAtEnds(const Problem& problem, const Solution& best, const Noise& noise,
-                                   const Estimates& estimates, const FitOptions& options,
+std::array<double, 2> RatiosAtEnds(const FittedProblem& fitted, const FitOptions& options,
                                    double last_gain, SearchBuffers& buffers);
 
 /// Gain of F for RatiosAtEnds(), which is then off by a thousandth of the critical F.
@@ -53,53 +53,54 @@ inline constexpr double kLastGainAtEnds = 0.02;
 /// True if the parabola may be wrong along Tc: where the loop stays away from slip, where Tc is
 /// badly known, and where its likelihood at the ends of the parabola's interval is another one.
 /// @param peak_share  T* of the record over Tc
-bool NeedsSlipForceProfile(const Problem& problem, const Solution& best, const Noise& noise,
-                           const Estimates& estimates, double peak_share, const FitOptions& options,
-                           SearchBuffers& buffers);
+bool NeedsSlipForceProfile(const FittedProblem& fitted, double peak_share,
+                           const FitOptions& options, SearchBuffers& buffers);
 
-SlipForceProfile ProfileSlipForce(const Problem& problem, const Solution& best, const Noise& noise,
-                                  const Estimates& estimates, const FitOptions& options,
+SlipForceProfile ProfileSlipForce(const FittedProblem& fitted, const FitOptions& options,
                                   SearchBuffers& buffers);
 
 /// True if a rigid contact, σ a thousand times larger, passes the same test. Not asked where σ is
 /// known far too well for it.
-bool StiffnessIsOpenAbove(const Problem& problem, const Solution& best, const Noise& noise,
-                          const Estimates& estimates, const FitOptions& options,
+bool StiffnessIsOpenAbove(const FittedProblem& fitted, const FitOptions& options,
                           SearchBuffers& buffers);
 
 /// The likelihood along α, from the estimate outwards. Where few samples lie on the bend of the
 /// branches σ and α are nearly confounded, and a fit is anywhere in a flat valley,
 /// at whose floor's end the parabola sees a steep wall.
-ProfiledRanges ProfileShape(const Problem& problem, const Solution& best, const Noise& noise,
-                            const Estimates& estimates, const FitOptions& options,
+ProfiledRanges ProfileShape(const FittedProblem& fitted, const FitOptions& options,
                             SearchBuffers& buffers);
 
 /// Profiles σ, α and Tc along the likelihood from the bound α = 0 upwards, each with half the
 /// interval that it has with α held; empty where α does not lie at that bound. There the parabola
 /// holds α, but a small α moves σ: at the same secant of a loop of T* the tangent σ is larger by
 /// (α/2)(T*/Tc), which may be many standard errors.
-std::optional<ProfiledRanges> ProfileSmallShape(const Problem& problem, const Solution& best,
-                                                const Noise& noise, const Estimates& estimates,
+std::optional<ProfiledRanges> ProfileSmallShape(const FittedProblem& fitted,
                                                 const FitOptions& options, SearchBuffers& buffers);
 
 /// Puts the ends of the likelihood into the intervals of σ, α, Tc and the rig's stiffness, where a
 /// rig is fitted and the likelihood at the ends of the parabola's interval of its stiffness is
 /// another one: σ, α and k_r share one valley, which bends towards the rigid rig. Each end is where
 /// F is the critical one, to a hundredth; one that is not reached is open.
-void ProfileBesideRig(const Problem& problem, const Solution& best, const Noise& noise,
-                      const Estimates& estimates, const FitOptions& options, SearchBuffers& buffers,
-                      FitResult& result);
+ParameterEstimates ProfileBesideRig(const FittedProblem& fitted, const FitOptions& options,
+                                    SearchBuffers& buffers, ParameterEstimates parameters);
 
 /// Includes them in the intervals.
-void IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges, FitResult& result);
+ParameterEstimates IncludeSmallShape(const Problem& problem, const ProfiledRanges& ranges,
+                                     ParameterEstimates parameters);
 
 /// Puts the ranges into the intervals where these are narrower.
-void WidenByRanges(const Problem& problem, const ProfiledRanges& ranges, double quantile,
-                   FitResult& result);
+ParameterEstimates WidenByRanges(const Problem& problem, const ProfiledRanges& ranges,
+                                 double quantile, ParameterEstimates parameters);
+
+/// Returns the force [N] that the contact is seen to carry, the more of two: the fitted one less
+/// twice the error of the fit, and the measured peak less a standard deviation of its white noise:
+/// half the distance between the medians of a few ends is known to about half of that.
+/// @param peak_force  T* [N], which it does not exceed
+double CarriedForce(const Problem& problem, const FitResult& result, double peak_force);
 
 /// Puts what a profile found into the intervals: the wider of both, and open ends.
-/// @param peak_force  T* [N]: a contact that carried it has at least that slip force
-void WidenByProfile(const Problem& problem, const SlipForceProfile& profile, double quantile,
-                    double peak_force, FitResult& result);
+/// @param carried  [N]: a contact that carried it has at least that slip force
+ParameterEstimates WidenByProfile(const Problem& problem, const SlipForceProfile& profile,
+                                  double quantile, double carried, ParameterEstimates parameters);
 
 }  // namespace mindahl::identification

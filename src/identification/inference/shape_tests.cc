@@ -47,9 +47,9 @@ std::vector<std::size_t> Kinds(const Problem& problem, const Solution& best, Res
 
 }  // namespace
 
-std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& best,
-                                       const Noise& noise, const Estimates& estimates,
-                                       const FitOptions& options, SearchBuffers& buffers) {
+std::optional<MindlinTest> TestMindlin(const FittedProblem& fitted, const FitOptions& options,
+                                       SearchBuffers& buffers) {
+  const auto& [problem, best, noise, estimates] = fitted;
   if (problem.parameters[kShape].fixed) return std::nullopt;
   const Problem held = problem.WithFixed(kShape, kMindlinExponent);
   Solution solution;
@@ -78,10 +78,11 @@ bool WantsRig(const Problem& problem, const Solution& best, const MindlinTest& t
          !problem.parameters.has_rig();
 }
 
-std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thin,
-                                     const Solution& best, const MindlinTest& test,
-                                     const Noise& noise, const Estimates& estimates,
-                                     const FitOptions& options, SearchBuffers& buffers) {
+std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
+                                     const MindlinTest& test, const FitOptions& options,
+                                     SearchBuffers& buffers) {
+  const Problem& problem = fitted.problem;
+  const Solution& best = fitted.solution;
   // The law of a load that varies has none, nor has that of an imposed force.
   const bool is_wanted = WantsRig(problem, best, test, options.thresholds);
   if (!is_wanted || problem.data->load_varies || problem.data->is_forced()) return std::nullopt;
@@ -96,17 +97,17 @@ std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thi
                std::pmr::get_default_resource());
   Descend(sprung, with_rig, buffers, nullptr);
   // Both have as many parameters: ΔAICc is 2 ln Λ.
-  const double loss = EvidenceOfShape(noise, estimates)
-                          .FStatistic(solution.sum_of_squares, best.sum_of_squares, noise.variance);
+  const double loss =
+      EvidenceOfShape(fitted.noise, fitted.estimates)
+          .FStatistic(solution.sum_of_squares, best.sum_of_squares, fitted.noise.variance);
   if (!solution.converged || !(loss < options.thresholds.indistinguishable)) return std::nullopt;
   return RigAlternative{
       .rig_stiffness = sprung.problem.parameters.RigAt(solution.theta).stiffness,
       .tangential_stiffness = sprung.problem.parameters.LawAt(solution.theta).tangential_stiffness};
 }
 
-std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution& best,
-                                         const Noise& noise, const Estimates& estimates,
-                                         Response& response) {
+std::vector<BranchShape> FitBranchShapes(const FittedProblem& fitted, Response& response) {
+  const auto& [problem, best, noise, estimates] = fitted;
   if (problem.parameters[kShape].fixed || best.side[kShape] != BoundSide::kInside) return {};
   const std::vector<std::size_t> kinds = Kinds(problem, best, response);
   std::array<std::size_t, kNames.size()> samples{};

@@ -13,9 +13,8 @@ inline constexpr double kMindlinExponent = 1.0 / 3;
 
 /// α = 1/3 against the fitted α by the likelihood, which keeps to the valley along which α and Tc
 /// run away together, where a standard error of α means little. Empty where α is held.
-std::optional<MindlinTest> TestMindlin(const Problem& problem, const Solution& best,
-                                       const Noise& noise, const Estimates& estimates,
-                                       const FitOptions& options, SearchBuffers& buffers);
+std::optional<MindlinTest> TestMindlin(const FittedProblem& fitted, const FitOptions& options,
+                                       SearchBuffers& buffers);
 
 /// True if the likelihood allows α = 1/3, which the interval by its parabola excludes.
 bool ContradictsInterval(const MindlinTest& test, const ParameterEstimate& alpha);
@@ -30,18 +29,15 @@ struct RigAlternative {
 /// a compliant one may restore it.
 /// @returns empty where α = 1/3 is not rejected, α is the larger one, a rig is there already, or
 ///   none helps
-std::optional<RigAlternative> TryRig(const Problem& problem, ThinnedRecords& thin,
-                                     const Solution& best, const MindlinTest& test,
-                                     const Noise& noise, const Estimates& estimates,
-                                     const FitOptions& options, SearchBuffers& buffers);
+std::optional<RigAlternative> TryRig(const FittedProblem& fitted, ThinnedRecords& thin,
+                                     const MindlinTest& test, const FitOptions& options,
+                                     SearchBuffers& buffers);
 
 /// α of the virgin, the unloading and the reloading branches on their own, by one linear
 /// least-squares step from the fit with a column for each in place of the one for α. Kinds of
 /// branch with fewer than ten samples that count are left to the others.
 /// @returns empty where α is held or at a bound, or only one kind of branch is there
-std::vector<BranchShape> FitBranchShapes(const Problem& problem, const Solution& best,
-                                         const Noise& noise, const Estimates& estimates,
-                                         Response& response);
+std::vector<BranchShape> FitBranchShapes(const FittedProblem& fitted, Response& response);
 
 /// True if Mindlin's exponent is rejected for a smaller one on a rigid rig, so that a compliant rig
 /// may be the cause.

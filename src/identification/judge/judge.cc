@@ -29,9 +29,9 @@ bool IsOfLaw(const ParameterEstimate& estimate) {
 
 /// Counts a residual that repeats in every stroke as model discrepancy, where no omitted term
 /// explains it and it makes the model inadequate.
-void CountWhatRepeats(FitResult& result, const Thresholds& thresholds) {
-  Adequacy& adequacy = result.adequacy;
-  if (adequacy.p_value < thresholds.doubt) return;
+Adequacy WithWhatRepeats(const FitResult& result, const Thresholds& thresholds) {
+  Adequacy adequacy = result.adequacy;
+  if (adequacy.p_value < thresholds.doubt) return adequacy;
   for (const RecordFit& record : result.records) {
     const double fraction = record.structure.repeatable_share;
     if (!(fraction > 0 && fraction < 1)) continue;
@@ -40,11 +40,19 @@ void CountWhatRepeats(FitResult& result, const Thresholds& thresholds) {
     adequacy.misfit_over_noise =
         std::max(adequacy.misfit_over_noise, std::sqrt(fraction / (1 - fraction)));
   }
+  return adequacy;
 }
 
 }  // namespace
 
-void DropNeedless(std::span<const ParameterEstimate> estimates, std::vector<Finding>& findings) {
+std::vector<Finding> WithoutNeedless(std::span<const ParameterEstimate> estimates,
+                                     std::vector<Finding> findings) {
+  const bool is_covered = std::ranges::any_of(estimates, [](const ParameterEstimate& estimate) {
+    return estimate.name == "slip_force" && estimate.includes_discrepancy;
+  });
+  std::erase_if(findings, [&](const Finding& finding) {
+    return is_covered && finding.code == "slip_force_bounded_below";
+  });
   const auto is_needless = [&](const Finding& finding) {
     if (finding.kind == "wide") {
       return VerdictOn(finding.parameters.front(), findings, &finding) ==
@@ -63,10 +71,11 @@ void DropNeedless(std::span<const ParameterEstimate> estimates, std::vector<Find
   for (const Finding& finding : findings) needless.push_back(is_needless(finding));
   std::size_t k = 0;
   std::erase_if(findings, [&](const Finding&) { return needless[k++]; });
+  return findings;
 }
 
-void WithdrawInadequate(FitResult& result, const Thresholds& thresholds) {
-  CountWhatRepeats(result, thresholds);
+FitResult WithoutInadequate(FitResult result, const Thresholds& thresholds) {
+  result.adequacy = WithWhatRepeats(result, thresholds);
   result.adequacy.verdict = AdequacyVerdict::kInadequate;
   result.mindlin_test.reset();
   result.branch_shapes.clear();
@@ -85,6 +94,7 @@ void WithdrawInadequate(FitResult& result, const Thresholds& thresholds) {
     finding.parameters.push_back(estimate.name);
   }
   result.findings.insert(result.findings.begin(), std::move(finding));
+  return result;
 }
 
 void Judge(std::span<ParameterEstimate> estimates, std::span<const Finding> findings) {
