@@ -84,6 +84,7 @@ class Run {
                        tracked_.fits.insert(tracked_.fits.end(), fits.begin(), fits.end());
                        for (const CycleFit& fit : fits) {
                          tracked_.test.Add(fit);
+                         tracked_.test.energy.Add(fit);
                          tracked_.accumulated_energy.push_back(tracked_.test.energy.total());
                        }
                      });
