@@ -84,6 +84,7 @@ class Run {
                        tracked_.fits.insert(tracked_.fits.end(), fits.begin(), fits.end());
                        for (const CycleFit& fit : fits) {
                          tracked_.test.Add(fit);
+                         tracked_.test.energy.Add(fit);
                          tracked_.accumulated_energy.push_back(tracked_.test.energy.total());
                        }
                      });
@@ -178,8 +179,8 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
     }
     run.SkipRows(stream.broken_rows());
     if (stream.footer_lines() > 0) {
-      run.Warn(fmt::format("{}: {} lines below the data skipped, since they begin with a text", file,
-                           stream.footer_lines()));
+      run.Warn(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
+                           file, stream.footer_lines()));
     }
     if (stream.broken_rows() > 0) {
       run.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}", stream.broken_rows(),

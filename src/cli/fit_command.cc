@@ -1,24 +1,23 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/examples.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
-#include "cli/json_output.h"
 #include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/provenance.h"
 #include "cli/text_output.h"
 #include "mindahl/core/error.h"
-#include "mindahl/core/version.h"
-#include "mindahl/identification/sweep.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
@@ -30,7 +29,7 @@
 #include "mindahl/report/residual_table.h"
 #include "mindahl/report/text.h"
 #include "mindahl/request/fit_records.h"
-#include "report/names.h"
+#include "mindahl/request/sweep.h"
 
 namespace mindahl::cli {
 namespace {
@@ -47,9 +46,6 @@ struct FitCommandOptions {
   io::ColumnChoice response;
   std::optional<double> response_noise;
 };
-
-/// Chance of correlated residuals below which a sweep is doubtful.
-constexpr double kDoubtfulCorrelation = 0.01;
 
 /// @param provenance  asked for where a page is written: it reads the files once more
 void WriteFitOutputs(const FitCommandOptions& options, const report::Report& report,
@@ -85,22 +81,8 @@ void WriteFitOutputs(const FitCommandOptions& options, const report::Report& rep
   }
 }
 
-identification::SweepOptions SweepOptionsOf(const FitCommandOptions& options) {
-  identification::SweepOptions sweep;
-  sweep.stiffness = options.sweep == "tangent" ? identification::SweepStiffness::kTangent
-                                               : identification::SweepStiffness::kSecant;
-  sweep.confidence = options.request.confidence;
-  sweep.response_noise = options.response_noise;
-  if (options.request.model == "mindlin") sweep.fixed["alpha"] = 1.0 / 3.0;
-  if (options.request.model == "jenkins") sweep.fixed["alpha"] = 0.0;
-  for (const auto& [name, value] : request::MakeFitOptions(options.request).fixed) {
-    sweep.fixed[name] = value;
-  }
-  return sweep;
-}
-
 /// Refuses what has no meaning for a sweep, which is no record.
-void RequireSweepOptions(const FitCommandOptions& options, const CLI::App& command) {
+void RequireSweepOptions(const CLI::App& command) {
   constexpr std::array<std::string_view, 18> kOfSweeps = {"strict",
                                                           "help",
                                                           "sweep",
@@ -125,88 +107,19 @@ void RequireSweepOptions(const FitCommandOptions& options, const CLI::App& comma
     if (name == "json" || std::ranges::find(kOfSweeps, name) != kOfSweeps.end()) continue;
     throw InputError(fmt::format("--{}: has no meaning with --sweep: leave it out", name));
   }
-  const std::string& model = options.request.model;
-  if (model != "mindlin-dahl" && model != "mindlin" && model != "jenkins") {
-    throw InputError(
-        fmt::format("--model {}: a sweep is of a Masing law: mindlin-dahl, mindlin or "
-                    "jenkins",
-                    model));
-  }
-  if (options.request.files.size() != 1) {
-    throw InputError("--sweep: is of one file: fit each by itself");
-  }
 }
 
 void RunSweep(const FitCommandOptions& options, const CLI::App& command, Console& console) {
-  RequireSweepOptions(options, command);
-  const std::string& file = options.request.files.front();
+  RequireSweepOptions(command);
   RequireOutputPaths({{"--json", options.json_path, /*dash_is_stdout=*/true}},
                      options.request.files);
-  const io::SweepFile sweep = io::ReadSweep(file, options.request.columns, options.response);
   const Messages messages{console.err, "fit"};
-  for (const std::string& note : sweep.notes) messages.Note(note);
-  identification::SweepOptions asked = SweepOptionsOf(options);
-  asked.over_force = sweep.over_force;
-  asked.is_compliance = sweep.is_compliance;
-  const identification::SweepFit fit =
-      identification::FitSweep(sweep.amplitude, sweep.response, asked);
-  const bool is_doubtful = fit.correlation_p_value < kDoubtfulCorrelation;
-  const auto is_known = [](const auto& parameter) { return parameter.is_known(); };
-  const bool is_established = options.strict == Strictness::kNone ||
-                              (std::ranges::all_of(fit.parameters, is_known) &&
-                               (!is_doubtful || options.strict != Strictness::kAdequate));
-  console.exit_status = fit.converged && is_established ? kDone : kNotEstablished;
-  const std::string unit = sweep.is_compliance ? "m/N" : "N/m";
-  nlohmann::ordered_json json = {{"schema", "mindahl.sweep/1"},
-                                 {"version", Version()},
-                                 {"input",
-                                  {{"files", {file}},
-                                   {"points", sweep.amplitude.size()},
-                                   {"amplitude", sweep.over_force ? "force" : "displacement"},
-                                   {"response", sweep.is_compliance ? "compliance" : "stiffness"}}},
-                                 {"sweep", options.sweep},
-                                 {"confidence", asked.confidence}};
-  std::string text =
-      fmt::format("{} of {} points over the {} amplitude, {}\n\n",
-                  sweep.is_compliance ? "compliance" : "stiffness", sweep.amplitude.size(),
-                  sweep.over_force ? "force" : "displacement", options.sweep);
-  for (const identification::ParameterEstimate& parameter : fit.parameters) {
-    const auto end = [](const std::optional<double>& value) {
-      return value ? fmt::format("{:.5g}", *value) : std::string("…");
-    };
-    json["parameters"][parameter.name] = {
-        {"value", NumberOrNull(parameter.value)},
-        {"unit", parameter.unit},
-        {"standard_error", NumberOrNull(parameter.standard_error)},
-        {"ci95", {NumberOrNull(parameter.lower95), NumberOrNull(parameter.upper95)}},
-        {"status", report::Name(parameter.status)},
-        {"identifiability", parameter.status == identification::ParameterStatus::kFixed
-                                ? nlohmann::ordered_json(nullptr)
-                                : nlohmann::ordered_json(report::Name(parameter.identifiability))}};
-    text += parameter.status == identification::ParameterStatus::kFixed
-                ? fmt::format("  {:<12}{:>14.6g} {:<4}  held\n", parameter.name, parameter.value,
-                              parameter.unit)
-                : fmt::format("  {:<12}{:>14.6g} {:<4}  ({} … {})  {}\n", parameter.name,
-                              parameter.value, parameter.unit, end(parameter.lower95),
-                              end(parameter.upper95), report::Words(parameter.identifiability));
-  }
-  json["residuals"] = {{"rms", NumberOrNull(fit.rms)},
-                       {"r_squared", NumberOrNull(fit.r_squared)},
-                       {"degrees_of_freedom", fit.degrees_of_freedom},
-                       {"correlation_p_value", NumberOrNull(fit.correlation_p_value)}};
-  json["adequacy"] = {{"verdict", is_doubtful ? "doubtful" : "adequate"}};
-  json["solver"] = {
-      {"solver", "ceres::Solve"}, {"converged", fit.converged}, {"message", fit.message}};
-  text += fmt::format("\n  residuals {:.4g} {} rms, R² {:.6g}\n", fit.rms, unit, fit.r_squared);
-  if (is_doubtful) {
-    text += fmt::format(
-        "  doubtful: neighbouring residuals are correlated (p = {:.2g}), so the law misses the "
-        "course of the sweep and the intervals are too narrow\n",
-        fit.correlation_p_value);
-  }
-  if (!fit.converged) text += fmt::format("  not converged: {}\n", fit.message);
-  if (!options.json_path.empty()) WriteJson(json, options.json_path, console);
-  if (options.json_path != "-") console.out << text;
+  const request::FittedSweep fitted = request::FitSweepFile(
+      options.request, options.sweep, options.response, options.response_noise,
+      [&](std::string_view note) { messages.Note(note); });
+  console.exit_status = fitted.established(options.strict) ? kDone : kNotEstablished;
+  if (!options.json_path.empty()) WriteText(ToJson(fitted), options.json_path, console);
+  if (options.json_path != "-") console.out << ToText(fitted);
 }
 
 void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& console) {

@@ -8,9 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,12 +21,12 @@
 #include "cli/file_list.h"
 #include "cli/fit_records.h"
 #include "cli/fit_request.h"
-#include "cli/json_output.h"
 #include "cli/kept_cycles.h"
 #include "cli/one_of.h"
 #include "cli/output_path.h"
 #include "cli/progress.h"
 #include "cli/provenance.h"
+#include "cli/text_output.h"
 #include "cli/whole_number.h"
 #include "mindahl/campaign/changes.h"
 #include "mindahl/campaign/cycle_table.h"
@@ -38,7 +36,6 @@
 #include "mindahl/campaign/pooled_value.h"
 #include "mindahl/campaign/reading.h"
 #include "mindahl/campaign/shared_alpha.h"
-#include "mindahl/campaign/tracked_quantities.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
@@ -47,9 +44,8 @@
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_stream.h"
-#include "mindahl/report/quantity.h"
-#include "mindahl/report/units.h"
 #include "mindahl/request/fit_records.h"
+#include "mindahl/request/track.h"
 #include "report/statements.h"
 
 namespace mindahl::cli {
@@ -57,6 +53,7 @@ namespace {
 
 using campaign::CycleFit;
 using identification::FitOptions;
+using request::TrackedTest;
 
 constexpr std::string_view kOwnAlpha = "cycle";
 constexpr std::string_view kSharedAlpha = "shared";
@@ -85,35 +82,6 @@ struct RowPlace {
   std::string before;         // cells before those of a cycle
   std::uintmax_t offset = 0;  // [bytes] of the table before the test's first row
   bool has_rows = false;      // some of them are there, of a run that was ended
-};
-
-/// Holds the sums over all cycles of a run.
-struct Totals {
-  std::size_t fits = 0;
-  std::size_t flagged = 0;
-  std::map<std::string, std::size_t> flags;
-  campaign::TrackedCourses courses;
-
-  void Add(const CycleFit& fit) {
-    ++fits;
-    flagged += fit.flags.empty() ? 0 : 1;
-    for (const std::string& flag : fit.flags) ++flags[flag];
-    courses.Add(fit);
-  }
-  /// True if no fit converged.
-  [[nodiscard]] bool HasNone() const {
-    const auto failed = flags.find("not_converged");
-    return failed != flags.end() && failed->second == fits;
-  }
-};
-
-/// Counts the rows and cycles that were read.
-struct WhatWasRead {
-  std::size_t samples = 0;
-  std::size_t cycles = 0;
-  std::size_t unused_samples = 0;
-  std::size_t broken_rows = 0;
-  campaign::Reading of_head;
 };
 
 void RequireTrackOptions(const TrackCommandOptions& options) {
@@ -173,57 +141,6 @@ void RequireUnitOf(std::string_view option, const io::ColumnChoice& choice,
       choice.unit, option == "--time-unit" ? "--time" : "--normal-load-column"));
 }
 
-nlohmann::ordered_json QuantitiesJson(const std::vector<campaign::CourseDescription>& courses,
-                                      bool is_torsional) {
-  const report::Units& units = is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce;
-  const std::span<const campaign::TrackedQuantity> tracked = campaign::TrackedQuantities();
-  nlohmann::ordered_json quantities = nlohmann::ordered_json::object();
-  for (std::size_t k = 0; k < tracked.size(); ++k) {
-    const campaign::CourseDescription& course = courses[k];
-    if (course.stretches.empty()) continue;
-    nlohmann::ordered_json stretches = nlohmann::ordered_json::array();
-    for (const campaign::Stretch& stretch : course.stretches) {
-      stretches.push_back(
-          {{"first_cycle", stretch.first_cycle},
-           {"last_cycle", stretch.last_cycle},
-           {"at_start", stretch.at_start},
-           {"at_end", stretch.at_end},
-           {"slope", stretch.slope},
-           {"slope_p_value", stretch.slope_p_value},
-           {"trends", stretch.trends},
-           {"time_constant", stretch.time_constant ? nlohmann::ordered_json(*stretch.time_constant)
-                                                   : nlohmann::ordered_json(nullptr)}});
-    }
-    nlohmann::ordered_json changes = nlohmann::ordered_json::array();
-    for (const campaign::Change& change : course.changes) {
-      changes.push_back({{"kind", campaign::NameOf(change.kind)},
-                         {"cycle", change.cycle},
-                         {"ci95", {change.lower95, change.upper95}},
-                         {"before", change.before},
-                         {"after", change.after},
-                         {"p_value", change.p_value}});
-    }
-    quantities[std::string(tracked[k].name)] = {{"unit", report::UnitIn(units, tracked[k].unit)},
-                                                {"stretches", stretches},
-                                                {"changes", changes}};
-  }
-  return quantities;
-}
-
-nlohmann::ordered_json FlagsJson(const Totals& totals) {
-  nlohmann::ordered_json flags = nlohmann::ordered_json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = totals.flags.find(std::string(flag.name));
-    flags[std::string(flag.name)] = found == totals.flags.end() ? 0 : found->second;
-  }
-  return flags;
-}
-
-nlohmann::ordered_json EnergyCountsJson(const campaign::EnergyCounts& counts) {
-  return {
-      {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
-}
-
 class TrackRun {
  public:
   TrackRun(const TrackCommandOptions& options, const CLI::App& command, Console& console,
@@ -233,7 +150,7 @@ class TrackRun {
         console_(console),
         place_(std::move(place)),
         messages_{console.err, "track"},
-        energy_(options.average * options.every),
+        test_(options.average * options.every),
         end_(place_.offset) {}
 
   void Go();
@@ -242,9 +159,7 @@ class TrackRun {
 
   /// Returns why one of many tests ended before its record; empty where it did not.
   [[nodiscard]] const std::string& fault() const { return fault_; }
-  [[nodiscard]] const Totals& totals() const { return totals_; }
-  [[nodiscard]] const campaign::DissipatedEnergy& energy() const { return energy_; }
-  [[nodiscard]] bool is_torsional() const { return is_torsional_; }
+  [[nodiscard]] const TrackedTest& test() const { return test_; }
   /// Returns the size [bytes] of the table with the test's last row.
   [[nodiscard]] std::uintmax_t end() const { return end_; }
 
@@ -263,16 +178,7 @@ class TrackRun {
   void Take(std::span<const CycleFit> fits);
   [[noreturn]] void ThrowOther();
   void SayProgress();
-  void WriteSummary();
-  /// Time histories that a figure of the test shows: of friction coefficient and slip force, which
-  /// say the same, the first where it is known.
-  [[nodiscard]] std::vector<campaign::Evolution> Evolutions() const;
-  [[nodiscard]] campaign::TestSummary Summary() const;
-  void Draw();
-  [[nodiscard]] nlohmann::ordered_json Json() const;
-  [[nodiscard]] std::string_view UnitOf(std::string_view unit) const {
-    return report::UnitIn(is_torsional_ ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
-  }
+  void Draw(const std::vector<campaign::CourseDescription>& described);
 
   const TrackCommandOptions& options_;
   const CLI::App& command_;
@@ -280,15 +186,11 @@ class TrackRun {
   RowPlace place_;
   Messages messages_;
   FitOptions fit_;
-  bool is_torsional_ = false;
   std::string chosen_terms_;
-  WhatWasRead reading_;
+  campaign::Reading reading_;  // of the head
   io::JoinedTimes times_;
-  Totals totals_;
-  campaign::DissipatedEnergy energy_;
-  std::optional<campaign::PooledValue> shared_alpha_;
+  TrackedTest test_;
   std::optional<KeptCycles> kept_;  // until its last batch was made again
-  std::size_t resumed_ = 0;         // fits that were there
   std::optional<io::AppendedFile> output_;
   std::uintmax_t end_ = 0;         // [bytes] of the table that is written
   bool has_write_failed_ = false;  // or is at work
@@ -300,8 +202,6 @@ class TrackRun {
   std::uintmax_t bytes_ = 0;         // of all files
   std::uintmax_t bytes_before_ = 0;  // of the files that are done
   std::uintmax_t bytes_read_ = 0;
-  std::span<const campaign::TrackedQuantity> tracked_ = campaign::TrackedQuantities();
-  std::vector<campaign::CourseDescription> courses_;  // of each, once all is read
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -343,21 +243,21 @@ void TrackRun::PoolAlpha() {
   }
   tracker->Finish();
   times_ = {};
-  reading_ = {};
+  test_.unused_samples = 0;
   if (tracker->cycles() == 0) return;  // as the second pass will say
   campaign::RequireSharedAlpha(alpha);
-  shared_alpha_ = alpha;
+  test_.shared_alpha = alpha;
 }
 
 void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
-  is_torsional_ = stream.layout().is_torsional;
+  test_.is_torsional = stream.layout().is_torsional;
   RequireUnitOf("--time-unit", options_.request.columns.time, stream.layout().time);
   RequireUnitOf("--normal-load-unit", options_.request.columns.normal_load,
                 stream.layout().normal_load);
-  fit_ = OptionsFor(head, reading_.of_head);
-  if (shared_alpha_) fit_.fixed["alpha"] = shared_alpha_->mean();
+  fit_ = OptionsFor(head, reading_);
+  if (test_.shared_alpha) fit_.fixed["alpha"] = test_.shared_alpha->mean();
   SayReading();
-  const std::string header = campaign::CycleTableHeader(is_torsional_);
+  const std::string header = campaign::CycleTableHeader(test_.is_torsional);
   std::error_code error;
   const bool has_rows =
       place_.is_one_of_many
@@ -365,18 +265,18 @@ void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
           : options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error;
   if (has_rows) {
     if (!place_.is_one_of_many) RequireHeader(options_.output, header);
-    campaign::DissipatedEnergy energy = energy_;
+    campaign::DissipatedEnergy energy = test_.energy;
     kept_ = ReadKeptCycles(options_.output,
                            {.offset = place_.is_one_of_many ? place_.offset : header.size(),
                             .before = place_.before,
                             .after = After()},
                            [&](const campaign::CycleTableEntry& entry) {
-                             if (totals_.fits % campaign::kBatch == 0)
-                               energy_ = energy;  // before the last batch
+                             if (test_.fits % campaign::kBatch == 0)
+                               test_.energy = energy;  // before the last batch
                              energy.Add(entry.fit);
-                             totals_.Add(entry.fit);
+                             test_.Add(entry.fit);
                            });
-    resumed_ = kept_->fits;
+    test_.resumed = kept_->fits;
     if (kept_->fits == 0) kept_.reset();
   }
   tracker_.emplace(campaign::TrackOptions{.fit = fit_,
@@ -391,7 +291,7 @@ void TrackRun::Begin(io::RecordStream& stream, const io::Samples& head) {
 
 void TrackRun::SayReading() const {
   if (!chosen_terms_.empty()) messages_.Note(chosen_terms_);
-  const campaign::Reading& reading = reading_.of_head;
+  const campaign::Reading& reading = reading_;
   const double gate = *fit_.preparation.reversal_gate;
   if (!reading.gate_is_given && gate > 0) {
     messages_.Note(
@@ -408,8 +308,8 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
   std::string rows;
   const std::string after = After() + "\n";
   for (const CycleFit& fit : fits) {
-    energy_.Add(fit);
-    const std::string row = campaign::CycleTableRow(fit, energy_.total());
+    test_.energy.Add(fit);
+    const std::string row = campaign::CycleTableRow(fit, test_.energy.total());
     rows.append(place_.before).append(row, 0, row.size() - 1).append(after);
   }
   if (kept_) {
@@ -424,19 +324,19 @@ void TrackRun::Take(std::span<const CycleFit> fits) {
   has_write_failed_ = true;
   if (!output_) {
     output_.emplace(options_.output, place_.offset);
-    if (!place_.is_one_of_many) output_->Append(campaign::CycleTableHeader(is_torsional_));
+    if (!place_.is_one_of_many) output_->Append(campaign::CycleTableHeader(test_.is_torsional));
   }
   output_->Append(rows);
   has_write_failed_ = false;
   end_ += rows.size();
-  for (const CycleFit& fit : fits) totals_.Add(fit);
+  for (const CycleFit& fit : fits) test_.Add(fit);
   SayProgress();
 }
 
 /// Returns the cells after those of a cycle.
 std::string TrackRun::After() const {
   if (!place_.is_one_of_many) return "";
-  return is_torsional_ ? ",torque" : ",force";
+  return test_.is_torsional ? ",torque" : ",force";
 }
 
 void TrackRun::ThrowOther() {
@@ -453,7 +353,7 @@ void TrackRun::SayProgress() {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double share =
       static_cast<double>(bytes_read_) / static_cast<double>(std::max<std::uintmax_t>(bytes_, 1));
-  const auto made = static_cast<double>(totals_.fits - resumed_);
+  const auto made = static_cast<double>(test_.fits - test_.resumed);
   progress_->Say(fmt::format("{} cycles, {:.0f} % of {:.3g} MB, {:.3g} a second, {:.0f} s left",
                              tracker_->cycles(), 100 * share, static_cast<double>(bytes_) / 1e6,
                              made / seconds, seconds * (1 - share) / std::max(share, 1e-3)));
@@ -469,7 +369,7 @@ void TrackRun::EndFile(campaign::Tracker& tracker) {
   if (options_.request.join) {
     times_.NextFile();
   } else {
-    reading_.unused_samples += tracker.NextFile();
+    test_.unused_samples += tracker.NextFile();
     times_ = {};
   }
 }
@@ -477,14 +377,14 @@ void TrackRun::EndFile(campaign::Tracker& tracker) {
 void TrackRun::ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream) {
   while (piece.size() > 0) {
     bytes_read_ = bytes_before_ + stream.bytes();
-    reading_.samples += piece.size();
+    test_.samples += piece.size();
     times_.Shift(piece.time);
     tracker_->Add(campaign::ViewOf(piece), piece.lines);
     RequireNoSignal();
     if (!stream.Next(piece)) break;
   }
   EndFile(*tracker_);
-  reading_.broken_rows += stream.broken_rows();
+  test_.broken_rows += stream.broken_rows();
   bytes_before_ += stream.bytes();
   if (stream.footer_lines() > 0) {
     messages_.Note(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
@@ -502,10 +402,10 @@ void TrackRun::ReadFiles() {
   for (const std::string& file : files) {
     io::RecordStream stream(file, options_.request.columns, broken);
     for (const std::string& note : stream.layout().notes) messages_.Note(note);
-    if (tracker_ && stream.layout().is_torsional != is_torsional_) {
+    if (tracker_ && stream.layout().is_torsional != test_.is_torsional) {
       throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", files.front(),
-                                   is_torsional_ ? "torque" : "force", file,
-                                   is_torsional_ ? "force" : "torque"));
+                                   test_.is_torsional ? "torque" : "force", file,
+                                   test_.is_torsional ? "force" : "torque"));
     }
     io::Samples first;
     if (!tracker_) {
@@ -516,7 +416,7 @@ void TrackRun::ReadFiles() {
     }
     ReadFile(file, std::move(first), stream);
   }
-  if (options_.request.join) reading_.unused_samples += tracker_->NextFile();
+  if (options_.request.join) test_.unused_samples += tracker_->NextFile();
   tracker_->Finish();
   if (kept_) ThrowOther();  // a record that ends before them
   has_write_failed_ = true;
@@ -549,14 +449,13 @@ void TrackRun::Track() {
     }
     const std::string what = is_stopped ? "stopped by a signal" : error.what();
     if (place_.is_one_of_many) throw InputError(what);
-    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume", what, totals_.fits,
+    throw InputError(fmt::format("{}; {} rows are kept in {}: {}add --resume", what, test_.fits,
                                  options_.output, is_stopped ? "" : "repair the fault and "));
   }
   signals_.reset();
   progress_.reset();
-  reading_.cycles = tracker_->cycles();
-  campaign::RequireCycles(reading_.cycles, options_.average, reading_.of_head,
-                          *fit_.preparation.reversal_gate,
+  test_.cycles = tracker_->cycles();
+  campaign::RequireCycles(test_.cycles, options_.average, reading_, *fit_.preparation.reversal_gate,
                           fmt::format("{}", fmt::join(files, ", ")));
 }
 
@@ -584,62 +483,22 @@ void TrackRun::TrackOneOfMany() {
 
 void TrackRun::Go() {
   Track();
-  console_.exit_status = totals_.HasNone() ? kNotEstablished : kDone;
-  courses_ = totals_.courses.Describe();
-  Draw();
-  if (!options_.json_path.empty()) WriteJson(Json(), options_.json_path, console_);
-  if (options_.json_path != "-") WriteSummary();
+  test_.files = options_.request.files;
+  test_.output = options_.output;
+  test_.reversal_gate = *fit_.preparation.reversal_gate;
+  test_.is_gate_certain = reading_.gate.certain;
+  console_.exit_status = test_.established() ? kDone : kNotEstablished;
+  const std::vector<campaign::CourseDescription> described = test_.courses.Describe();
+  Draw(described);
+  if (!options_.json_path.empty()) {
+    WriteText(ToJson(test_, described), options_.json_path, console_);
+  }
+  if (options_.json_path != "-") console_.out << ToText(test_, described);
 }
 
-std::vector<campaign::Evolution> TrackRun::Evolutions() const {
-  std::vector<campaign::Evolution> evolutions;
-  const auto is_known = [this](std::string_view name) {
-    const auto found = std::ranges::find(tracked_, name, &campaign::TrackedQuantity::name);
-    const auto k = static_cast<std::size_t>(found - tracked_.begin());
-    return !courses_[k].stretches.empty();
-  };
-  for (std::size_t k = 0; k < tracked_.size(); ++k) {
-    const campaign::TrackedQuantity& quantity = tracked_[k];
-    if (!quantity.is_drawn || courses_[k].stretches.empty()) continue;
-    if (quantity.name == "slip_force" && is_known("friction_coefficient")) continue;
-    evolutions.push_back(
-        {.name = std::string(quantity.name),
-         .unit = std::string(UnitOf(quantity.unit)),
-         .has_errors = quantity.has_standard_error && totals_.courses.have_errors()[k],
-         .course = totals_.courses.courses()[k],
-         .description = courses_[k]});
-  }
-  return evolutions;
-}
-
-campaign::TestSummary TrackRun::Summary() const {
-  campaign::TestSummary test{.files = options_.request.files,
-                             .cycles = reading_.cycles,
-                             .samples = reading_.samples,
-                             .fits = totals_.fits,
-                             .unused_samples = reading_.unused_samples,
-                             .dissipated = energy_.total(),
-                             .energy_counts = energy_.counts(),
-                             .shared_alpha = shared_alpha_,
-                             .evolutions = Evolutions()};
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = totals_.flags.find(std::string(flag.name));
-    if (found == totals_.flags.end()) continue;
-    test.flags.push_back(
-        {.name = found->first, .meaning = std::string(flag.meaning), .cycles = found->second});
-  }
-  for (std::size_t k = 0; k < tracked_.size(); ++k) {
-    const std::string name = report::WithUnit(tracked_[k].name, UnitOf(tracked_[k].unit));
-    for (const std::string& line : campaign::ChangeStatements(courses_[k])) {
-      test.changes.push_back(fmt::format("{}: {}", name, line));
-    }
-  }
-  return test;
-}
-
-void TrackRun::Draw() {
+void TrackRun::Draw(const std::vector<campaign::CourseDescription>& described) {
   if (options_.plot_path.empty() && options_.report_path.empty()) return;
-  const campaign::TestSummary test = Summary();
+  const campaign::TestSummary test = SummaryOf(test_, described);
   if (!options_.plot_path.empty()) {
     const std::string_view changes =
         test.changes.empty() ? campaign::kNothingChanged : "dashed where it changed beyond chance";
@@ -652,81 +511,6 @@ void TrackRun::Draw() {
         options_.report_path,
         campaign::ToPage(test, ProvenanceOf(command_, console_, options_.request.files)));
   }
-}
-
-void TrackRun::WriteSummary() {
-  std::string text = fmt::format("{} cycles of {} samples, {} fits in {}\n", reading_.cycles,
-                                 reading_.samples, totals_.fits, options_.output);
-  if (resumed_ > 0) text += fmt::format("{} of them were there already\n", resumed_);
-  if (reading_.unused_samples > 0) {
-    text +=
-        fmt::format("{} samples at the ends are part of no whole cycle\n", reading_.unused_samples);
-  }
-  text += fmt::format("{:.6g} J dissipated in all{}\n", energy_.total(),
-                      campaign::InWords(energy_.counts()));
-  if (shared_alpha_) text += campaign::SharedAlphaInWords(*shared_alpha_) + "\n";
-  if (totals_.flagged > 0) {
-    text += fmt::format("\n{} {} a flag:\n", totals_.flagged,
-                        totals_.flagged == 1 ? "cycle has" : "cycles have");
-    for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-      const auto found = totals_.flags.find(std::string(flag.name));
-      if (found == totals_.flags.end()) continue;
-      text += fmt::format("  {:<18}{:>8}   {}\n", flag.name, found->second, flag.meaning);
-    }
-  }
-  std::string courses;
-  std::string changes;
-  std::string small_trends;
-  for (std::size_t k = 0; k < tracked_.size(); ++k) {
-    const campaign::CourseDescription& course = courses_[k];
-    if (course.stretches.empty()) continue;
-    const std::string name = report::WithUnit(tracked_[k].name, UnitOf(tracked_[k].unit));
-    courses += fmt::format("  {:<30}{:>14.5g}{:>14.5g}\n", name, course.stretches.front().at_start,
-                           course.stretches.back().at_end);
-    for (const std::string& line : campaign::ChangeStatements(course)) {
-      changes += fmt::format("  {:<21} {}\n", tracked_[k].name, line);
-    }
-    for (const std::string& line : campaign::SmallTrendStatements(course)) {
-      small_trends += fmt::format("  {:<21} {}\n", tracked_[k].name, line);
-    }
-  }
-  if (!courses.empty()) {
-    text +=
-        fmt::format("\n  {:<30}{:>14}{:>14}\n{}", "over the test", "at first", "at last", courses);
-    text += changes.empty() ? fmt::format("\nN{}.\n", campaign::kNothingChanged.substr(1))
-                            : "\nChanges:\n" + changes;
-    if (!small_trends.empty()) text += "\nBeyond chance, but less than 1 %:\n" + small_trends;
-  }
-  console_.out << text;
-}
-
-nlohmann::ordered_json TrackRun::Json() const {
-  nlohmann::ordered_json json;
-  json["schema"] = "mindahl.track/1";
-  json["version"] = Version();
-  json["input"] = {{"files", options_.request.files},
-                   {"samples", reading_.samples},
-                   {"cycles", reading_.cycles},
-                   {"unused_samples", reading_.unused_samples},
-                   {"broken_rows", reading_.broken_rows}};
-  json["reversals"] = {{"gate", *fit_.preparation.reversal_gate},
-                       {"certain", reading_.of_head.gate.certain}};
-  json["output"] = options_.output;
-  json["fits"] = totals_.fits;
-  json["flagged"] = totals_.flagged;
-  json["flags"] = FlagsJson(totals_);
-  json["accumulated_energy"] = energy_.total();
-  json["energy_counts"] = EnergyCountsJson(energy_.counts());
-  json["shared_alpha"] = nullptr;
-  if (shared_alpha_) {
-    json["shared_alpha"] = {{"value", shared_alpha_->mean()},
-                            {"standard_error", shared_alpha_->standard_error()},
-                            {"cycles", shared_alpha_->count()},
-                            {"scatter", shared_alpha_->scatter()},
-                            {"p_value", shared_alpha_->p_value()}};
-  }
-  json["quantities"] = QuantitiesJson(courses_, is_torsional_);
-  return json;
 }
 
 /// Returns the first line of a table of separate tests: names without units, which are SI, so that
@@ -756,9 +540,9 @@ std::string TextOfCell(std::string_view cell) {
 
 /// Tracks tests one after the other into one table: of each its rows, then a row of its fault where
 /// it has one.
-class SeparateTests {
+class SeparateRuns {
  public:
-  SeparateTests(const TrackCommandOptions& options, const CLI::App& command, Console& console)
+  SeparateRuns(const TrackCommandOptions& options, const CLI::App& command, Console& console)
       : options_(options), command_(command), console_(console), messages_{console.err, "track"} {}
 
   void Go();
@@ -775,10 +559,7 @@ class SeparateTests {
   void ReadKept();
   void Track(const std::string& file);
   void AppendFault(const std::string& before, const std::string& fault);
-  void Note(const std::string& file, const std::string& fault, const Totals& totals,
-            const campaign::DissipatedEnergy& energy, bool is_torsional);
   [[noreturn]] void ThrowOther(const std::string& row) const;
-  void WriteSummary() const;
 
   const TrackCommandOptions& options_;
   const CLI::App& command_;
@@ -788,16 +569,10 @@ class SeparateTests {
   std::string header_ = SeparateHeader();
   std::uintmax_t end_ = header_.size();  // [bytes] of the table with the tests that are done
   bool has_rows_ = false;                // of the next test, behind that
-  std::size_t done_ = 0;                 // tests
-  std::size_t kept_ = 0;                 // fits of those that were done already
-  std::size_t fits_ = 0;
-  std::size_t flagged_ = 0;
-  double energy_ = 0.0;
-  std::vector<std::string> faults_;
-  nlohmann::ordered_json tests_ = nlohmann::ordered_json::array();
+  request::SeparateTests tests_{options_.output, !options_.json_path.empty()};
 };
 
-SeparateTests::Cells SeparateTests::CellsOf(const std::string& file) const {
+SeparateRuns::Cells SeparateRuns::CellsOf(const std::string& file) const {
   Cells cells{.test = io::CsvCell(file) + ",", .sha256 = "", .rest = ""};
   try {
     cells.sha256 = io::Sha256OfFile(file).value_or("");
@@ -807,7 +582,7 @@ SeparateTests::Cells SeparateTests::CellsOf(const std::string& file) const {
   return cells;
 }
 
-void SeparateTests::ThrowOther(const std::string& row) const {
+void SeparateRuns::ThrowOther(const std::string& row) const {
   throw InputError(
       fmt::format("--resume: {} was made from other files, with other options or by another "
                   "version, as its row '{:.60}…' says: give those, another --output, or "
@@ -817,7 +592,7 @@ void SeparateTests::ThrowOther(const std::string& row) const {
 
 /// Takes the tests that the table has: all of them but the last, which may have been ended, and
 /// none from one on that failed and whose record is another now.
-void SeparateTests::ReadKept() {
+void SeparateRuns::ReadKept() {
   RequireHeader(options_.output, header_);
   std::ifstream file(options_.output, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(end_));
@@ -827,12 +602,10 @@ void SeparateTests::ReadKept() {
     if (!has_line) return;
     const Cells cells = CellsOf(name);
     if (!line.starts_with(cells.test)) ThrowOther(line);
-    Totals totals;
-    campaign::DissipatedEnergy energy(options_.average * options_.every);
+    TrackedTest test(options_.average * options_.every);
     std::uintmax_t end = end_;
     std::string fault;
     bool is_another = false;
-    bool is_torsional = false;
     for (; has_line && line.starts_with(cells.test);
          has_line = std::getline(file, line) && !file.eof()) {
       end += line.size() + 1;
@@ -855,10 +628,10 @@ void SeparateTests::ReadKept() {
         continue;
       }
       const std::size_t last = row.rfind(',');
-      is_torsional = row.substr(last + 1) == "torque";
+      test.is_torsional = row.substr(last + 1) == "torque";
       const campaign::CycleTableEntry entry = campaign::ReadCycleTableRow(row.substr(1, last - 1));
-      totals.Add(entry.fit);
-      energy.Add(entry.fit);
+      test.Add(entry.fit);
+      test.energy.Add(entry.fit);
     }
     if (is_another && fault.empty()) ThrowOther(cells.test);
     // What the system refused then, and gives now, is no fault of the record.
@@ -866,14 +639,13 @@ void SeparateTests::ReadKept() {
     if (is_another) return;
     has_rows_ = fault.empty() && !has_line;
     if (has_rows_) return;
-    kept_ += totals.fits;
-    Note(name, fault, totals, energy, is_torsional);
+    tests_.Add(name, fault, test, /*was_there=*/true);
     end_ = end;
   }
   if (has_line) ThrowOther(line);
 }
 
-void SeparateTests::AppendFault(const std::string& before, const std::string& fault) {
+void SeparateRuns::AppendFault(const std::string& before, const std::string& fault) {
   const std::string header = campaign::CycleTableHeader(false);
   const auto commas = static_cast<std::size_t>(std::ranges::count(header, ','));
   const std::string row =
@@ -884,7 +656,7 @@ void SeparateTests::AppendFault(const std::string& before, const std::string& fa
   end_ += row.size();
 }
 
-void SeparateTests::Track(const std::string& file) {
+void SeparateRuns::Track(const std::string& file) {
   const Cells cells = CellsOf(file);
   TrackCommandOptions options = options_;
   options.request.files = {file};
@@ -899,44 +671,10 @@ void SeparateTests::Track(const std::string& file) {
     AppendFault(cells.test + cells.rest, run.fault());
     messages_.Warn(run.fault());
   }
-  Note(file, run.fault(), run.totals(), run.energy(), run.is_torsional());
+  tests_.Add(file, run.fault(), run.test(), /*was_there=*/false);
 }
 
-void SeparateTests::Note(const std::string& file, const std::string& fault, const Totals& totals,
-                         const campaign::DissipatedEnergy& energy, bool is_torsional) {
-  ++done_;
-  fits_ += totals.fits;
-  flagged_ += totals.flagged;
-  energy_ += energy.total();
-  if (!fault.empty()) faults_.push_back(fault);
-  if (!fault.empty() || totals.HasNone()) console_.exit_status = kNotEstablished;
-  if (options_.json_path.empty()) return;
-  tests_.push_back(
-      {{"file", file},
-       {"fault", fault.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fault)},
-       {"fits", totals.fits},
-       {"flagged", totals.flagged},
-       {"flags", FlagsJson(totals)},
-       {"accumulated_energy", energy.total()},
-       {"energy_counts", EnergyCountsJson(energy.counts())},
-       {"quantities", QuantitiesJson(totals.courses.Describe(), is_torsional)}});
-}
-
-void SeparateTests::WriteSummary() const {
-  std::string text = fmt::format("{} tests, {} fits in {}\n", done_, fits_, options_.output);
-  if (kept_ > 0) text += fmt::format("{} of them were there already\n", kept_);
-  text += fmt::format("{:.6g} J dissipated in all\n", energy_);
-  if (flagged_ > 0) {
-    text += fmt::format("{} {} a flag\n", flagged_, flagged_ == 1 ? "cycle has" : "cycles have");
-  }
-  if (!faults_.empty()) {
-    text +=
-        fmt::format("{} of the tests failed:\n  {}\n", faults_.size(), fmt::join(faults_, "\n  "));
-  }
-  console_.out << text;
-}
-
-void SeparateTests::Go() {
+void SeparateRuns::Go() {
   RequireTrackOptions(options_);
   for (const auto& [option, path] :
        {std::pair{"--plot", options_.plot_path}, std::pair{"--report", options_.report_path}}) {
@@ -953,7 +691,6 @@ void SeparateTests::Go() {
                     "one line, and is read twice: give such files",
                     file));
   }
-  console_.exit_status = kDone;
   std::error_code error;
   if (options_.resume && std::filesystem::file_size(options_.output, error) > 0 && !error) {
     ReadKept();
@@ -963,25 +700,18 @@ void SeparateTests::Go() {
     table.Finish();
   }
   const std::vector<std::string>& files = options_.request.files;
-  while (done_ < files.size()) {
+  while (tests_.size() < files.size()) {
+    const std::string& file = files[tests_.size()];
     try {
-      Track(files[done_]);
+      Track(file);
     } catch (const InputError& fatal) {
-      throw InputError(fmt::format("{}: {}; {} tests are done in {}: add --resume", files[done_],
-                                   fatal.what(), done_, options_.output));
+      throw InputError(fmt::format("{}: {}; {} tests are done in {}: add --resume", file,
+                                   fatal.what(), tests_.size(), options_.output));
     }
   }
-  if (!options_.json_path.empty()) {
-    WriteJson({{"schema", "mindahl.track_separate/1"},
-               {"version", Version()},
-               {"output", options_.output},
-               {"fits", fits_},
-               {"flagged", flagged_},
-               {"accumulated_energy", energy_},
-               {"tests", std::move(tests_)}},
-              options_.json_path, console_);
-  }
-  if (options_.json_path != "-") WriteSummary();
+  console_.exit_status = tests_.established() ? kDone : kNotEstablished;
+  if (!options_.json_path.empty()) WriteText(tests_.ToJson(), options_.json_path, console_);
+  if (options_.json_path != "-") console_.out << tests_.ToText();
 }
 
 void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Console& console) {
@@ -997,7 +727,7 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
   if (options.separate && options.request.join) {
     throw InputError("--separate and --join contradict each other: give one of the two");
   }
-  if (options.separate) return SeparateTests(options, command, console).Go();
+  if (options.separate) return SeparateRuns(options, command, console).Go();
   if (!options.list.shard.empty()) {
     throw InputError(
         "--shard: the files are pieces of one test, whose cycles and energy count on from file to "

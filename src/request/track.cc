@@ -1,10 +1,12 @@
 #include "mindahl/request/track.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "mindahl/campaign/changes.h"
 #include "mindahl/campaign/cycle_table.h"
@@ -24,6 +26,52 @@ namespace {
 
 std::string_view UnitOf(const TrackedTest& test, std::string_view unit) {
   return report::UnitIn(test.is_torsional ? report::kUnitsOfTorque : report::kUnitsOfForce, unit);
+}
+
+Json QuantitiesJson(const TrackedTest& test, const std::vector<CourseDescription>& courses) {
+  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
+  Json quantities = Json::object();
+  for (std::size_t k = 0; k < tracked.size(); ++k) {
+    const CourseDescription& course = courses[k];
+    if (course.stretches.empty()) continue;
+    Json stretches = Json::array();
+    for (const campaign::Stretch& stretch : course.stretches) {
+      stretches.push_back({{"first_cycle", stretch.first_cycle},
+                           {"last_cycle", stretch.last_cycle},
+                           {"at_start", stretch.at_start},
+                           {"at_end", stretch.at_end},
+                           {"slope", stretch.slope},
+                           {"slope_p_value", stretch.slope_p_value},
+                           {"trends", stretch.trends},
+                           {"time_constant", NumberOrNull(stretch.time_constant)}});
+    }
+    Json changes = Json::array();
+    for (const campaign::Change& change : course.changes) {
+      changes.push_back({{"kind", campaign::NameOf(change.kind)},
+                         {"cycle", change.cycle},
+                         {"ci95", {change.lower95, change.upper95}},
+                         {"before", change.before},
+                         {"after", change.after},
+                         {"p_value", change.p_value}});
+    }
+    quantities[std::string(tracked[k].name)] = {
+        {"unit", UnitOf(test, tracked[k].unit)}, {"stretches", stretches}, {"changes", changes}};
+  }
+  return quantities;
+}
+
+Json FlagsJson(const TrackedTest& test) {
+  Json flags = Json::object();
+  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
+    const auto found = test.flags.find(std::string(flag.name));
+    flags[std::string(flag.name)] = found == test.flags.end() ? 0 : found->second;
+  }
+  return flags;
+}
+
+Json EnergyCountsJson(const campaign::EnergyCounts& counts) {
+  return {
+      {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
 }
 
 /// Returns the time histories that a figure shows: of friction coefficient and slip force, which
@@ -58,7 +106,6 @@ void TrackedTest::Add(const campaign::CycleFit& fit) {
   flagged += fit.flags.empty() ? 0 : 1;
   for (const std::string& flag : fit.flags) ++flags[flag];
   courses.Add(fit);
-  energy.Add(fit);
 }
 
 bool TrackedTest::established() const {
@@ -141,7 +188,6 @@ std::string ToText(const TrackedTest& test, const std::vector<CourseDescription>
 }
 
 std::string ToJson(const TrackedTest& test, const std::vector<CourseDescription>& described) {
-  const std::span<const TrackedQuantity> tracked = campaign::TrackedQuantities();
   Json json;
   json["schema"] = "mindahl.track/1";
   json["version"] = Version();
@@ -154,16 +200,9 @@ std::string ToJson(const TrackedTest& test, const std::vector<CourseDescription>
   json["output"] = test.output.empty() ? Json() : Json(test.output);
   json["fits"] = test.fits;
   json["flagged"] = test.flagged;
-  Json flags = Json::object();
-  for (const campaign::CycleFlag& flag : campaign::CycleFlags()) {
-    const auto found = test.flags.find(std::string(flag.name));
-    flags[std::string(flag.name)] = found == test.flags.end() ? 0 : found->second;
-  }
-  json["flags"] = flags;
+  json["flags"] = FlagsJson(test);
   json["accumulated_energy"] = test.energy.total();
-  const campaign::EnergyCounts& counts = test.energy.counts();
-  json["energy_counts"] = {
-      {"measured", counts.measured}, {"replaced", counts.replaced}, {"left_out", counts.left_out}};
+  json["energy_counts"] = EnergyCountsJson(test.energy.counts());
   json["shared_alpha"] = nullptr;
   if (test.shared_alpha) {
     json["shared_alpha"] = {{"value", test.shared_alpha->mean()},
@@ -172,35 +211,62 @@ std::string ToJson(const TrackedTest& test, const std::vector<CourseDescription>
                             {"scatter", test.shared_alpha->scatter()},
                             {"p_value", test.shared_alpha->p_value()}};
   }
-  Json quantities = Json::object();
-  for (std::size_t k = 0; k < tracked.size(); ++k) {
-    const campaign::CourseDescription& course = described[k];
-    if (course.stretches.empty()) continue;
-    Json stretches = Json::array();
-    for (const campaign::Stretch& stretch : course.stretches) {
-      stretches.push_back({{"first_cycle", stretch.first_cycle},
-                           {"last_cycle", stretch.last_cycle},
-                           {"at_start", stretch.at_start},
-                           {"at_end", stretch.at_end},
-                           {"slope", stretch.slope},
-                           {"slope_p_value", stretch.slope_p_value},
-                           {"trends", stretch.trends},
-                           {"time_constant", NumberOrNull(stretch.time_constant)}});
-    }
-    Json changes = Json::array();
-    for (const campaign::Change& change : course.changes) {
-      changes.push_back({{"kind", campaign::NameOf(change.kind)},
-                         {"cycle", change.cycle},
-                         {"ci95", {change.lower95, change.upper95}},
-                         {"before", change.before},
-                         {"after", change.after},
-                         {"p_value", change.p_value}});
-    }
-    quantities[std::string(tracked[k].name)] = {
-        {"unit", UnitOf(test, tracked[k].unit)}, {"stretches", stretches}, {"changes", changes}};
-  }
-  json["quantities"] = quantities;
+  json["quantities"] = QuantitiesJson(test, described);
   return Dump(json);
+}
+
+struct SeparateTests::Document {
+  Json tests = Json::array();
+};
+
+SeparateTests::SeparateTests(std::string output, bool has_document)
+    : output_(std::move(output)),
+      document_(has_document ? std::make_unique<Document>() : nullptr) {}
+
+SeparateTests::~SeparateTests() = default;
+
+void SeparateTests::Add(const std::string& file, const std::string& fault, const TrackedTest& test,
+                        bool was_there) {
+  ++tests_;
+  fits_ += test.fits;
+  flagged_ += test.flagged;
+  energy_ += test.energy.total();
+  if (was_there) kept_ += test.fits;
+  if (!fault.empty()) faults_.push_back(fault);
+  established_ = established_ && fault.empty() && test.established();
+  if (document_ == nullptr) return;
+  document_->tests.push_back({{"file", file},
+                              {"fault", fault.empty() ? Json() : Json(fault)},
+                              {"fits", test.fits},
+                              {"flagged", test.flagged},
+                              {"flags", FlagsJson(test)},
+                              {"accumulated_energy", test.energy.total()},
+                              {"energy_counts", EnergyCountsJson(test.energy.counts())},
+                              {"quantities", QuantitiesJson(test, test.courses.Describe())}});
+}
+
+std::string SeparateTests::ToJson() const {
+  return Dump({{"schema", "mindahl.track_separate/1"},
+               {"version", Version()},
+               {"output", output_},
+               {"fits", fits_},
+               {"flagged", flagged_},
+               {"accumulated_energy", energy_},
+               {"tests", document_->tests}});
+}
+
+std::string SeparateTests::ToText() const {
+  std::string text = fmt::format("{} tests, {} fits in {}\n", tests_, fits_, output_);
+  if (kept_ > 0) text += fmt::format("{} of them were there already\n", kept_);
+  text += fmt::format("{:.6g} J dissipated in all\n", energy_);
+  if (flagged_ > 0) {
+    text += fmt::format("{} {} a flag\n", flagged_, flagged_ == 1 ? "cycle has" : "cycles have");
+  }
+  if (!faults_.empty()) {
+    text +=
+        fmt::format("{} of the tests failed:\n  {}\n", faults_.size(), fmt::join(faults_, "\n  "));
+  }
+  return text;
 }
 
 }  // namespace mindahl::request

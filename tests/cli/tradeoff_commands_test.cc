@@ -287,7 +287,8 @@ TEST(Recommend, OfARecordIsTheCheapestLawThatItDoesNotTellFromTheBest) {
   const std::string record = std::string(MINDAHL_SOURCE_DIR) + "/data/partial_slip.csv";
   const Outcome text = RunCommand({"recommend", "--record", record});
   ASSERT_EQ(text.status, cli::kDone) << text.err;
-  EXPECT_THAT(text.out, HasSubstr("-> mindlin: the record does not distinguish it from mindlin-dahl"));
+  EXPECT_THAT(text.out,
+              HasSubstr("-> mindlin: the record does not distinguish it from mindlin-dahl"));
   const json result = RunCommand({"recommend", "--record", record, "--json", "-"}).Json();
   EXPECT_EQ(result["record"]["samples"], 601);
   double least = std::numeric_limits<double>::infinity();

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mindahl/identification/sweep.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/request/fit_records.h"
+#include "mindahl/request/fit_request.h"
+
+namespace mindahl::request {
+
+/// The fit of stiffnesses or compliances over the amplitude, and what it is of.
+struct FittedSweep {
+  std::string file;
+  io::SweepFile sweep;
+  identification::SweepOptions asked;
+  identification::SweepFit fit;
+
+  /// True if neighbouring residuals are correlated, so that the law misses the sweep's shape.
+  [[nodiscard]] bool is_doubtful() const;
+  /// True if the fit is done, for the exit status.
+  [[nodiscard]] bool established(Strictness strictness) const;
+};
+
+/// Fits the request's one file; of the request its model, confidence, columns and what is held
+/// count.
+/// @param kind  "secant" or "tangent"
+/// @throws InputError for a model that is no Masing law, and for more than one file
+FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
+                         const io::ColumnChoice& response, std::optional<double> response_noise,
+                         const Tell& note);
+
+/// Returns the JSON of schema mindahl.sweep/1, as `mindahl fit --sweep --json` writes it.
+std::string ToJson(const FittedSweep& fitted);
+
+/// Returns the text that `mindahl fit --sweep` prints.
+std::string ToText(const FittedSweep& fitted);
+
+}  // namespace mindahl::request

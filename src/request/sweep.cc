@@ -1,0 +1,135 @@
+#include "mindahl/request/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mindahl/core/error.h"
+#include "mindahl/core/version.h"
+#include "report/names.h"
+#include "request/json.h"
+
+namespace mindahl::request {
+
+using identification::ParameterEstimate;
+using identification::SweepFit;
+using identification::SweepOptions;
+
+namespace {
+
+/// Chance of correlated residuals below which a sweep is doubtful.
+constexpr double kDoubtfulCorrelation = 0.01;
+
+std::string_view KindOf(const SweepOptions& options) {
+  return options.stiffness == identification::SweepStiffness::kTangent ? "tangent" : "secant";
+}
+
+bool IsHeld(const ParameterEstimate& parameter) {
+  return parameter.status == identification::ParameterStatus::kFixed;
+}
+
+}  // namespace
+
+bool FittedSweep::is_doubtful() const { return fit.correlation_p_value < kDoubtfulCorrelation; }
+
+bool FittedSweep::established(Strictness strictness) const {
+  if (!fit.converged || strictness == Strictness::kNone) return fit.converged;
+  return std::ranges::all_of(fit.parameters, &ParameterEstimate::is_known) &&
+         (!is_doubtful() || strictness != Strictness::kAdequate);
+}
+
+FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
+                         const io::ColumnChoice& response, std::optional<double> response_noise,
+                         const Tell& note) {
+  const std::string& model = request.model;
+  if (model != "mindlin-dahl" && model != "mindlin" && model != "jenkins") {
+    throw InputError(
+        fmt::format("--model {}: a sweep is of a Masing law: mindlin-dahl, mindlin or "
+                    "jenkins",
+                    model));
+  }
+  if (request.files.size() != 1) {
+    throw InputError("--sweep: is of one file: fit each by itself");
+  }
+  FittedSweep fitted{.file = request.files.front(),
+                     .sweep = io::ReadSweep(request.files.front(), request.columns, response),
+                     .asked = {},
+                     .fit = {}};
+  for (const std::string& text : fitted.sweep.notes) note(text);
+  SweepOptions& asked = fitted.asked;
+  asked.stiffness = kind == "tangent" ? identification::SweepStiffness::kTangent
+                                      : identification::SweepStiffness::kSecant;
+  asked.over_force = fitted.sweep.over_force;
+  asked.is_compliance = fitted.sweep.is_compliance;
+  asked.confidence = request.confidence;
+  asked.response_noise = response_noise;
+  if (model == "mindlin") asked.fixed["alpha"] = 1.0 / 3.0;
+  if (model == "jenkins") asked.fixed["alpha"] = 0.0;
+  for (const auto& [name, value] : MakeFitOptions(request).fixed) asked.fixed[name] = value;
+  fitted.fit = identification::FitSweep(fitted.sweep.amplitude, fitted.sweep.response, asked);
+  return fitted;
+}
+
+std::string ToJson(const FittedSweep& fitted) {
+  const io::SweepFile& sweep = fitted.sweep;
+  const SweepFit& fit = fitted.fit;
+  Json json = {{"schema", "mindahl.sweep/1"},
+               {"version", Version()},
+               {"input",
+                {{"files", {fitted.file}},
+                 {"points", sweep.amplitude.size()},
+                 {"amplitude", sweep.over_force ? "force" : "displacement"},
+                 {"response", sweep.is_compliance ? "compliance" : "stiffness"}}},
+               {"sweep", KindOf(fitted.asked)},
+               {"confidence", fitted.asked.confidence}};
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    json["parameters"][parameter.name] = {
+        {"value", NumberOrNull(parameter.value)},
+        {"unit", parameter.unit},
+        {"standard_error", NumberOrNull(parameter.standard_error)},
+        {"ci95", {NumberOrNull(parameter.lower95), NumberOrNull(parameter.upper95)}},
+        {"status", report::Name(parameter.status)},
+        {"identifiability",
+         IsHeld(parameter) ? Json() : Json(report::Name(parameter.identifiability))}};
+  }
+  json["residuals"] = {{"rms", NumberOrNull(fit.rms)},
+                       {"r_squared", NumberOrNull(fit.r_squared)},
+                       {"degrees_of_freedom", fit.degrees_of_freedom},
+                       {"correlation_p_value", NumberOrNull(fit.correlation_p_value)}};
+  json["adequacy"] = {{"verdict", fitted.is_doubtful() ? "doubtful" : "adequate"}};
+  json["solver"] = {
+      {"solver", "ceres::Solve"}, {"converged", fit.converged}, {"message", fit.message}};
+  return Dump(json);
+}
+
+std::string ToText(const FittedSweep& fitted) {
+  const io::SweepFile& sweep = fitted.sweep;
+  const SweepFit& fit = fitted.fit;
+  std::string text =
+      fmt::format("{} of {} points over the {} amplitude, {}\n\n",
+                  sweep.is_compliance ? "compliance" : "stiffness", sweep.amplitude.size(),
+                  sweep.over_force ? "force" : "displacement", KindOf(fitted.asked));
+  const auto end = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.5g}", *value) : std::string("…");
+  };
+  for (const ParameterEstimate& parameter : fit.parameters) {
+    text +=
+        fmt::format("  {:<12}{:>14.6g} {:<4}  ", parameter.name, parameter.value, parameter.unit);
+    text += IsHeld(parameter)
+                ? std::string("held\n")
+                : fmt::format("({} … {})  {}\n", end(parameter.lower95), end(parameter.upper95),
+                              report::Words(parameter.identifiability));
+  }
+  text += fmt::format("\n  residuals {:.4g} {} rms, R² {:.6g}\n", fit.rms,
+                      sweep.is_compliance ? "m/N" : "N/m", fit.r_squared);
+  if (fitted.is_doubtful()) {
+    text += fmt::format(
+        "  doubtful: neighbouring residuals are correlated (p = {:.2g}), so the law misses the "
+        "course of the sweep and the intervals are too narrow\n",
+        fit.correlation_p_value);
+  }
+  if (!fit.converged) text += fmt::format("  not converged: {}\n", fit.message);
+  return text;
+}
+
+}  // namespace mindahl::request
