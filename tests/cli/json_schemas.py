@@ -155,7 +155,7 @@ def place_of(name):
 
 def faults(document):
     """What is wrong with a document, by the schema that it names."""
-    name = re.fullmatch(r"mindahl\.([a-z]+)/1", document["schema"]).group(1)
+    name = re.fullmatch(r"mindahl\.([a-z_]+)/1", document["schema"]).group(1)
     for error in validator(name).iter_errors(document):
         yield f"{'.'.join(map(str, error.absolute_path))}: {error.message[:300]}"
     if name == "fit":
