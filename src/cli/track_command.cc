@@ -856,9 +856,13 @@ void SeparateTests::ReadKept() {
       }
       const std::size_t last = row.rfind(',');
       is_torsional = row.substr(last + 1) == "torque";
-      const campaign::CycleTableEntry entry = campaign::ReadCycleTableRow(row.substr(1, last - 1));
-      totals.Add(entry.fit);
-      energy.Add(entry.fit);
+      try {
+        const CycleFit fit = campaign::ReadCycleTableRow(row.substr(1, last - 1)).fit;
+        totals.Add(fit);
+        energy.Add(fit);
+      } catch (const InputError&) {  // a row that is none of such a table
+        ThrowOther(line);
+      }
     }
     if (is_another && fault.empty()) ThrowOther(cells.test);
     // What the system refused then, and gives now, is no fault of the record.

@@ -181,7 +181,7 @@ def test_slip_forces_of_either_sense_can_be_fitted(sphere):
     mean, asymmetry = result.slip_force.value, result.asymmetry.value
     assert result.slip_forces.positive.value == pytest.approx(mean * (1 + asymmetry))
     assert result.slip_forces.negative.value == pytest.approx(mean * (1 - asymmetry))
-    with pytest.raises(ValueError, match="cannot be told from force_offset"):
+    with pytest.raises(ValueError, match="cannot be distinguished from force_offset"):
         mindahl.fit(displacement[cycled], force[cycled], asymmetry="fit", initial_state="steady")
 
 
