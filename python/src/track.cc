@@ -178,8 +178,8 @@ Tracked TrackFiles(const TrackRequest& request, const std::vector<std::string>& 
     }
     run.SkipRows(stream.broken_rows());
     if (stream.footer_lines() > 0) {
-      run.Warn(fmt::format("{}: {} lines below the data skipped, since they begin with a text", file,
-                           stream.footer_lines()));
+      run.Warn(fmt::format("{}: {} lines below the data skipped, since they begin with a text",
+                           file, stream.footer_lines()));
     }
     if (stream.broken_rows() > 0) {
       run.Warn(fmt::format("{} broken rows of {} were skipped, the first: {}", stream.broken_rows(),
