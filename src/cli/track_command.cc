@@ -629,9 +629,14 @@ void SeparateRuns::ReadKept() {
       }
       const std::size_t last = row.rfind(',');
       test.is_torsional = row.substr(last + 1) == "torque";
-      const campaign::CycleTableEntry entry = campaign::ReadCycleTableRow(row.substr(1, last - 1));
-      test.Add(entry.fit);
-      test.energy.Add(entry.fit);
+      try {
+        const campaign::CycleTableEntry entry =
+            campaign::ReadCycleTableRow(row.substr(1, last - 1));
+        test.Add(entry.fit);
+        test.energy.Add(entry.fit);
+      } catch (const InputError&) {  // a row that is none of such a table
+        ThrowOther(line);
+      }
     }
     if (is_another && fault.empty()) ThrowOther(cells.test);
     // What the system refused then, and gives now, is no fault of the record.
