@@ -9,6 +9,7 @@
 
 #include "identification/stages.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/term_selection.h"
 
 // A gap before the contact that is crossed at zero force. The records are made from the contact's
 // own motion: δ = x + (g/2)·sgn F(x), so that the fit's rule for finding x is not used.
@@ -145,6 +146,19 @@ TEST(Backlash, OfZeroWidthIsTheLawAloneToTheLastBit) {
   EvaluateResidual(with.problem, theta, response, one);
   EvaluateResidual(without.problem, theta, response, other);
   EXPECT_EQ(one, other);
+}
+
+TEST(Backlash, ThatWasMeasuredIsAddedFirstAndLeavesNothingToAdd) {
+  testing::Generator generator(4);
+  const Record record = testing::WithForceNoise(
+      BehindGap("mindlin-dahl", kLaw, Cycling(Wave::kSine, kReach, 3.1, kSamplesPerCycle), kGap),
+      0.01 * kLaw.slip_force, generator);
+  const TermSelection selection = SelectTerms(std::vector<Record>{record}, {}, {});
+  EXPECT_THAT(selection.added, ::testing::ElementsAre("backlash"));
+  EXPECT_EQ(selection.fit.adequacy.verdict, AdequacyVerdict::kAdequate);
+  const ParameterEstimate& gap = *selection.fit.Find("backlash");
+  ASSERT_TRUE(gap.standard_error);
+  EXPECT_NEAR(gap.value, kGap, 4 * *gap.standard_error);
 }
 
 TEST(Backlash, IsRefusedWhereItCannotBe) {
