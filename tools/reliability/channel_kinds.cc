@@ -222,11 +222,11 @@ std::vector<Kind> ChannelKinds() {
       {"curved displacement sensor", Half::kHeldOut, CurvedDisplacement,
        "cubic, 1, 5, 20 % at X; sigma, of which the gain is part, is not asked"},
       {"clock of the force is fast", Half::kHeldOut, ForceClockIsFast,
-       "by 0.05, 0.1, 0.2 %, over eight cycles"},
+       "by 0.05, 0.1, 0.2 %, over eight cycles", false},
       {"hysteresis of the displacement sensor", Half::kHeldOut, DisplacementHysteresis,
-       "0.5, 2, 8 % of X; sigma is not asked"},
+       "0.5, 2, 8 % of X; sigma is not asked", false},
       {"hysteresis of the force sensor", Half::kHeldOut, ForceHysteresis,
-       "0.5, 2, 8 % of Tc; Tc and sigma may be with or without it"},
+       "0.5, 2, 8 % of Tc; Tc and sigma may be with or without it", false},
   };
 }
 

@@ -225,7 +225,7 @@ std::vector<Kind> ContactKinds() {
       {"power-law spectrum", Half::kDevelopment, PowerLawSpectrum,
        "Segalman's four parameters, exponent -0.2, -0.5, -0.8; asked are sigma and Tc"},
       {"hardening branch", Half::kHeldOut, HardeningBranch,
-       "stiffness 5, 20, 50 % lower after each reversal; sigma may be either"},
+       "stiffness 5, 20, 50 % lower after each reversal; sigma may be either", false},
       {"sixty asperities", Half::kHeldOut, SixtyAsperities,
        "log-normal sigma and Tc, spread 0.2, 0.5, 1; asked are their sums"},
       {"friction falls with velocity", Half::kDevelopment, VelocityWeakening,

@@ -160,7 +160,7 @@ std::vector<Kind> LoggerKinds() {
       {"spikes of the displacement", Half::kHeldOut, DisplacementSpikes,
        "1, 5, 20 samples off by 0.5 to 4 X", false},
       {"drop-outs", Half::kDevelopment, DropOuts, "0.2, 1, 5 % of the rows read 0, 0", false},
-      {"zeros in the force", Half::kHeldOut, ZerosInTheForce, "0.2, 1, 5 % of the rows"},
+      {"zeros in the force", Half::kHeldOut, ZerosInTheForce, "0.2, 1, 5 % of the rows", false},
       {"held rows", Half::kHeldOut, HeldRows, "2, 6, 20 % of the rows, a tenth of a stroke each"},
       {"held force", Half::kDevelopment, HeldForce,
        "2, 6, 20 % of the rows, a tenth of a stroke each"},

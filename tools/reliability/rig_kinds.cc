@@ -195,7 +195,8 @@ std::vector<Kind> RigKinds() {
       {"rig in series", Half::kDevelopment, SeriesSpring,
        "a spring of 20, 3, 0.7 sigma; asked are the stiffness of both and Tc"},
       {"hardening rig", Half::kHeldOut, HardeningRig,
-       "a spring of 20, 3, 0.7 sigma that doubles up to Tc; sigma may be with or without it"},
+       "a spring of 20, 3, 0.7 sigma that doubles up to Tc; sigma may be with or without it",
+       false},
       {"backlash", Half::kHeldOut, Backlash, "a gap of 1, 5, 20 % of X"},
       {"rig with hysteresis", Half::kDevelopment, RigWithHysteresis,
        "in series, compliance 5, 20, 80 % of the contact's; asked are the stiffness of both and "
