@@ -123,7 +123,7 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->group(result);
   command
       ->add_option("--viscous", options->asked.normal.viscous,
-                   "force per speed [N s/m] of --to lugre, mujoco, mujoco-joint, urdf and sdf")
+                   "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf")
       ->type_name("C")
       ->group(result);
   const std::string outputs = "Output";

@@ -170,9 +170,9 @@ void AddFitCommand(CLI::App& app, Console& console) {
   const std::string sweeps = "Amplitude sweeps";
   command
       ->add_option("--sweep", options->sweep,
-                   "the file holds a stiffness or compliance over the amplitude of a force or a\n"
-                   "displacement, as lock-in rigs report: secant, of the loop from end to end, or\n"
-                   "tangent, of a small oscillation at a force that was reached")
+                   "the file holds a stiffness or compliance over the amplitude of a force\n"
+                   "or a displacement, as lock-in rigs report: secant, of the loop from end\n"
+                   "to end, or tangent, of a small oscillation at a force that was reached")
       ->check(OneOf({"secant", "tangent"}))
       ->group(sweeps);
   command

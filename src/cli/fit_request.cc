@@ -253,9 +253,9 @@ std::string DescribeParameters() {
 void AddJoin(CLI::App& command, FitRequest& options) {
   command
       .add_flag("--join", options.join,
-                "the files are pieces of one record, in their order, as of a logger that\n"
-                "begins a file with every stroke: the contact remembers from one to the\n"
-                "next, and a clock that begins anew goes on")
+                "the files are pieces of one record, in their order, as of a logger\n"
+                "that begins a file with every stroke: the contact remembers from one\n"
+                "to the next, and a clock that begins anew goes on")
       ->group("Files");
 }
 
@@ -277,22 +277,20 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
        "m, cm, mm, um, nm, in, ft, mil; of an angle rad, mrad, deg, rev;\n"
        "default the header's, else m");
   unit("--force-unit", columns.force,
-       "N, mN, uN, kN, MN, lbf, kgf, gf, daN, kip; of a torque 'N m', 'mN m', 'uN m',\n"
-       "'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
+       "N, mN, uN, kN, MN, lbf, kgf, gf, daN, kip; of a torque 'N m', 'mN m',\n"
+       "'uN m', 'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
   unit("--time-unit", columns.time, "s, ms, us, min; default the header's, else s");
   unit("--normal-load-unit", columns.normal_load, "as --force-unit of a force");
   const auto calibration = [&](const std::string& name, io::ColumnChoice& choice,
                                const std::string& description) {
     AddOptional(command, name + "-gain", choice.gain,
-                "factor G of the column: the " + description +
-                    " in its unit is G times (number - "
-                    "zero)\nwith the unit of --" +
-                    name.substr(2) +
-                    "-unit, else the header's where it "
-                    "is one, else SI",
+                "gain [unit of the " + description + "/number]: the " + description +
+                    " is\nG*(number - zero) in " + name +
+                    "-unit, else in\nthe header's unit where that is one, else in SI",
                 "G")
         ->group(group);
-    command.add_option(name + "-zero", choice.zero, "number in the column that stands for zero")
+    command
+        .add_option(name + "-zero", choice.zero, "number [-] in the column that stands for zero")
         ->type_name("Z")
         ->group(group);
   };
@@ -302,8 +300,8 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   calibration("--normal-load", columns.normal_load, "normal load");
   command
       .add_option("--encoding", columns.encoding,
-                  "of the files, as iconv calls it (latin1, sjis, utf-16le); default UTF-8,\n"
-                  "or found by their first bytes")
+                  "of the files, by the names of iconv [latin1, sjis, utf-16le];\n"
+                  "default UTF-8, or found by their first bytes")
       ->type_name("NAME")
       ->group(group);
 }

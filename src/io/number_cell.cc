@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string>
@@ -121,10 +122,26 @@ std::string DescribeCellFault(const CsvRow& row, std::size_t column, std::size_t
   }
 }
 
+namespace {
+
+/// True for a word: what is meant as a number, "--1", as a missing one, "#N/A" and "null", or as a
+/// formula, "=1+1", is none.
+bool IsWord(std::string_view cell) {
+  constexpr std::array<std::string_view, 4> kMissing = {"null", "NULL", "None", "NA"};
+  const std::string_view text = Trimmed(cell);
+  const auto first = static_cast<unsigned char>(text.front());
+  return (std::isalpha(first) != 0 || first >= 0x80) &&
+         std::ranges::find(kMissing, text) == kMissing.end();
+}
+
+}  // namespace
+
 bool BeginsFooter(const CsvRow& row, bool decimal_comma) {
   for (std::size_t cell = 0; cell < row.size(); ++cell) {
     const NumberCell::Kind kind = ReadNumber(row[cell], decimal_comma).kind;
-    if (kind != NumberCell::Kind::kEmpty) return kind == NumberCell::Kind::kText;
+    if (kind != NumberCell::Kind::kEmpty) {
+      return kind == NumberCell::Kind::kText && IsWord(row[cell]);
+    }
   }
   return false;
 }

@@ -237,6 +237,14 @@ class Page {
   std::string text_;
 };
 
+/// Returns the first line of a program's messages.
+std::string FirstLine(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
+}
+
 std::string Content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -299,7 +307,8 @@ std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
   }
   const int status = SpawnAndWait(drawing.name(), picture.name(), messages.name());
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error(fmt::format("rsvg-convert failed: {}", Content(messages.name())));
+    throw InputError(fmt::format("cannot draw '{}': rsvg-convert failed: {}", path.string(),
+                                 FirstLine(messages.name())));
   }
   const std::string png = Content(picture.name());
   // A disk that is full may end the file, and not the program.

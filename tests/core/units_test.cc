@@ -88,7 +88,7 @@ TEST(Units, UnknownSymbolsAreNoUnit) {
 TEST(Units, ListTheirSymbolsForMessages) {
   EXPECT_EQ(LengthUnitSymbols(), "m, mm, um, nm, cm, in, ft, mil");
   EXPECT_EQ(AngleUnitSymbols(), "rad, mrad, deg, rev");
-  EXPECT_EQ(ForceUnitSymbols(), "N, mN, uN, kN, MN, lbf, kgf, kip");
+  EXPECT_EQ(ForceUnitSymbols(), "N, mN, uN, kN, MN, lbf, kgf, kip, gf, daN");
   EXPECT_EQ(TorqueUnitSymbols(), "N m, mN m, uN m, kN m, N mm, lbf in, lbf ft");
   EXPECT_EQ(TimeUnitSymbols(), "s, ms, us, min");
 }

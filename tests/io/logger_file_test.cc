@@ -16,6 +16,7 @@
 #include "mindahl/core/units.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/io/record_stream.h"
+#include "support/measured.h"
 
 // Files as loggers write them: each is read whole and as a stream, to the same numbers.
 namespace mindahl::io::logger_file_test {
@@ -296,10 +297,8 @@ TEST_F(LoggerFile, JoinsPiecesWhoseClockBeginsAnew) {
 // --- A logger's own file ------------------------------------------------------------------------
 
 TEST(MeasuredLogger, IsReadAsItIs) {
-  const char* const folder = std::getenv("MINDAHL_MEASURED_DIR");
   const std::filesystem::path path =
-      std::filesystem::path(folder != nullptr ? folder : "../shared/measured") /
-      "mr_damper_utfsm/logger_raw_ME2mm5Hz.txt";
+      testing::MeasuredPath("mr_damper_utfsm/logger_raw_ME2mm5Hz.txt");
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   RecordColumns columns;
   columns.displacement.column = "CHANNEL0";

@@ -296,8 +296,9 @@ TEST(Plot, QuotesTheConverterWhenItFails) {
   const FakeConverter converter("echo 'out of ink' >&2\nexit 3\n");
   const TemporaryDirectory directory;
   const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  EXPECT_EQ(MessageOf<std::runtime_error>([&] { WritePlot(plot, directory.path() / "plot.png"); }),
-            "rsvg-convert failed: out of ink\n");
+  const std::string name = (directory.path() / "plot.png").string();
+  EXPECT_EQ(MessageOf<InputError>([&] { WritePlot(plot, name); }),
+            "cannot draw '" + name + "': rsvg-convert failed: out of ink");
   EXPECT_EQ(directory.FileCount(), 0u);
 }
 
@@ -316,7 +317,7 @@ TEST(Plot, LeavesNoScratchFilesBehind) {
   const TemporaryDirectory directory;
   const ScopedVariable scratch("TMPDIR", directory.path().string());
   const Plot plot = OnePanel({"", {0, 1}, {0, 1}});
-  EXPECT_THROW(WritePlot(plot, directory.path() / "plot.png"), std::runtime_error);
+  EXPECT_THROW(WritePlot(plot, directory.path() / "plot.png"), InputError);
   EXPECT_EQ(directory.FileCount(), 0u);
 }
 

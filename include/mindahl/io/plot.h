@@ -65,10 +65,9 @@ void RequirePlotName(const std::filesystem::path& path);
 /// the points with the least and greatest x and y are kept, in order; no peak is lost and the curve
 /// moves by less than one run.
 /// @throws InputError when the extension is another, the file cannot be written, or for PNG the
-///   program rsvg-convert is not installed
+///   program rsvg-convert is not installed or fails
 /// @throws InvalidArgument naming the panel and series when a value is not finite, or not > 0 on a
 ///   logarithmic axis, x and y differ in length, or there is nothing to draw
-/// @throws std::runtime_error with the words of rsvg-convert when it fails
 void WritePlot(const Plot& plot, const std::filesystem::path& path);
 
 }  // namespace mindahl::io

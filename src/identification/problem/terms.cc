@@ -95,7 +95,7 @@ constexpr std::array kTerms = {
          .option = "--rig-stiffness",
          .argument = "K[+-U]|fit",
          .help = "stiffness of the rig in series with the contact [N/m], or fit;\n"
-                 "K+-U or K+-3%: fitted about K, U its standard uncertainty; default rigid"},
+                 "K+-U or K+-3%: fitted about K with standard uncertainty U;\ndefault rigid"},
     Term{.name = "load_exponent",
          .unit = "-",
          .meaning = "p of σ ∝ N^p, of records whose loads differ",
@@ -116,17 +116,18 @@ constexpr std::array kTerms = {
          .help = "slip forces slip_force·(1 ± A) in the direction of positive and of\n"
                  "negative displacement, A [-], or fit; identified by a virgin branch,\n"
                  "else it needs --fix force_offset=N"},
-    Term{.name = "plateau_slope",
-         .unit = "N/m",
-         .meaning = "of a force in addition to the contact's, slope·δ",
-         .entry = Entry::kLinear,
-         .presence = Presence::kOnDemand,
-         .lowest = -kWidest,
-         .highest = kWidest,
-         .scale = Stiffness,
-         .column = Regressor::kDisplacement,
-         .option = "--plateau-slope",
-         .help = "fit a force that grows with the displacement in addition to the contact's [N/m]"},
+    Term{
+        .name = "plateau_slope",
+        .unit = "N/m",
+        .meaning = "of a force in addition to the contact's, slope·δ",
+        .entry = Entry::kLinear,
+        .presence = Presence::kOnDemand,
+        .lowest = -kWidest,
+        .highest = kWidest,
+        .scale = Stiffness,
+        .column = Regressor::kDisplacement,
+        .option = "--plateau-slope",
+        .help = "fit a force that grows with the displacement in addition to\nthe contact's [N/m]"},
     Term{
         .name = "viscous",
         .unit = "N s/m",
@@ -314,8 +315,8 @@ constexpr std::array kTerms = {
         .scale = Length,
         .option = "--backlash",
         .argument = "G|fit",
-        .help = "width of a gap before the contact that is crossed at zero force, G [m],\n"
-                "or fit"},
+        .help = "width of a gap before the contact that is crossed at zero\n"
+                "force, G [m], or fit"},
     Term{.name = "covariate",
          .unit = "N/unit",
          .meaning = "C of a force C·column in addition to the contact's, one for each column that "
@@ -333,7 +334,7 @@ constexpr std::array kTerms = {
          .of_column = true,
          .option = "--covariate",
          .argument = "COL[=C|fit]",
-         .help = "a force C·column in addition to the contact's, C [N/unit] of the column;\n"
+         .help = "a force C·column in addition to the contact's, C [N/unit];\n"
                  "default fit; columns by header name or 1-based number; repeatable"},
     Term{.name = "force_offset",
          .unit = "N",
