@@ -93,6 +93,7 @@ std::vector<BatchEntry> FitInThreads(const BatchCommandOptions& options, const C
   const std::vector<std::string>& files = options.request.files;
   PageNames names;
   std::vector<std::string> pages;
+  pages.reserve(files.size());
   for (const std::string& file : files) pages.push_back(names.Next(file));
   const auto page_of = [&](std::size_t k) -> WritePage {
     if (options.report_directory.empty()) return {};

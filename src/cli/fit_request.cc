@@ -278,7 +278,7 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
        "default the header's, else m");
   unit("--force-unit", columns.force,
        "N, mN, uN, kN, MN, lbf, kgf, gf, daN, kip; of a torque 'N m', 'mN m',\n"
-       "'uN m', 'kN m', 'N mm', 'lbf in', 'lbf ft'; default the header's, else N");
+       "'uN m', 'kN m', 'N mm', 'lbf in', 'lbf ft'; else the header's or N");
   unit("--time-unit", columns.time, "s, ms, us, min; default the header's, else s");
   unit("--normal-load-unit", columns.normal_load, "as --force-unit of a force");
   const auto calibration = [&](const std::string& name, io::ColumnChoice& choice,

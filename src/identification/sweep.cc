@@ -16,7 +16,7 @@
 namespace mindahl::identification {
 namespace {
 
-constexpr std::array<const char*, 3> kNames = {"sigma", "alpha", "slip_force"};
+constexpr std::array<const char*, 3> kSweepNames = {"sigma", "alpha", "slip_force"};
 constexpr std::array<const char*, 3> kUnits = {"N/m", "-", "N"};
 constexpr double kLargestAlpha = 20.0;
 // Bounds of σ and Tc as factors of the greatest stiffness and force of the sweep.
@@ -129,8 +129,8 @@ class SweepProblem {
     lower_ = {std::log(stiffness_ / kFarthestScale), 0.0, std::log(least_slip)};
     upper_ = {std::log(stiffness_ * kFarthestScale), kLargestAlpha,
               std::log(force_ * kFarthestScale)};
-    for (std::size_t k = 0; k < kNames.size(); ++k) {
-      const auto found = options_.fixed.find(kNames[k]);
+    for (std::size_t k = 0; k < kSweepNames.size(); ++k) {
+      const auto found = options_.fixed.find(kSweepNames[k]);
       if (found == options_.fixed.end()) continue;
       fixed_[k] = k == 1 ? found->second : std::log(found->second);
     }
@@ -146,9 +146,10 @@ class SweepProblem {
   [[nodiscard]] double scale() const { return scale_; }
   /// True at a bound of the search, and not at one of the law: α = 0, and over forces the least Tc.
   [[nodiscard]] bool IsAtSearchBound(std::size_t k, double value) const {
-    constexpr double kNear = 1e-6;
+    constexpr double kNearBoundOfSweep = 1e-6;
     const bool is_law_below = k == 1 || (k == 2 && options_.over_force);
-    return value >= upper_[k] - kNear || (!is_law_below && value <= lower_[k] + kNear);
+    return value >= upper_[k] - kNearBoundOfSweep ||
+           (!is_law_below && value <= lower_[k] + kNearBoundOfSweep);
   }
 
   /// Returns the best fit from nine starts.
@@ -350,7 +351,7 @@ SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> res
   RequirePositive(amplitude, "amplitude of a sweep");
   RequirePositive(response, "response of a sweep");
   for (const auto& [name, value] : options.fixed) {
-    if (std::ranges::find(kNames, name) == kNames.end()) {
+    if (std::ranges::find(kSweepNames, name) == kSweepNames.end()) {
       throw InvalidArgument("a sweep has no parameter " + name +
                             ": sigma, alpha and slip_force are its own");
     }
@@ -401,13 +402,13 @@ SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> res
                              : quantile(boost::math::fisher_f(1, degrees), options.confidence);
   const double limit = best.sum_of_squares + quantile_of_one * variance;
   const std::array<std::optional<double>, 3> errors = problem.Errors(best.point);
-  for (std::size_t k = 0; k < kNames.size(); ++k) {
+  for (std::size_t k = 0; k < kSweepNames.size(); ++k) {
     const bool is_log = k != 1;
     const auto value_of = [&](double coordinate) {
       return is_log ? std::exp(coordinate) : coordinate;
     };
     ParameterEstimate estimate;
-    estimate.name = kNames[k];
+    estimate.name = kSweepNames[k];
     estimate.unit = kUnits[k];
     estimate.value = value_of(best.point[k]);
     if (problem.is_fixed(k)) {

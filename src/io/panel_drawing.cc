@@ -409,7 +409,7 @@ std::vector<SeriesLook> LooksOf(const PlotPanel& panel) {
 }
 
 std::string LegendSymbol(PlotStyle style, const SeriesLook& look) {
-  const std::string line = fmt::format("<path class=\"line {}\" d=\"M1 6H25\"/>", LineClass(look));
+  std::string line = fmt::format("<path class=\"line {}\" d=\"M1 6H25\"/>", LineClass(look));
   switch (style) {
     case PlotStyle::kLine:
       return line;

@@ -60,10 +60,10 @@ void Validate(const Plot& plot) {
 std::string StyleOfPlot() {
   // Of different lightness, distinct in grey and for colour-blind readers too; of shades from
   // early, dark, to late.
-  constexpr std::array<std::string_view, 6> kColours = {"#4878a8", "#d1495b", "#3a9d6e",
-                                                        "#8d6bb1", "#e09f3e", "#5f6b76"};
-  constexpr std::array<std::string_view, 8> kShades = {"#440154", "#46327e", "#365c8d", "#277f8e",
-                                                       "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
+  constexpr std::array<std::string_view, 6> kPlotColours = {"#4878a8", "#d1495b", "#3a9d6e",
+                                                            "#8d6bb1", "#e09f3e", "#5f6b76"};
+  constexpr std::array<std::string_view, 8> kPlotShades = {
+      "#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#8fb52d", "#c2a50a"};
   std::string rules =
       "text{font-family:sans-serif;font-size:13px;fill:#1b1f24}"
       ".grid,.axis,.mark,.line,.dots{fill:none}.grid{stroke:#e4e4e4}"
@@ -81,8 +81,8 @@ std::string StyleOfPlot() {
           kind, k, colours[k]);
     }
   };
-  add('s', kColours);
-  add('h', kShades);
+  add('s', kPlotColours);
+  add('h', kPlotShades);
   return rules;
 }
 

@@ -188,12 +188,14 @@ Json CommandJson(const RecommendationRequest& request, const Approximation& appr
 
 std::vector<std::string> CriterionNames() {
   std::vector<std::string> names;
+  names.reserve(kCriteria.size());
   for (const CriterionRow& row : kCriteria) names.emplace_back(row.name);
   return names;
 }
 
 Criterion FindCriterion(const std::string& name) {
   std::vector<std::string_view> names;
+  names.reserve(kCriteria.size());
   for (const CriterionRow& row : kCriteria) names.push_back(row.name);
   RequireOneOf("--criterion", name, names);
   return std::ranges::find(kCriteria, name, &CriterionRow::name)->criterion;

@@ -67,8 +67,8 @@ OF_OTHERS = {
     "--static",
     "--component", "--no-index", "--no-deps", "--no-build-isolation",
     "--details", "--half", "--jobs", "--kind", "--loops", "--problems", "--repeats", "--rounds",
-    "--write",
-    "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
+    "--shards", "--tests", "--write",
+    "--array", "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }
 
 
