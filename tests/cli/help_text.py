@@ -31,7 +31,7 @@ WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
 WIDE_LINES_LEFT = {"mindahl": 13, "fit": 12, "simulate": 6, "contact": 2, "tradeoff": 3, "convert": 1,
                    "recommend": 3, "plan": 2,
-                   "track": 9, "batch": 12}  # those that it shares with fit
+                   "track": 8, "batch": 10}  # those that it shares with fit
 
 # What an option may take without having a unit: names, files and whole numbers.
 WITHOUT_UNIT = re.compile(r"^(|COL|DIR|FILE|K/N|LIST|PATH|PATH REQUIRED|UNIT|FILE \.\.\. REQUIRED|UINT=\d+|TEXT:\{.*)$")
