@@ -36,7 +36,7 @@ constexpr const char* kLookAtTheLoad =
     "look whether the normal load varies with the position; where it is recorded, name its column "
     "with --normal-load-column";
 
-constexpr std::array<CauseRow, 26> kCauses = {{
+constexpr std::array<CauseRow, 27> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
@@ -104,6 +104,9 @@ constexpr std::array<CauseRow, 26> kCauses = {{
      "a friction that falls by {} from the narrowest stroke to the widest",
      "fit each amplitude alone"},
     {"displacement_drift", "a displacement that drifts by {}", nullptr, "give --drift"},
+    {"clock_drift", "a force whose clock falls behind by {} over the record",
+     "a force whose clock gains {} over the record",
+     "sample both channels by one clock, or fit parts of the record"},
     {"heavy_tails", "readings, {} of all, that are far off their neighbours", nullptr,
      "look for disturbances of the channel"},
     {"position_ripple",

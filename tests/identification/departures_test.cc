@@ -447,6 +447,20 @@ std::vector<Case> Cases() {
        made([](auto&, double size, double force, double x, double) {
          return force + std::abs(force) * size * x * x;
        })},
+      {"clock_drift", 0, kDuration,
+       [](const Departed& departed, double size) {
+         std::vector<double> force = Late(departed, size / 2);
+         const std::vector<double> early = Late(departed, -size / 2);
+         const double from = (departed.motion.time.front() + departed.motion.time.back()) / 2;
+         for (std::size_t i = 0; i < force.size(); ++i) {
+           const double late = 0.5 + (departed.motion.time[i] - from) / departed.whole;
+           force[i] = late * force[i] + (1 - late) * early[i];
+         }
+         return force;
+       },
+       kDifferences},
+      {"clock_drift", 1, 2 * kDuration,
+       [](const Departed& departed, double size) { return Late(departed, size); }, kDifferences},
   };
 }
 

@@ -81,10 +81,11 @@ enum DepartureRow : std::size_t {
   kDisplacementDrift,
   kSpeedPower,
   kSlipPositionQuadratic,
+  kClockDrift,
 };
 
 // Sizes are of the first column; where there are several, the meaning says what the others are.
-constexpr std::array<Departure, 23> kDepartures = {{
+constexpr std::array<Departure, 24> kDepartures = {{
     {.code = "channel_lag",
      .meaning = "by which the force's channel is late",
      .unit = "s",
@@ -200,6 +201,13 @@ constexpr std::array<Departure, 23> kDepartures = {{
      .unit = "-",
      .option = "--slip-position quadratic",
      .simpler = {"slip_position", "plateau_slope"}},
+    {.code = "clock_drift",
+     .meaning = "by which the force falls behind from the first record's beginning to its end; and "
+                "a lag from there on",
+     .unit = "s",
+     .option = "",
+     .unit_by_sample = "samples",
+     .simpler = {"channel_lag"}},
 }};
 
 /// Fraction of the travel to slip that the branch has covered.
@@ -218,7 +226,7 @@ double Bulge(const ForcePlace& at) {
 /// Column of unequal slip forces; of a contact that had slipped only an offset of the force.
 double ByAsymmetry(const ForcePlace& at) { return at.asymmetry; }
 
-constexpr std::array<ForceColumn, 32> kForceColumns = {{
+constexpr std::array<ForceColumn, 34> kForceColumns = {{
     {kLag, Along::kForce, [](const ForcePlace& at) { return -at.force_rate; }},
     {kViscous, Along::kForce, [](const ForcePlace& at) { return at.velocity; }},
     {kPlateauSlope, Along::kForce, [](const ForcePlace& at) { return at.displacement; }},
@@ -269,6 +277,8 @@ constexpr std::array<ForceColumn, 32> kForceColumns = {{
      [](const ForcePlace& at) { return std::abs(at.force) * at.displacement; }},
     {kSlipPositionQuadratic, Along::kForce,
      [](const ForcePlace& at) { return std::abs(at.force) * at.displacement * at.displacement; }},
+    {kClockDrift, Along::kForce, [](const ForcePlace& at) { return -at.force_rate * at.time; }},
+    {kClockDrift, Along::kForce, [](const ForcePlace& at) { return -at.force_rate; }},
 }};
 
 /// Second derivative by time, of the parabola through every other sample: one between neighbours
@@ -438,6 +448,8 @@ double UnitOfSize(std::size_t departure, const ScaledRecords& data, double clock
   switch (departure) {
     case kLag:
       return clock;
+    case kClockDrift:
+      return 2 * clock;  // time is from −1 to 1
     case kSmoothing:
       return clock * clock;
     case kViscous:
