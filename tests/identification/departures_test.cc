@@ -459,8 +459,9 @@ std::vector<Case> Cases() {
          return force;
        },
        kDifferences},
-      {"clock_drift", 1, 2 * kDuration,
-       [](const Departed& departed, double size) { return Late(departed, size); }, kDifferences},
+      {"clock_drift", 1, kDuration,
+       [](const Departed& departed, double size) { return Late(departed, size / 2); },
+       kDifferences},
   };
 }
 

@@ -118,6 +118,17 @@ double ChanceOf(double likelihood_ratio) {
   return PValueOfChiSquared(std::max(likelihood_ratio, 0.0), 1.0);
 }
 
+/// True of readings that are held, a fifth of them and more: what is missing of the motion then is
+/// no white noise.
+bool AreHeld(std::span<const double> displacement) {
+  constexpr double kOften = 0.2;
+  std::size_t repeated = 0;
+  for (std::size_t i = 1; i < displacement.size(); ++i) {
+    if (displacement[i] == displacement[i - 1]) ++repeated;
+  }
+  return static_cast<double>(repeated) > kOften * static_cast<double>(displacement.size());
+}
+
 constexpr double kReach = 7.0;  // ln: of the one noise from 1/30 to 30 times the other
 
 }  // namespace
@@ -131,6 +142,7 @@ std::optional<SlopeScatter> FindSlopeScatter(const loop::PreparedRecords& prepar
   double of_readings = 0.0;  // in units of the data
   for (const loop::PreparedRecord& record : prepared.records) {
     if (record.encoder_step > 0 || record.displacement_noise > 0) return std::nullopt;
+    if (AreHeld(record.readings().displacement)) return std::nullopt;
     of_readings = std::max(of_readings, LargestNoise(record.readings().displacement) / data.length);
   }
   if (!(of_readings > 0) || !std::isfinite(of_readings)) return std::nullopt;

@@ -23,8 +23,8 @@ struct SlopeScatter {
 /// Both chances are of the likelihood ratio, over 1.94 since neighbouring differences share
 /// samples, by χ² of one degree of freedom; of σ_δ = 0, a bound, by half of it.
 ///
-/// Nothing for a displacement that an encoder read, that was smoothed, or that answers an imposed
-/// force, and where what is not smooth in the readings would be too little to matter.
+/// Nothing for a displacement that an encoder read, that is held or smoothed, or that answers an
+/// imposed force, and where what is not smooth in the readings would be too little to matter.
 /// @param theta     of the solution
 /// @param residual  weighted, of every sample of the problem
 std::optional<SlopeScatter> FindSlopeScatter(const loop::PreparedRecords& prepared,
