@@ -7,6 +7,7 @@
 #   install-dependencies.sh --coverage  also what counts the lines that tests run
 #   install-dependencies.sh --fuzz      also the compiler whose libFuzzer runs tests/fuzz
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
+#   install-dependencies.sh --site      also what makes the pages a site and looks at the licences
 set -euo pipefail
 
 packages=(
@@ -26,7 +27,7 @@ for group in "$@"; do
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )
       ;;
-    --checks) packages+=(clang-format clang-tidy-19 doxygen chromium mkdocs reuse) ;;  # chromium: 290 MB
+    --checks) packages+=(clang-format clang-tidy-19 doxygen chromium) ;;  # chromium: 290 MB
     --packages) packages+=(dpkg-dev file lintian mmdebstrap pybind11-dev python3-dev python3-numpy) ;;
     --peers)
       packages+=(libbenchmark-dev python3-lmfit python3-scipy python3-pandas lammps liggghts gnuplot-nox)
@@ -36,9 +37,10 @@ for group in "$@"; do
     --coverage) packages+=(gcovr) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --workflow) packages+=(snakemake) ;;
+    --site) packages+=(mkdocs reuse) ;;
     *)
       echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers," \
-        "--coverage, --fuzz or --workflow" >&2
+        "--coverage, --fuzz, --workflow or --site" >&2
       exit 2
       ;;
   esac
