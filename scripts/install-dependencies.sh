@@ -7,6 +7,7 @@
 #   install-dependencies.sh --coverage  also what counts the lines that tests run
 #   install-dependencies.sh --fuzz      also the compiler whose libFuzzer runs tests/fuzz
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
+#   install-dependencies.sh --readers   also what reads other files and runs the notebooks, in Python
 #   install-dependencies.sh --site      also what makes the pages a site and looks at the licences
 set -euo pipefail
 
@@ -22,8 +23,6 @@ for group in "$@"; do
       packages+=(
         libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema man-db pkg-config
         pybind11-dev python3-dev python3-numpy python3-pandas python3-matplotlib
-        python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
-        python3-nbclient python3-nbformat python3-ipykernel
         python3-pytest python3-pip python3-setuptools python3-venv python3-wheel mypy
       )
       ;;
@@ -37,10 +36,16 @@ for group in "$@"; do
     --coverage) packages+=(gcovr) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --workflow) packages+=(snakemake) ;;
+    --readers)
+      packages+=(
+        python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
+        python3-nbclient python3-nbformat python3-ipykernel
+      )
+      ;;
     --site) packages+=(mkdocs reuse) ;;
     *)
       echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers," \
-        "--coverage, --fuzz, --workflow or --site" >&2
+        "--coverage, --fuzz, --workflow, --readers or --site" >&2
       exit 2
       ;;
   esac

@@ -108,9 +108,9 @@ void RequireTrackOptions(const TrackCommandOptions& options) {
 /// Returns a word of the options that rows depend on, FNV-1a (Fowler, Noll & Vo 1991) of their
 /// names and values: rows made with others are not gone on with, though the last ones be the same.
 std::uint64_t SeedOf(const CLI::App& command) {
-  constexpr std::array<std::string_view, 10> kOfNoRow = {
-      "help",   "output",    "json",    "plot",       "report",
-      "resume", "overwrite", "threads", "files-from", "shard"};
+  constexpr std::array<std::string_view, 11> kOfNoRow = {
+      "help",     "output",    "json",    "plot",       "report", "resume",
+      "separate", "overwrite", "threads", "files-from", "shard"};
   std::uint64_t seed = 0xcbf29ce484222325U;
   const auto add = [&seed](std::string_view text) {
     for (const char character : text) {
@@ -729,14 +729,12 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
                       {"--report", options.report_path}},
                      read);
   if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
-  if (options.separate && options.request.join) {
-    throw InputError("--separate and --join contradict each other: give one of the two");
+  if ((options.separate || !options.list.shard.empty()) && options.request.join) {
+    throw InputError("--separate, or --shard, and --join contradict each other: leave one out");
   }
-  if (options.separate) return SeparateRuns(options, command, console).Go();
-  if (!options.list.shard.empty()) {
-    throw InputError(
-        "--shard: the files are pieces of one test, whose cycles and energy count on from file to "
-        "file: add --separate where each is a test of its own");
+  // Pieces of one test, whose cycles and energy count on from file to file, have no parts.
+  if (options.separate || !options.list.shard.empty()) {
+    return SeparateRuns(options, command, console).Go();
   }
   RequireTrackOptions(options);
   TrackRun(options, command, console).Go();
@@ -766,7 +764,7 @@ void AddTrackCommand(CLI::App& app, Console& console) {
       ->add_flag("--separate", options->separate,
                  "each file is a test of its own: one table of all, with columns for the\n"
                  "test, the version, the SHA-256 of the file and why a test failed, which\n"
-                 "does not stop the others")
+                 "does not stop the others; implied by --shard")
       ->group("Files");
   AddShard(*command, options->list);
   AddJoin(*command, options->request);

@@ -256,7 +256,8 @@ std::string SeparateTests::ToJson() const {
 }
 
 std::string SeparateTests::ToText() const {
-  std::string text = fmt::format("{} tests, {} fits in {}\n", tests_, fits_, output_);
+  std::string text = fmt::format("{} test{}, {} fit{} in {}\n", tests_, tests_ == 1 ? "" : "s",
+                                 fits_, fits_ == 1 ? "" : "s", output_);
   if (kept_ > 0) text += fmt::format("{} of them were there already\n", kept_);
   text += fmt::format("{:.6g} J dissipated in all\n", energy_);
   if (flagged_ > 0) {

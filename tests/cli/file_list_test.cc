@@ -237,12 +237,15 @@ TEST_F(SeparateTests, RefuseToGoOnWithWhatWasMadeOtherwise) {
   EXPECT_EQ(FileContent(Path("all.csv")), whole);
 }
 
-TEST_F(SeparateTests, AreAskedForWhereFilesAreSharded) {
-  const Outcome outcome =
-      RunCommand({"track", files_[0], files_[1], "--shard", "1/2", "--output", Path("one.csv")});
-  EXPECT_EQ(outcome.status, kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("add --separate"));
+TEST_F(SeparateTests, AreWhatShardsAreOf) {
+  Track("with.csv", {"--shard", "1/2"});
+  std::vector<std::string> words = {"track"};
+  words.insert(words.end(), files_.begin(), files_.end());
+  words.insert(words.end(), {"--shard", "1/2", "--output", Path("without.csv")});
+  RunCommand(words);
+  EXPECT_EQ(FileContent(Path("without.csv")), FileContent(Path("with.csv")));
   EXPECT_EQ(Track("no.csv", {"--plot", Path("no.svg")}).status, kBadInput);
+  EXPECT_EQ(Track("no.csv", {"--join"}).status, kBadInput);
 }
 
 }  // namespace
