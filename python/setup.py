@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 VERSION = re.search(r"project\(mindahl VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())
 
 
-# What every Linux has that has a Python of this kind, by the policy of manylinux (PEP 600).
+# Libraries that every Linux with a Python of this kind has, by the policy of manylinux (PEP 600).
 SYSTEM = re.compile(r"(linux-vdso|ld-linux.*|lib(c|m|dl|rt|pthread|util|gcc_s|stdc\+\+))\.so.*")
 
 

@@ -17,7 +17,7 @@ Column = Union[str, int]
 Calibration = Mapping[str, tuple[Optional[float], float]]
 """Gain and zero of a column, by its role."""
 
-# What a quantity with a unit may be in, by its role.
+# Units in which a quantity is read, by its role.
 UNITS = {"displacement": ("m", "rad"), "force": ("N", "N*m"), "time": ("s",),
          "normal_load_column": ("N",)}
 

@@ -161,7 +161,7 @@ BatchEntry FaultyEntry(const std::string& name, const std::string& fault) {
   return entry;
 }
 
-/// What goes from one process to another: name, fault, whether done, notes, and the fit's JSON.
+/// Returns what another process needs of an entry: name, fault, done, notes, JSON and digest.
 py::tuple StateOf(const BatchEntry& entry) {
   return py::make_tuple(entry.result.file, entry.result.fault, entry.done, entry.notes,
                         request::FitJson(entry), entry.sha256);

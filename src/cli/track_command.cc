@@ -639,7 +639,7 @@ void SeparateRuns::ReadKept() {
       }
     }
     if (is_another && fault.empty()) ThrowOther(cells.test);
-    // What the system refused then, and gives now, is no fault of the record.
+    // A file that could not be read then and can be now is tracked again.
     is_another = is_another || (fault.starts_with("cannot read") && !cells.sha256.empty());
     if (is_another) return;
     has_rows_ = fault.empty() && !has_line;
@@ -729,13 +729,12 @@ void RunTrack(const TrackCommandOptions& options, const CLI::App& command, Conso
                       {"--report", options.report_path}},
                      read);
   if (!options.plot_path.empty()) io::RequirePlotName(options.plot_path);
-  if ((options.separate || !options.list.shard.empty()) && options.request.join) {
+  // Pieces of one test, whose cycles and energy count on from file to file, have no shards.
+  const bool is_separate = options.separate || !options.list.shard.empty();
+  if (is_separate && options.request.join) {
     throw InputError("--separate, or --shard, and --join contradict each other: leave one out");
   }
-  // Pieces of one test, whose cycles and energy count on from file to file, have no parts.
-  if (options.separate || !options.list.shard.empty()) {
-    return SeparateRuns(options, command, console).Go();
-  }
+  if (is_separate) return SeparateRuns(options, command, console).Go();
   RequireTrackOptions(options);
   TrackRun(options, command, console).Go();
 }

@@ -435,7 +435,7 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
 /// Fills what the law loses in each cycle where that changes from cycle to cycle.
 void FillLawEnergy(const Attempt& attempt, FitResult& result) {
   const ParameterEstimate* asymmetry = result.Find("asymmetry");
-  // Of Dahl's own law z² adds as much on the way up as it takes on the way down.
+  // In Dahl's own law z² adds as much to the upward stroke as it takes from the downward one.
   const bool is_asymmetric = asymmetry != nullptr && asymmetry->value != 0 &&
                              result.model->memory == models::Memory::kReturnPoint;
   for (std::size_t r = 0; r < result.records.size(); ++r) {
@@ -758,8 +758,8 @@ void Infer(const Attempt& attempt, const Problem& problem, const Solution& solut
   if (is_judged) {
     ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
   }
-  result.parameters[kStiffness] =
-      CoverSlipFactor(problem, solution, std::move(result.parameters[kStiffness]));
+  result.parameters[kStiffness] = CoverSlipFactor(
+      problem, solution, std::move(result.parameters[kStiffness]), buffers.response);
   result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
   Append(result.findings, FindUnseenLoop(result, thresholds));
   Append(result.findings, FindWideIntervals(result, thresholds));

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
+#include "core/probability.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::identification {
@@ -317,7 +316,7 @@ double CorrelationPValue(std::span<const double> amplitude, std::span<const doub
   }
   if (!(squares > 0)) return 1.0;
   const double z = std::abs(products / squares) * std::sqrt(static_cast<double>(amplitude.size()));
-  return 2 * boost::math::cdf(boost::math::complement(boost::math::normal(), z));
+  return std::erfc(z / std::numbers::sqrt2);
 }
 
 Identifiability VerdictOf(const ParameterEstimate& parameter) {
@@ -396,10 +395,9 @@ SweepFit FitSweep(std::span<const double> amplitude, std::span<const double> res
   // Sums of squares are over the scale², and so is the variance.
   const double known = options.response_noise.value_or(0.0) / problem.scale();
   const double variance = options.response_noise ? known * known : best.sum_of_squares / degrees;
-  using boost::math::quantile;
+  const double chance = 1 - options.confidence;
   const double quantile_of_one =
-      options.response_noise ? quantile(boost::math::chi_squared(1), options.confidence)
-                             : quantile(boost::math::fisher_f(1, degrees), options.confidence);
+      options.response_noise ? ChiSquaredQuantile(1, chance) : FQuantile(1, degrees, chance);
   const double limit = best.sum_of_squares + quantile_of_one * variance;
   const std::array<std::optional<double>, 3> errors = problem.Errors(best.point);
   for (std::size_t k = 0; k < kSweepNames.size(); ++k) {

@@ -173,7 +173,7 @@ std::optional<TermScore> TermScores::Of(const FitOptions& with) {
       for (const std::size_t p : added) {
         const Parameter& parameter = parameters[p];
         double& value = score.values[parameters.NameOf(p)];
-        // Of a rig it is the compliance that goes one step from none.
+        // The linear step of a rig is one of its compliance, which starts at zero.
         if (p == kRig) value = theta[p] - std::log(std::max(theta[p] - value, 1.0));
         const double inside =
             std::clamp(value, kOfBound * parameter.lower + (1 - kOfBound) * parameter.upper,

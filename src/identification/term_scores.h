@@ -74,7 +74,7 @@ class TermScores {
   loop::PreparedRecords prepared_;
   ScaledRecords data_;
   Response response_;
-  // Of the fit that is stepped from:
+  // The fit from which the steps are taken:
   std::map<std::string, double> values_;  // of its parameters
   std::set<std::string> free_;            // of these
   models::InitialState state_ = models::InitialState::kSteady;

@@ -218,7 +218,7 @@ bool IsUnphysical(const TermScore& score) {
   });
 }
 
-/// What another candidate of a round, in place of the one that was added, would make of the law.
+/// Holds the law that another candidate of a round gives in place of the one that was added.
 struct Alternative {
   std::string name;
   std::map<std::string, double> law;  // differences of θ of σ, α and Tc

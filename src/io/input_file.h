@@ -11,9 +11,7 @@
 
 namespace mindahl::io {
 
-/// Files that are read, and standard input under the name "-".
-
-/// A line longer than that is no row of a record.
+/// Bytes of the longest line that is read as a row of a record.
 inline constexpr std::size_t kLongestLine = 16U << 20U;
 
 /// Returns what messages call the file.

@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t kMostPointsOfPlot = 20'000;
 
-// Of a panel [px].
+// Heights of a plot's and its panels' parts [px].
 constexpr double kTitleHeight = 40;     // of the whole plot
 constexpr double kSubtitleHeight = 22;  // under it
 constexpr double kHeading = 26;         // title and legend of a panel, above its drawing
@@ -58,8 +58,8 @@ void Validate(const Plot& plot) {
 /// Returns the rules of style of a drawing by itself, on white, without variables, which programs
 /// that convert SVG do not know.
 std::string StyleOfPlot() {
-  // Of different lightness, distinct in grey and for colour-blind readers too; of shades from
-  // early, dark, to late.
+  // Colours differ in lightness, so that they are distinct in grey and for colour-blind readers
+  // too; shades go from early, dark, to late.
   constexpr std::array<std::string_view, 6> kPlotColours = {"#4878a8", "#d1495b", "#3a9d6e",
                                                             "#8d6bb1", "#e09f3e", "#5f6b76"};
   constexpr std::array<std::string_view, 8> kPlotShades = {

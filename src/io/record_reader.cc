@@ -135,7 +135,8 @@ std::optional<Unit> LengthOrAngleUnit(std::string_view symbol) {
 constexpr Role kLoadOfTorsion{
     "normal load", kNormalLoadAliases,     ForceOrTorqueUnit,   ForceOrTorqueUnitSymbols,
     "N",           "--normal-load-column", "--normal-load-unit"};
-/// What drives a simulated contact, or joint.
+
+/// Column of the motion that drives a simulated contact or joint.
 constexpr Role kDrive{
     "displacement",   kDisplacementAliases, LengthOrAngleUnit, LengthOrAngleUnitSymbols, "m",
     "--displacement", "--displacement-unit"};

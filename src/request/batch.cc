@@ -110,7 +110,7 @@ std::string CsvOf(const BatchCell& cell) {
     return text->empty() ? "" : io::CsvCell(*text);
   }
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
-  // As many digits as read back the same double.
+  // dump() writes the digits that read back the same double.
   if (const auto* number = std::get_if<double>(&cell)) return Json(*number).dump();
   return "";
 }

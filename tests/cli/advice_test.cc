@@ -131,7 +131,7 @@ TEST(FirstCause, OfMeasuredRecordsMatchesTheirDescription) {
     const std::string file = testing::MeasuredPath(measured.file);
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured record " << file;
     SCOPED_TRACE(measured.file);
-    // Of the law alone: a cause that is added as a term is one no longer.
+    // The law alone is fitted, since a cause that is added as a term is one no longer.
     Words fit = {"fit", file, "--terms", "none", "--json", "-"};
     fit.insert(fit.end(), measured.options.begin(), measured.options.end());
     const Outcome outcome = RunCommand(fit);

@@ -6,7 +6,7 @@
 //   MINDAHL_FAULT=write:3~   the third writes half of what it is given, later ones fail
 //   MINDAHL_FAULT_COUNTS=F   writes to the file F at exit how often each call was made
 //
-// What the program starts (rsvg-convert) is left alone, and what it writes to standard error.
+// Programs that it starts (rsvg-convert) and its standard error are left alone.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>

@@ -29,7 +29,7 @@ constexpr int kSamples = 200;  // a cycle
 // Samples are rounded to 1e-16; α, A and the offsets are told apart with a condition below 1e4.
 constexpr double kExact = 1e-12;
 
-/// What a joint is driven by: a motion of some knees, a torque about a mean.
+/// Holds the drive of a joint: a motion of some knees, a torque about a mean.
 struct Drive {
   BranchLaw law = {3e5, 1.0, 12.0};
   double asymmetry = -0.35;

@@ -106,7 +106,7 @@ TEST(ModelTerms, StatedRigIsBetweenOneThatIsHeldAndOneThatIsFitted) {
   EXPECT_TRUE(covers(stated, "rig_stiffness", kRig));
   EXPECT_TRUE(covers(stated, "sigma", kMindlin.tangential_stiffness));
   EXPECT_TRUE(covers(stated, "alpha", kMindlin.shape_exponent));
-  // What the record says of the rig only adds to what is stated.
+  // The record only adds to what is stated about the rig.
   EXPECT_LE(*stated.Find("rig_stiffness")->standard_error, 1.01 * 0.03 * kOff * kRig);
   EXPECT_GT(*stated.Find("sigma")->standard_error, *of_held.Find("sigma")->standard_error);
 

@@ -99,7 +99,7 @@ TEST(Plot, DrawsPointsOnlyForThatStyle) {
   EXPECT_EQ(Dots(Svg(OnePanel({"", {0, 1, 2}, {0, 1, 0}, PlotStyle::kLine}))), 0u);
 }
 
-/// Where a text begins, or ends, in its drawing, from the left and the top [px].
+/// Returns the anchor of a text in its drawing, from the left and the top [px].
 std::pair<double, double> PlaceOf(const std::string& svg, const std::string& text) {
   const std::size_t at = svg.rfind("<text x=\"", svg.find(">" + text + "<"));
   if (at == std::string::npos) throw std::runtime_error("no " + text);

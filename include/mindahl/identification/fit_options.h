@@ -19,7 +19,7 @@ using loop::Interval;
 /// Sets the weight of large residuals: full, or less (reweighting.h has the constants).
 enum class Loss { kNone, kHuber, kCauchy, kTukey };
 
-/// What is known of a parameter, and how well: a normal law of its logarithm.
+/// Holds a stated parameter with its uncertainty: its logarithm is normally distributed.
 struct StatedValue {
   double value = 0.0;                 ///< in the parameter's unit, > 0
   double standard_uncertainty = 0.0;  ///< likewise

@@ -11,7 +11,7 @@
 
 namespace mindahl::identification {
 
-/// Which stiffness of a loop a rig reports.
+/// Names the stiffness of a loop that a rig reports.
 enum class SweepStiffness {
   kSecant,   ///< T*/X between the loop's extremes
   kTangent,  ///< dT/dδ of first loading, as of a small oscillation at a force that was reached

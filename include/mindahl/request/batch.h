@@ -32,7 +32,7 @@ struct BatchEntry {
 /// Reads the records of one source, with notes on what was assumed.
 using ReadSource = std::function<std::vector<io::RecordFile>(const FitRequest&, const Tell& note)>;
 
-/// Is given a report, and returns the name of the page that it wrote; empty: no pages.
+/// Writes the page of a report and returns its name; an empty function writes no pages.
 using WritePage = std::function<std::string(const report::Report&)>;
 
 /// Fits one source on its own. A fault of the source is one of the entry.

@@ -15,7 +15,7 @@ namespace mindahl::request {
 /// Laws that a conversion may start from.
 inline constexpr std::array<std::string_view, 2> kLawsToConvert = {"masing", "dahl"};
 
-/// What is to be converted: docs/contract.md, `mindahl convert`.
+/// Holds the law to convert and its target: docs/contract.md, `mindahl convert`.
 struct ConversionRequest {
   models::BranchLaw law;
   std::string from = "masing";  ///< of kLawsToConvert

@@ -37,10 +37,10 @@ inline constexpr std::array<std::string_view, 4> kLosses = {"none", "huber", "ca
 /// Models that can be fitted, and kAutomatic.
 std::vector<std::string_view> ModelNames();
 
-/// What is asked of a term.
+/// Says whether a term is fitted, held or stated with an uncertainty.
 struct TermRequest {
   std::optional<double> value;  ///< at which it is held; empty: it is fitted
-  /// Of the value, about which it is then fitted; of rig_stiffness alone. Empty: it is exact.
+  /// Standard uncertainty of the value, with which rig_stiffness alone is fitted; empty: exact.
   std::optional<double> standard_uncertainty = {};
   std::string form;  ///< "linear" or "quadratic", of --slip-position alone
 };

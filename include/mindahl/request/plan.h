@@ -15,7 +15,7 @@
 
 namespace mindahl::request {
 
-/// What is to be measured of a contact: docs/contract.md, `mindahl plan`.
+/// Holds the contact and the loops to plan: docs/contract.md, `mindahl plan`.
 struct PlanRequest {
   LawRequest law;
   /// Reads a record whose fit gives law and noise; then of the law only α may be given.

@@ -13,7 +13,8 @@
 
 namespace mindahl::request {
 
-/// What is to be computed, and how well: docs/contract.md, `mindahl recommend`.
+/// Holds the motion to compute and the error that is allowed: docs/contract.md, `mindahl
+/// recommend`.
 struct RecommendationRequest {
   LawRequest law;
   DriveRequest drive;

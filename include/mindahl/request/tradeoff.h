@@ -12,7 +12,7 @@
 
 namespace mindahl::request {
 
-/// What is studied: docs/contract.md, `mindahl tradeoff`.
+/// Holds the law and the excitations to study: docs/contract.md, `mindahl tradeoff`.
 struct TradeoffRequest {
   LawRequest law;                        ///< by default the contact of Peyret et al. (2017) §3
   std::vector<std::string> excitations;  ///< of ExcitationNames(); empty: all

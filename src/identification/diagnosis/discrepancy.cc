@@ -305,25 +305,13 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
 }
 
 ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& solution,
-                                  ParameterEstimate stiffness) {
-  const Parameters& parameters = problem.parameters;
-  const auto theta_of = [&](std::string_view name) {
-    return solution.theta[parameters.PositionOf(name, 0)];
-  };
-  const double of_speed = theta_of("slip_speed");
+                                  ParameterEstimate stiffness, Response& response) {
+  response.Bind(problem);
+  const LawPoint point = PointAt(problem, solution.theta);
   GrowingRange factors{1.0, 1.0};
   for (const ScaledRecord& record : problem.data->records) {
     for (const std::size_t i : record.reversals) {
-      const double position = record.displacement[i];
-      double factor = 1 +
-                      position * (theta_of("slip_slope") + theta_of("slip_curvature") * position) +
-                      theta_of("slip_trend") * record.time[i];
-      if (of_speed != 0) {
-        const double log_ratio = record.log_speed[i] - std::log(record.units.reference_speed);
-        factor += of_speed * std::expm1(theta_of("slip_speed_exponent") * log_ratio);
-      }
-      factor -= theta_of("drag_fraction");
-      factors.Include(factor);
+      factors.Include(response.SlipFactor(record, point, i));
     }
   }
   if (factors.lower == factors.upper || !stiffness.lower95 || !stiffness.upper95) return stiffness;

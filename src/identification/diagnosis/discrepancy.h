@@ -58,6 +58,6 @@ ParameterEstimates CoverDiscrepancy(const FittedProblem& fitted,
 /// on position, speed or time: such a force multiplies that of the contact, and with it the
 /// stiffness after a reversal, at rest and at the ends of the stroke.
 ParameterEstimate CoverSlipFactor(const Problem& problem, const Solution& solution,
-                                  ParameterEstimate stiffness);
+                                  ParameterEstimate stiffness, Response& response);
 
 }  // namespace mindahl::identification

@@ -113,7 +113,7 @@ std::vector<Finding> FindVaryingLoads(const ScaledRecords& data) {
       squares += change * change;
       ++count;
     }
-    // Of a load of either sign the mean is not that of its magnitude.
+    // The mean of a load of either sign differs from that of its magnitude.
     const double mean = sum / std::max(count, 1.0);
     Finding& finding = findings.emplace_back(Finding{
         .code = is_followed ? FindingCode("load_followed") : FindingCode("load_not_followed"),

@@ -336,22 +336,6 @@ std::vector<double> MissedWay(const ScaledRecord& record, std::span<const double
   return missed;
 }
 
-/// True if so many readings of the displacement are repeated that it may be read less often than
-/// the force?
-bool IsDisplacementRepeated(const ScaledRecords& data, std::span<const Neighbours> neighbours) {
-  constexpr double kOften = 0.2;  // of the samples: every fifth would be one
-  std::size_t repeated = 0;
-  std::size_t all = 0;
-  for (std::size_t r = 0; r < data.records.size(); ++r) {
-    const auto& samples = neighbours[r].samples;
-    for (std::size_t k = 1; k < samples.size(); ++k, ++all) {
-      const auto& displacement = data.records[r].displacement;
-      if (displacement[samples[k]] == displacement[samples[k - 1]]) ++repeated;
-    }
-  }
-  return static_cast<double>(repeated) > kOften * static_cast<double>(all);
-}
-
 /// Half the way [units of the data] of each sample's stroke; those that the record begins and ends
 /// on count as wide as their neighbours, since they may be cut.
 std::vector<double> StrokeAmplitudes(const ScaledRecord& record) {
@@ -538,7 +522,7 @@ DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const dou
   std::vector<Neighbours> neighbours;
   for (const ScaledRecord& record : records) neighbours.push_back(NeighboursOf(record));
   const Clock clock = ClockOf(*problem.data, neighbours);
-  const bool is_repeated = IsDisplacementRepeated(*problem.data, neighbours);
+  const bool is_repeated = IsDisplacementHeld(*problem.data, neighbours);
   const std::vector<std::vector<double>> amplitudes = AmplitudeScale(*problem.data);
   const bool tells_asymmetry = problem.state.Any(models::InitialState::kVirgin) &&
                                problem.model->memory == models::Memory::kReturnPoint &&

@@ -181,7 +181,7 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   result.determined.assign(count, true);
   if (count == 0) return result;
 
-  // What is stated of a parameter is one more reading, with the noise of the others.
+  // A stated parameter is one more reading, with the noise of the others.
   Eigen::MatrixXd stated = Eigen::MatrixXd::Zero(0, size);
   for (std::size_t j = 0; j < count; ++j) {
     const double root_weight = problem.parameters[result.columns[j]].stated_root_weight;

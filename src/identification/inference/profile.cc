@@ -149,7 +149,7 @@ SlipForceProfile ProfileSlipForce(const FittedProblem& fitted, const FitOptions&
   profile.ranges = RangesAt(best);
   const Parameter& parameter = problem.parameters[kSlipForce];
   const double critical = estimates.quantile() * estimates.quantile();  // of F(1, ν)
-  // Of many terms some lie at bounds in most of these searches, which are not searched twice.
+  // With many terms most of these searches end at a bound of one; they are not repeated.
   constexpr std::size_t kMany = 8;
   SolverOptions search = SolverOptionsOf(options);
   search.is_rough = problem.parameters.free().size() > kMany;

@@ -25,6 +25,20 @@ Neighbours NeighboursOf(const ScaledRecord& record) {
   return neighbours;
 }
 
+bool IsDisplacementHeld(const ScaledRecords& data, std::span<const Neighbours> neighbours) {
+  constexpr double kOften = 0.2;  // of the samples: every fifth would be one
+  std::size_t repeated = 0;
+  std::size_t all = 0;
+  for (std::size_t r = 0; r < data.records.size(); ++r) {
+    const auto& samples = neighbours[r].samples;
+    for (std::size_t k = 1; k < samples.size(); ++k, ++all) {
+      const auto& displacement = data.records[r].displacement;
+      if (displacement[samples[k]] == displacement[samples[k - 1]]) ++repeated;
+    }
+  }
+  return static_cast<double>(repeated) > kOften * static_cast<double>(all);
+}
+
 Clock ClockOf(const ScaledRecords& data, std::span<const Neighbours> neighbours) {
   Clock clock;
   for (std::size_t r = 0; r < data.records.size(); ++r) {

@@ -28,6 +28,10 @@ struct Clock {
 
 Clock ClockOf(const ScaledRecords& data, std::span<const Neighbours> neighbours);
 
+/// True if at least a fifth of the readings of the displacement repeat the one before: it may be
+/// read less often than the force, and what is missing of the motion is no white noise.
+bool IsDisplacementHeld(const ScaledRecords& data, std::span<const Neighbours> neighbours);
+
 /// Derivative by time, by differences to both sides.
 /// @param within_strokes  never beyond a turn; a turn is the stroke's that ends there
 void Derive(std::span<const double> values, std::span<const double> time,

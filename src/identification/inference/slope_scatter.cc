@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "core/least_of.h"
 #include "core/probability.h"
+#include "identification/inference/sampled_time.h"
 
 namespace mindahl::identification {
 namespace {
@@ -87,49 +89,12 @@ double ForceVarianceAt(std::span<const SlopeDifference> differences, double rati
   return squares / static_cast<double>(differences.size());
 }
 
-/// The argument of the least value, by golden sections.
-template <typename Function>
-double LeastOf(double low, double high, const Function& function) {
-  constexpr double kGolden = 0.6180339887498949;
-  constexpr int kSections = 25;
-  double one = high - kGolden * (high - low);
-  double other = low + kGolden * (high - low);
-  double at_one = function(one);
-  double at_other = function(other);
-  for (int k = 0; k < kSections; ++k) {
-    if (at_one < at_other) {
-      high = other;
-      other = one;
-      at_other = at_one;
-      one = high - kGolden * (high - low);
-      at_one = function(one);
-    } else {
-      low = one;
-      one = other;
-      at_one = at_other;
-      other = low + kGolden * (high - low);
-      at_other = function(other);
-    }
-  }
-  return (low + high) / 2;
-}
-
 double ChanceOf(double likelihood_ratio) {
   return PValueOfChiSquared(std::max(likelihood_ratio, 0.0), 1.0);
 }
 
-/// True of readings that are held, a fifth of them and more: what is missing of the motion then is
-/// no white noise.
-bool AreHeld(std::span<const double> displacement) {
-  constexpr double kOften = 0.2;
-  std::size_t repeated = 0;
-  for (std::size_t i = 1; i < displacement.size(); ++i) {
-    if (displacement[i] == displacement[i - 1]) ++repeated;
-  }
-  return static_cast<double>(repeated) > kOften * static_cast<double>(displacement.size());
-}
-
 constexpr double kReach = 7.0;  // ln: of the one noise from 1/30 to 30 times the other
+constexpr int kPlaces = 8;      // that are tried before the minimum next to the best
 
 }  // namespace
 
@@ -142,7 +107,6 @@ std::optional<SlopeScatter> FindSlopeScatter(const loop::PreparedRecords& prepar
   double of_readings = 0.0;  // in units of the data
   for (const loop::PreparedRecord& record : prepared.records) {
     if (record.encoder_step > 0 || record.displacement_noise > 0) return std::nullopt;
-    if (AreHeld(record.readings().displacement)) return std::nullopt;
     of_readings = std::max(of_readings, LargestNoise(record.readings().displacement) / data.length);
   }
   if (!(of_readings > 0) || !std::isfinite(of_readings)) return std::nullopt;
@@ -174,20 +138,23 @@ std::optional<SlopeScatter> FindSlopeScatter(const loop::PreparedRecords& prepar
   constexpr double kNegligible = 0.1;
   const double at_readings = of_readings * of_readings;
   if (!(alone > 0) || at_readings * largest < kNegligible * alone) return std::nullopt;
+  std::vector<Neighbours> neighbours;
+  for (const ScaledRecord& record : data.records) neighbours.push_back(NeighboursOf(record));
+  if (IsDisplacementHeld(data, neighbours)) return std::nullopt;
 
   const double middle = -std::log(largest);
   const auto profiled = [&](double log_ratio) {
     const double of_force = ForceVarianceAt(differences, std::exp(log_ratio));
     return DevianceAt(differences, of_force, std::exp(log_ratio) * of_force);
   };
-  const double ratio = std::exp(LeastOf(middle - kReach, middle + kReach, profiled));
+  const double ratio = std::exp(LeastOf(profiled, middle - kReach, middle + kReach, kPlaces));
   const double of_force = ForceVarianceAt(differences, ratio);
   const double least = DevianceAt(differences, of_force, ratio * of_force);
   const auto with_readings = [&](double log_variance) {
     return DevianceAt(differences, std::exp(log_variance), at_readings);
   };
-  const double beside =
-      LeastOf(std::log(alone) - kReach, std::log(alone) + 1, with_readings);  // σ_F² beside it
+  const double beside = LeastOf(with_readings, std::log(alone) - kReach, std::log(alone) + 1,
+                                kPlaces);  // σ_F² beside it
   // Differences that share samples are correlated by −2/3 and 1/6: 1 + 2(4/9 + 1/36).
   constexpr double kSharedSamples = 1.9444444444444444;
   const double count = static_cast<double>(differences.size()) / kSharedSamples;

@@ -120,6 +120,9 @@ class Response {
                               models::OriginSensitivity& sensitivity);
   /// Returns the loading path of a record of the problem that is bound, of its samples.
   const models::LoadingPath& PathOf(std::size_t record, std::span<const double> theta);
+  /// Returns the slip force over Tc at a sample of the problem that is bound.
+  [[nodiscard]] double SlipFactor(const ScaledRecord& record, const LawPoint& at,
+                                  std::size_t sample) const;
   /// Columns for derivatives on their way to a Jacobian; valid until the next call.
   std::span<double> Scratch(std::size_t size) {
     if (scratch_.size() < size) scratch_.resize(size);
@@ -134,9 +137,6 @@ class Response {
   /// Multiplies t and its derivatives by SlipFactor() at each sample.
   void ScaleBySlipForce(std::size_t record, const LawPoint& at, std::span<double> t,
                         const ResponseColumns& columns) const;
-  /// Returns the slip force at a sample over Tc.
-  [[nodiscard]] double SlipFactor(const ScaledRecord& record, const LawPoint& at,
-                                  std::size_t sample) const;
   void ScaleSensitivity(std::size_t record, const LawPoint& at,
                         models::OriginSensitivity& sensitivity) const;
   /// Returns the unit of the amount by which a record's samples are moved.

@@ -23,17 +23,19 @@ constexpr double kLargestLoadExponent = 5.0;
 
 // Below the least exponent the force is as good as a slip force.
 constexpr double kLeastSpeedExponent = 0.2;
-// Of a slip force: below, (v/v₀)^m − 1 is m·ln(v/v₀) to a tenth over two decades of speed.
+// Least exponent of a slip force: below it (v/v₀)^m − 1 is m·ln(v/v₀) within a tenth over two
+// decades of speed.
 constexpr double kLeastSlipSpeedExponent = 0.05;
 // With both the slip force stays positive over the whole stroke.
 constexpr double kLargestSlipChange = 0.5;
-// Of the slip force at v₀: at 1 there is none at rest. Below −1 it would more than halve by v₀.
+// Largest change, over the slip force at v₀: at 1 there is none at rest, and below −1 it would more
+// than halve by v₀.
 constexpr double kLargestSlipBySpeed = 1.0;
-// Of a period, in half ranges of the displacement: two in a stroke.
+// Periods in half ranges of the displacement: the longest fits twice into a stroke.
 constexpr double kShortestPeriod = 0.01;
 constexpr double kLongestPeriod = 1.0;
 
-// Of a gap, in half ranges of the displacement: half of a stroke.
+// Widest gap in half ranges of the displacement: half of a stroke.
 constexpr double kWidestGap = 1.0;
 
 // One slip force is then nine times the other. Nearer to −1 and 1 a virgin branch grows twice as
