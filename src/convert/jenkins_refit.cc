@@ -1,13 +1,14 @@
 #include "convert/jenkins_refit.h"
 
-#include <Eigen/Dense>
-#include <Eigen/SparseCholesky>
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "mindahl/models/steady_loop.h"
@@ -18,6 +19,10 @@ using methods::IwanElements;
 using models::BranchLaw;
 
 namespace {
+
+/// More elements than this are not searched for: they are placed where many are best, and a search
+/// costs the cube of their number.
+constexpr std::size_t kMostSearched = 64;
 
 /// A contact's virgin curve, displacements over the largest amplitude and forces over the slip
 /// force.
@@ -56,48 +61,49 @@ class Curve {
   double largest_;
 };
 
-/// A virgin curve of straight lines from the origin through its corners and level behind the last.
-/// A corner has a place and an excess over the contact's curve: two that the loops distinguish,
-/// where place and force would move the polygon nearly alike.
-struct Polygon {
-  std::vector<double> x;
-  std::vector<double> excess;
-  std::vector<double> p;          // force
-  std::vector<double> steepness;  // of the contact's curve
+/// Elements in the units of a Curve: each is a spring that slips from its displacement on.
+struct Elements {
+  Eigen::ArrayXd stiffness;
+  Eigen::ArrayXd slip;
 
-  void Update(const Curve& curve) {
-    p.resize(x.size());
-    steepness.resize(x.size());
-    for (std::size_t j = 0; j < x.size(); ++j) {
-      p[j] = curve.Force(x[j]) + excess[j];
-      steepness[j] = curve.Slope(x[j]);
-    }
-  }
-
-  [[nodiscard]] std::size_t size() const { return x.size(); }
-  [[nodiscard]] double Slope(std::size_t j) const {
-    return j == 0 ? p[0] / x[0] : (p[j] - p[j - 1]) / (x[j] - x[j - 1]);
-  }
-  [[nodiscard]] bool IsInOrder() const {
-    return x.front() > 0 && std::ranges::adjacent_find(x, std::greater_equal<>()) == x.end();
-  }
-  /// True if it is one of elements: it rises, ever less steeply.
-  [[nodiscard]] bool IsOfElements() const {
-    double last = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < size(); ++j) {
-      const double slope = Slope(j);
-      if (!(slope > 0 && slope < last)) return false;
-      last = slope;
-    }
-    return true;
-  }
+  [[nodiscard]] double Force(double x) const { return (stiffness * slip.min(x)).sum(); }
 };
 
-/// A point of a polygon: on the segment that ends in corner `end`, or behind the last.
-struct Point {
-  std::size_t end;
-  double share;  // of the segment behind it
-};
+/// Returns elements whose virgin curve is the polygon with these corners, from the origin, which
+/// lies above the contact's curve as the best of many straight lines do: a segment h of a curve f
+/// is fitted best |f''|h²/12 above its chord, and the loop 2p(d/2) − p(X) by that and as much again
+/// as at X. Nothing where it does not rise ever less steeply.
+std::optional<Elements> BestOfMany(const Curve& curve, const std::vector<double>& corners) {
+  const std::size_t n = corners.size();
+  std::vector<double> force(n);
+  std::vector<double> slope(n + 1);
+  const auto from = [&](std::size_t j) { return j == 0 ? 0.0 : corners[j - 1]; };
+  const auto find_slopes = [&] {
+    for (std::size_t j = 0; j < n; ++j) {
+      slope[j] = (force[j] - (j == 0 ? 0.0 : force[j - 1])) / (corners[j] - from(j));
+    }
+  };
+  std::ranges::transform(corners, force.begin(), [&](double x) { return curve.Force(x); });
+  find_slopes();
+  slope[n] = curve.Slope(corners.back());
+  std::vector<double> above(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    const double after = j + 1 < n ? corners[j + 1] : 2 * corners[j] - from(j);
+    above[j] = (slope[j] - slope[j + 1]) * (after - from(j)) / 24;
+  }
+  if (slope[n] == 0) above.back() = 0.0;  // the contact slips from there on, at its slip force
+  for (std::size_t j = 0; j < n; ++j) force[j] += above[j] + above.back();
+  find_slopes();
+  slope[n] = 0.0;
+  Elements elements{Eigen::ArrayXd(n), Eigen::ArrayXd(n)};
+  for (std::size_t j = 0; j < n; ++j) {
+    const auto at = static_cast<Eigen::Index>(j);
+    elements.slip(at) = corners[j];
+    elements.stiffness(at) = slope[j] - slope[j + 1];
+    if (!(elements.stiffness(at) > 0 && corners[j] > from(j))) return std::nullopt;
+  }
+  return elements;
+}
 
 /// Holds the contact's loops at the middles of cells, which are finer near the corners.
 class Loops {
@@ -156,36 +162,55 @@ class Loops {
     return corners;
   }
 
-  /// Returns the mean square difference of force.
-  [[nodiscard]] double Cost(const Polygon& polygon) const {
-    const std::vector<double> force = ForcesAt(polygon, PointsAt(polygon, middle_));
-    double cost = 0.0;
-    for (const Loop& loop : loops_) {
-      const double peak = ForceAt(polygon, PointsAt(polygon, {loop.amplitude}).front());
-      for (std::size_t i = 0; i < loop.force.size(); ++i) {
-        const double difference = 2 * force[i] - peak - loop.force[i];
-        cost += loop.weight * width_[i] * difference * difference;
-      }
-    }
-    return cost;
+  [[nodiscard]] std::size_t residuals() const {
+    std::size_t count = 0;
+    for (const Loop& loop : loops_) count += loop.force.size();
+    return count;
   }
 
-  /// Returns the polygon with the least cost that is found from this one.
-  /// @param last_is_held  the last corner keeps its place
-  [[nodiscard]] Polygon Fit(Polygon polygon, bool last_is_held) const;
+  /// Differences of force 2p(d/2) − p(X) − T, each with the root of its share of the mean square.
+  /// @param residual      one per cell of each loop
+  /// @param by_stiffness  row-major derivatives; null where they are not wanted
+  /// @param by_slip       of the first `columns` elements, likewise
+  void Evaluate(const Elements& elements, double* residual, double* by_stiffness, double* by_slip,
+                Eigen::Index columns) const {
+    using Row = Eigen::Map<Eigen::ArrayXd>;
+    const Eigen::Index count = elements.slip.size();
+    std::vector<double> force(middle_.size());
+    std::ranges::transform(middle_, force.begin(), [&](double x) { return elements.Force(x); });
+    Eigen::Index row = 0;
+    for (const Loop& loop : loops_) {
+      const double peak = elements.Force(loop.amplitude);
+      const Eigen::ArrayXd reached = elements.slip.min(loop.amplitude);
+      for (std::size_t i = 0; i < loop.force.size(); ++i, ++row) {
+        const double root = std::sqrt(loop.weight * width_[i]);
+        const double x = middle_[i];
+        residual[row] = root * (2 * force[i] - peak - loop.force[i]);
+        if (by_stiffness != nullptr) {
+          Row(by_stiffness + row * count, count) = root * (2 * elements.slip.min(x) - reached);
+        }
+        if (by_slip != nullptr) {
+          const auto slip = elements.slip.head(columns);
+          Row(by_slip + row * columns, columns) =
+              root * elements.stiffness.head(columns) *
+              (2 * (slip < x).cast<double>() - (slip < loop.amplitude).cast<double>());
+        }
+      }
+    }
+  }
+
+  /// Returns the mean square difference of force.
+  [[nodiscard]] double Cost(const Elements& elements) const {
+    Eigen::ArrayXd residual(residuals());
+    Evaluate(elements, residual.data(), nullptr, nullptr, 0);
+    return residual.square().sum();
+  }
 
  private:
   struct Loop {
     double amplitude;
     double weight;              // of a difference's square and a width
     std::vector<double> force;  // at the middles of its cells
-  };
-  /// The normal equations of a step: band + columns·rank·columnsᵀ.
-  struct Normal {
-    Eigen::SparseMatrix<double> band;
-    Eigen::MatrixXd columns;
-    Eigen::MatrixXd inverse_rank;
-    Eigen::VectorXd gradient;
   };
 
   void Add(const ModelLaw& contact, double amplitude) {
@@ -203,51 +228,6 @@ class Loops {
     for (double& force : loop.force) force /= slip_force_;
   }
 
-  /// @param places  rising
-  static std::vector<Point> PointsAt(const Polygon& polygon, const std::vector<double>& places) {
-    std::vector<Point> points;
-    std::size_t j = 0;
-    for (const double place : places) {
-      while (j < polygon.size() && polygon.x[j] < place) ++j;
-      const double from = j == 0 ? 0.0 : polygon.x[j - 1];
-      points.push_back({j, j == polygon.size() ? 0.0 : (place - from) / (polygon.x[j] - from)});
-    }
-    return points;
-  }
-  static double ForceAt(const Polygon& polygon, const Point& point) {
-    if (point.end == polygon.size()) return polygon.p.back();
-    return std::lerp(point.end == 0 ? 0.0 : polygon.p[point.end - 1], polygon.p[point.end],
-                     point.share);
-  }
-  static std::vector<double> ForcesAt(const Polygon& polygon, const std::vector<Point>& points) {
-    std::vector<double> force;
-    force.reserve(points.size());
-    for (const Point& point : points) force.push_back(ForceAt(polygon, point));
-    return force;
-  }
-  /// Returns the derivatives of the force there by place and excess of the corners to either side,
-  /// of which corner j has the unknowns 2j and 2j + 1.
-  static std::array<std::pair<Eigen::Index, double>, 4> GradientAt(const Polygon& polygon,
-                                                                   const Point& point) {
-    std::array<std::pair<Eigen::Index, double>, 4> gradient{};
-    const auto end = static_cast<Eigen::Index>(point.end);
-    if (point.end == polygon.size()) {
-      gradient[0] = {2 * end - 2, polygon.steepness.back()};
-      gradient[1] = {2 * end - 1, 1.0};
-      return gradient;
-    }
-    const double slope = polygon.Slope(point.end);
-    gradient[0] = {2 * end, (polygon.steepness[point.end] - slope) * point.share};
-    gradient[1] = {2 * end + 1, point.share};
-    if (point.end > 0) {
-      gradient[2] = {2 * end - 2, (polygon.steepness[point.end - 1] - slope) * (1 - point.share)};
-      gradient[3] = {2 * end - 1, 1 - point.share};
-    }
-    return gradient;
-  }
-
-  [[nodiscard]] Normal NormalAt(const Polygon& polygon, bool last_is_held) const;
-
   Curve curve_;
   double largest_;
   double slip_force_;
@@ -256,147 +236,92 @@ class Loops {
   std::vector<Loop> loops_;
 };
 
-Loops::Normal Loops::NormalAt(const Polygon& polygon, bool last_is_held) const {
-  const auto unknowns = static_cast<Eigen::Index>(2 * polygon.size());
-  const auto loops = static_cast<Eigen::Index>(loops_.size());
-  Normal normal;
-  normal.columns = Eigen::MatrixXd::Zero(unknowns, 2 * loops);
-  normal.inverse_rank = Eigen::MatrixXd::Zero(2 * loops, 2 * loops);
-  normal.gradient = Eigen::VectorXd::Zero(unknowns);
-  const std::vector<Point> points = PointsAt(polygon, middle_);
-  std::vector<double> weight(points.size());
-  std::vector<double> pull(points.size());
-  const std::vector<double> force = ForcesAt(polygon, points);
-  for (Eigen::Index l = 0; l < loops; ++l) {
-    const Loop& loop = loops_[static_cast<std::size_t>(l)];
-    const Point end = PointsAt(polygon, {loop.amplitude}).front();
-    const double peak = ForceAt(polygon, end);
-    double total_weight = 0.0;
-    double total_pull = 0.0;
-    for (std::size_t i = 0; i < loop.force.size(); ++i) {
-      const double of_place = loop.weight * width_[i];
-      const double difference = 2 * force[i] - peak - loop.force[i];
-      weight[i] += 4 * of_place;
-      pull[i] += 2 * of_place * difference;
-      total_weight += of_place;
-      total_pull += of_place * difference;
-      for (const auto& [unknown, slope] : GradientAt(polygon, points[i])) {
-        normal.columns(unknown, 2 * l) += 2 * of_place * slope;
-      }
-    }
-    for (const auto& [unknown, slope] : GradientAt(polygon, end)) {
-      normal.columns(unknown, 2 * l + 1) += slope;
-      normal.gradient(unknown) -= total_pull * slope;
-    }
-    normal.inverse_rank(2 * l, 2 * l) = -total_weight;
-    normal.inverse_rank(2 * l, 2 * l + 1) = normal.inverse_rank(2 * l + 1, 2 * l) = -1;
+/// The residuals as Ceres asks for them, by the stiffnesses and the displacements at slip; the last
+/// of these is held where it is no parameter.
+class LoopDifference : public ceres::CostFunction {
+ public:
+  LoopDifference(const Loops& loops, const Elements& start, Eigen::Index free_slips)
+      : loops_(loops), elements_(start), free_slips_(free_slips) {
+    set_num_residuals(static_cast<int>(loops.residuals()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(start.slip.size()));
+    if (free_slips > 0) mutable_parameter_block_sizes()->push_back(static_cast<int>(free_slips));
   }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto gradient = GradientAt(polygon, points[i]);
-    for (const auto& [row, slope] : gradient) {
-      normal.gradient(row) += pull[i] * slope;
-      for (const auto& [column, other] : gradient) {
-        entries.emplace_back(static_cast<int>(row), static_cast<int>(column),
-                             weight[i] * slope * other);
-      }
-    }
-  }
-  if (last_is_held) {
-    const Eigen::Index held = unknowns - 2;
-    std::erase_if(entries, [&](const auto& at) { return at.row() == held || at.col() == held; });
-    entries.emplace_back(static_cast<int>(held), static_cast<int>(held), 1.0);
-    normal.columns.row(held).setZero();
-    normal.gradient(held) = 0;
-  }
-  normal.band.resize(unknowns, unknowns);
-  normal.band.setFromTriplets(entries.begin(), entries.end());
-  return normal;
-}
 
-Polygon Loops::Fit(Polygon polygon, bool last_is_held) const {
-  constexpr int kSteps = 200;
-  constexpr double kConverged = 1e-10;  // of the cost
-  constexpr double kMostDamping = 1e12;
-  double cost = Cost(polygon);
-  double damping = 1e-3;
-  for (int step = 0; step < kSteps; ++step) {
-    const Normal normal = NormalAt(polygon, last_is_held);
-    const Eigen::VectorXd diagonal = normal.band.diagonal();
-    double gained = 0.0;
-    while (damping < kMostDamping) {
-      Eigen::SparseMatrix<double> damped = normal.band;
-      for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-        damped.coeffRef(i, i) += damping * diagonal(i);
-      }
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> band(damped);
-      const Eigen::MatrixXd across = band.solve(normal.columns);
-      const Eigen::VectorXd along = band.solve(normal.gradient);
-      const Eigen::MatrixXd rank = normal.inverse_rank + normal.columns.transpose() * across;
-      const Eigen::VectorXd change =
-          across * rank.partialPivLu().solve(normal.columns.transpose() * along) - along;
-      Polygon moved = polygon;
-      for (std::size_t j = 0; j < polygon.size(); ++j) {
-        const auto unknown = static_cast<Eigen::Index>(2 * j);
-        moved.x[j] += change(unknown);
-        moved.excess[j] += change(unknown + 1);
-      }
-      bool is_allowed = moved.IsInOrder() && moved.x.back() <= 1;
-      if (is_allowed) {
-        moved.Update(curve_);
-        is_allowed = moved.IsOfElements();
-      }
-      const double moved_cost = is_allowed ? Cost(moved) : std::numeric_limits<double>::infinity();
-      if (moved_cost < cost) {
-        gained = cost - moved_cost;
-        cost = moved_cost;
-        polygon = std::move(moved);
-        damping /= 4;
-        break;
-      }
-      damping *= 4;
-    }
-    if (gained <= kConverged * cost) break;
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    using Values = Eigen::Map<const Eigen::ArrayXd>;
+    Elements elements = elements_;
+    elements.stiffness = Values(parameters[0], elements.stiffness.size());
+    if (free_slips_ > 0) elements.slip.head(free_slips_) = Values(parameters[1], free_slips_);
+    loops_.Evaluate(elements, residuals, jacobians == nullptr ? nullptr : jacobians[0],
+                    jacobians == nullptr || free_slips_ == 0 ? nullptr : jacobians[1], free_slips_);
+    return true;
   }
-  return polygon;
-}
 
-Polygon Through(const Curve& curve, const std::vector<double>& corners) {
-  Polygon polygon;
-  polygon.x = corners;
-  polygon.excess.resize(corners.size());
-  polygon.Update(curve);
-  return polygon;
-}
+ private:
+  const Loops& loops_;
+  Elements elements_;
+  Eigen::Index free_slips_;
+};
 
-Polygon PolygonOf(const IwanElements& elements, const BranchLaw& law, double largest) {
-  Polygon polygon;
-  double slipped = 0.0;
-  double stiffness = std::reduce(elements.stiffness.begin(), elements.stiffness.end());
-  for (std::size_t j = 0; j < elements.size(); ++j) {
-    const double x = elements.slip_force[j] / elements.stiffness[j];
-    polygon.x.push_back(x / largest);
-    polygon.p.push_back((slipped + stiffness * x) / law.slip_force);
-    slipped += elements.slip_force[j];
-    stiffness -= elements.stiffness[j];
+/// Returns the elements of least cost that a search from these finds.
+/// @param last_sticks  the last slips at the largest amplitude and not before
+Elements Search(const Loops& loops, Elements elements, bool last_sticks) {
+  const Eigen::Index count = elements.slip.size();
+  const Eigen::Index free_slips = last_sticks ? count - 1 : count;
+  ceres::Problem problem;
+  std::vector<double*> blocks = {elements.stiffness.data()};
+  if (free_slips > 0) blocks.push_back(elements.slip.data());
+  problem.AddResidualBlock(new LoopDifference(loops, elements, free_slips), nullptr, blocks);
+  for (int j = 0; j < static_cast<int>(count); ++j) {
+    problem.SetParameterLowerBound(blocks[0], j, 0.0);
+    if (j >= free_slips) continue;
+    problem.SetParameterLowerBound(blocks[1], j, 0.0);
+    problem.SetParameterUpperBound(blocks[1], j, 1.0);
   }
-  return polygon;
-}
-
-IwanElements ElementsOf(const Polygon& polygon, const BranchLaw& law, double largest,
-                        bool last_sticks) {
-  IwanElements elements;
-  double left = 1.0;
-  for (std::size_t j = 0; j < polygon.size(); ++j) {
-    const bool is_last = j + 1 == polygon.size();
-    const double stiffness = polygon.Slope(j) - (is_last ? 0.0 : polygon.Slope(j + 1));
-    double slip_force = stiffness * polygon.x[j];
-    if (is_last && last_sticks) slip_force = std::max(slip_force, left);
-    left -= slip_force;
-    elements.stiffness.push_back(stiffness * law.slip_force / largest);
-    elements.slip_force.push_back(slip_force * law.slip_force);
-  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-8;
+  options.gradient_tolerance = std::numeric_limits<double>::min();
+  options.parameter_tolerance = std::numeric_limits<double>::epsilon();
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
   return elements;
+}
+
+/// Returns elements in SI units, those that slip first first; nothing where one has no stiffness,
+/// no displacement at slip or that of another.
+/// @param last_sticks  the last has what the others leave of the contact's slip force
+std::optional<IwanElements> InOrder(const Elements& elements, const BranchLaw& law, double largest,
+                                    bool last_sticks) {
+  std::vector<std::pair<double, double>> sorted;
+  for (Eigen::Index j = 0; j < elements.slip.size(); ++j) {
+    sorted.emplace_back(elements.slip(j), elements.stiffness(j));
+  }
+  std::ranges::sort(sorted);
+  IwanElements made;
+  double left = 1.0;
+  double last = 0.0;
+  for (const auto& [slip, stiffness] : sorted) {
+    if (!(slip > last && stiffness > 0)) return std::nullopt;
+    last = slip;
+    double slip_force = stiffness * slip;
+    if (last_sticks && made.size() + 1 == sorted.size()) slip_force = std::max(slip_force, left);
+    left -= slip_force;
+    made.stiffness.push_back(stiffness * law.slip_force / largest);
+    made.slip_force.push_back(slip_force * law.slip_force);
+  }
+  return made;
+}
+
+Elements Scaled(const IwanElements& elements, const BranchLaw& law, double largest) {
+  using Values = Eigen::Map<const Eigen::ArrayXd>;
+  const auto size = static_cast<Eigen::Index>(elements.size());
+  const Values stiffness(elements.stiffness.data(), size);
+  const Values slip_force(elements.slip_force.data(), size);
+  return {stiffness * (largest / law.slip_force), slip_force / stiffness / largest};
 }
 
 }  // namespace
@@ -423,18 +348,18 @@ IwanElements RefitElements(const ModelLaw& contact, const BranchLaw& masing,
   };
   const double allowed = largest_difference(tangents);
   IwanElements best = tangents;
-  const double of_tangents = loops.Cost(PolygonOf(tangents, masing, largest));
+  const double of_tangents = loops.Cost(Scaled(tangents, masing, largest));
   double least = of_tangents;
   const auto try_from = [&](const std::vector<double>& corners, bool sticks) {
-    Polygon start = Through(curve, corners);
-    if (!start.IsInOrder() || !start.IsOfElements()) return;
-    const Polygon fitted = loops.Fit(std::move(start), sticks);
-    if (sticks && fitted.p.back() > 1) return;  // it would hold more than the contact
-    const double cost = loops.Cost(fitted);
-    const IwanElements refitted = ElementsOf(fitted, masing, largest, sticks);
-    if (cost < least && largest_difference(refitted) <= allowed) {
+    std::optional<Elements> fitted = BestOfMany(curve, corners);
+    if (!fitted) return;
+    if (elements <= kMostSearched) *fitted = Search(loops, *std::move(fitted), sticks);
+    if (sticks && fitted->Force(1) > 1) return;  // it would hold more than the contact
+    const double cost = loops.Cost(*fitted);
+    const std::optional<IwanElements> made = InOrder(*fitted, masing, largest, sticks);
+    if (made && cost < least && largest_difference(*made) <= allowed) {
       least = cost;
-      best = refitted;
+      best = *made;
     }
   };
   for (const bool sticks : {true, false}) {

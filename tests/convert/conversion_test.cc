@@ -247,7 +247,7 @@ TEST(Conversion, ToElementsIsAsGoodAsStraightLinesCanBe) {
   constexpr double kNextOrder = 0.06;
   for (const double slips : {1.0, 3.0}) {
     double last = 0.0;
-    for (const std::size_t elements : {16, 32, 64}) {
+    for (const std::size_t elements : {16, 32, 64, 128}) {  // the last are placed, not searched
       const double amplitude = slips * kGrossSlip;
       const Conversion iwan =
           To(Target::kIwan, kMindlin, {.amplitude = amplitude, .elements = elements});
