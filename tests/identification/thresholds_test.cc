@@ -634,7 +634,7 @@ bool IsSlow(const Thresholds& thresholds, double strokes) {
 bool IsDoubted(const Thresholds& thresholds, double chance) {
   const Stages stages(SlippingLoop(), With(thresholds));
   const auto judge = [&](double p_value) {
-    return JudgeAdequacy(stages.problem, {}, TestWith({}, p_value), {}, With(thresholds), {});
+    return JudgeAdequacy(stages.problem, {}, {TestWith({}, p_value), {}, {}}, With(thresholds), {});
   };
   // The chance that is judged is some multiple of the test's.
   constexpr double kSmall = 1e-6;

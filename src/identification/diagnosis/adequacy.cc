@@ -46,10 +46,6 @@ double SizeOf(const DepartureFit& fit) {
   return std::copysign(std::sqrt(std::abs(fit.size)), fit.size);
 }
 
-}  // namespace
-
-namespace {
-
 const DepartureFit* FindCause(std::span<const DepartureFit> causes, std::string_view code) {
   const auto found = std::ranges::find_if(
       causes, [&](const DepartureFit& fit) { return Departures()[fit.departure].code == code; });
@@ -122,36 +118,6 @@ bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds) {
   return cause.size_p_value < thresholds.cause;
 }
 
-Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes, const FitOptions& options,
-                       std::span<const ParameterEstimate> estimates) {
-  const Thresholds& thresholds = options.thresholds;
-  Adequacy adequacy;
-  adequacy.misfit_over_noise = test.misfit_over_noise;
-  adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->response_unit();
-  adequacy.p_value = ChanceOfNoise(test);
-  adequacy.tried = test.fits.size();
-  const auto& reported = problem.parameters.reported();
-  for (const DepartureFit& fit : causes) {
-    const Departure& departure = Departures()[fit.departure];
-    Cause& cause = adequacy.causes.emplace_back(
-        Cause{.code = departure.code,
-              .delta_aicc = fit.delta_aicc,
-              .explains = fit.explains,
-              .size = SizeOf(fit),
-              .unit = SaysItsSize(fit, thresholds) ? fit.unit : std::string_view(),
-              .option = OptionOf(problem, options, fit),
-              .is_measured = fit.is_measured});
-    for (std::size_t k = 0; k < reported.size(); ++k) {
-      if (reported[k] > kSlipForce) continue;
-      cause.moves =
-          std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
-    }
-  }
-  if (IsDoubtful(test, thresholds)) adequacy.verdict = AdequacyVerdict::kDoubtful;
-  return adequacy;
-}
-
 namespace {
 
 /// Ranks the causes to name: first a measurement without the model; then another column of the
@@ -189,8 +155,8 @@ std::string OptionOf(const Problem& problem, const FitOptions& options, const Ir
   return AcceptedOptions(problem, options, fmt::format("{}{:.4g}", option.substr(0, place), size));
 }
 
-}  // namespace
-
+/// Adds the disturbances that noise alone does not make to the causes, and doubts the record where
+/// one is there.
 void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
                        const FitOptions& options, Adequacy& adequacy) {
   const Thresholds& thresholds = options.thresholds;
@@ -212,6 +178,40 @@ void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> 
     adequacy.verdict = AdequacyVerdict::kDoubtful;
   }
   Order(adequacy.causes, thresholds);
+}
+
+}  // namespace
+
+Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
+                       const AdequacyEvidence& evidence, const FitOptions& options,
+                       std::span<const ParameterEstimate> estimates) {
+  const auto& [test, causes, irregularities, ends_at_limit] = evidence;
+  const Thresholds& thresholds = options.thresholds;
+  Adequacy adequacy;
+  adequacy.misfit_over_noise = test.misfit_over_noise;
+  adequacy.misfit = test.misfit_over_noise * test.noise * problem.data->response_unit();
+  adequacy.p_value = ChanceOfNoise(test);
+  adequacy.tried = test.fits.size();
+  const auto& reported = problem.parameters.reported();
+  for (const DepartureFit& fit : causes) {
+    const Departure& departure = Departures()[fit.departure];
+    Cause& cause = adequacy.causes.emplace_back(
+        Cause{.code = departure.code,
+              .delta_aicc = fit.delta_aicc,
+              .explains = fit.explains,
+              .size = SizeOf(fit),
+              .unit = SaysItsSize(fit, thresholds) ? fit.unit : std::string_view(),
+              .option = OptionOf(problem, options, fit),
+              .is_measured = fit.is_measured});
+    for (std::size_t k = 0; k < reported.size(); ++k) {
+      if (reported[k] > kSlipForce) continue;
+      cause.moves =
+          std::max(cause.moves, MoveOf(problem, solution, fit, reported[k], estimates[k]));
+    }
+  }
+  if (IsDoubtful(test, thresholds) || ends_at_limit) adequacy.verdict = AdequacyVerdict::kDoubtful;
+  AddIrregularities(problem, irregularities, options, adequacy);
+  return adequacy;
 }
 
 bool PastIsUndecided(double delta_aicc, const Thresholds& thresholds) {

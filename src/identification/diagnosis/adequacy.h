@@ -25,16 +25,23 @@ std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& t
 /// other columns make the cause, the size is zero within the noise.
 bool SaysItsSize(const DepartureFit& cause, const Thresholds& thresholds);
 
-/// @param estimates  of the reported parameters, with the intervals that the model itself gives
-Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution, const AdequacyTest& test,
-                       std::span<const DepartureFit> causes, const FitOptions& options,
-                       std::span<const ParameterEstimate> estimates);
+/// Holds what a fit's adequacy is judged by.
+struct AdequacyEvidence {
+  const AdequacyTest& test;
+  std::span<const DepartureFit> causes;             ///< of CausesOf()
+  std::span<const IrregularityFit> irregularities;  ///< of FindIrregularities()
+  bool ends_at_limit = false;                       ///< the search ended at a limit of its own
+};
 
-/// Adds the disturbances that noise alone does not make to the causes, the best first, without
-/// those that another beats clearly, and doubts the record where one is there. Of causes that
-/// explain nearly as much as the best those that were measured, or can be tried, come first.
-void AddIrregularities(const Problem& problem, std::span<const IrregularityFit> found,
-                       const FitOptions& options, Adequacy& adequacy);
+/// Doubts the fit where noise hardly makes what omitted terms explain, where a disturbance is found
+/// that it does not make, or the search ended at a limit of its own. Causes are those of both kinds
+/// that noise alone does not make, the best first, without those that another beats clearly; of
+/// causes that explain nearly as much as the best those that were measured, or can be tried, come
+/// first.
+/// @param estimates  of the reported parameters, with the intervals that the model itself gives
+Adequacy JudgeAdequacy(const Problem& problem, const Solution& solution,
+                       const AdequacyEvidence& evidence, const FitOptions& options,
+                       std::span<const ParameterEstimate> estimates);
 
 /// True if the record hardly determines whether the contact was virgin or in a steady loop.
 /// @param delta_aicc  of the two

@@ -16,6 +16,7 @@ struct SearchBuffers {
   Solver solver;
   Response response;
   Solution scratch;
+  std::array<Solution, 3> states;   // of the initial states that are tried
   std::array<Solution, 3> smaller;  // of models with one term less, and those that they contain
 };
 

@@ -1,0 +1,367 @@
+#include "identification/inferred_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/probability.h"
+#include "identification/diagnosis/adequacy.h"
+#include "identification/diagnosis/diagnosis.h"
+#include "identification/diagnosis/discrepancy.h"
+#include "identification/diagnosis/grade.h"
+#include "identification/diagnosis/law_findings.h"
+#include "identification/diagnosis/main_strokes.h"
+#include "identification/diagnosis/record_findings.h"
+#include "identification/inference/adequacy_test.h"
+#include "identification/inference/backlash_trial.h"
+#include "identification/inference/covering.h"
+#include "identification/inference/displacement_errors.h"
+#include "identification/inference/estimates.h"
+#include "identification/inference/irregularities.h"
+#include "identification/inference/lag_trial.h"
+#include "identification/inference/law_choice.h"
+#include "identification/inference/memory_test.h"
+#include "identification/inference/noise.h"
+#include "identification/inference/profile.h"
+#include "identification/inference/shape_tests.h"
+#include "identification/intervals.h"
+#include "identification/judge/judge.h"
+#include "identification/problem/problem.h"
+#include "identification/problem/scaled_records.h"
+#include "identification/solve/search.h"
+#include "mindahl/core/error.h"
+#include "mindahl/loop/preparation.h"
+
+namespace mindahl::identification {
+namespace {
+
+using loop::RecordView;
+
+/// Those that count: the values themselves where all do, else a copy of some, which is kept.
+std::span<const double> Counting(std::span<const double> values, const RecordFit& fit,
+                                 std::deque<std::vector<double>>& kept) {
+  if (fit.left_out == 0) return values;
+  std::vector<double>& counting = kept.emplace_back();
+  counting.reserve(values.size() - fit.left_out);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (fit.counts[i] != 0) counting.push_back(values[i]);
+  }
+  return counting;
+}
+
+/// Statistics of the residuals that count, as the files have them.
+void DescribeFit(const Attempt& attempt, const Problem& problem, const Noise& noise,
+                 FitResult& result) {
+  std::deque<std::vector<double>> kept;
+  std::vector<std::span<const double>> residuals;
+  std::vector<std::span<const double>> measured;
+  const bool is_forced = result.response == loop::Channel::kDisplacement;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const RecordFit& fit = result.records[r];
+    const RecordView& record = attempt.prepared.records[r].record;
+    residuals.push_back(Counting(fit.residual, fit, kept));
+    measured.push_back(Counting(is_forced ? record.displacement : record.force, fit, kept));
+  }
+  const double scale =
+      is_forced ? result.law.slip_force / result.law.tangential_stiffness : result.law.slip_force;
+  result.residuals = DescribeResiduals(residuals, measured, scale);
+  result.residuals.effective_samples = noise.effective_samples();
+  Noise of_residuals = noise;
+  of_residuals.is_known = false;
+  const std::size_t free = problem.parameters.free().size();
+  result.residuals.degrees_of_freedom = of_residuals.degrees_of_freedom(free);
+  result.error_degrees_of_freedom = noise.degrees_of_freedom(free);
+}
+
+/// Averages the residuals over strokes; returns the variance inflation by what repeats.
+double DescribeStructures(const Problem& problem, std::span<const double> residual,
+                          const Thresholds& thresholds, FitResult& result) {
+  const bool is_described = result.depth >= Depth::kIntervals;
+  double widening = 1.0;
+  std::size_t begin = 0;
+  for (std::size_t r = 0; r < result.records.size(); ++r) {
+    const ScaledRecord& record = problem.data->records[r];
+    RecordFit& fit = result.records[r];
+    if (!is_described &&
+        !AnyComesBack(MainStrokes(record.excitation(), record.reversals, thresholds.main_stroke))) {
+      begin += record.size();
+      continue;
+    }
+    std::vector<double> in_si(record.size());
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      in_si[i] = residual[begin + i] * problem.data->response_unit();
+    }
+    ResidualStructure structure =
+        DescribeStructure(record.excitation(), record.reversals, in_si, record.counts,
+                          {thresholds.main_stroke, thresholds.repeat_chance});
+    widening = std::max(widening, structure.Widening());
+    if (is_described) fit.structure = std::move(structure);
+    begin += record.size();
+  }
+  return widening;
+}
+
+/// Adequacy, and intervals that cover what its causes would change.
+/// @param is_limited  did the search end at a limit of its own?
+void ConsiderDepartures(const FittedProblem& fitted, const DisplacementEffect& displacement,
+                        bool is_limited, const FitOptions& options, SearchBuffers& buffers,
+                        FitResult& result) {
+  const auto& [problem, solution, noise, estimates] = fitted;
+  const Thresholds& thresholds = options.thresholds;
+  // Rounding errors are no noise: nothing is to be learnt from what they look like.
+  const double rms =
+      std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
+  if (rms < kOnlyRounding) {
+    result.adequacy.verdict = AdequacyVerdict::kAdequate;
+    result.adequacy.tried = 1;
+    result.adequacy = GradeUse(thresholds, result);
+    return;
+  }
+  AdequacyTest test = TestAdequacy(fitted, displacement, thresholds, buffers.response);
+  // A load that varies would have to be read as late.
+  if (IsDoubtful(test, thresholds) && !problem.data->load_varies && !problem.data->is_forced()) {
+    TryLag(problem, solution, SolverOptionsOf(options), buffers, test);
+    DenyLagBeyondKnee(problem, solution, buffers.response, test);
+    std::vector<std::optional<loop::Backlash>> gaps;
+    gaps.reserve(result.records.size());
+    for (const RecordFit& record : result.records) gaps.push_back(record.facts.backlash);
+    TryBacklash(problem, solution, gaps, SolverOptionsOf(options), buffers, test);
+  }
+  const std::vector<DepartureFit> causes = CausesOf(test, thresholds);
+  const Eigen::VectorXd& residual = estimates.residual();
+  const std::vector<IrregularityFit> irregularities = FindIrregularities(
+      problem, solution.theta, {residual.data(), problem.size()}, noise,
+      options.loss != Loss::kNone, IsDoubtful(test, thresholds), buffers.response);
+  result.adequacy = JudgeAdequacy(problem, solution, {test, causes, irregularities, is_limited},
+                                  options, result.parameters);
+  if (const auto slow = FindSlowResiduals(result, thresholds)) {
+    Append(result.findings, slow);
+    result.adequacy.verdict = AdequacyVerdict::kDoubtful;
+  }
+  result.adequacy = GradeUse(thresholds, result);
+  if (result.adequacy.verdict == AdequacyVerdict::kAdequate) return;
+  const std::vector<ParameterEstimate> plain = result.parameters;
+  WidenByDepartures(problem, solution, causes,
+                    StudentQuantile(test.degrees_of_freedom, options.confidence),
+                    result.parameters);
+  result.parameters[kSlipForce] = CoverPlateau(result, thresholds);
+  result.parameters = CoverDiscrepancy(fitted, plain, thresholds, result);
+}
+
+/// 1 for samples whose residual is mostly the force's noise; nothing where all are. Where most is
+/// the displacement's, residuals are autocorrelated as its errors are, and their draws know that.
+std::vector<unsigned char> SamplesOfForceNoise(const ScaledRecords& data, const Noise& noise,
+                                               const Thresholds& thresholds) {
+  std::vector<unsigned char> tells;
+  if (noise.force_share.empty()) return tells;
+  for (const ScaledRecord& record : data.records) {
+    for (const unsigned char counts : record.counts) {
+      const double share = noise.force_share[tells.size()];
+      tells.push_back(share * share >= thresholds.force_noise_share ? counts : 0);
+    }
+  }
+  return tells;
+}
+
+/// Compares branches with each other, under the fitted law and the other one.
+MemoryTest CompareBranches(const FittedProblem& fitted_problem, const LawComparison& laws,
+                           const DisplacementEffect& displacement, const Thresholds& thresholds,
+                           Response& response) {
+  const auto& [problem, solution, noise, estimates] = fitted_problem;
+  const FittedLaw fitted{&problem, &solution, estimates.jacobian(), estimates.residual()};
+  if (!laws.other) return TestMemory(fitted, nullptr, noise, displacement, thresholds, response);
+  const Problem& problem_of_other = laws.other->problem;
+  FittedLaw other{&problem_of_other, &laws.other->solution, {}, {}};
+  const auto& free = problem_of_other.parameters.free();
+  other.jacobian =
+      JacobianAt(problem_of_other, other.solution->theta, response, free, other.residual);
+  const bool is_masing = problem.model->memory == models::Memory::kReturnPoint;
+  const MemoryTest test = TestMemory(is_masing ? fitted : other, is_masing ? &other : &fitted,
+                                     noise, displacement, thresholds, response);
+  response.Bind(problem);
+  return test;
+}
+
+/// Estimates the noise and the statistics of the residuals.
+/// @param residual  weighted, of every sample
+void MeasureNoise(const Attempt& attempt, const Problem& problem, const Solution& solution,
+                  std::span<const double> residual, Noise& noise, FitResult& result) {
+  const FitOptions& options = attempt.options;
+  // Rounding errors are autocorrelated as they like: nothing is to be learnt from them.
+  const double rms =
+      std::sqrt(solution.sum_of_squares / static_cast<double>(problem.data->counted));
+  const bool only_rounding = rms < kOnlyRounding;
+  if (!only_rounding) {
+    const std::vector<unsigned char> tells =
+        SamplesOfForceNoise(*problem.data, noise, options.thresholds);
+    noise.autocorrelation = AutocorrelationOf(*problem.data, residual, tells);
+  }
+  const double repeating = DescribeStructures(problem, residual, options.thresholds, result);
+  noise.repeating = only_rounding ? 1.0 : repeating;
+  DescribeFit(attempt, problem, noise, result);
+}
+
+/// Standard errors, intervals and correlations of the parabola.
+void FillErrors(const Problem& problem, const Estimates& estimates, FitResult& result) {
+  const auto& reported = problem.parameters.reported();
+  for (std::size_t k = 0; k < reported.size(); ++k) {
+    estimates.Fill(reported[k], result.parameters[k]);
+    for (const std::size_t other : reported) {
+      result.correlation.push_back(estimates.Correlation(reported[k], other));
+    }
+  }
+  Append(result.findings, FindUndetermined(problem, estimates.local()));
+}
+
+/// Replaces intervals of Tc and σ by those of the likelihood where the parabola may fail.
+void WidenByProfiles(const FittedProblem& fitted, const FitOptions& options, SearchBuffers& buffers,
+                     FitResult& result) {
+  const double peak_force = result.PeakForce();
+  const double quantile = fitted.estimates.quantile();
+  if (NeedsSlipForceProfile(fitted, peak_force / result.law.slip_force, options, buffers)) {
+    SlipForceProfile profile = ProfileSlipForce(fitted, options, buffers);
+    const double carried = CarriedForce(fitted.problem, result, peak_force);
+    result.parameters =
+        WidenByProfile(fitted.problem, profile, quantile, carried, std::move(result.parameters));
+    Append(result.findings, FindOpenSlipForce(result, profile));
+    result.slip_force_profile = std::move(profile.likelihood);
+  }
+  result.parameters = ProfileBesideRig(fitted, options, buffers, std::move(result.parameters));
+  if (const auto ranges = ProfileSmallShape(fitted, options, buffers)) {
+    result.parameters = IncludeSmallShape(fitted.problem, *ranges, std::move(result.parameters));
+  }
+  if (StiffnessIsOpenAbove(fitted, options, buffers)) {
+    OpenAbove(result.parameters[kStiffness], IntervalSource::kProfile);
+    result.findings.push_back(FoundOpenStiffness());
+  }
+}
+
+/// Tests α = 1/3, with a rig and branch by branch.
+void TestShape(const Attempt& attempt, const FittedProblem& fitted, FitResult& result) {
+  const FitOptions& options = attempt.options;
+  const Problem& problem = fitted.problem;
+  result.branch_shapes = FitBranchShapes(fitted, attempt.buffers.response);
+  result.mindlin_test = TestMindlin(fitted, options, attempt.buffers);
+  if (!result.mindlin_test) return;
+  if (ContradictsInterval(*result.mindlin_test, *result.Find("alpha"))) {
+    result.parameters = WidenByRanges(problem, ProfileShape(fitted, options, attempt.buffers),
+                                      fitted.estimates.quantile(), std::move(result.parameters));
+    Include(
+        result.parameters[kShape],
+        {.source = IntervalSource::kProfile, .lower = kMindlinExponent, .upper = kMindlinExponent});
+  }
+  if (const auto rig =
+          TryRig(fitted, attempt.thin, *result.mindlin_test, options, attempt.buffers)) {
+    result.mindlin_test->rig_stiffness = rig->rig_stiffness;
+    result.findings.push_back(FoundRigAlternative(result, *rig, options.thresholds));
+  }
+  const bool is_forced = problem.data->is_forced();
+  if ((problem.data->load_varies || is_forced) &&
+      WantsRig(problem, fitted.solution, *result.mindlin_test, options.thresholds)) {
+    result.findings.push_back({.code = "rig_not_tried",
+                               .parameters = {"sigma", "alpha"},
+                               .numbers = {{"alpha", result.law.shape_exponent}},
+                               .kind = is_forced ? "imposed_force" : "varying_load"});
+  }
+}
+
+/// Extends intervals to the other initial state and to another minimum, which the record does not
+/// exclude.
+void CoverRivals(const Attempt& attempt, const FittedProblem& fitted, const SolvedFit& solved,
+                 FitResult& result) {
+  const auto& [problem, solution, noise, estimates] = fitted;
+  const double peak_force = result.PeakForce();
+  const auto cover = [&](const Rival& other) {
+    return CoverRival(fitted.problem, other, fitted.noise, attempt.options.thresholds, peak_force,
+                      attempt.buffers.response, result.parameters);
+  };
+  if (solved.rival && !solved.fits_turns()) {
+    Append(result.findings,
+           FoundUndecidedPast(cover(
+               {solved.rival->problem, *solved.rival->solution, IntervalSource::kInitialState})));
+  }
+  if (solved.fits_turns() || solved.is_weighted) return;  // other starts led to another problem
+  for (const Descent& descent : solved.descents) {
+    if (!IsAnotherMinimum(problem, solution, descent.solution, noise, result.parameters)) continue;
+    Append(result.findings,
+           FoundSeveralMinima(cover({problem, descent.solution, IntervalSource::kOtherMinimum})));
+    break;  // one says it
+  }
+}
+
+/// Compares Masing's law with Dahl's own, and branches with each other.
+void CompareModels(const Attempt& attempt, const FittedProblem& fitted,
+                   const DisplacementEffect& displacement, FitResult& result) {
+  const Problem& problem = fitted.problem;
+  const LawComparison laws =
+      CompareLaws(problem, fitted.solution, result, attempt.options, attempt.buffers);
+  if (result.depth >= Depth::kThorough && laws.is_comparable && CanCompareBranches(problem)) {
+    result.memory = CompareBranches(fitted, laws, displacement, attempt.options.thresholds,
+                                    attempt.buffers.response);
+    Append(result.findings, FindContradictedLaw(*result.memory, laws.choice, *result.model));
+  }
+  result.law_choice = ReportedLaw(laws.choice, result.adequacy.verdict);
+  Append(result.findings, FindOtherLaw(result.law_choice));
+}
+
+}  // namespace
+
+FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result) {
+  const FitOptions& options = attempt.options;
+  const Problem& problem = solved.best.problem;
+  const Solution& solution = solved.solution();
+  Noise& noise = solved.noise;
+  const Thresholds& thresholds = options.thresholds;
+  SearchBuffers& buffers = attempt.buffers;
+  const bool is_judged = result.depth >= Depth::kIntervals;
+  const bool is_tested = result.depth >= Depth::kFull;
+  MeasureNoise(attempt, problem, solution, {solved.at.residual.data(), problem.size()}, noise,
+               result);
+  const DisplacementEffect displacement =
+      EffectOf(solved.displacement_errors, problem, solution, noise);
+  const Estimates estimates(problem, solution, noise, displacement, thresholds,
+                            std::move(solved.at));
+  const FittedProblem fitted{problem, solution, noise, estimates};
+  FillErrors(problem, estimates, result);
+  WidenByProfiles(fitted, options, buffers, result);
+  if (is_tested) TestShape(attempt, fitted, result);
+  if (is_judged) CoverRivals(attempt, fitted, solved, result);
+  const std::optional<Finding> limit = FindSearchLimit(problem, solution);
+  Append(result.findings, limit);
+  if (is_judged) {
+    ConsiderDepartures(fitted, displacement, limit.has_value(), options, buffers, result);
+  }
+  result.parameters[kStiffness] = CoverSlipFactor(
+      problem, solution, std::move(result.parameters[kStiffness]), buffers.response);
+  result.parameters[kSlipForce] = KeepAboveCarriedForce(result);
+  Append(result.findings, FindUnseenLoop(result, thresholds));
+  Append(result.findings, FindWideIntervals(result, thresholds));
+  if (is_judged) {
+    if (!options.initial_state && options.initial_states.empty()) {
+      Append(result.findings, FindUnknownPast(problem, solution, thresholds));
+    }
+    Append(result.findings, FindNoisierDisplacement(attempt.prepared, result, thresholds));
+    Append(result.findings, FindFewPlaces(problem, thresholds));
+  }
+  Append(result.findings, FindUntoldAsymmetry(result, thresholds));
+  if (is_judged) Append(result.findings, FindShapeLimitedByLoad(problem, solution));
+  Append(result.findings, FindExtrapolated(result, thresholds));
+  if (is_judged) {
+    Append(result.findings, FindMisfit(result, thresholds));
+    Append(result.findings, FindEnergyContradiction(result, thresholds));
+  }
+  result.findings = WithoutNeedless(result.parameters, std::move(result.findings));
+  if (is_judged && IsInadequate(result, thresholds)) {
+    result = WithoutInadequate(std::move(result), thresholds);
+  }
+  if (is_tested) CompareModels(attempt, fitted, displacement, result);
+  Judge(result.parameters, result.findings);
+  return result;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,193 @@
+#include "identification/problem/requirements.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "identification/problem/scaled_records.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/terms.h"
+#include "mindahl/identification/too_few_samples.h"
+
+namespace mindahl::identification {
+namespace {
+
+/// Refuses terms of the force in a fit of the displacement, and terms of the displacement in a fit
+/// of the force.
+void RequireTermsOfResponse(const FitOptions& options) {
+  const bool fits_force = options.response() == loop::Channel::kForce;
+  const auto refuse = [&](std::string_view what) {
+    throw InvalidArgument(
+        fmt::format("{} has no place in a fit of the {}: leave it out, or fit the {}", what,
+                    fits_force ? "force" : "displacement", fits_force ? "displacement" : "force"));
+  };
+  const auto require = [&](const std::string& name) {
+    const Term* term = FindTerm(TermNameOf(name), options.response());
+    if (term != nullptr && term->presence == Presence::kNever) refuse(name);
+  };
+  for (const std::string& name : options.terms) require(name);
+  for (const auto& [name, value] : options.fixed) require(name);
+  if (fits_force) return;
+  if (!options.covariates.empty()) refuse("a covariate");
+  if (options.force_noise) refuse("noise of the force, which is imposed and taken as exact,");
+  if (options.response_noise()) {
+    RequirePositive("displacement noise [m]", *options.response_noise());
+  }
+}
+
+/// Counts the samples left out by reason: "; of 12 that were read 8 are left out: 2 glitches, …".
+std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOptions& fit) {
+  const loop::PreparationOptions& options = fit.preparation;
+  const std::size_t left_out = prepared.samples() - prepared.counted();
+  if (left_out == 0) return "";
+  std::size_t glitches = 0;
+  for (const loop::PreparedRecord& record : prepared.records) glitches += record.glitches.total();
+  std::vector<std::string> reasons;
+  if (glitches > 0) reasons.push_back(fmt::format("{} glitches", glitches));
+  std::vector<std::string> masks;
+  if (options.load_window) masks.emplace_back("outside the load window");
+  if (options.skip_cycles > 0) masks.emplace_back("in the cycles that are skipped");
+  if (options.cycles) masks.emplace_back("in other cycles than are asked for");
+  if (options.samples) masks.emplace_back("other samples than are asked for");
+  if (!options.held_out.empty()) masks.emplace_back("held out");
+  if (HasTerm(fit, "lag")) masks.emplace_back("beyond the motion that a lag needs");
+  if (!masks.empty() && left_out > glitches) {
+    reasons.push_back(fmt::format("{} {}", left_out - glitches, fmt::join(masks, " or ")));
+  }
+  if (reasons.empty()) return "";
+  return fmt::format("; of {} that were read {} are left out: {}", prepared.samples(), left_out,
+                     fmt::join(reasons, ", "));
+}
+
+constexpr std::size_t kChords = 10;
+
+/// Stiffness [N/m] of a record's chords, as documented; 0 where it has no whole stroke.
+double StiffnessOfLoop(const loop::PreparedRecord& record, double sense) {
+  const std::span<const double> displacement = record.displacement();
+  const std::span<const double> force = record.record.force;
+  std::vector<double> rise(kChords, 0.0);
+  std::vector<double> way(kChords, 0.0);
+  for (std::size_t k = 0; k + 1 < record.reversals.size(); ++k) {
+    const std::size_t begin = record.reversals[k];
+    const std::size_t end = record.reversals[k + 1];
+    const double stroke = displacement[end] - displacement[begin];
+    constexpr double kMainStroke = 0.75;  // of the widest, 2X
+    if (!(std::abs(stroke) >= kMainStroke * 2 * record.measures.amplitude)) continue;
+    std::size_t chord = 0;
+    for (std::size_t i = begin + 1; i <= end && chord < kChords; ++i) {
+      const double share = (displacement[i] - displacement[begin]) / stroke;
+      if (share * kChords < static_cast<double>(chord + 1)) continue;
+      const double direction = std::copysign(1.0, stroke);
+      rise[chord] += direction * sense * (force[i] - force[begin]);
+      way[chord] += direction * (displacement[i] - displacement[begin]);
+      ++chord;
+    }
+  }
+  double stiffness = 0.0;
+  for (std::size_t chord = 0; chord < kChords; ++chord) {
+    if (way[chord] > 0) stiffness = std::max(stiffness, rise[chord] / way[chord]);
+  }
+  return stiffness;
+}
+
+}  // namespace
+
+void RequireOptions(const FitOptions& options) {
+  if (options.model == nullptr || options.model->scaled_by_peak) {
+    throw InvalidArgument("the model cannot be fitted: its amplitude must be given");
+  }
+  if (options.force_noise) RequirePositive("force noise [N]", *options.force_noise);
+  if (!(options.confidence > 0 && options.confidence < 1)) {
+    ThrowInvalid("confidence [-]", options.confidence, "must be between 0 and 1");
+  }
+  RequireTermsOfResponse(options);
+  if (options.model->memory == models::Memory::kNone && HasTerm(options, "asymmetry") &&
+      HasTerm(options, "rig_stiffness")) {
+    throw InvalidArgument(fmt::format(
+        "asymmetry and rig_stiffness of {}: the rig is compliant to the force, which is not the "
+        "state that the law integrates; leave one out, or use --model mindlin-dahl, mindlin or "
+        "jenkins",
+        options.model->name));
+  }
+  if (options.max_iterations < 1) {
+    ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
+  }
+  if (options.starts < 1) ThrowInvalid("starts [-]", 0, "must be >= 1");
+  if (!options.stated.empty() &&
+      (options.loss != Loss::kNone || options.response() != loop::Channel::kForce)) {
+    throw InvalidArgument(
+        "a stated uncertainty has no place in a fit with a robust loss or of the displacement: "
+        "state the value alone");
+  }
+}
+
+void RequireInitialStates(const FitOptions& options, std::size_t records) {
+  const std::size_t states = options.initial_states.size();
+  if (states == 0 || states == records) return;
+  throw InvalidArgument(
+      fmt::format("{} initial states for {} records: give one a record", states, records));
+}
+
+void RequireOneLoad(const ScaledRecords& data) {
+  if (!data.is_forced()) return;
+  const bool varies = std::ranges::any_of(
+      data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
+  if (!data.is_load_series && !data.load_varies && !varies) return;
+  throw InvalidArgument(
+      "the normal load differs or varies, of which a fit of the displacement has no account: fit "
+      "the records of one load, or fit the force");
+}
+
+void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
+  constexpr double kLargest = 1e100;  // in half ranges of the force
+  const std::optional<double> noise = options.response_noise();
+  if (!noise || *noise / data.response_unit() < kLargest) return;
+  const bool is_forced = data.is_forced();
+  ThrowInvalid(is_forced ? "displacement noise [m]" : "force noise [N]", *noise,
+               fmt::format("must be below 1e100 times half the range of the {}, {:.4g} {}",
+                           is_forced ? "displacement" : "force", data.response_unit(),
+                           is_forced ? "m" : "N"));
+}
+
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared,
+                          const FitOptions& options) {
+  const std::size_t free = problem.parameters.free().size();
+  if (problem.data->counted >= free) return;
+  throw TooFewSamples(
+      fmt::format("{} samples are too few for {} free parameters{}: record more or fix some",
+                  problem.data->counted, free, WhatIsLeftOut(prepared, options)));
+}
+
+void RequireToldAsymmetry(const Problem& problem) {
+  if (!problem.parameters.asymmetry_is_confounded()) return;
+  throw InvalidArgument(
+      "asymmetry cannot be distinguished from force_offset: the contact had slipped before what is "
+      "fitted, "
+      "and both are a force that is always there; give the force's zero where it is known, --fix "
+      "force_offset=0, or fit a record from the unloaded contact on, its first loading left in, "
+      "with --initial-state virgin");
+}
+
+void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRecords& records) {
+  const auto rig = options.fixed.find("rig_stiffness");
+  if (rig == options.fixed.end() || !(rig->second > 0)) return;  // one that is stated is fitted
+  for (const loop::PreparedRecord& record : records.records) {
+    const double stiffness = StiffnessOfLoop(record, records.force_sense);
+    if (rig->second > stiffness) continue;
+    ThrowInvalid("rig_stiffness [N/m]", rig->second,
+                 fmt::format("must be > {:.4g}, the stiffness that the loop itself has after its "
+                             "reversals: with a softer rig the contact would move backwards; "
+                             "measure the rig again, or fit it",
+                             stiffness));
+  }
+}
+
+}  // namespace mindahl::identification

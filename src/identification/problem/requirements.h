@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+
+#include "identification/problem/problem.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/loop/preparation.h"
+
+/// What options and records must satisfy to be fitted. Each throws InvalidArgument, or
+/// TooFewSamples, naming the parameter, its value and the rule.
+namespace mindahl::identification {
+
+/// Refuses options that break a rule whatever the records are.
+void RequireOptions(const FitOptions& options);
+
+/// Refuses initial states that are neither none nor one a record.
+void RequireInitialStates(const FitOptions& options, std::size_t records);
+
+/// Refuses loads that differ or vary in a fit of the displacement, which is that of one load.
+void RequireOneLoad(const ScaledRecords& data);
+
+/// Refuses noise of which squares overflow; it is a unit that is meant otherwise.
+void RequireNoise(const FitOptions& options, const ScaledRecords& data);
+
+/// Refuses fewer samples that count than free parameters, and says what was left out.
+void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& prepared,
+                          const FitOptions& options);
+
+/// Refuses to fit an asymmetry after slip, where it is confounded with the force's offset.
+void RequireToldAsymmetry(const Problem& problem);
+
+/// Refuses a rig that is given and softer than the loop itself: in series with it no contact,
+/// however stiff, makes the record. The loop's stiffness [N/m] is the steepest of the chords from a
+/// reversal to a tenth, two tenths, … of the main strokes' way, each the mean over the strokes;
+/// that to their end is T*/X.
+void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRecords& records);
+
+}  // namespace mindahl::identification

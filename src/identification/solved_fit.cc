@@ -1,0 +1,284 @@
+#include "identification/solved_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory_resource>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "identification/diagnosis/adequacy.h"
+#include "identification/inference/evidence.h"
+#include "identification/inference/record_noise.h"
+#include "identification/inference/reweighting.h"
+#include "identification/inference/turning_point_test.h"
+#include "identification/problem/requirements.h"
+
+namespace mindahl::identification {
+namespace {
+
+using models::InitialState;
+
+/// Returns the initial states that the options name; nothing where both have to be tried.
+std::optional<RecordStates> GivenState(const Attempt& attempt) {
+  if (!attempt.options.initial_states.empty()) return RecordStates(attempt.options.initial_states);
+  if (attempt.options.initial_state) return attempt.options.initial_state;
+  const bool unloaded_is_given = std::ranges::any_of(attempt.options.fixed, [&](const auto& fixed) {
+    return fixed.first.starts_with(OriginTerm(attempt.data.excitation));
+  });
+  if (unloaded_is_given) return InitialState::kVirgin;
+  const bool any_reversal = std::ranges::any_of(
+      attempt.data.records, [](const ScaledRecord& record) { return !record.reversals.empty(); });
+  if (!any_reversal) return InitialState::kVirgin;
+  return std::nullopt;
+}
+
+/// Returns the states of a candidate's records with one of them turned to the other.
+RecordStates Flipped(const Problem& problem, std::size_t record) {
+  std::vector<InitialState> states;
+  states.reserve(problem.data->records.size());
+  for (std::size_t r = 0; r < problem.data->records.size(); ++r) {
+    states.push_back(problem.state.Of(r));
+  }
+  states[record] =
+      states[record] == InitialState::kVirgin ? InitialState::kSteady : InitialState::kVirgin;
+  return RecordStates(std::move(states));
+}
+
+/// Returns θ of a solution for a problem that holds other origins; one that it has free starts
+/// unloaded.
+std::vector<double> ThetaFor(const Problem& problem, const Problem& solved,
+                             const Solution& solution) {
+  std::vector<double> theta = solution.theta;
+  for (std::size_t p = 0; p < theta.size(); ++p) {
+    const Parameter& parameter = problem.parameters[p];
+    if (parameter.fixed) {
+      theta[p] = parameter.theta;
+    } else if (solved.parameters[p].fixed) {
+      theta[p] = problem.data->records[parameter.record].excitation().front();
+    }
+  }
+  return theta;
+}
+
+/// Turns the initial state of one record after the other, as long as one of them is clearly the
+/// better for it; `criterion` is Akaike's of a candidate.
+/// @param solution  of what is returned
+/// @returns nothing where all records stay as they are
+template <typename Criterion>
+std::optional<Candidate> FitMixedStates(const Attempt& attempt, const Candidate& pure,
+                                        const Criterion& criterion, Solution& solution) {
+  std::optional<Candidate> best;
+  Solution trial_solution;
+  constexpr int kMostPasses = 3;
+  bool any = true;
+  for (int pass = 0; pass < kMostPasses && any; ++pass) {
+    any = false;
+    for (std::size_t r = 0; r < attempt.data.records.size(); ++r) {
+      const Candidate& from = best ? *best : pure;
+      Candidate trial(attempt.data, attempt.options, Flipped(from.problem, r), attempt.memory);
+      trial.solution = &trial_solution;
+      const std::vector<double> start = ThetaFor(trial.problem, from.problem, *from.solution);
+      attempt.buffers.solver.Bind(trial.problem, attempt.buffers.response);
+      attempt.buffers.solver.Solve(start, SolverOptionsOf(attempt.options), trial_solution);
+      const double gain = criterion(from) - criterion(trial);
+      if (!(gain > 0) || PastIsUndecided(gain, attempt.options.thresholds)) continue;
+      std::swap(solution, trial_solution);
+      trial.solution = &solution;
+      best.emplace(std::move(trial));
+      any = true;
+    }
+  }
+  return best;
+}
+
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
+/// several records also some as virgin and some as steady, where all as one does not fit.
+/// @param rival  written: the other initial state, where the criterion hardly prefers either
+Candidate FitBestState(const Attempt& attempt, std::vector<Descent>* descents,
+                       std::optional<Candidate>& rival) {
+  const FitOptions& options = attempt.options;
+  std::array<Solution, 3>& solutions = attempt.buffers.states;
+  const auto make = [&](const RecordStates& state, Solution& solution) {
+    Candidate candidate(attempt.data, options, state, attempt.memory);
+    candidate.solution = &solution;
+    RequireEnoughSamples(candidate.problem, attempt.prepared, options);
+    return candidate;
+  };
+  const auto find_starts = [&](Candidate& candidate,
+                               double look = std::numeric_limits<double>::infinity()) {
+    return FindStartsOf(candidate, attempt.thin, options, look, attempt.buffers, attempt.memory);
+  };
+  const auto descend = [&](Candidate& candidate, std::vector<Descent>* recorded) {
+    AddStartsOfSmallerModels(candidate, attempt.thin, options, attempt.buffers, attempt.memory);
+    Descend(candidate, options, attempt.buffers, recorded);
+    SearchBesideMinimum(candidate, options, attempt.buffers, recorded);
+  };
+  if (const std::optional<RecordStates> given = GivenState(attempt)) {
+    Candidate candidate = make(*given, solutions[0]);
+    find_starts(candidate);
+    descend(candidate, descents);
+    return candidate;
+  }
+  Candidate virgin = make(InitialState::kVirgin, solutions[0]);
+  Candidate steady = make(InitialState::kSteady, solutions[1]);
+  const double virgin_cost = find_starts(virgin);
+  const double virgin_look =
+      virgin.starts.empty() ? std::numeric_limits<double>::infinity() : virgin.starts.front().look;
+  const double steady_cost = find_starts(steady, virgin_look);
+  // A rms twice as large on the thinned record is not made good on the whole one: its n_eff·ln 4
+  // is beyond the parameter that the two differ by, however few samples are left of it.
+  constexpr double kClearlyWorse = 4.0;
+  const bool is_one = attempt.data.records.size() == 1;  // of several, some may be of either
+  if (is_one && steady_cost > kClearlyWorse * virgin_cost) {
+    descend(virgin, descents);
+    if (virgin.solution->converged) return virgin;
+  } else if (is_one && virgin_cost > kClearlyWorse * steady_cost) {
+    descend(steady, descents);
+    if (steady.solution->converged) return steady;
+  }
+  std::vector<Descent> virgin_descents;
+  std::vector<Descent> steady_descents;
+  descend(virgin, descents != nullptr ? &virgin_descents : nullptr);
+  descend(steady, descents != nullptr ? &steady_descents : nullptr);
+  const Candidate& better =
+      virgin.solution->sum_of_squares < steady.solution->sum_of_squares ? virgin : steady;
+  bool is_virgin = true;
+  rival.reset();
+  bool is_close = false;
+  std::optional<Candidate> mixed;
+  if (std::isfinite(better.solution->sum_of_squares)) {  // else neither was even started
+    const Evidence evidence(attempt.data.counted,
+                            EffectiveSamples(better.problem, better.solution->theta,
+                                             attempt.buffers.response, attempt.memory));
+    const auto criterion = [&](const Candidate& candidate) {
+      return evidence.Aicc(candidate.solution->sum_of_squares,
+                           candidate.problem.parameters.free().size());
+    };
+    is_virgin = criterion(virgin) < criterion(steady);
+    is_close = PastIsUndecided(criterion(virgin) - criterion(steady), options.thresholds) &&
+               virgin.solution->converged && steady.solution->converged;
+    if (!is_one) {
+      mixed = FitMixedStates(attempt, is_virgin ? virgin : steady, criterion, solutions[2]);
+    }
+  }
+  if (mixed) {
+    if (descents != nullptr) {
+      *descents = {{.start = mixed->solution->theta,
+                    .start_cost = mixed->solution->sum_of_squares,
+                    .solution = *mixed->solution}};
+    }
+    return std::move(*mixed);
+  }
+  if (descents != nullptr) *descents = is_virgin ? virgin_descents : steady_descents;
+  Candidate& chosen = is_virgin ? virgin : steady;
+  Candidate& other = is_virgin ? steady : virgin;
+  if (is_close) rival.emplace(std::move(other));
+  return std::move(chosen);
+}
+
+/// True if the noise of the records is not one, where it is not known.
+bool RecordsDifferInNoise(const Attempt& attempt, const Candidate& candidate) {
+  const Problem& problem = candidate.problem;
+  const bool is_known = attempt.options.response_noise().has_value();
+  if (is_known || problem.data->records.size() < 2 ||
+      !std::isfinite(candidate.solution->sum_of_squares)) {
+    return false;
+  }
+  std::pmr::vector<double> residual(problem.size(), attempt.memory);
+  EvaluateResidual(problem, candidate.solution->theta, attempt.buffers.response, residual);
+  return ChanceOfOneNoise(problem, residual) < attempt.options.thresholds.noise_differs;
+}
+
+/// Solves a candidate whose weights or samples have changed, from where it is.
+void SolveAgain(Candidate& candidate, const FitOptions& options, SearchBuffers& buffers) {
+  buffers.solver.Bind(candidate.problem, buffers.response);
+  const std::vector<double> start = candidate.solution->theta;
+  buffers.solver.Solve(start, SolverOptionsOf(options), *candidate.solution);
+}
+
+/// Fits turning points where the record needs it and allows it.
+std::optional<TurningPointFit> TurnedFit(const Attempt& attempt, const Candidate& best) {
+  // A gate means noise in the displacement: its outermost samples are the noisiest, and say
+  // nothing of where the motion turned.
+  const bool gated = std::ranges::any_of(
+      attempt.prepared.records, [](const auto& record) { return record.reversal_gate > 0; });
+  // Turning points are not fitted together with a term that moves the samples off them.
+  const bool is_moved = best.problem.parameters.moves_contact();
+  // Nor under a load that varies: the path between the samples is not the displacement's alone.
+  // An imposed force is taken as it was sampled.
+  if (!best.solution->converged || gated || is_moved || attempt.data.load_varies ||
+      attempt.data.is_forced()) {
+    return std::nullopt;
+  }
+  return FitTurningPointsIfNeeded(best.problem, *best.solution, attempt.options, attempt.buffers);
+}
+
+}  // namespace
+
+SolvedFit SolveFit(const Attempt& attempt) {
+  const FitOptions& options = attempt.options;
+  SearchBuffers& buffers = attempt.buffers;
+  ScaledRecords& data = attempt.data;
+  std::vector<Descent> descents;
+  std::vector<Descent>* const recorded = attempt.depth >= Depth::kIntervals ? &descents : nullptr;
+  std::optional<Candidate> rival;
+  SolvedFit solved(FitBestState(attempt, recorded, rival), attempt);
+  Candidate& best = solved.best;
+  RequireToldAsymmetry(best.problem);
+  const bool is_plain = options.loss == Loss::kNone && !solved.displacement_errors.any();
+  const bool by_record = RecordsDifferInNoise(attempt, best);
+  solved.is_weighted = !is_plain || by_record;
+  if (std::isfinite(best.solution->sum_of_squares)) {
+    const auto fit_with_weights = [&](ScaledRecords& weighted) {
+      solved.is_settled = FitWithWeights(
+          best.problem, weighted, options, solved.displacement_errors, buffers.solver,
+          buffers.response, SolverOptionsOf(options), *best.solution, solved.noise, by_record);
+    };
+    if (solved.is_weighted) {
+      fit_with_weights(data);
+      // Outliers, or the noisiest of the records, may have hidden the initial state: once
+      // more from all starts, as weighted.
+      if (options.loss != Loss::kNone || by_record) {
+        ThinnedRecords weighted_thin(data, attempt.memory);
+        const Attempt weighted{options,       attempt.depth, attempt.prepared, data,
+                               weighted_thin, buffers,       attempt.memory};
+        descents.clear();
+        best = FitBestState(weighted, recorded, rival);
+        fit_with_weights(data);
+        if (rival && by_record) SolveAgain(*rival, options, buffers);
+      }
+    }
+    if (is_plain) {
+      solved.turned = TurnedFit(attempt, best);
+      if (solved.turned) {
+        best.problem.data = &solved.turned->records->data;
+        *best.solution = solved.turned->solution;
+        if (rival && !solved.fits_turns()) {
+          rival->problem.data = best.problem.data;
+          SolveAgain(*rival, options, buffers);
+        }
+        // By what is left where the turning points are where the motion has them.
+        if (by_record && !solved.fits_turns()) fit_with_weights(solved.turned->records->data);
+      }
+      std::vector<double> of_records = std::move(solved.noise.of_records);
+      solved.noise =
+          PlainNoise(*best.problem.data, options, best.solution->sum_of_squares,
+                     best.problem.parameters.free().size() +
+                         (solved.fits_turns() ? solved.turned->records->overshoot.size() : 0));
+      solved.noise.of_records = std::move(of_records);
+    }
+    if (attempt.depth >= Depth::kErrors) {
+      solved.at = LinearizeAt(best.problem, best.solution->theta, buffers.response,
+                              best.problem.parameters.free());
+    }
+  }
+  solved.rival = std::move(rival);
+  solved.descents = std::move(descents);
+  return solved;
+}
+
+}  // namespace mindahl::identification

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory_resource>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "identification/inference/displacement_errors.h"
+#include "identification/inference/noise.h"
+#include "identification/problem/problem.h"
+#include "identification/problem/scaled_records.h"
+#include "identification/solve/search.h"
+#include "identification/solve/turning_points.h"
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/identification/fit_result.h"
+#include "mindahl/loop/preparation.h"
+
+namespace mindahl::identification {
+
+/// Holds the inputs and buffers of a fit while it is made.
+struct Attempt {
+  const FitOptions& options;
+  Depth depth;
+  const loop::PreparedRecords& prepared;
+  ScaledRecords& data;
+  ThinnedRecords& thin;
+  SearchBuffers& buffers;
+  std::pmr::memory_resource* memory;
+};
+
+/// Holds the least squares of some records: what every later stage starts from.
+struct SolvedFit {
+  SolvedFit(Candidate found, const Attempt& attempt)
+      : best(std::move(found)), displacement_errors(attempt.prepared, attempt.data) {}
+
+  Candidate best;                       ///< of the initial states that were tried
+  std::optional<Candidate> rival = {};  ///< the other initial state, where it is as likely
+  std::vector<Descent> descents = {};   ///< from all starts of `best`; from Depth::kIntervals on
+  DisplacementErrors displacement_errors;
+  Noise noise = {};
+  bool is_weighted = false;  ///< samples do not all weigh the same
+  bool is_settled = true;    ///< the weights are those of the residuals that they leave
+  /// The records that `best` is a problem of, where turning points were put in or fitted.
+  std::optional<TurningPointFit> turned = {};
+  Linearization at = {};  ///< of `best` by its free parameters; from Depth::kErrors
+
+  [[nodiscard]] const Solution& solution() const { return *best.solution; }
+  [[nodiscard]] bool fits_turns() const { return best.problem.data->turns_are_fitted; }
+};
+
+/// Fits from the initial state that the options name, or that Akaike's criterion prefers; of
+/// several records also some as virgin and some as steady, where all as one does not fit. Samples
+/// are weighted where the displacement is inexact, the loss is robust or records differ in their
+/// noise, and turning points fitted where the record is sampled so coarsely that it misses them.
+/// @throws InvalidArgument for too few samples, or an asymmetry that the record cannot distinguish
+SolvedFit SolveFit(const Attempt& attempt);
+
+}  // namespace mindahl::identification
