@@ -202,6 +202,12 @@ bool StopsAtLimit(const FitResult& fit) {
   });
 }
 
+/// True if hardly more than white noise is left.
+bool IsNearlyWhite(const FitResult& fit) {
+  constexpr double kNearlyWhite = 1.2;  // mean square over the variance of the white part
+  return fit.rms * fit.rms <= kNearlyWhite * WhiteVariance(fit);
+}
+
 /// True if a term cannot be negative: a mass or a damping that is stands for something else.
 bool IsPositiveTerm(std::string_view name) { return name == "inertia" || name == "viscous"; }
 
@@ -222,6 +228,7 @@ bool IsUnphysical(const TermScore& score) {
 struct Alternative {
   std::string name;
   std::map<std::string, double> law;  // differences of θ of σ, α and Tc
+  double sum_of_squares = 0.0;        // with it, to first order
 };
 
 /// Includes in the intervals what alternatives make of the law, Tc no further than what a loop that
@@ -271,6 +278,14 @@ void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
   });
 }
 
+/// Drops the causes that explain less than half of what is left beside terms that were added: of
+/// what several things make together none is to be blamed.
+void DropLesserCauses(std::vector<Cause>& causes) {
+  constexpr double kMostOfIt = 0.5;
+  std::erase_if(
+      causes, [&](const Cause& cause) { return cause.explains < kMostOfIt && !cause.is_measured; });
+}
+
 class Selection {
  public:
   Selection(std::span<const RecordView> records, const TermSelectionOptions& options,
@@ -292,6 +307,7 @@ class Selection {
   [[nodiscard]] FitOptions With(const TermCandidate& candidate, FitOptions options) const;
   std::optional<CandidateModel> FitFrom(const CandidateModel& base, FitOptions options,
                                         const std::map<std::string, double>& starts);
+  std::optional<CandidateModel> FitAnew(const CandidateModel& base, const TermTrial& trial);
   void MakeScores(const FitOptions& options, const FitResult& law,
                   std::span<const TermCandidate> candidates);
   void DivideIntoParts(const FitResult& fit);
@@ -305,6 +321,8 @@ class Selection {
   void AddMeasuredGap(std::vector<TermCandidate>& candidates, CandidateModel& base,
                       FitResult& judged);
   bool Accept(const CandidateModel& base, const CandidateModel& model, FitResult& judged);
+  void Simplify(std::vector<TermCandidate>& candidates, CandidateModel& base,
+                const FitResult& judged);
   [[nodiscard]] std::optional<FitOptions> WithinMeasuredForce(const FitResult& fit,
                                                               const FitOptions& options) const;
   void FitLast(const CandidateModel& base);
@@ -363,6 +381,25 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, Fit
     at_bound["slip_force"] = within->bounds.at("slip_force").upper;
     return FitFrom(model, *within, at_bound);
   }
+  model.sum_of_squares = SquaresOf(model.fit.rms);
+  return model;
+}
+
+/// Fits a law with one term from starts of its own, whatever the initial state was without it.
+std::optional<CandidateModel> Selection::FitAnew(const CandidateModel& base,
+                                                 const TermTrial& trial) {
+  CandidateModel model;
+  model.options = With(*trial.candidate, base.options);
+  FitOptions options = model.options;
+  options.preparation.force_sense = base.fit.force_sense;
+  options.preparation.held_out = held_out_;
+  try {
+    ++result_.estimates;
+    model.fit = Fitter(options).Fit(records_, Depth::kEstimate);
+  } catch (const InvalidArgument&) {
+    return std::nullopt;
+  }
+  if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;
   model.sum_of_squares = SquaresOf(model.fit.rms);
   return model;
 }
@@ -536,7 +573,8 @@ void Selection::KeepAlternatives(const TermTrial& added, std::span<const TermTri
                           considered.gain >= kOfGain * added.candidate->considered.gain;
     if (&other == &added || !explains || !other.candidate->covariate.empty()) continue;
     if (considered.obstacle == "unphysical") continue;
-    Alternative& alternative = alternatives_.emplace_back(Alternative{considered.name, {}});
+    Alternative& alternative =
+        alternatives_.emplace_back(Alternative{considered.name, {}, other.sum_of_squares});
     for (const auto& [name, step] : other.score.law) {
       const auto of_added = added.score.law.find(name);
       if (of_added != added.score.law.end()) alternative.law.emplace(name, step - of_added->second);
@@ -553,42 +591,65 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
       selection_.chance / static_cast<double>(std::max<std::size_t>(trials.size(), 1));
   // A simpler candidate is taken where a larger one would not leave that much less.
   const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
+  const bool is_first = result_.added.empty();
   std::map<const TermCandidate*, std::optional<CandidateModel>> fitted;
+  const auto fit = [&](const TermTrial& trial) -> std::optional<CandidateModel>* {
+    const auto found = fitted.find(trial.candidate);
+    if (found != fitted.end()) return &found->second;
+    if (fitted.size() == (is_first ? 2 * kMostTried : kMostTried) || !MayFit(2)) return nullptr;
+    return &fitted
+                .emplace(trial.candidate,
+                         FitFrom(base, With(*trial.candidate, base.options), trial.score.values))
+                .first->second;
+  };
+  const auto is_wanted = [&](const TermTrial& trial) {
+    const ConsideredTerm& considered = trial.candidate->considered;
+    if (parts_.empty() && !(trial.rank < 0)) return false;
+    return considered.p_value < chance && considered.gain >= selection_.smallest_gain &&
+           !IsRefused(trial, trials);
+  };
+  const auto add = [&](const TermTrial& trial, CandidateModel& model) {
+    ConsideredTerm& considered = trial.candidate->considered;
+    const double gain = 1 - std::sqrt(model.sum_of_squares / base.sum_of_squares);
+    if (gain < selection_.smallest_gain) return false;
+    if (IsUnphysical(model.fit)) {
+      considered.obstacle = "unphysical";
+      return false;
+    }
+    if (!Accept(base, model, judged)) {
+      considered.obstacle = "confounded";
+      return false;
+    }
+    KeepAlternatives(trial, trials, chance);
+    considered.gain = gain;
+    considered.added = true;
+    result_.added.push_back(considered.name);
+    base = std::move(model);
+    return true;
+  };
+  // One term that leaves nothing but noise comes before any that only predicts best at first, the
+  // simplest before others; the want of it may have hidden the initial state.
+  std::vector<std::pair<const TermTrial*, CandidateModel>> alone;
+  for (const TermTrial& trial : trials) {
+    if (!is_first || fitted.size() == kMostTried || !MayFit(3)) break;
+    if (!is_wanted(trial)) continue;
+    std::optional<CandidateModel> model = *fit(trial);
+    if (!model || !IsNearlyWhite(model->fit)) model = FitAnew(base, trial);
+    if (model && IsNearlyWhite(model->fit)) alone.emplace_back(&trial, std::move(*model));
+  }
+  std::ranges::stable_sort(alone, {}, [](const auto& one) { return one.first->candidate->size(); });
+  for (auto& [trial, model] : alone) {
+    if (add(*trial, model)) return true;
+  }
   for (const TermTrial& best : trials) {
-    const ConsideredTerm& wanted = best.candidate->considered;
-    if (parts_.empty() && !(best.rank < 0)) continue;
-    if (!(wanted.p_value < chance) || wanted.gain < selection_.smallest_gain) continue;
-    if (IsRefused(best, trials)) continue;
+    if (!is_wanted(best)) continue;
     for (const TermTrial* trial : WithSimpler(best, trials)) {
-      ConsideredTerm& considered = trial->candidate->considered;
-      if (!considered.obstacle.empty()) continue;
-      auto found = fitted.find(trial->candidate);
-      if (found == fitted.end()) {
-        if (fitted.size() == kMostTried || !MayFit(2)) return false;
-        found = fitted
-                    .emplace(trial->candidate, FitFrom(base, With(*trial->candidate, base.options),
-                                                       trial->score.values))
-                    .first;
-      }
-      std::optional<CandidateModel>& model = found->second;
-      if (!model || !(model->sum_of_squares < base.sum_of_squares)) continue;
-      if (trial != &best && model->sum_of_squares > nearly * best.sum_of_squares) continue;
-      const double gain = 1 - std::sqrt(model->sum_of_squares / base.sum_of_squares);
-      if (gain < selection_.smallest_gain) continue;
-      if (IsUnphysical(model->fit)) {
-        considered.obstacle = "unphysical";
-        continue;
-      }
-      if (!Accept(base, *model, judged)) {
-        considered.obstacle = "confounded";
-        continue;
-      }
-      KeepAlternatives(*trial, trials, chance);
-      considered.gain = gain;
-      considered.added = true;
-      result_.added.push_back(considered.name);
-      base = std::move(*model);
-      return true;
+      if (!trial->candidate->considered.obstacle.empty()) continue;
+      std::optional<CandidateModel>* const model = fit(*trial);
+      if (model == nullptr) return false;
+      if (!*model || !((*model)->sum_of_squares < base.sum_of_squares)) continue;
+      if (trial != &best && (*model)->sum_of_squares > nearly * best.sum_of_squares) continue;
+      if (add(*trial, **model)) return true;
     }
   }
   return false;
@@ -627,12 +688,12 @@ void Selection::AddMeasuredGap(std::vector<TermCandidate>& candidates, Candidate
 /// of its stroke the half gap is enough to see that, and the estimates are; otherwise, or where the
 /// residuals are nearly white, the larger model is judged, and replaces the one that was.
 bool Selection::Accept(const CandidateModel& base, const CandidateModel& model, FitResult& judged) {
-  constexpr double kNearlyWhite = 1.2;  // mean square over the variance of the white part
   const FitResult& fit = model.fit;
-  if (LeavesHalfGap(facts_, base.fit.law.slip_force, fit.law.slip_force)) return false;
+  if (LeavesHalfGap(facts_, base.fit.law.slip_force, fit.law.slip_force) && !IsNearlyWhite(fit)) {
+    return false;
+  }
   if (StopsAtLimit(fit) && !StopsAtLimit(base.fit)) return false;
-  const bool is_white = fit.rms * fit.rms <= kNearlyWhite * WhiteVariance(fit);
-  if (SlidesOverMostOfStroke(facts_, model.options.thresholds) && !is_white) return true;
+  if (SlidesOverMostOfStroke(facts_, model.options.thresholds) && !IsNearlyWhite(fit)) return true;
   ++result_.estimates;
   Fitter fitter(ContinuedFrom(fit, model.options));
   const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
@@ -643,6 +704,80 @@ bool Selection::Accept(const CandidateModel& base, const CandidateModel& model, 
   if (OpensSlipForce(judged, now, model.options.thresholds.widest_ratio)) return false;
   judged = now;
   return true;
+}
+
+/// Moves to a model with fewer terms where that has the lesser AICc and misses hardly more than
+/// noise, or than the one with all of them: a term that was added early
+/// may have nothing left to do beside those added later, and a slip force of the speed with a drag
+/// may be a slip force and a force of the speed, which takes a part of the half gap: where nothing
+/// but noise is left, that is no reason against it.
+void Selection::Simplify(std::vector<TermCandidate>& candidates, CandidateModel& base,
+                         const FitResult& judged) {
+  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
+                                                   static_cast<double>(samples_.count)));
+  const auto find = [&](std::string_view name) {
+    return std::ranges::find_if(candidates, [&](const TermCandidate& candidate) {
+      return candidate.considered.name == name;
+    });
+  };
+  const auto is_added = [&](std::string_view name) {
+    const auto candidate = find(name);
+    return candidate != candidates.end() && candidate->considered.added;
+  };
+  /// Tries the model without some terms, and with one in their place unless that is empty.
+  const auto move_to = [&](const std::vector<std::string_view>& dropped, std::string_view instead) {
+    CandidateModel from = base;
+    for (const std::string_view name : dropped) {
+      for (const std::string& term : find(name)->terms) {
+        std::erase(from.options.terms, term);
+        std::erase_if(from.fit.parameters, [&](const ParameterEstimate& estimate) {
+          return TermNameOf(estimate.name) == term;
+        });
+      }
+    }
+    if (!instead.empty()) {
+      const auto candidate = find(instead);
+      if (candidate == candidates.end() || candidate->considered.added) return false;
+      from.options = With(*candidate, from.options);
+      from.fit.parameters.clear();  // from starts of its own
+    }
+    if (!MayFit(2)) return false;
+    std::optional<CandidateModel> model = FitFrom(from, from.options, {});
+    const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
+    if (!model || IsUnphysical(model->fit) || StopsAtLimit(model->fit) ||
+        (LeavesHalfGap(facts_, base.fit.law.slip_force, model->fit.law.slip_force) &&
+         !IsNearlyWhite(model->fit)) ||
+        (model->sum_of_squares > nearly * base.sum_of_squares && !IsNearlyWhite(model->fit)) ||
+        evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) >
+            evidence.Aicc(base.sum_of_squares, CountFreeParameters(base.fit))) {
+      return false;
+    }
+    for (const std::string_view name : dropped) {
+      find(name)->considered.added = false;
+      std::erase(result_.added, std::string(name));
+    }
+    alternatives_.clear();  // to terms that are not there any more
+    if (!instead.empty()) {
+      ConsideredTerm& considered = find(instead)->considered;
+      considered.added = true;
+      considered.obstacle = "";
+      considered.gain = 1 - std::sqrt(model->sum_of_squares / SquaresOf(result_.fit.rms));
+      result_.added.emplace_back(instead);
+    }
+    base = std::move(*model);
+    return true;
+  };
+  if (is_added("slip_speed") && is_added("drag")) {
+    for (const std::string_view simpler : {"viscous", "speed_exponent"}) {
+      if (move_to({"slip_speed", "drag"}, simpler)) break;
+    }
+  }
+  if (result_.added.size() < 2) return;
+  for (const std::string& name : std::vector<std::string>(result_.added)) {
+    const bool is_needed = name == "slip_speed" && is_added("drag");
+    const auto candidate = find(name);
+    if (!is_needed && candidate->covariate.empty()) move_to({candidate->considered.name}, "");
+  }
 }
 
 void Selection::Run(const FitOptions& options) {
@@ -674,6 +809,7 @@ void Selection::Run(const FitOptions& options) {
          result_.added.size() < selection_.most_terms && Round(candidates, base, judged)) {
   }
   if (!result_.added.empty()) {
+    Simplify(candidates, base, judged);
     FitResult law = std::move(result_.fit);
     FitLast(base);
     const bool is_of_no_use = selection_.only_for_use && result_.fit.adequacy.use == Use::kNone;
@@ -690,6 +826,7 @@ void Selection::Run(const FitOptions& options) {
     const ConsideredTerm& considered = candidate.considered;
     if (!considered.obstacle.empty()) DropCausesOf(considered, result_.fit.adequacy.causes);
   }
+  if (!result_.added.empty()) DropLesserCauses(result_.fit.adequacy.causes);
   for (const TermCandidate& candidate : candidates)
     result_.considered.push_back(candidate.considered);
   std::ranges::stable_sort(result_.considered, std::greater(), &ConsideredTerm::gain);
@@ -708,6 +845,20 @@ void Selection::FitLast(const CandidateModel& base) {
       from_here.start[parameter.name] = parameter.value;
     }
   }
+  // What was held out, and the want of terms, may have hidden the initial state.
+  const auto rms_of = [&](const FitOptions& options) {
+    ++result_.estimates;
+    const FitResult estimate = Fitter(options).Fit(records_, Depth::kEstimate);
+    return IsFitted(estimate) && estimate.converged ? estimate.rms
+                                                    : std::numeric_limits<double>::infinity();
+  };
+  const bool may_be_virgin = !from_here.initial_state && from_here.initial_states.empty() &&
+                             std::ranges::any_of(base.fit.records, [](const RecordFit& record) {
+                               return record.initial_state == models::InitialState::kSteady;
+                             });
+  if (may_be_virgin && rms_of(base.options) < (1 - selection_.smallest_gain) * rms_of(from_here)) {
+    from_here = base.options;
+  }
   const auto fit = [&] {
     ++result_.estimates;
     Fitter last(from_here);
@@ -721,8 +872,12 @@ void Selection::FitLast(const CandidateModel& base) {
     from_here.bounds.erase("slip_force");
     fit();
   }
+  // One term that leaves but noise rules out what leaves twice as much.
+  const bool is_settled =
+      result_.added.size() == 1 && result_.fit.adequacy.verdict == AdequacyVerdict::kAdequate;
   std::erase_if(alternatives_, [&](const Alternative& alternative) {
-    return std::ranges::find(result_.added, alternative.name) != result_.added.end();
+    return std::ranges::find(result_.added, alternative.name) != result_.added.end() ||
+           (is_settled && alternative.sum_of_squares > 2 * SquaresOf(result_.fit.rms));
   });
   if (IsFitted(result_.fit)) {
     IncludeAlternatives(alternatives_, base.options.thresholds, result_.fit);

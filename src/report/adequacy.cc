@@ -258,12 +258,29 @@ std::string VerdictSentence(const Report& report) {
                      WhatIncludesIt(report.fit));
 }
 
+namespace {
+
+/// Says how other records are fitted by a model whose terms were chosen, where `--terms` takes all
+/// their names.
+std::string SameModelAgain(const Report& report) {
+  if (!report.terms || report.terms->added.empty()) return "";
+  const std::vector<std::string>& added = report.terms->added;
+  const bool have_names = std::ranges::all_of(added, [](const std::string& name) {
+    return identification::FindTermGroup(name) != nullptr;
+  });
+  return fmt::format("nothing explains half of what is left{}",
+                     have_names ? fmt::format("; to fit other records of this contact by the same "
+                                              "model, give --terms {}",
+                                              fmt::join(added, ","))
+                                : "");
+}
+
+}  // namespace
+
 std::string NextStep(const Report& report) {
   const Adequacy& adequacy = report.fit.adequacy;
-  if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate ||
-      adequacy.causes.empty()) {
-    return "";
-  }
+  if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return "";
+  if (adequacy.causes.empty()) return SameModelAgain(report);
   return "it looks like " + Sentence(adequacy.causes.front(), report.fit.response);
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "identification/diagnosis/adequacy.h"
 #include "identification/inference/adequacy_test.h"
 #include "identification/inference/column_test.h"
 #include "identification/inference/departures.h"
@@ -147,6 +148,28 @@ TEST(TestAdequacy, CountsEveryColumnOfATermInItsAicc) {
     of_several += count > 1 ? 1 : 0;
   }
   EXPECT_GE(of_several, 1u) << "the case needs a term of several columns";
+}
+
+TEST(CausesOf, ForceReadingThatGainsOrLosesMoreThanAllDoesNotSaturate) {
+  // Of what is beyond nine tenths of the peak a sensor can lose a part or all of it.
+  const auto is_named = [](double lost, double size_p_value) {
+    DepartureFit fit;
+    while (Departures()[fit.departure].code != "force_saturates") ++fit.departure;
+    fit.p_value = 1e-9;
+    fit.delta_aicc = -90;
+    fit.explains = 0.8;
+    fit.size = lost;
+    fit.size_p_value = size_p_value;
+    AdequacyTest test;
+    test.fits = {fit};
+    return CausesOf(test, {}).size() == 1;
+  };
+  constexpr double kCertain = 1e-9;
+  EXPECT_TRUE(is_named(0.3, kCertain));
+  EXPECT_TRUE(is_named(1.0, kCertain));
+  EXPECT_FALSE(is_named(1.2, kCertain));
+  EXPECT_FALSE(is_named(-0.3, kCertain));
+  EXPECT_FALSE(is_named(0.3, 0.5));
 }
 
 }  // namespace

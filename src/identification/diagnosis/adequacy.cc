@@ -92,6 +92,12 @@ void DenyLagOfSpeed(std::vector<DepartureFit>& causes) {
   if (is_of_speed) causes.erase(causes.begin() + (lag - causes.data()));
 }
 
+/// True if a force that seems to saturate would gain, or lose more than all, of what is beyond.
+bool IsNoSaturation(const DepartureFit& fit, const Thresholds& thresholds) {
+  if (Departures()[fit.departure].code != "force_saturates") return false;
+  return !(SaysItsSize(fit, thresholds) && fit.size > 0 && fit.size <= 1);
+}
+
 }  // namespace
 
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds) {
@@ -101,6 +107,7 @@ bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds) {
 std::vector<DepartureFit> CausesOf(const AdequacyTest& test, const Thresholds& thresholds) {
   std::vector<DepartureFit> causes;
   for (const DepartureFit& fit : test.fits) {
+    if (IsNoSaturation(fit, thresholds)) continue;
     const bool helps = fit.p_value < thresholds.cause && fit.delta_aicc < 0;
     if (helps || fit.is_measured) causes.push_back(fit);
   }
