@@ -1,4 +1,4 @@
-#include "mindahl/core/memory.h"
+#include "core/memory.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>
