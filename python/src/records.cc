@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bindings.h"
-#include "core/memory.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/io/csv_table.h"
 #include "record.h"
 

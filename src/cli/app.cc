@@ -23,9 +23,9 @@
 #include "cli/output.h"
 #include "cli/provenance.h"
 #include "cli/toml.h"
-#include "core/memory.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 
 namespace mindahl::cli {

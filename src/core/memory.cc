@@ -1,4 +1,4 @@
-#include "core/memory.h"
+#include "mindahl/core/memory.h"
 
 #include <fmt/format.h>
 #include <sys/resource.h>

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/memory.h"
 #include "identification/cycle_energy.h"
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/diagnosis/grade.h"
@@ -28,6 +27,7 @@
 #include "identification/solve/search.h"
 #include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"

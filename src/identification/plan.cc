@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/memory.h"
 #include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/reweighting.h"
@@ -15,6 +14,7 @@
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"

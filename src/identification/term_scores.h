@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/memory.h"
 #include "identification/held_out.h"
 #include "identification/problem/problem.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/preparation.h"
 

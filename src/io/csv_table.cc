@@ -13,12 +13,12 @@
 #include <system_error>
 #include <utility>
 
-#include "core/memory.h"
 #include "io/csv_layout.h"
 #include "io/csv_tokenizer.h"
 #include "io/input_file.h"
 #include "io/number_cell.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 
 namespace mindahl::io {
 

@@ -13,11 +13,11 @@
 #include <system_error>
 #include <utility>
 
-#include "core/memory.h"
 #include "core/probability.h"
 #include "io/input_file.h"
 #include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
 #include "mindahl/io/csv_table.h"
 #include "report/json_document.h"

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "core/memory.h"
 #include "mindahl/core/error.h"
+#include "mindahl/core/memory.h"
 #include "mindahl/identification/backbone_estimate.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
