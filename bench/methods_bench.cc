@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "mindahl/methods/method.h"
+#include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/limit_law.h"
 
 namespace {
 

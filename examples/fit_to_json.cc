@@ -10,7 +10,6 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/report/contact.h"
-#include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
 
 int main(int argc, char** argv) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prices of the operations that methods are made of, for src/tradeoff/cost_model.cc.
+"""Prices of the operations that methods are made of, for src/tradeoff/approximation.cc.
 
     scripts/calibrate_costs.py build/release/src/mindahl [RUNS]
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "mindahl/campaign/cycle_splitter.h"
-#include "mindahl/campaign/reading.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/io/record_reader.h"
 #include "processor_time.h"

@@ -12,7 +12,6 @@
 #include "mindahl/request/batch.h"
 #include "mindahl/request/contact_request.h"
 #include "mindahl/request/conversion.h"
-#include "mindahl/request/one_of.h"
 #include "mindahl/request/plan.h"
 #include "mindahl/request/recommendation.h"
 #include "mindahl/request/tradeoff.h"
@@ -85,8 +84,8 @@ std::pair<Answer, std::optional<std::vector<std::string>>> Convert(
 
 Answer Plan(PlanRequest request, const std::string& initial_state,
             const std::optional<NamedRecord>& record) {
-  request::RequireOneOf("--initial-state", initial_state,
-                        std::array<std::string_view, 3>{"virgin", "steady", "both"});
+  RequireOneOf("--initial-state", initial_state,
+               std::array<std::string_view, 3>{"virgin", "steady", "both"});
   if (initial_state == "virgin") request.initial_state = models::InitialState::kVirgin;
   if (initial_state == "steady") request.initial_state = models::InitialState::kSteady;
   if (record) {
@@ -119,7 +118,7 @@ Answer Tradeoff(const LawRequest& law, const std::vector<std::string>& excitatio
   const std::vector<double> displacement = VectorOf(array);
   const std::vector<std::string> names = request::ExcitationNames();
   const std::vector<std::string_view> words(names.begin(), names.end());
-  for (const std::string& name : excitations) request::RequireOneOf("--excitation", name, words);
+  for (const std::string& name : excitations) RequireOneOf("--excitation", name, words);
   return AnswerOf([&](const request::Tell& warn) {
     return request::MakeTradeoff({.law = law,
                                   .excitations = excitations,

@@ -15,7 +15,6 @@
 #include "mindahl/models/joint_friction.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
-#include "mindahl/request/one_of.h"
 
 namespace mindahl::python {
 
@@ -30,7 +29,7 @@ namespace {
 const FrictionModel& RequireModel(const std::string& name) {
   std::vector<std::string_view> names;
   for (const FrictionModel& model : models::FrictionModels()) names.push_back(model.name);
-  request::RequireOneOf("--model", name, names);
+  RequireOneOf("--model", name, names);
   return *models::FindFrictionModel(name);
 }
 
@@ -88,7 +87,7 @@ py::array_t<double> Simulate(const Array& displacement, double sigma, double sli
 /// Times [s] and displacements [m].
 std::pair<py::array_t<double>, py::array_t<double>> Excite(const std::string& waveform,
                                                            models::ExcitationOptions options) {
-  request::RequireOneOf("--waveform", waveform, models::WaveformNames());
+  RequireOneOf("--waveform", waveform, models::WaveformNames());
   options.waveform = *models::FindWaveform(waveform);
   models::Excitation made;
   {

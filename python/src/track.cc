@@ -14,15 +14,13 @@
 #include <vector>
 
 #include "bindings.h"
-#include "mindahl/campaign/cycle_table.h"
-#include "mindahl/campaign/pooled_value.h"
-#include "mindahl/campaign/reading.h"
-#include "mindahl/campaign/shared_alpha.h"
+#include "mindahl/campaign/cycle_fit.h"
+#include "mindahl/campaign/cycle_splitter.h"
+#include "mindahl/campaign/test_summary.h"
 #include "mindahl/campaign/tracker.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/record_stream.h"
 #include "mindahl/report/units.h"
-#include "mindahl/request/fit_records.h"
 #include "mindahl/request/fit_request.h"
 #include "record.h"
 

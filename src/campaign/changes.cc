@@ -1,5 +1,3 @@
-#include "mindahl/campaign/changes.h"
-
 #include <algorithm>
 #include <array>
 #include <boost/math/tools/minima.hpp>
@@ -10,7 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "mindahl/campaign/evolution.h"
+
 namespace mindahl::campaign {
+
 namespace {
 
 constexpr std::size_t kMostChanges = 8;

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <utility>
 
-#include "mindahl/campaign/shared_alpha.h"
-#include "mindahl/campaign/tracked_quantities.h"
-#include "mindahl/io/html.h"
-#include "mindahl/report/quantity.h"
+#include "io/html.h"
+#include "mindahl/campaign/evolution.h"
+#include "mindahl/campaign/test_summary.h"
+#include "mindahl/report/units.h"
 #include "report/page_parts.h"
 #include "report/statements.h"
 

@@ -20,8 +20,7 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/colours.h"
-#include "cli/commands.h"
+#include "cli/output.h"
 #include "cli/provenance.h"
 #include "cli/toml.h"
 #include "core/nearest_name.h"

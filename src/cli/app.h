@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -24,5 +25,17 @@ inline constexpr int kNotEstablished = 3;  // not converged, not identifiable wh
 /// The command line, as main() calls it and as tests do.
 /// @returns the exit status of docs/contract.md
 int Run(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
+
+// Each adds one command to the application; its callback runs the command and sets the exit status.
+void AddFitCommand(CLI::App& app, Console& console);
+void AddSimulateCommand(CLI::App& app, Console& console);
+void AddValidateCommand(CLI::App& app, Console& console);
+void AddContactCommand(CLI::App& app, Console& console);
+void AddConvertCommand(CLI::App& app, Console& console);
+void AddTradeoffCommand(CLI::App& app, Console& console);
+void AddRecommendCommand(CLI::App& app, Console& console);
+void AddPlanCommand(CLI::App& app, Console& console);
+void AddTrackCommand(CLI::App& app, Console& console);
+void AddBatchCommand(CLI::App& app, Console& console);
 
 }  // namespace mindahl::cli

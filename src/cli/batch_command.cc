@@ -12,16 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cli/examples.h"
+#include "cli/app.h"
 #include "cli/file_list.h"
-#include "cli/fit_records.h"
 #include "cli/fit_request.h"
-#include "cli/output_path.h"
-#include "cli/progress.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "cli/provenance.h"
-#include "cli/text_output.h"
-#include "cli/whole_number.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/report/page.h"

@@ -2,11 +2,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
+#include "cli/app.h"
 #include "cli/contact_options.h"
-#include "cli/examples.h"
-#include "cli/output_path.h"
-#include "cli/text_output.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "mindahl/request/contact_request.h"
 
 namespace mindahl::cli {

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "cli/trimmed.h"
+#include "cli/options.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {

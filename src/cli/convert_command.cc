@@ -3,14 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
+#include "cli/app.h"
 #include "cli/contact_options.h"
-#include "cli/examples.h"
-#include "cli/one_of.h"
-#include "cli/output_path.h"
-#include "cli/text_output.h"
-#include "cli/tolerance.h"
-#include "cli/whole_number.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "mindahl/core/error.h"
 #include "mindahl/request/conversion.h"
 

@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "cli/contact_options.h"
-#include "cli/one_of.h"
-#include "cli/whole_number.h"
+#include "cli/options.h"
 
 namespace mindahl::cli {
 namespace {

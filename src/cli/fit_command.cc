@@ -9,26 +9,18 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cli/examples.h"
-#include "cli/fit_records.h"
+#include "cli/app.h"
 #include "cli/fit_request.h"
-#include "cli/one_of.h"
-#include "cli/output_path.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "cli/provenance.h"
-#include "cli/text_output.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/report/backbone.h"
-#include "mindahl/report/figure.h"
-#include "mindahl/report/json.h"
 #include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
-#include "mindahl/report/residual_table.h"
-#include "mindahl/report/text.h"
-#include "mindahl/request/fit_records.h"
+#include "mindahl/request/fit_request.h"
 #include "mindahl/request/sweep.h"
 
 namespace mindahl::cli {

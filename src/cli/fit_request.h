@@ -1,11 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <ostream>
 #include <string_view>
 
 #include "cli/contact_options.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/request/fit_records.h"
+#include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::cli {
@@ -36,5 +37,18 @@ void AddModelOptions(CLI::App& command, FitRequest& request);
 /// @param otherwise  what happens to a fit that is not: "exit status 3"
 void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
                const std::string& group);
+
+/// Receives the notes on assumptions and the warnings of a command.
+struct Messages {
+  std::ostream& stream;
+  std::string_view command;  ///< "fit"
+
+  void Note(std::string_view text) const;
+  void Warn(std::string_view text) const;
+};
+
+/// Reads the files and fits them together as one contact.
+/// @throws InputError naming file, line and column, or the option
+report::Report FitRecords(const FitRequest& request, const Messages& messages);
 
 }  // namespace mindahl::cli

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/cycle_fit.h"
 
 namespace mindahl::cli {
 

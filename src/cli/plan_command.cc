@@ -5,15 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
+#include "cli/app.h"
 #include "cli/contact_options.h"
-#include "cli/examples.h"
-#include "cli/fit_records.h"
 #include "cli/fit_request.h"
-#include "cli/one_of.h"
-#include "cli/output_path.h"
-#include "cli/text_output.h"
-#include "cli/whole_number.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"

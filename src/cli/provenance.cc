@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "mindahl/io/digest.h"
+#include "io/input_file.h"
 
 namespace mindahl::cli {
 namespace {

@@ -4,9 +4,11 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,24 +16,20 @@
 #include <utility>
 #include <vector>
 
-#include "cli/added_forces.h"
-#include "cli/commands.h"
+#include "cli/app.h"
 #include "cli/contact_options.h"
 #include "cli/drive_options.h"
-#include "cli/examples.h"
-#include "cli/one_of.h"
-#include "cli/output_path.h"
-#include "cli/whole_number.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "mindahl/core/error.h"
-#include "mindahl/io/csv_writer.h"
+#include "mindahl/io/csv_table.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/methods/method.h"
+#include "mindahl/models/branch_law.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/models/imposed_force.h"
 #include "mindahl/models/joint_friction.h"
-#include "mindahl/models/limit_law.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/variable_load.h"
@@ -39,11 +37,122 @@
 
 namespace mindahl::cli {
 
+namespace {
+
+/// Forces of `simulate` in addition to the contact's; docs/theory.md §12 has the equations.
+struct AddedForces {
+  double viscous = 0.0;            // C [N s/m]
+  double speed_exponent = 1.0;     // m [-]
+  double inertia = 0.0;            // [kg]
+  double slip_slope = 0.0;         // m₁ [-]
+  double slip_curvature = 0.0;     // m₂ [-]
+  double slip_trend = 0.0;         // K [-]
+  double plateau_slope = 0.0;      // [N/m]
+  double plateau_curvature = 0.0;  // [N/m²]
+  std::optional<double> ripple;    // λ [m]
+  double ripple_amplitude = 0.0;   // [N]
+  double ripple_phase_up = 0.0;    // φ₊ [rad]
+  double ripple_phase_down = 0.0;  // φ₋ [rad]
+
+  bool operator==(const AddedForces&) const = default;
+};
+
+/// Central differences over time, one-sided at the ends; 0 where time stands still.
+std::vector<double> RateOf(std::span<const double> time, std::span<const double> values) {
+  std::vector<double> rate(values.size(), 0.0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t before = i == 0 ? 0 : i - 1;
+    const std::size_t after = std::min(i + 1, values.size() - 1);
+    const double duration = time[after] - time[before];
+    if (duration > 0) rate[i] = (values[after] - values[before]) / duration;
+  }
+  return rate;
+}
+
+void RequireForces(const AddedForces& forces) {
+  RequirePositive("--speed-exponent [-]", forces.speed_exponent);
+  if (forces.ripple) RequirePositive("--ripple [m]", *forces.ripple);
+  if (!forces.ripple && forces.ripple_amplitude != 0) {
+    throw InputError("--ripple-amplitude needs a period: add --ripple PERIOD");
+  }
+  if (!(std::abs(forces.slip_slope) + std::abs(forces.slip_curvature) +
+            std::abs(forces.slip_trend) <
+        1)) {
+    throw InputError(
+        "--slip-slope, --slip-curvature and --slip-trend: together they must be below 1, for the "
+        "slip force to be positive over the whole motion");
+  }
+}
+
+void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
+  const std::string group = "Forces in addition to the contact's";
+  const auto add = [&](const char* name, auto& value, const char* help, const char* unit) {
+    command.add_option(name, value, help)->type_name(unit)->group(group);
+  };
+  add("--viscous", forces.viscous, "C of a viscous force C·dδ/dt [N s/m]", "C");
+  add("--speed-exponent", forces.speed_exponent, "of C·sgn(v)|v|^M in its place, v in m/s [-]",
+      "M");
+  add("--inertia", forces.inertia, "mass of a force M·d²δ/dt² [kg]", "M");
+  add("--slip-slope", forces.slip_slope,
+      "m1 of forces times 1 + m1·x + m2·x², x the position from −1\nto 1 [-]", "M1");
+  add("--slip-curvature", forces.slip_curvature, "m2, likewise [-]", "M2");
+  add("--slip-trend", forces.slip_trend,
+      "K of forces times 1 + K·τ, τ the time from −1 at the record's\nbeginning to 1 at its end "
+      "[-]",
+      "K");
+  add("--plateau-slope", forces.plateau_slope, "of a force slope·δ [N/m]", "K");
+  add("--plateau-curvature", forces.plateau_curvature, "of a force curvature·δ² [N/m²]", "K");
+  add("--ripple", forces.ripple, "period of a force over the position [m]", "PERIOD");
+  add("--ripple-amplitude", forces.ripple_amplitude, "its amplitude [N]", "A");
+  add("--ripple-phase-up", forces.ripple_phase_up, "its phase where the displacement grows [rad]",
+      "PHI");
+  add("--ripple-phase-down", forces.ripple_phase_down, "where it falls [rad]", "PHI");
+}
+
+/// Adds the forces to those of the contact along a motion. Velocities and accelerations are central
+/// differences, as a fit takes them; positions count from the middle of the motion, in its half
+/// range where they have no unit.
+/// @throws InvalidArgument for a speed exponent or a period that is not > 0, an amplitude without a
+///   period, or a slip force that would not be positive over the motion
+void AddForces(const AddedForces& forces, std::span<const double> time,
+               std::span<const double> displacement, std::span<double> force) {
+  RequireForces(forces);
+  if (forces == AddedForces{}) return;
+  const auto [lowest, highest] = std::ranges::minmax(displacement);
+  const double middle = lowest + (highest - lowest) / 2;
+  const double half = (highest - lowest) / 2;
+  const std::vector<double> velocity = RateOf(time, displacement);
+  const std::vector<double> acceleration = RateOf(time, velocity);
+  const double duration = time.empty() ? 0.0 : time.back() - time.front();
+  double direction = 1.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (i > 0 && displacement[i] != displacement[i - 1]) {
+      direction = displacement[i] > displacement[i - 1] ? 1.0 : -1.0;
+    }
+    const double from_middle = displacement[i] - middle;
+    const double position = half > 0 ? from_middle / half : 0.0;
+    const double elapsed = time[i] - time.front();
+    const double tau = duration > 0 ? 2 * elapsed / duration - 1 : 0.0;
+    force[i] *= 1 + position * (forces.slip_slope + forces.slip_curvature * position) +
+                forces.slip_trend * tau;
+    force[i] += forces.inertia * acceleration[i] +
+                from_middle * (forces.plateau_slope + forces.plateau_curvature * from_middle);
+    if (forces.viscous != 0) {
+      force[i] +=
+          forces.viscous *
+          std::copysign(std::pow(std::abs(velocity[i]), forces.speed_exponent), velocity[i]);
+    }
+    if (forces.ripple) {
+      const double phase = direction > 0 ? forces.ripple_phase_up : forces.ripple_phase_down;
+      force[i] += forces.ripple_amplitude *
+                  std::cos(2 * std::numbers::pi * from_middle / *forces.ripple + phase);
+    }
+  }
+}
+
 using methods::Method;
 using models::FrictionModel;
 using tradeoff::Approximation;
-
-namespace {
 
 struct SimulateOptions {
   std::string model = "mindlin";

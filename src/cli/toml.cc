@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cli/trimmed.h"
+#include "cli/options.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {

@@ -5,12 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "cli/commands.h"
-#include "cli/examples.h"
-#include "cli/output_path.h"
-#include "cli/progress.h"
-#include "cli/text_output.h"
-#include "cli/whole_number.h"
+#include "cli/app.h"
+#include "cli/options.h"
+#include "cli/output.h"
 #include "mindahl/identification/mapping_validation.h"
 #include "mindahl/request/validation.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contact/requirements.h"
+#include "contact/known_contact.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {

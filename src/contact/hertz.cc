@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "contact/requirements.h"
+#include "contact/known_contact.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "contact/known_contact.h"
-#include "contact/propagation.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::contact {

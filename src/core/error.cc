@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "core/nearest_name.h"
 
 namespace mindahl {
 
@@ -32,6 +36,13 @@ void RequireSameSize(std::string_view first, std::size_t first_size, std::string
     throw InvalidArgument(fmt::format("{} has {} values and {} has {}: must be equal", first,
                                       first_size, second, second_size));
   }
+}
+
+void RequireOneOf(std::string_view option, std::string_view word,
+                  std::span<const std::string_view> words) {
+  if (std::ranges::find(words, word) != words.end()) return;
+  const std::vector<std::string> names(words.begin(), words.end());
+  throw InputError(fmt::format("{}: {}", option, UnknownAmong(word, names)));
 }
 
 }  // namespace mindahl

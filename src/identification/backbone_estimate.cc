@@ -18,7 +18,7 @@
 #include "identification/problem/moved_samples.h"
 #include "identification/solve/nonnegative.h"
 #include "mindahl/core/error.h"
-#include "mindahl/identification/residual_structure.h"
+#include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/loop/preparation.h"
 #include "mindahl/models/loading_path.h"

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/probability.h"
-#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/steady_loop.h"
 

@@ -28,10 +28,9 @@
 #include "identification/solved_fit.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
-#include "mindahl/identification/contact_amplitude.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/identification/too_few_samples.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {

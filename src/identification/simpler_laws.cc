@@ -1,5 +1,3 @@
-#include "mindahl/identification/simpler_laws.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 #include "identification/inference/evidence.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/identification/model_selection.h"
 
 namespace mindahl::identification {
 namespace {

@@ -7,6 +7,7 @@
 #include "mindahl/core/units.h"
 
 namespace mindahl::io {
+
 namespace {
 
 constexpr std::size_t kLongestUnit = 8;  // bytes; "furlong" is a unit to refuse, not part of a name

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "io/column_name.h"
-#include "io/message_text.h"
+#include "io/csv_tokenizer.h"
 #include "io/number_cell.h"
 #include "mindahl/core/error.h"
 

@@ -6,6 +6,7 @@
 #include "io/number_cell.h"
 
 namespace mindahl::io {
+
 namespace {
 
 bool IsBlankOrComment(std::string_view line) {

@@ -1,4 +1,4 @@
-#include "mindahl/io/html.h"
+#include "io/html.h"
 
 #include <fmt/format.h>
 

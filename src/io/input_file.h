@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -101,5 +102,11 @@ class LinePieces {
   std::size_t given_ = 0;  // bytes of these that were returned
   bool at_end_ = false;
 };
+
+/// Returns SHA-256 (FIPS 180-4) of a file's bytes as 64 hexadecimal digits, as sha256sum prints it:
+/// two files with one digest are one record. Empty for what is no regular file, which cannot be
+/// read twice.
+/// @throws InputError "cannot read '<path>': <reason>", also where libcrypto gives no digest
+std::optional<std::string> Sha256OfFile(const std::filesystem::path& path);
 
 }  // namespace mindahl::io

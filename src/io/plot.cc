@@ -19,10 +19,10 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "io/html.h"
 #include "io/panel_drawing.h"
 #include "io/unfinished_output.h"
 #include "mindahl/core/error.h"
-#include "mindahl/io/html.h"
 #include "mindahl/io/output_file.h"
 
 namespace mindahl::io {

@@ -1,12 +1,11 @@
-#include "mindahl/io/record_parts.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "mindahl/core/error.h"
-#include "mindahl/loop/load_steps.h"
+#include "mindahl/io/record_reader.h"
+#include "mindahl/loop/segments.h"
 
 namespace mindahl::io {
 

@@ -15,8 +15,7 @@
 
 #include "core/nearest_name.h"
 #include "io/column_name.h"
-#include "io/message_text.h"
-#include "io/record_columns.h"
+#include "io/csv_tokenizer.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"

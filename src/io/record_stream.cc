@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "io/column_name.h"
 #include "io/csv_layout.h"
 #include "io/input_file.h"
-#include "io/number_row.h"
-#include "io/record_columns.h"
+#include "io/number_cell.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/csv_table.h"

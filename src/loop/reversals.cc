@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "loop/excursions.h"
 #include "loop/rules.h"
 #include "loop/scratch.h"
 #include "loop/statistics.h"
+#include "loop/strokes.h"
 #include "mindahl/core/error.h"
-#include "mindahl/loop/displacement_noise.h"
+#include "mindahl/loop/disturbances.h"
 
 namespace mindahl::loop {
 

@@ -7,8 +7,7 @@
 
 #include "loop/rules.h"
 #include "mindahl/loop/cycles.h"
-#include "mindahl/loop/displacement_noise.h"
-#include "mindahl/loop/glitches.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 

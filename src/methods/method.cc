@@ -6,13 +6,10 @@
 #include <array>
 #include <vector>
 
-#include "methods/path_operations.h"
-#include "methods/tabulated.h"
-#include "methods/time_stepping.h"
+#include "methods/path_methods.h"
 #include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/methods/iwan.h"
-#include "mindahl/methods/operations.h"
 #include "mindahl/models/response.h"
 
 namespace mindahl::methods {
@@ -175,6 +172,25 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
     RequireSameSize("displacement", drive.displacement.size(), "force", force.size());
     evaluate(drive, force);
   };
+}
+
+std::string_view NameOf(Operation operation) {
+  constexpr std::array<std::string_view, kOperations> kNames = {
+      "sample",    "place",      "reversal",   "linear",      "root",     "power",
+      "narrowing", "element",    "sum",        "look_up",     "step",     "stage",
+      "trial",     "cubic_root", "rate_power", "exponential", "iteration"};
+  return kNames[static_cast<std::size_t>(operation)];
+}
+
+OperationCount CountOperations(const Method& method, const models::FrictionModel& model,
+                               const models::BranchLaw& law, const Resolution& resolution,
+                               const Drive& drive) {
+  OperationCount count;
+  // Prepare() checks the arguments.
+  const Evaluator evaluate = Prepare(method, model, law, resolution);
+  method.count(model, law, resolution, drive, count);
+  count.Add(Operation::kSample, static_cast<double>(drive.displacement.size()));
+  return count;
 }
 
 }  // namespace mindahl::methods

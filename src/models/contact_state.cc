@@ -11,7 +11,6 @@
 #include "models/madelung.h"
 #include "models/requirements.h"
 #include "models/scaled_branches.h"
-#include "models/series_spring.h"
 
 namespace mindahl::models {
 

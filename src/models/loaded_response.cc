@@ -1,5 +1,3 @@
-#include "mindahl/models/loaded_response.h"
-
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -7,8 +5,8 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
+#include "mindahl/models/normalized_response.h"
 #include "models/load_zones.h"
-#include "models/tangent.h"
 
 namespace mindahl::models {
 namespace {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +14,7 @@
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
+#include "mindahl/models/response.h"
 
 namespace mindahl::models {
 
@@ -248,6 +251,70 @@ void EvaluateRun(const ScaledBranch<Real>& branch, const Shape& shape, Real slip
 /// Rounding must not carry |T| over Tc; a model that does exceed it is left to.
 inline double ForceLimit(const FrictionModel& model, double asymmetry = 0.0) {
   return model.bounded ? 1 + std::abs(asymmetry) : 2.0;
+}
+
+/// The branch law solved for the displacement, in reduced quantities (docs/theory.md §5):
+///   y(φ) = (1 − u^β)/β,  u = 1 − φ the fraction of the branch's height that is left, β = 1 − α.
+
+/// No form subtracts what cancels.
+/// @param share      φ in [0, 1)
+/// @param remaining  u = 1 − φ > 0, with digits of its own next to slip
+inline double ReducedDisplacement(double shape_exponent, double share, double remaining) {
+  if (shape_exponent == 0) return share;
+  if (shape_exponent == 1.0 / 3) {
+    const double root = std::cbrt(remaining);
+    return 1.5 * share * (1 + root) / (1 + root + root * root);
+  }
+  const double log_remaining = share < 0.5 ? std::log1p(-share) : std::log(remaining);
+  const double exponent = (1 - shape_exponent) * log_remaining;
+  return exponent == 0 ? -log_remaining : -log_remaining * (std::expm1(exponent) / exponent);
+}
+
+/// Returns ∂y/∂α = ln²u·(1 − e^z + z·e^z)/z², z = β·ln u; the last factor by its series,
+/// Σ (k+1)·zᵏ/(k+2)!, where its terms cancel.
+/// @param log_remaining  ln u
+inline double ReducedDisplacementPerShape(double shape_exponent, double log_remaining) {
+  const double z = (1 - shape_exponent) * log_remaining;
+  constexpr double kCancelling = 0.05;  // beyond it the ninth term is above ε/8 of the first
+  double factor = 0.0;
+  if (std::abs(z) < kCancelling) {
+    factor =
+        1.0 / 2 +
+        z * (1.0 / 3 +
+             z * (1.0 / 8 +
+                  z * (1.0 / 30 +
+                       z * (1.0 / 144 + z * (1.0 / 840 + z * (1.0 / 5760 + z * (1.0 / 45360 +
+                                                                                z / 403200.0)))))));
+  } else {
+    factor = (z * std::exp(z) - std::expm1(z)) / (z * z);
+  }
+  return log_remaining * log_remaining * factor;
+}
+
+inline bool IsRigid(const SeriesSpring& rig) {
+  return std::isinf(rig.stiffness) && rig.stiffness > 0;
+}
+
+/// Returns c = Tc/k_r [m], the spring's travel at slip.
+/// @throws InvalidArgument where the rig cannot be accounted for
+inline double SpringTravel(const FrictionModel& model, const BranchLaw& law,
+                           const SeriesSpring& rig) {
+  Validate(rig);
+  if (model.scaled_by_peak) {
+    throw InvalidArgument(fmt::format(
+        "model {} is scaled by the peak at the contact's own amplitude: must have a rigid rig, not "
+        "a series stiffness [N/m] = {:.6g}",
+        model.name, rig.stiffness));
+  }
+  // Compared before it is divided by, for no quotient to overflow.
+  constexpr double kSoftest = 1 / backbone::kLargestSeriesCompliance<double>;
+  constexpr double kLongest = 1e300;  // [m]
+  if (rig.stiffness < kSoftest * law.tangential_stiffness ||
+      rig.stiffness < law.slip_force / kLongest) {
+    ThrowInvalid("series stiffness [N/m]", rig.stiffness,
+                 "must be >= 1e-100 of the tangential stiffness and let the rig travel <= 1e300 m");
+  }
+  return law.slip_force / rig.stiffness;
 }
 
 }  // namespace mindahl::models

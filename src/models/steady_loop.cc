@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "mindahl/core/error.h"
-#include "mindahl/models/backbone_integrals.h"
+#include "mindahl/models/backbone.h"
 #include "mindahl/models/friction_model.h"
 #include "models/requirements.h"
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mindahl/report/quantity.h"
+#include "mindahl/report/units.h"
 #include "report/names.h"
 #include "report/statements.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
-#include "mindahl/identification/contact_amplitude.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 

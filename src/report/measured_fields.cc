@@ -1,6 +1,134 @@
+#include "mindahl/identification/backbone_estimate.h"
 #include "report/field_table.h"
+#include "report/names.h"
 
 namespace mindahl::report {
+
+namespace {
+
+std::function<Value(const Report&)> Measured(double MeasuredLoop::*member) {
+  return [member](const Report& report) {
+    return Number(MeasuredLoopOf(report.fit.WidestRecord()).*member);
+  };
+}
+
+std::string WhyNoSlip(const Report& report) {
+  return report.loop && !report.loop->knows_slip
+             ? "sigma, alpha or slip_force is not identifiable"
+             : "with alpha >= 1 the force only approaches slip_force";
+}
+
+constexpr const char* kWhyNoRegime =
+    "slip_force is not identifiable, or has a lower limit that the loop reaches";
+
+/// Makes a getter of the loop's description, null where there is none.
+template <typename Get>
+std::function<Value(const Report&)> OfLoop(Get get) {
+  return [get](const Report& report) { return report.loop ? get(*report.loop) : Missing(); };
+}
+
+}  // namespace
+
+void AddLoopFields(FieldTable& table) {
+  table.Add({
+      {"loop.amplitude", "m", "X of the widest record", Measured(&MeasuredLoop::amplitude)},
+      {"loop.centre", "m", "midway between the extremes of the displacement",
+       [](const Report& report) { return Number(report.fit.WidestRecord().measures.centre); }},
+      {"loop.peak_force", "N", "T* of the widest record", Measured(&MeasuredLoop::peak_force)},
+      {"loop.energy_per_cycle_measured", "J", "W, mean over the widest closed cycles",
+       [](const Report& report) {
+         return Number(MeasuredLoopOf(report.fit.WidestRecord()).energy);
+       },
+       [](const Report&) { return std::string("the record closes no cycle"); }},
+      {"loop.energy_per_cycle_model", "J",
+       "W of the fitted law at the amplitude, the rig's travel taken off",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.model_energy); })},
+      {"loop.energy_ratio", "-", "W/(4XT*), the model's W where none was measured",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.energy_ratio); }),
+       [](const Report&) {
+         return std::string("needs a force that differs between the extremes of the displacement");
+       }},
+      {"loop.slip_regime", "", "partial or gross slip", OfLoop([](const LoopDescription& loop) {
+         return loop.regime ? Text(Name(*loop.regime)) : Missing();
+       }),
+       [](const Report&) { return std::string(kWhyNoRegime); }},
+      {"loop.gross_slip_displacement", "m",
+       "amplitude of the contact from which it slips: δc of the fitted law, 2^−α·δc of Dahl's own",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_displacement); }),
+       WhyNoSlip},
+      {"loop.gross_slip_energy_ratio", "-",
+       "W/(4XT*) of the fitted law where it begins to slip, the rig's travel in X",
+       OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_energy_ratio); }),
+       WhyNoSlip},
+      {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
+       [](const Report& report) {
+         return report.loop && !report.is_torsional() ? Number(report.loop->stick_radius_ratio)
+                                                      : Missing();
+       },
+       [](const Report& report) {
+         return std::string(report.is_torsional() ? kWhyNoContact : kWhyNoRegime);
+       }},
+  });
+}
+
+using identification::BackboneEstimate;
+using identification::BackbonePoint;
+using identification::BandValue;
+
+namespace {
+
+const std::vector<Field<BackbonePoint>>& PointFields() {
+  using Item = BackbonePoint;
+  static const std::vector<Field<Item>> fields = {
+      {"displacement", "m", "of first loading",
+       [](const Item& item) { return Number(item.displacement); }},
+      {"force", "N", "there, without a law",
+       [](const Item& item) { return Number(item.force.value); }},
+      {"ci95[0]", "N", "lower end of its band",
+       [](const Item& item) { return Number(item.force.lower95); }},
+      {"ci95[1]", "N", "upper end of its band",
+       [](const Item& item) { return Number(item.force.upper95); }},
+      {"law", "N", "of the fitted law", [](const Item& item) { return Number(item.law); }},
+  };
+  return fields;
+}
+
+template <typename Get>
+Field<Report> BackboneRow(const std::string& path, const char* unit, const char* label, Get get) {
+  return {path, unit, label, [get](const Report& report) {
+            return report.backbone ? get(*report.backbone) : Value{};
+          }};
+}
+
+void AddBand(FieldTable& table, const std::string& path, const char* label,
+             BandValue BackboneEstimate::*band) {
+  table.Add(
+      {BackboneRow(path + ".value", "N/m", label,
+                   [band](const BackboneEstimate& item) { return Number((item.*band).value); }),
+       BackboneRow(path + ".ci95[0]", "N/m", "lower end of the interval",
+                   [band](const BackboneEstimate& item) { return Number((item.*band).lower95); }),
+       BackboneRow(path + ".ci95[1]", "N/m", "upper end of the interval",
+                   [band](const BackboneEstimate& item) { return Number((item.*band).upper95); })});
+}
+
+}  // namespace
+
+void AddBackboneFields(FieldTable& table) {
+  AddBand(table, "backbone.first_stiffness", "secant over the first hundredth of the displacement",
+          &BackboneEstimate::first_stiffness);
+  AddBand(table, "backbone.elastic", "of what does not slip within the record",
+          &BackboneEstimate::elastic);
+  table.Add({
+      BackboneRow("backbone.reaches_plateau", "",
+                  "false: slip_force is the law's extrapolation beyond the record",
+                  [](const BackboneEstimate& item) { return Flag(item.reaches_plateau); }),
+      BackboneRow("backbone.rms", "N", "root mean square of what the backbone leaves",
+                  [](const BackboneEstimate& item) { return Number(item.rms); }),
+      BackboneRow("backbone.points", "", "from 0 to the largest displacement",
+                  [](const BackboneEstimate& item) { return List(PointFields(), item.points); }),
+  });
+  table.Describe("backbone.points[].", PointFields());
+}
 
 using loop::CycleFacts;
 using loop::LoopFacts;

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <variant>
 
-#include "mindahl/io/html.h"
-#include "mindahl/report/quantity.h"
+#include "io/html.h"
+#include "mindahl/report/units.h"
 #include "report/adequacy.h"
 #include "report/field_table.h"
 #include "report/fields.h"

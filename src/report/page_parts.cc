@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "io/html.h"
 #include "mindahl/core/version.h"
-#include "mindahl/io/html.h"
 
 namespace mindahl::report {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mindahl/io/plot.h"
-#include "mindahl/report/quantity.h"
 #include "mindahl/report/report.h"
+#include "mindahl/report/units.h"
 
 // The figures of a report, each one panel. None is of a fit that failed.
 namespace mindahl::report {

@@ -5,12 +5,12 @@
 #include <string>
 #include <utility>
 
-#include "mindahl/contact/plausibility.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/report/contact.h"
-#include "mindahl/report/sentences.h"
 #include "report/adequacy.h"
+#include "report/names.h"
 #include "report/trims.h"
 
 namespace mindahl::report {

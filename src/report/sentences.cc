@@ -1,5 +1,3 @@
-#include "mindahl/report/sentences.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,7 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "mindahl/report/quantity.h"
+#include "mindahl/report/report.h"
+#include "mindahl/report/units.h"
 #include "report/names.h"
 
 namespace mindahl::report {

@@ -11,8 +11,9 @@
 #include <utility>
 
 #include "core/probability.h"
-#include "mindahl/identification/trend.h"
-#include "mindahl/report/quantity.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/thresholds.h"
+#include "mindahl/report/units.h"
 #include "report/adequacy.h"
 #include "report/names.h"
 
@@ -411,6 +412,12 @@ std::string WordsOfHypothesis(std::string_view name) {
   const auto row =
       std::ranges::find(kWords, name, &std::pair<std::string_view, std::string_view>::first);
   return std::string(row == kWords.end() ? name : row->second);
+}
+
+void RequireFitted(const Report& report, std::string_view what) {
+  if (!report.failed()) return;
+  throw InvalidArgument(fmt::format("there is nothing to make {} of: the fit failed: {}", what,
+                                    report.fit.solver.message));
 }
 
 }  // namespace mindahl::report

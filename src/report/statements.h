@@ -95,4 +95,7 @@ std::string IntervalWords(const QuantityUnderLaw& quantity);
 /// Returns a theory of the load's exponent in words.
 std::string WordsOfHypothesis(std::string_view name);
 
+/// @throws InvalidArgument for a fit that failed: it has no curve to draw and no residual to list
+void RequireFitted(const Report& report, std::string_view what);
+
 }  // namespace mindahl::report

@@ -2,6 +2,7 @@
 
 #include <fmt/color.h>
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -32,5 +33,9 @@ class Style {
 
   bool has_colours_;
 };
+
+/// Breaks a sentence between words at 100 columns, with a line feed at its end; lines after the
+/// first are indented. A number stays with its error and its unit.
+std::string Wrapped(std::string_view text, std::size_t indent);
 
 }  // namespace mindahl::report

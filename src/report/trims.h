@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "mindahl/loop/trim.h"
+#include "mindahl/loop/segments.h"
 #include "mindahl/report/report.h"
-#include "report/field.h"
+#include "report/field_table.h"
 
 namespace mindahl::report {
 

@@ -14,12 +14,12 @@
 #include <utility>
 
 #include "core/probability.h"
-#include "mindahl/campaign/repeats.h"
+#include "io/input_file.h"
+#include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/memory.h"
 #include "mindahl/core/version.h"
-#include "mindahl/io/csv_writer.h"
-#include "mindahl/io/digest.h"
+#include "mindahl/io/csv_table.h"
 #include "report/json_document.h"
 #include "report/statements.h"
 #include "request/json.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mindahl/contact/plausibility.h"
+#include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "request/json.h"

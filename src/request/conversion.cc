@@ -6,9 +6,9 @@
 #include <cmath>
 #include <variant>
 
+#include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/request/one_of.h"
 #include "request/json.h"
 
 namespace mindahl::request {

@@ -1,5 +1,3 @@
-#include "mindahl/request/fit_records.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,9 +16,9 @@
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
-#include "mindahl/identification/too_few_samples.h"
-#include "mindahl/io/record_parts.h"
+#include "mindahl/io/record_reader.h"
 #include "mindahl/report/contact.h"
+#include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {
 

@@ -12,7 +12,6 @@
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/request/one_of.h"
 
 namespace mindahl::request {
 

@@ -10,11 +10,10 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
+#include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/models/limit_law.h"
-#include "mindahl/request/one_of.h"
-#include "mindahl/tradeoff/cost_model.h"
-#include "request/precision_table.h"
+#include "mindahl/tradeoff/approximation.h"
+#include "request/json.h"
 
 namespace mindahl::request {
 

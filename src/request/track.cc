@@ -8,12 +8,10 @@
 #include <string_view>
 #include <utility>
 
-#include "mindahl/campaign/changes.h"
-#include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/campaign/evolution.h"
-#include "mindahl/campaign/shared_alpha.h"
+#include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/version.h"
-#include "mindahl/report/quantity.h"
 #include "mindahl/report/units.h"
 #include "request/json.h"
 

@@ -10,8 +10,8 @@
 
 #include "mindahl/core/version.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/tradeoff/refit.h"
-#include "request/precision_table.h"
+#include "mindahl/tradeoff/recommendation.h"
+#include "request/json.h"
 
 namespace mindahl::request {
 

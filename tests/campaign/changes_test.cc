@@ -1,5 +1,3 @@
-#include "mindahl/campaign/changes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "mindahl/campaign/evolution.h"
 #include "support/histories.h"
 
 namespace mindahl::campaign::changes_test {

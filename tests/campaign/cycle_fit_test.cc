@@ -9,7 +9,6 @@
 
 #include "campaign/test_record.h"
 #include "mindahl/campaign/cycle_splitter.h"
-#include "mindahl/campaign/cycle_table.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign::cycle_fit_test {

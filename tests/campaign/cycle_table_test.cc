@@ -1,10 +1,9 @@
-#include "mindahl/campaign/cycle_table.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
+#include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign::cycle_table_test {

@@ -1,10 +1,10 @@
-#include "mindahl/campaign/dissipated_energy.h"
-
 #include <gtest/gtest.h>
 
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "mindahl/campaign/test_summary.h"
 
 namespace mindahl::campaign::dissipated_energy_test {
 namespace {

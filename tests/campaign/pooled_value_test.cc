@@ -1,11 +1,10 @@
-#include "mindahl/campaign/pooled_value.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/error.h"
 #include "support/histories.h"
 

@@ -1,5 +1,3 @@
-#include "mindahl/campaign/reading.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mindahl/campaign/cycle_splitter.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign::reading_test {

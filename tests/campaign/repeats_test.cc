@@ -1,10 +1,9 @@
-#include "mindahl/campaign/repeats.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign::repeats_test {

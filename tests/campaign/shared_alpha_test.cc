@@ -1,5 +1,3 @@
-#include "mindahl/campaign/shared_alpha.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "mindahl/campaign/test_summary.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 

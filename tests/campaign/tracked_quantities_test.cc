@@ -1,11 +1,11 @@
-#include "mindahl/campaign/tracked_quantities.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "mindahl/campaign/evolution.h"
 
 namespace mindahl::campaign::tracked_quantities_test {
 namespace {

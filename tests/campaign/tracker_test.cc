@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "campaign/test_record.h"
-#include "mindahl/campaign/cycle_table.h"
+#include "mindahl/campaign/cycle_fit.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::campaign::tracker_test {

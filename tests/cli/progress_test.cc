@@ -1,5 +1,3 @@
-#include "cli/progress.h"
-
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +10,8 @@
 #include <sstream>
 #include <string>
 #include <thread>
+
+#include "cli/output.h"
 
 // What whoever waits at a terminal sees, and that nobody else does.
 namespace mindahl::cli::progress_test {

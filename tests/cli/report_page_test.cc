@@ -8,8 +8,8 @@
 
 #include "cli/command_line.h"
 #include "cli/provenance.h"
+#include "io/input_file.h"
 #include "io/temporary_directory.h"
-#include "mindahl/io/digest.h"
 #include "support/page_text.h"
 
 // --report of fit, batch and track: pages for people.

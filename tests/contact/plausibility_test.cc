@@ -1,9 +1,9 @@
-#include "mindahl/contact/plausibility.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "mindahl/contact/mindlin_dahl_mapping.h"
 
 namespace mindahl::contact::plausibility_test {
 namespace {

@@ -1,10 +1,9 @@
-#include "mindahl/convert/parameters.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "mindahl/convert/conversion.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
 

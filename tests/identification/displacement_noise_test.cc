@@ -1,5 +1,3 @@
-#include "mindahl/loop/displacement_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,6 +7,7 @@
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/loop/disturbances.h"
 #include "recovery/recovered.h"
 
 // What noise of the displacement does to a fit, and what the fit says of it.

@@ -11,7 +11,7 @@
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "mindahl/core/error.h"
-#include "mindahl/models/imposed_force.h"
+#include "mindahl/models/response.h"
 #include "support/message_of.h"
 
 // Fits of the displacement that answers an imposed force.

@@ -1,4 +1,4 @@
-#include "mindahl/identification/law_choice.h"
+#include "identification/inference/law_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "identification/inference/law_choice.h"
 #include "identification/stages.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"
 
 // Which of the two laws a record is of.

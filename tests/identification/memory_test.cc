@@ -1,5 +1,3 @@
-#include "mindahl/identification/memory.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "identification/diagnosis/law_findings.h"
+#include "mindahl/identification/fit_result.h"
 #include "recovery/recovered.h"
 
 // Branches compared with each other: is a record of Masing's memory, of Dahl's, or of neither?

@@ -8,7 +8,7 @@
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
-#include "mindahl/identification/trend.h"
+#include "mindahl/identification/thresholds.h"
 #include "mindahl/models/steady_loop.h"
 
 // What is found in records, from facts made by hand, and what a whole fit makes of them.

@@ -1,5 +1,3 @@
-#include "mindahl/identification/residual_statistics.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
+#include "mindahl/identification/adequacy.h"
 
 namespace mindahl::identification::residual_statistics_test {
 namespace {

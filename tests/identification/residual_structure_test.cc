@@ -1,5 +1,3 @@
-#include "mindahl/identification/residual_structure.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "identification/diagnosis/main_strokes.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/adequacy.h"
 #include "recovery/recovered.h"
 
 // What comes back in every stroke, told from noise.

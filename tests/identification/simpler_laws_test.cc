@@ -1,5 +1,3 @@
-#include "mindahl/identification/simpler_laws.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/model_selection.h"
 #include "mindahl/models/excitation.h"
 
 namespace mindahl::identification::simpler_laws_test {

@@ -27,7 +27,6 @@
 #include "identification/inference/turning_point_test.h"
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
-#include "mindahl/identification/trend.h"
 #include "mindahl/models/steady_loop.h"
 
 // What each threshold decides: a case a row, whose expectations are written for the value that the

@@ -1,5 +1,3 @@
-#include "mindahl/io/csv_writer.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

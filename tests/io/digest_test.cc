@@ -1,10 +1,9 @@
-#include "mindahl/io/digest.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <string>
 
+#include "io/input_file.h"
 #include "io/temporary_directory.h"
 
 namespace mindahl::io::digest_test {

@@ -1,4 +1,4 @@
-#include "mindahl/io/html.h"
+#include "io/html.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "io/thinning.h"
+#include "io/panel_drawing.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::io::html_test {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mindahl/io/record_parts.h"
+#include "mindahl/io/record_reader.h"
 
 namespace mindahl::io::load_pieces_test {
 namespace {

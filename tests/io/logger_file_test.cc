@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "io/clock.h"
 #include "io/input_file.h"
+#include "io/number_cell.h"
 #include "io/temporary_directory.h"
 #include "mindahl/core/error.h"
 #include "mindahl/core/units.h"

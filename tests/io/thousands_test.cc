@@ -1,5 +1,3 @@
-#include "io/thousands.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/number_cell.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "mindahl/core/error.h"
-#include "mindahl/io/record_parts.h"
+#include "mindahl/io/record_reader.h"
 
 namespace mindahl::io::time_window_test {
 namespace {

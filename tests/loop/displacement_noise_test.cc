@@ -1,5 +1,3 @@
-#include "mindahl/loop/displacement_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/reversals.h"
 
 namespace mindahl::loop::displacement_noise_test {

@@ -1,9 +1,8 @@
-#include "loop/excursions.h"
-
 #include <gtest/gtest.h>
 
 #include <memory_resource>
 
+#include "loop/strokes.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 

@@ -1,5 +1,3 @@
-#include "mindahl/loop/glitches.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,6 +13,7 @@
 
 #include "loop/scratch.h"
 #include "mindahl/core/error.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 #include "support/measured.h"

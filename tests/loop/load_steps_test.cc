@@ -1,5 +1,3 @@
-#include "mindahl/loop/load_steps.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -9,6 +7,8 @@
 #include <functional>
 #include <numbers>
 #include <vector>
+
+#include "mindahl/loop/segments.h"
 
 namespace mindahl::loop::load_steps_test {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "loop/excursions.h"
 #include "loop/rules.h"
 #include "loop/scratch.h"
-#include "mindahl/loop/displacement_noise.h"
+#include "loop/strokes.h"
+#include "mindahl/loop/disturbances.h"
 #include "support/histories.h"
 
 // Each rule of the gate between a record on which it just holds and one on which it just does not:

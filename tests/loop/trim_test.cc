@@ -1,5 +1,3 @@
-#include "mindahl/loop/trim.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mindahl/loop/segments.h"
 #include "mindahl/models/friction_model.h"
 #include "support/histories.h"
 

@@ -1,5 +1,3 @@
-#include "mindahl/methods/operations.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
@@ -8,6 +6,7 @@
 
 #include "../support/histories.h"
 #include "mindahl/core/error.h"
+#include "mindahl/methods/method.h"
 
 namespace mindahl::methods::operations_test {
 namespace {

@@ -1,5 +1,3 @@
-#include "mindahl/models/imposed_force.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,6 +14,7 @@
 #include "../support/message_of.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/core/error.h"
+#include "mindahl/models/response.h"
 
 namespace mindahl::models::imposed_force_test {
 namespace {

@@ -1,5 +1,3 @@
-#include "mindahl/models/limit_law.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
+#include "mindahl/models/branch_law.h"
 
 namespace mindahl::models::limit_law_test {
 namespace {

@@ -1,5 +1,3 @@
-#include "mindahl/models/loaded_contact_state.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

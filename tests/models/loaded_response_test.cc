@@ -1,5 +1,3 @@
-#include "mindahl/models/loaded_response.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "../support/histories.h"
 #include "../support/message_of.h"
 #include "mindahl/core/error.h"
+#include "mindahl/models/normalized_response.h"
 #include "mindahl/models/variable_load.h"
 
 namespace mindahl::models::loaded_response_test {

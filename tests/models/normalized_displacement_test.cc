@@ -1,5 +1,3 @@
-#include "mindahl/models/normalized_displacement.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +8,8 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
-#include "mindahl/models/imposed_force.h"
+#include "mindahl/models/normalized_response.h"
+#include "mindahl/models/response.h"
 #include "support/histories.h"
 
 namespace mindahl::models::normalized_displacement_test {

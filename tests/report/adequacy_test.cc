@@ -13,8 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "mindahl/report/json.h"
-#include "mindahl/report/text.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "support/contract.h"
 

@@ -1,5 +1,3 @@
-#include "mindahl/report/backbone.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "mindahl/report/json.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 
 // The backbone without a law, as a table and in words.

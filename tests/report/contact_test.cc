@@ -7,9 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
-#include "mindahl/report/text.h"
 #include "report/made_report.h"
 
 // From a fit to the contact, by rules that hold for every caller of the library.

@@ -1,5 +1,3 @@
-#include "mindahl/report/figure.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 
 namespace mindahl::report::figure_test {

@@ -1,5 +1,3 @@
-#include "mindahl/report/json.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 
 // The JSON from the library's side. tests/cli walks that of many runs of the program.

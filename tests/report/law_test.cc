@@ -5,8 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "mindahl/report/json.h"
-#include "mindahl/report/text.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 
 // Masing's law or Dahl's own, in the JSON and in the text.

@@ -15,11 +15,9 @@
 #include "mindahl/contact/hertz.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/report/contact.h"
-#include "mindahl/report/json.h"
 #include "mindahl/report/load_series.h"
 #include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
-#include "mindahl/report/text.h"
 #include "recovery/recovered.h"
 
 // What a whole load series says of a contact by a law of the load: loops are made of contacts under

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
 

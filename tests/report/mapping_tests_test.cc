@@ -1,5 +1,3 @@
-#include "mindahl/report/mapping_tests.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/normal.hpp>

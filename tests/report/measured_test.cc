@@ -5,8 +5,7 @@
 #include <regex>
 #include <string>
 
-#include "mindahl/report/json.h"
-#include "mindahl/report/text.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 
 // What needs no model, in the JSON and at the head of the text.

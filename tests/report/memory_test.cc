@@ -6,8 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "mindahl/report/json.h"
-#include "mindahl/report/text.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "support/contract.h"
 

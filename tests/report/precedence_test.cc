@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "mindahl/identification/finding_code.h"
+#include "mindahl/identification/finding.h"
 #include "support/contract.h"
 
 // The table of precedence of docs/identification.md beside the registry of findings, which decides.

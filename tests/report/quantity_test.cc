@@ -1,10 +1,10 @@
-#include "mindahl/report/quantity.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "mindahl/report/units.h"
 
 namespace mindahl::report::quantity_test {
 namespace {

@@ -1,5 +1,3 @@
-#include "mindahl/report/residual_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <string>
 
 #include "mindahl/core/error.h"
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 
 namespace mindahl::report::residual_table_test {

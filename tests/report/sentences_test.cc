@@ -1,5 +1,3 @@
-#include "mindahl/report/sentences.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
 
 namespace mindahl::report::sentences_test {

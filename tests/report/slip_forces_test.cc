@@ -1,5 +1,3 @@
-#include "mindahl/report/slip_forces.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mindahl/report/json.h"
-#include "mindahl/report/text.h"
+#include "mindahl/report/contact.h"
+#include "mindahl/report/report.h"
 #include "recovery/recovered.h"
 #include "report/made_report.h"
 

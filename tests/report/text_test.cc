@@ -1,5 +1,3 @@
-#include "mindahl/report/text.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,8 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "mindahl/report/report.h"
 #include "report/made_report.h"
-#include "report/wrapped.h"
+#include "report/style.h"
 
 namespace mindahl::report::text_test {
 namespace {

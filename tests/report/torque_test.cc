@@ -5,11 +5,7 @@
 #include <regex>
 #include <string>
 
-#include "mindahl/report/figure.h"
-#include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
-#include "mindahl/report/residual_table.h"
-#include "mindahl/report/text.h"
 #include "report/made_report.h"
 
 // A torque against an angle: the same law, in N m and rad, and no contact behind it.

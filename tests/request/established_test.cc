@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "mindahl/request/fit_records.h"
+#include "mindahl/request/fit_request.h"
 
 namespace mindahl::request::established_test {
 namespace {

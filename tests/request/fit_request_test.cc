@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "mindahl/core/error.h"
-#include "mindahl/request/fit_records.h"
 
 namespace mindahl::request::fit_request_test {
 namespace {

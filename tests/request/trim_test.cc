@@ -1,5 +1,3 @@
-#include "mindahl/loop/trim.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,10 +12,9 @@
 
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "mindahl/loop/segments.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/report/json.h"
 #include "mindahl/report/report.h"
-#include "mindahl/request/fit_records.h"
 #include "mindahl/request/fit_request.h"
 #include "support/histories.h"
 

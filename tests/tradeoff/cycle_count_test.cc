@@ -1,11 +1,10 @@
-#include "tradeoff/cycle_count.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
 #include "mindahl/models/excitation.h"
+#include "mindahl/tradeoff/recommendation.h"
 
 namespace mindahl::tradeoff::cycle_count_test {
 namespace {

@@ -1,5 +1,3 @@
-#include "mindahl/tradeoff/model_regions.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,13 +9,14 @@
 #include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
+#include "mindahl/tradeoff/work_precision.h"
 
 namespace mindahl::tradeoff::model_regions_test {
 namespace {
 
 using namespace models;
 
-constexpr double kBounds = 2e-3;  // relative, of λ, as model_regions.h states
+constexpr double kBounds = 2e-3;  // relative, of λ, as work_precision.h states
 
 class MindlinRegions : public ::testing::Test {
  protected:

@@ -1,5 +1,3 @@
-#include "mindahl/tradeoff/refit.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +10,7 @@
 #include "../methods/responses.h"
 #include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
+#include "mindahl/tradeoff/recommendation.h"
 
 namespace mindahl::tradeoff::refit_test {
 namespace {

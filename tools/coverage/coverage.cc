@@ -11,7 +11,6 @@
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/excitation.h"
-#include "mindahl/models/imposed_force.h"
 #include "mindahl/models/joint_friction.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"

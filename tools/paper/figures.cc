@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "mindahl/io/csv_writer.h"
+#include "mindahl/io/csv_table.h"
 #include "mindahl/io/output_file.h"
 #include "mindahl/io/plot.h"
 #include "responses.h"

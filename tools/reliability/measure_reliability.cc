@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mindahl/io/csv_writer.h"
+#include "mindahl/io/csv_table.h"
 #include "mindahl/io/output_file.h"
 #include "program.h"
 #include "small_run.h"

@@ -2,14 +2,20 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "mindahl/identification/fit_options.h"
+#include "mindahl/io/record_stream.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 
-/// Records of many cycles, each fitted on its own when it is complete.
 namespace mindahl::campaign {
+
+/// Records of many cycles, each fitted on its own when it is complete.
 
 /// One cycle of a longer record, or several in a row: from a turning point to the next but one,
 /// both samples included.
@@ -66,5 +72,36 @@ class CycleSplitter {
   std::size_t summed_ = 0;  // of the samples that are kept, those in the checksum
   std::uint64_t checksum_;
 };
+
+/// How all cycles of a long record are read, by its first samples.
+struct Reading {
+  loop::ReversalGate gate;  ///< `certain` where it was given
+  bool gate_is_given = false;
+  std::size_t samples = 0;  ///< number of samples examined
+};
+
+/// Returns the samples as every stage takes them, valid as long as they.
+loop::RecordView ViewOf(const io::Samples& samples);
+
+/// Reads the first samples, as many as determine how the record is read: some cycles, or the
+/// first million.
+io::Samples ReadHead(io::RecordStream& stream);
+
+/// Chooses the reversal gate and the force's sign, one for all cycles.
+/// @param fit  written: both
+/// @throws InputError where the head shows no turning points
+Reading ChooseReading(const loop::RecordView& head, identification::FitOptions& fit);
+
+/// Returns a sentence where the reversals are uncertain; empty where they are not.
+/// @param source  what was read
+std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source);
+
+/// @param cycles    whole ones that were found
+/// @param together  that were to be fitted as one
+/// @param gate      [m] in use
+/// @param source    what was read, for messages
+/// @throws InputError unless there is one
+void RequireCycles(std::size_t cycles, std::size_t together, const Reading& reading, double gate,
+                   std::string_view source);
 
 }  // namespace mindahl::campaign

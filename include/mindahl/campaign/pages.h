@@ -6,10 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "mindahl/campaign/dissipated_energy.h"
 #include "mindahl/campaign/evolution.h"
-#include "mindahl/campaign/pooled_value.h"
-#include "mindahl/campaign/repeats.h"
+#include "mindahl/campaign/test_summary.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/report/page.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -36,5 +38,11 @@ void RequireNonNegative(std::string_view quantity, double value);
 /// @throws InvalidArgument unless the two sizes agree.
 void RequireSameSize(std::string_view first, std::size_t first_size, std::string_view second,
                      std::size_t second_size);
+
+/// Refuses a word that is none of those that an option takes.
+/// @throws InputError naming the option, the word, the nearest of the words where one is near, and
+///   all of them
+void RequireOneOf(std::string_view option, std::string_view word,
+                  std::span<const std::string_view> words);
 
 }  // namespace mindahl

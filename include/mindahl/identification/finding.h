@@ -1,14 +1,115 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "mindahl/identification/finding_code.h"
-
 namespace mindahl::identification {
+
+/// How much a finding matters to whoever uses the numbers.
+enum class Severity {
+  kNote,     ///< worth knowing: the answer stands
+  kWarning,  ///< something should be done, or part of the answer not be believed
+  kFailure,  ///< the answer is not one
+};
+
+/// In the order of precedence: of several the last holds.
+enum class Identifiability {
+  kIdentifiable,
+  kEffective,        ///< the interval is closed and includes what the model, which is not adequate,
+                     ///< misses
+  kExtrapolated,     ///< the law's asymptote, which the record stays away from
+  kBoundedBelow,     ///< the data give only a lower limit
+  kNotIdentifiable,  ///< none, or only in combination with others
+};
+
+/// Describes every finding of one code.
+struct FindingRow {
+  std::string_view code;  ///< stable, for scripts; docs/contract.md lists them
+  /// Verdict that it calls for on the parameters that it names.
+  Identifiability verdict = Identifiability::kIdentifiable;
+  Severity severity = Severity::kWarning;  ///< unless the finding says otherwise
+  bool holds_without_model = false;        ///< it stays where the model is inadequate
+};
+
+/// Every finding there is. A code without a row does not compile, and neither does a row without a
+/// sentence in `report`.
+inline constexpr auto kFindings = [] {
+  using enum Identifiability;
+  using enum Severity;
+  return std::to_array<FindingRow>({
+      // about the record
+      {.code = "reversals_uncertain"},
+      {.code = "glitches_left_out", .severity = kNote},
+      {.code = "path_too_long"},
+      {.code = "no_closed_cycle", .severity = kNote},
+      {.code = "load_followed", .severity = kNote},
+      {.code = "load_not_followed"},
+      {.code = "noise_in_displacement", .severity = kNote},
+      {"displacement_noise_estimated", kIdentifiable, kNote, true},
+      {"turning_points_between_samples", kIdentifiable, kNote, true},
+      // about the identifiability of the parameters
+      {"undetermined_parameter", kNotIdentifiable},
+      {"undetermined_combination", kNotIdentifiable},
+      {"sigma_not_identifiable", kNotIdentifiable},
+      {"alpha_not_identifiable", kNotIdentifiable},
+      {"slip_force_not_identifiable", kNotIdentifiable},
+      {"asymmetry_not_identifiable", kNotIdentifiable},
+      {"sigma_bounded_below", kBoundedBelow},
+      {"slip_force_bounded_below", kBoundedBelow},
+      {"slip_force_extrapolated", kExtrapolated},
+      {"alpha_limited_by_load", kBoundedBelow},
+      {"search_limit", kNotIdentifiable},
+      {"few_places", kNotIdentifiable},
+      {"unknown_past", kNotIdentifiable},
+      {"initial_state_undecided", kIdentifiable, kWarning, true},
+      {"several_minima", kIdentifiable, kNote},
+      {"shape_or_rig", kNotIdentifiable},
+      {"rig_not_tried", kNotIdentifiable},
+      // about the law: under its own law a parameter is as well known as before
+      {"law_undecided", kIdentifiable, kNote},
+      {"other_law_fits_better", kIdentifiable, kWarning, true},
+      {.code = "memory_contradicts_law"},
+      // about the model discrepancy
+      {"systematic_residual", kIdentifiable, kWarning, true},
+      {.code = "slow_residuals"},
+      {"energy_contradiction", kNotIdentifiable, kWarning, true},
+      {"loop_not_seen", kNotIdentifiable, kWarning, true},
+      {"no_model_fits", kNotIdentifiable, kWarning, true},
+      {"model_inadequate", kNotIdentifiable, kWarning, true},
+      // about the search
+      {.code = "weights_not_settled"},
+      {.code = "fit_failed", .severity = kFailure},
+  });
+}();
+
+/// The code of a finding: one of kFindings, which the compiler sees to.
+class FindingCode {
+ public:
+  consteval FindingCode(const char* code) : row_(Find(code)) {
+    if (row_ == nullptr) throw "kFindings has no row for this code";
+  }
+  constexpr explicit FindingCode(const FindingRow& row) : row_(&row) {}
+
+  [[nodiscard]] constexpr const FindingRow& row() const { return *row_; }
+  constexpr operator std::string_view() const { return row_->code; }
+  friend constexpr bool operator==(FindingCode one, std::string_view other) {
+    return one.row_->code == other;
+  }
+
+ private:
+  static constexpr const FindingRow* Find(std::string_view code) {
+    for (const FindingRow& row : kFindings) {
+      if (row.code == code) return &row;
+    }
+    return nullptr;
+  }
+
+  const FindingRow* row_;
+};
 
 /// Something that a fit found out about a record, a model or a parameter, as data: `report` has the
 /// sentence for it.

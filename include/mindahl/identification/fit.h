@@ -3,11 +3,19 @@
 #include <memory>
 #include <span>
 
+#include "mindahl/core/error.h"
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/loop/record.h"
 
 namespace mindahl::identification {
+
+/// A fit has fewer samples that count than free parameters. The message has both numbers, and how
+/// many samples of how many were left out for what.
+class TooFewSamples : public InvalidArgument {
+ public:
+  using InvalidArgument::InvalidArgument;
+};
 
 /// Least-squares fits of records with the same options, one after the other, in memory that is
 /// kept: at Depth::kEstimate a fit of records that are no larger than those before allocates

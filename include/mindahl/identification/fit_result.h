@@ -8,15 +8,9 @@
 
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
-#include "mindahl/identification/law_choice.h"
-#include "mindahl/identification/likelihood_profile.h"
-#include "mindahl/identification/memory.h"
-#include "mindahl/identification/residual_statistics.h"
-#include "mindahl/identification/residual_structure.h"
-#include "mindahl/identification/solver_report.h"
 #include "mindahl/loop/cycles.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/facts.h"
-#include "mindahl/loop/glitches.h"
 #include "mindahl/loop/record.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/branch_law.h"
@@ -25,6 +19,82 @@
 #include "mindahl/models/response.h"
 
 namespace mindahl::identification {
+
+/// A law with its slip force held, whatever else is free fitted again.
+struct ProfilePoint {
+  models::BranchLaw law;
+  /// F of the best fit against this one: (SS − SS_best)/s² over the effective samples, 0 of the
+  /// best fit itself.
+  double statistic = 0.0;
+};
+
+/// The likelihood along Tc, where a fit looked at it (docs/theory.md §10).
+struct LikelihoodProfile {
+  double critical = 0.0;             ///< F(1, ν) beyond which points are outside the 95 % interval
+  std::vector<ProfilePoint> points;  ///< in order of slip force
+};
+
+/// Masing's law (Mindlin's, Full-Dahl) or Dahl's own: which of the two a record is of. σ and Tc are
+/// those of a law, and the two differ in them by up to 2^α and 2 where the loop is the same.
+struct LawChoice {
+  /// True if the record distinguishes them.
+  bool decided = false;
+  /// The law that the record is of: the fitted one or `alternative`; null where undecided.
+  const models::FrictionModel* preferred = nullptr;
+
+  // The other law:
+  const models::FrictionModel* alternative = nullptr;
+  models::BranchLaw law;  ///< its σ, α, Tc
+  /// ΔAICc of the other law less the fitted one: positive where the fitted one is better. Empty
+  /// where the other was not fitted: on a steady loop of one amplitude the two are one curve.
+  std::optional<double> delta_aicc;
+  std::optional<double> likelihood_ratio;  ///< 2 ln Λ of the fitted law against the other
+};
+
+/// Names the variable on which the force along a branch depends.
+enum class MemoryVerdict {
+  kMasing,     ///< the way since the last reversal that is remembered, of whatever backbone
+  kDahl,       ///< the force itself: slope = g(sT), of whatever g
+  kNeither,    ///< the record contradicts both
+  kUndecided,  ///< it contradicts neither
+};
+
+/// Parts of a record that one curve would have to run through.
+struct MemoryComparison {
+  /// Stable, for scripts; slopes after reversals are those of eq. 12 of Peyret et al. (2017), σ by
+  /// Masing's rule, σ(1 + T*/Tc)^α by Dahl's own law: "virgin_branch", "directions", "amplitudes",
+  /// "slope_at_reversal", "return_point", "other_law"
+  std::string_view code;
+  double p_value = 1.0;       ///< chance of such a difference under Masing's memory, by noise
+  double dahl_p_value = 1.0;  ///< likewise of Dahl's
+  double size = 0.0;          ///< [N] rms over the record of what is beyond Masing's memory
+};
+
+/// Tests whether a record follows Masing's memory, Dahl's, or neither, by comparing its branches
+/// with each other and with the virgin one. The law's shape is not presumed: either memory is given
+/// the backbone that fits best.
+struct MemoryTest {
+  MemoryVerdict verdict = MemoryVerdict::kUndecided;
+  double p_value = 1.0;                       ///< under Masing's memory, all comparisons together
+  double dahl_p_value = 1.0;                  ///< under Dahl's memory, likewise
+  std::vector<MemoryComparison> comparisons;  ///< those that the record has; may be empty
+};
+
+/// Codes of all comparisons, in the order of a test.
+std::vector<std::string_view> MemoryComparisonCodes();
+
+/// How the search of a fit ended, as Ceres reports it.
+struct SolverReport {
+  /// "tiny_solver" (ceres::TinySolver), "solve" (ceres::Solve), or "none" where every parameter
+  /// that is not linear is fixed.
+  std::string_view solver = "none";
+  /// Ceres' termination type: CONVERGENCE, NO_CONVERGENCE, FAILURE; "not run".
+  std::string_view termination = "not run";
+  std::string message = "not run";  ///< Ceres' reason
+  int iterations = 0;               ///< sum over all searches from this start
+  double initial_cost = 0.0;        ///< ½ Σ of the squared weighted residuals [N² or m²]
+  double final_cost = 0.0;          ///< likewise
+};
 
 /// How much of a fit is wanted; each depth has all of the one before.
 enum class Depth {
@@ -240,5 +310,13 @@ struct FitResult {
 
   [[nodiscard]] bool is_load_series() const { return Find("load_exponent") != nullptr; }
 };
+
+/// Returns the amplitude of the contact itself [m] in a steady loop of the measured amplitude: less
+/// half of a gap before it, and what a rig in series takes.
+/// @param law  of the record
+double ContactAmplitude(const FitResult& fit, const models::BranchLaw& law, double amplitude);
+
+/// Returns the amplitude [m] behind a gap, where the fit has one.
+double AmplitudeBehindGap(const FitResult& fit, double amplitude);
 
 }  // namespace mindahl::identification

@@ -3,6 +3,8 @@
 #include <span>
 #include <string_view>
 
+#include "mindahl/loop/facts.h"
+
 namespace mindahl::identification {
 
 /// Holds every number on which a verdict, a finding or the choice of a method depends.
@@ -74,5 +76,10 @@ struct ThresholdRow {
 
 /// Returns one row a member of Thresholds, in their order.
 std::span<const ThresholdRow> ThresholdTable();
+
+/// True if a trend over the cycles is beyond their scatter, and large enough to matter: |slope|
+/// over the mean [a cycle] above `trend_size`, and p below `trend_chance`.
+/// @param mean  of the fact, in its unit
+bool IsWorthSaying(const loop::Trend& trend, double mean, const Thresholds& thresholds = {});
 
 }  // namespace mindahl::identification

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -65,6 +66,129 @@ class NormalizedResponse {
  private:
   struct Buffers;
   std::unique_ptr<Buffers> buffers_;
+};
+
+/// A record under a load that varies, as the law follows it: what LoadingPath is at constant load.
+struct LoadedHistory {
+  std::vector<double> displacement;    ///< δ, from reversal to reversal one way
+  std::vector<double> load_ratio;      ///< N/N₀ >= 0
+  std::vector<double> log_load_ratio;  ///< ln(N/N₀); 0 where lifted off
+  /// Samples that the contact has been through before the first: of a steady one the extremes of
+  /// the record, and its first cycle.
+  std::vector<std::size_t> before;
+};
+
+/// Makes the history of a record under the load ratios given. Between reversals the law takes any
+/// step back for one: where samples step back within the gate, the displacement is the nearest that
+/// does not (least squares, by pooling neighbours: Ayer et al. 1955).
+///
+/// A contact that had settled has no closed form under a varying load, but repeats itself exactly
+/// from the second cycle of (δ, N) on: a steady one is taken, from unloaded at 0, to the record's
+/// extremes, the last of them that from which it starts away, and once through its first cycle.
+/// @param displacement  [m], finite, not empty; 0 is midway between its extremes where steady
+/// @param load_ratio    N/N₀, finite, >= 0; of the same size
+/// @param reversals     as from FindReversals on the same displacements
+/// @throws InvalidArgument where sizes differ, the record is empty or a load ratio is negative
+void MakeLoadedHistory(std::span<const double> displacement, std::span<const double> load_ratio,
+                       std::span<const std::size_t> reversals, InitialState state,
+                       LoadedHistory& history);
+
+/// EvaluateForceUnderLoad over μN₀ and its gradient, for solvers: σ_ref is that under N₀, and
+/// t = T/(μN₀) depends on κ = σ_ref/(μN₀) and α only. Keeps its buffers.
+class NormalizedLoadedResponse {
+ public:
+  NormalizedLoadedResponse();
+  NormalizedLoadedResponse(NormalizedLoadedResponse&&) noexcept;
+  NormalizedLoadedResponse& operator=(NormalizedLoadedResponse&&) noexcept;
+  ~NormalizedLoadedResponse();
+
+  /// @param law       α < 1; no spring in series, behind which the contact's own displacement would
+  ///                  depend on the force
+  /// @param unloaded  δ₀ [m], where the contact is unloaded under the first load; not looked at
+  ///                  where it has been through samples before
+  /// @param t         written, of the record's size; |t| <= N/N₀
+  /// @throws InvalidArgument for a law or sizes that break a rule
+  void Evaluate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
+                std::span<double> t);
+
+  /// Computes the same with derivatives: exact, where t has them. They are taken along with the
+  /// recursion, at two to three times its cost.
+  /// @param gradient  columns of the record's size, or empty; that of the spring is filled with 0
+  void Differentiate(const NormalizedLaw& law, const LoadedHistory& history, double unloaded,
+                     std::span<double> t, const NormalizedGradient& gradient);
+
+ private:
+  struct Buffers;
+  std::unique_ptr<Buffers> buffers_;
+};
+
+/// Holds the parameters on which a displacement over Tc/σ depends along a path of forces: the
+/// displacement itself is linear in the compliance 1/σ.
+struct ForcedLaw {
+  double slip_force = 0.0;            ///< Tc [N], finite, > 0
+  double shape_exponent = 1.0 / 3.0;  ///< α [–], finite, >= 0
+};
+
+/// Derivatives of d = σδ/Tc, a column each; an empty one is not wanted.
+struct DisplacementGradient {
+  std::span<double> log_slip_force;  ///< ∂d/∂ln Tc
+  std::span<double> shape_exponent;  ///< ∂d/∂α
+  std::span<double> unloaded_force;  ///< ∂d/∂T₀ [1/N], of a virgin contact
+};
+
+/// The inverse of NormalizedResponse: d = σδ/Tc, from where the contact is unloaded, of a contact
+/// whose force is imposed (response.h has the equations), and its gradient, for solvers. On a
+/// branch from the reading T_r, which is where the force without its offset is t_r·Tc,
+///
+///   d = d_r + s·m·v^β·y(φ),   φ = |T − T_r|/(m·v·Tc),   v = 1, or 1 − s·t_r of Dahl's own law
+///
+/// m = 1 on the virgin branch, 2 after a reversal (1 of Dahl's own law). Keeps its buffer: nothing
+/// is allocated once it is large enough. Cost: three powers a sample with the gradient.
+class NormalizedDisplacement {
+ public:
+  /// @param model  any of FrictionModels() that is not scaled by the peak
+  /// @param path   as from MakeLoadingPath on the same forces, for the model's memory: the branches
+  ///               follow from the forces as they do from displacements
+  /// @param force  [N], its offset included
+  /// @param d      written, of the same size
+  /// @returns false where a force is at slip or beyond: no displacement belongs to it, and d holds
+  ///   nothing of use
+  /// @throws InvalidArgument for sizes that differ and a model that is scaled by the peak
+  bool Evaluate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
+                std::span<const double> force, std::span<double> d) {
+    return Differentiate(model, law, path, force, d, {});
+  }
+
+  /// @param gradient  columns of the same size, or empty
+  bool Differentiate(const FrictionModel& model, const ForcedLaw& law, const LoadingPath& path,
+                     std::span<const double> force, std::span<double> d,
+                     const DisplacementGradient& gradient);
+
+ private:
+  struct Branch {
+    double origin = 0.0;     // T_r [N]
+    double height = 0.0;     // m·v·Tc [N]
+    double span = 1.0;       // m
+    double remaining = 1.0;  // v
+    bool is_virgin = false;
+    // v and d at the origin, and their derivatives:
+    double remaining_per_log_rate = 0.0;  // of 1/Tc
+    double remaining_per_zero = 0.0;      // of T₀/Tc
+    double d = 0.0;
+    double per_log_rate = 0.0;
+    double per_shape = 0.0;
+    double per_zero = 0.0;
+  };
+  struct Point {
+    double d = 0.0;
+    double per_log_rate = 0.0;
+    double per_shape = 0.0;
+    double per_zero = 0.0;
+  };
+  static bool PointOn(const Branch& branch, const ForcedLaw& law, double force, bool with_gradient,
+                      Point& point);
+
+  std::vector<Branch> branches_;
 };
 
 }  // namespace mindahl::models

@@ -6,19 +6,25 @@
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "mindahl/identification/backbone_estimate.h"
+#include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/identification/term_selection.h"
+#include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/loop/trim.h"
+#include "mindahl/loop/segments.h"
+#include "mindahl/report/contact.h"
 #include "mindahl/report/load_series.h"
 #include "mindahl/report/loop_description.h"
-#include "mindahl/report/mapping_tests.h"
-#include "mindahl/report/slip_forces.h"
 #include "mindahl/report/units.h"
-#include "mindahl/report/warning.h"
 
 namespace mindahl::report {
+
+/// Something that a person should act on.
+struct Warning {
+  std::string code;  ///< stable, for scripts; docs/contract.md lists them
+  std::string message;
+};
 
 /// Holds the inputs of a report.
 struct ReportInput {
@@ -65,5 +71,47 @@ struct Report : ReportInput {
 /// and
 ///   as IdentifyFittedContact()
 Report MakeReport(ReportInput input);
+
+/// Describes a finding in words, without an end of line: what was found, what it means and, where
+/// something can be done, what to do.
+/// @param finding  with the numbers and parameters that its code has (docs/contract.md)
+/// @param fit      the fit that found it: the model's name and why the solver stopped are its own
+/// @param units    of the record
+/// @throws std::logic_error for a kind without a sentence, and for a number that is missing
+std::string Sentence(const identification::Finding& finding, const identification::FitResult& fit,
+                     const Units& units = kUnitsOfForce);
+
+struct TextOptions {
+  bool has_colours = false;  ///< escape sequences of a terminal around verdicts and headings
+};
+
+/// Returns a text for people; UTF-8, at most 100 columns. The first 24 lines have the verdict, the
+/// use, the next step, the contact's parameters and the contact as far as it is known; what that
+/// rests on follows. A fit that is of no use has ten lines, and no parameter.
+/// @throws InvalidArgument for a fit that failed
+std::string ToText(const Report& report, const TextOptions& options = {});
+
+/// Returns the JSON of schema mindahl.fit/1, as `mindahl fit --json` writes it, with the end of
+/// line: docs/contract.md. UTF-8; bytes of a file name that are not are replaced.
+std::string ToJson(const Report& report);
+
+/// Plots the measured and fitted loop, with the residual along the displacement below: of samples
+/// in the load window where there is one.
+/// @throws InvalidArgument for a fit that failed
+io::Plot ToPlot(const Report& report);
+
+/// Returns the measured and fitted force of every sample, as CSV. With several records the first
+/// column numbers them; time is there where every record has it.
+/// @throws InvalidArgument for a fit that failed
+std::string ResidualsCsv(const Report& report);
+
+/// Returns the backbone as CSV: displacement, force, the ends of its band, and the fitted law.
+std::string BackboneCsv(const identification::BackboneEstimate& backbone, const Units& units);
+
+/// Returns the backbone in words, with σ, Tc and α of the fitted law: how stiff it begins, what it
+/// carries at the largest displacement, whether it levels off there, and where the law leaves its
+/// band. UTF-8, at most 100 columns.
+std::string BackboneText(const identification::BackboneEstimate& backbone,
+                         const identification::FitResult& fit, const Units& units);
 
 }  // namespace mindahl::report

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <string_view>
 
 namespace mindahl::report {
@@ -49,5 +51,35 @@ constexpr std::string_view UnitIn(const Units& units, std::string_view unit) {
   if (unit == kOfExcitation) return units.excitation;
   return unit;
 }
+
+/// A unit for reading: with the prefix that makes a number of 1 to 1000 of a magnitude.
+struct ScaledUnit {
+  double factor = 1.0;  ///< a number of these times it is one of the unit without prefix
+  std::string name;     ///< empty of "-"
+};
+
+/// @param unit  one that the reports use, as "m", "N/m" or "N m"; of another the factor is 1
+ScaledUnit UnitFor(std::string_view unit, double magnitude);
+
+/// Returns "sigma [N/µm]"; the name alone of a unit that is empty or "-".
+std::string WithUnit(std::string_view name, std::string_view unit);
+
+/// Returns "48.1 N/µm" of 4.814e7 N/m: significant digits, in the unit that suits it.
+std::string Quantity(double value, std::string_view unit, int digits = 5);
+
+/// Rounds a number to the decimals that give its error two digits: "48.142" of 0.0391; from a
+/// million on with an exponent, "5.002e+16" of 1.2e14, and where it is small, "4.207e-11" of 7e-14.
+/// @param error  > 0; where it is not, or not finite, the number has six digits
+std::string RoundedTo(double error, double value);
+
+/// Returns "48.142 ± 0.039" of 4.8142e7 and 3.9e4 in units of 1e6; "± open" of an error that is not
+/// finite, no error where it is zero or there is none.
+std::string NumberWithError(double value, std::optional<double> error, double factor);
+
+/// Returns "48.142 ± 0.039 N/µm", likewise.
+std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit);
+
+/// Returns "48.07 … 48.22", three digits of its width; "open" for an end that is.
+std::string IntervalText(std::optional<double> lower, std::optional<double> upper, double factor);
 
 }  // namespace mindahl::report

@@ -13,7 +13,6 @@
 #include "mindahl/campaign/pages.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/report/report.h"
-#include "mindahl/request/fit_records.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {

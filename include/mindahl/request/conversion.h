@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "mindahl/convert/conversion.h"
-#include "mindahl/convert/parameters.h"
 #include "mindahl/models/branch_law.h"
 
 namespace mindahl::request {

@@ -11,7 +11,7 @@
 #include "mindahl/io/plot.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/request/contact_request.h"
-#include "mindahl/request/fit_records.h"
+#include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {
 

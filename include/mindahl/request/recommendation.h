@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "mindahl/identification/simpler_laws.h"
+#include "mindahl/identification/model_selection.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/request/contact_request.h"
-#include "mindahl/request/fit_records.h"
+#include "mindahl/request/fit_request.h"
 #include "mindahl/request/motion.h"
 #include "mindahl/tradeoff/recommendation.h"
 

@@ -5,7 +5,6 @@
 
 #include "mindahl/identification/sweep.h"
 #include "mindahl/io/record_reader.h"
-#include "mindahl/request/fit_records.h"
 #include "mindahl/request/fit_request.h"
 
 namespace mindahl::request {

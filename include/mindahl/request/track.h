@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "mindahl/campaign/cycle_fit.h"
-#include "mindahl/campaign/dissipated_energy.h"
+#include "mindahl/campaign/evolution.h"
 #include "mindahl/campaign/pages.h"
-#include "mindahl/campaign/pooled_value.h"
-#include "mindahl/campaign/tracked_quantities.h"
+#include "mindahl/campaign/test_summary.h"
 
 namespace mindahl::request {
 

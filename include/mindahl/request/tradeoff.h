@@ -6,8 +6,7 @@
 
 #include "mindahl/io/plot.h"
 #include "mindahl/request/contact_request.h"
-#include "mindahl/request/fit_records.h"
-#include "mindahl/tradeoff/model_regions.h"
+#include "mindahl/request/fit_request.h"
 #include "mindahl/tradeoff/work_precision.h"
 
 namespace mindahl::request {

@@ -11,7 +11,7 @@
 
 #include "core/probability.h"
 #include "identification/diagnosis/grade.h"
-#include "mindahl/identification/contact_amplitude.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 

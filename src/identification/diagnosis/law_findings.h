@@ -4,7 +4,6 @@
 
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
-#include "mindahl/identification/law_choice.h"
 
 namespace mindahl::identification {
 

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "identification/diagnosis/grade.h"
-#include "mindahl/identification/contact_amplitude.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/identification/trend.h"
-#include "mindahl/loop/displacement_noise.h"
+#include "mindahl/identification/thresholds.h"
+#include "mindahl/loop/disturbances.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {

@@ -1,5 +1,3 @@
-#include "mindahl/identification/residual_structure.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +5,7 @@
 #include "core/probability.h"
 #include "identification/diagnosis/main_strokes.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/adequacy.h"
 
 namespace mindahl::identification {
 namespace {

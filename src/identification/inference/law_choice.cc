@@ -11,7 +11,7 @@
 
 #include "identification/inference/evidence.h"
 #include "identification/inference/local.h"
-#include "mindahl/identification/contact_amplitude.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"
 
 namespace mindahl::identification {

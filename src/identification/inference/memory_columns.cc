@@ -10,7 +10,7 @@
 #include "identification/inference/branch_places.h"
 #include "identification/inference/column_test.h"
 #include "identification/solve/turning_points.h"
-#include "mindahl/identification/memory.h"
+#include "mindahl/identification/fit_result.h"
 
 namespace mindahl::identification {
 namespace {

@@ -6,7 +6,7 @@
 #include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
-#include "mindahl/identification/memory.h"
+#include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "identification/intervals.h"
-#include "mindahl/loop/displacement_noise.h"
+#include "mindahl/loop/disturbances.h"
 
 namespace mindahl::identification {
 namespace {

@@ -7,7 +7,7 @@
 #include "identification/inference/evidence.h"
 #include "identification/intervals.h"
 #include "identification/solve/search.h"
-#include "mindahl/identification/likelihood_profile.h"
+#include "mindahl/identification/fit_result.h"
 
 namespace mindahl::identification {
 

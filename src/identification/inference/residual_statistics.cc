@@ -1,9 +1,8 @@
-#include "mindahl/identification/residual_statistics.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "mindahl/core/error.h"
+#include "mindahl/identification/adequacy.h"
 
 namespace mindahl::identification {
 

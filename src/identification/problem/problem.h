@@ -12,9 +12,7 @@
 #include "identification/problem/record_states.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
-#include "mindahl/models/loaded_response.h"
 #include "mindahl/models/loading_path.h"
-#include "mindahl/models/normalized_displacement.h"
 #include "mindahl/models/normalized_response.h"
 
 namespace mindahl::identification {

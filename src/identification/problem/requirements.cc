@@ -14,8 +14,8 @@
 
 #include "identification/problem/scaled_records.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"
-#include "mindahl/identification/too_few_samples.h"
 
 namespace mindahl::identification {
 namespace {

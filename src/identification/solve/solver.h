@@ -9,7 +9,7 @@
 #include "identification/problem/problem.h"
 #include "identification/solve/projected_residual.h"
 #include "identification/solve/tiny_search.h"
-#include "mindahl/identification/solver_report.h"
+#include "mindahl/identification/fit_result.h"
 
 namespace mindahl::identification {
 

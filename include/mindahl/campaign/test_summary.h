@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "mindahl/campaign/cycle_fit.h"
+#include "mindahl/identification/fit_options.h"
+
+namespace mindahl::campaign {
+
+/// One value of a quantity that cycles have in common, from sums: in memory that their number does
+/// not change. Of values yₖ with standard errors eₖ, wₖ = 1/eₖ²,
+///   ȳ = Σwy/Σw,   Q = Σw(y − ȳ)²,   τ² = max(0, (Q − (n − 1))/(Σw − Σw²/Σw)),
+///   e(ȳ)² = 1/Σw + τ²·Σw²/(Σw)²
+/// τ the scatter between cycles beyond their errors (DerSimonian & Laird 1986, eq. 8).
+class PooledValue {
+ public:
+  /// @param value           finite
+  /// @param standard_error  > 0
+  /// @throws InvalidArgument for what breaks these
+  void Add(double value, double standard_error);
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  // Require at least one value:
+  [[nodiscard]] double mean() const;
+  [[nodiscard]] double scatter() const;         ///< τ
+  [[nodiscard]] double standard_error() const;  ///< standard error of the mean, scatter included
+  /// Returns P(χ²(n − 1) ≥ Q): the chance of such a scatter from the stated errors alone.
+  [[nodiscard]] double p_value() const;
+
+ private:
+  [[nodiscard]] double ChiSquared() const;
+
+  std::size_t count_ = 0;
+  double origin_ = 0.0;  // the first value: sums of what is left lose no digits
+  double weights_ = 0.0;
+  double squared_weights_ = 0.0;
+  double values_ = 0.0;
+  double squares_ = 0.0;
+};
+
+/// Counts the fits in a sum of energies by how the energy of each was obtained.
+struct EnergyCounts {
+  std::size_t measured = 0;  ///< fits with an energy of their own, glitches interpolated
+  std::size_t replaced = 0;  ///< fits given the energy per sample of the measured ones before
+  std::size_t left_out = 0;  ///< fits with no energy known, or none dissipated
+};
+
+/// Returns ", counting 2 that do not close by those before them and 1 by nothing"; nothing where
+/// all were measured.
+std::string InWords(const EnergyCounts& counts);
+
+/// Energy [J] dissipated over a test, from fits in their order.
+///
+/// A cycle that does not end where it began is no loop, and what is between its ends is no energy
+/// dissipated: a spike of the displacement, which turns it, makes two of one cycle with ten times
+/// its energy. Such count for W = n·median(Wₖ/nₖ) of the last nine measured ones, n the steps
+/// between samples, so that the parts of a cycle count for it together; before any was measured
+/// they are left out. A glitch of the force is interpolated linearly, and costs a few per cent.
+class DissipatedEnergy {
+ public:
+  /// @param cycles  that a fit stands for, >= 1
+  explicit DissipatedEnergy(std::size_t cycles) : cycles_(static_cast<double>(cycles)) {}
+
+  void Add(const CycleFit& fit);
+
+  [[nodiscard]] double total() const { return total_; }
+  [[nodiscard]] const EnergyCounts& counts() const { return counts_; }
+
+ private:
+  double cycles_;
+  double total_ = 0.0;
+  EnergyCounts counts_;
+  std::deque<double> of_a_step_;  // [J], of the last that were measured
+};
+
+// One shape exponent for all cycles of a test: a first pass fits each with its own, their mean is
+// held in a second.
+
+/// @param fit    of the cycles, by which alpha must be fitted
+/// @param files  that are read, each twice; none of records in memory
+/// @throws InputError where alpha is held or prescribed, or a file can be read only once
+void RequireThatAlphaCanBeShared(const identification::FitOptions& fit,
+                                 std::span<const std::string> files);
+
+/// Takes the exponent of a cycle that determines it.
+void PoolAlpha(const CycleFit& fit, PooledValue& alpha);
+
+/// @throws InputError where no cycle determined alpha
+void RequireSharedAlpha(const PooledValue& alpha);
+
+/// Makes "alpha 0.333 ± 0.001 shared, of 298 cycles that scatter by 0 beyond their errors, p = 0.4"
+std::string SharedAlphaInWords(const PooledValue& alpha);
+
+/// Compares the scatter of repeats of a test with their stated errors.
+struct Repeats {
+  std::size_t count = 0;
+  double mean = 0.0;
+  double standard_deviation = 0.0;  ///< between them
+  /// Root of the mean square of their standard errors; empty where they state none.
+  std::optional<double> stated_error = {};
+  /// P(χ²(n − 1) ≥ Σ((x − x̄)/e)²), x̄ weighted: chance of such a scatter from the stated errors.
+  std::optional<double> p_value = {};
+
+  /// True if the stated errors make such a scatter with a chance below one in a hundred.
+  [[nodiscard]] bool exceed_errors() const { return p_value && *p_value < 0.01; }
+  /// Returns "as the errors say, p 0.43", or "no error is stated".
+  [[nodiscard]] std::string InWords() const;
+};
+
+/// @param values  of one quantity, one a test
+/// @param errors  their standard errors, > 0; none where they state none
+/// @returns nothing for fewer than two
+/// @throws InvalidArgument where sizes differ
+std::optional<Repeats> DescribeRepeats(std::span<const double> values,
+                                       std::span<const double> errors);
+
+}  // namespace mindahl::campaign

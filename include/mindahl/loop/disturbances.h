@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mindahl/loop/record.h"
+
+namespace mindahl::loop {
+
+/// Returns the standard deviation [m] of white noise on a smooth displacement, from the median of
+/// its absolute third differences, which a smooth drive hardly enters; of an encoder that counts in
+/// steps q, at least q/√12. Samples that repeat the one before say nothing new and are passed over.
+///   σ_δ = 1.4826·median|x_i − 3x_{i−1} + 3x_{i−2} − x_{i−3}|/√20
+/// 0 for fewer than four different samples. Efficiency about 0.4: 2 % at 5000 samples.
+double EstimateDisplacementNoise(std::span<const double> displacement);
+
+/// Returns the step [m] of the encoder that a displacement was read from: neighbours differ by
+/// whole steps or not at all. 0 where it was not.
+double EncoderStep(std::span<const double> displacement);
+
+/// Estimates the displacement under its noise, where the motion is smooth.
+///
+/// Each sample becomes the value there of the parabola in the sample number through the 2h + 1
+/// samples about it (Savitzky & Golay 1964), h as large as the motion allows: of growing windows
+/// the intervals x̂ ± 2.5 s of the estimates must have a point in common (Goldenshluger &
+/// Nemirovski 1997), and half of the widest that do is taken: the parabola's error falls with h⁴,
+/// to a sixteenth, and the noise grows by √2 only. A corner narrows the windows that it lies in.
+/// The ends of a record stay nearly as they are.
+class DisplacementSmoother {
+ public:
+  /// @param displacement  [m], finite; decides the windows
+  /// @param noise         standard deviation [m], >= 0; at 0 nothing is smoothed
+  /// @throws InvalidArgument when the noise is negative or not finite
+  DisplacementSmoother(std::span<const double> displacement, double noise);
+
+  /// Returns the smoothed displacement, which is linear in the readings.
+  /// @throws InvalidArgument for another number of samples
+  /// Cost: at most 128 additions a sample.
+  [[nodiscard]] std::vector<double> Smooth(std::span<const double> displacement) const;
+
+ private:
+  std::vector<std::size_t> reach_;  // h of each sample
+};
+
+/// Returns the reversals of a smoothed displacement: the outermost sample of each swing that noise
+/// has made part of two strokes. Between them no sample lies beyond either.
+/// @param smoothed   [m]
+/// @param reversals  those of the displacement as it was read
+std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
+                                       std::span<const std::size_t> reversals);
+
+/// Names the fault of a sample, where it has one.
+enum class Glitch : std::uint8_t {
+  kNone,
+  kSpike,    ///< one channel is far off its neighbours, for one to three samples
+  kDropout,  ///< both channels read 0, or one of them one value, off their neighbours
+  kHeld,     ///< one channel repeats its last value while the other goes on, and then jumps
+};
+
+/// How many samples of a record are glitches [-], and where the first of them are.
+struct GlitchCount {
+  static constexpr std::size_t kMostExamples = 5;
+
+  std::size_t spikes = 0;
+  std::size_t dropouts = 0;
+  std::size_t held = 0;
+  std::array<std::size_t, kMostExamples> examples{};  ///< samples, the first min(total, 5) in use
+
+  [[nodiscard]] std::size_t total() const { return spikes + dropouts + held; }
+};
+
+/// Finds the samples that no contact and no drive has made.
+///
+/// - A spike of 1 to 3 samples leaves its neighbours and comes back: it lies beyond both by more
+///   than three times the steps about it (the third largest of 24) and of the record (of ten steps
+///   nine are smaller). So corners, turning points of few samples a cycle, and square pulses that
+///   come again are none.
+/// - A dropout reads exactly 0 and 0, outside its neighbours' range by more than two such steps in
+///   either channel; where one does, all inside the record that read so. At an end of the record,
+///   which may begin at rest, it is off by more than four such steps of the displacement. So is one
+///   channel alone that reads one value five times or more while the other moves, whatever it is:
+///   it jumps there and back by more than three times the steps about it and of the record.
+/// - A value is held where five or more samples of one channel are the same while the other moves,
+///   and it then jumps, alone, by more than three times the steps about it. So rest, an encoder's
+///   steps, and the plateau of a law that slips at a constant force are none.
+/// A kind that makes up more than a quarter of a channel is no glitch of it. In the first and last
+/// two samples no spike is found.
+///
+/// @param record  finite, see Validate
+/// @returns one entry a sample; empty where there is no glitch
+/// Cost: linear in the samples.
+std::vector<Glitch> FindGlitches(const RecordView& record);
+
+/// @param glitches  as from FindGlitches
+GlitchCount CountGlitches(std::span<const Glitch> glitches);
+
+}  // namespace mindahl::loop

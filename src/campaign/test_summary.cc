@@ -1,0 +1,162 @@
+#include "mindahl/campaign/test_summary.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <boost/math/statistics/univariate_statistics.hpp>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "core/probability.h"
+#include "mindahl/core/error.h"
+#include "mindahl/io/csv_table.h"
+#include "report/statements.h"
+
+namespace mindahl::campaign {
+
+void PooledValue::Add(double value, double standard_error) {
+  RequireFinite("value to be pooled", value);
+  RequirePositive("standard error of a value to be pooled", standard_error);
+  if (count_++ == 0) origin_ = value;
+  const double weight = 1 / (standard_error * standard_error);
+  const double off = value - origin_;
+  weights_ += weight;
+  squared_weights_ += weight * weight;
+  values_ += weight * off;
+  squares_ += weight * off * off;
+}
+
+double PooledValue::mean() const { return origin_ + values_ / weights_; }
+
+double PooledValue::ChiSquared() const {
+  return std::max(0.0, squares_ - values_ * values_ / weights_);
+}
+
+double PooledValue::scatter() const {
+  if (count_ < 2) return 0.0;
+  const double beyond = ChiSquared() - static_cast<double>(count_ - 1);
+  return std::sqrt(std::max(0.0, beyond / (weights_ - squared_weights_ / weights_)));
+}
+
+double PooledValue::standard_error() const {
+  const double between = scatter();
+  return std::sqrt(1 / weights_ + between * between * squared_weights_ / (weights_ * weights_));
+}
+
+double PooledValue::p_value() const {
+  if (count_ < 2) return 1.0;
+  return PValueOfChiSquared(ChiSquared(), static_cast<double>(count_ - 1));
+}
+
+namespace {
+
+constexpr std::size_t kNeighbours = 9;
+
+}  // namespace
+
+void DissipatedEnergy::Add(const CycleFit& fit) {
+  const double steps = fit.samples > 1 ? static_cast<double>(fit.samples - 1) : 0.0;
+  const bool is_open = fit.HasFlag("not_closed");
+  if (is_open && !of_a_step_.empty()) {
+    std::vector<double> neighbours(of_a_step_.begin(), of_a_step_.end());
+    total_ += cycles_ * steps * boost::math::statistics::median(neighbours);
+    ++counts_.replaced;
+  } else if (is_open || !fit.energy) {
+    ++counts_.left_out;
+  } else {
+    total_ += cycles_ * *fit.energy;
+    ++counts_.measured;
+    if (of_a_step_.size() == kNeighbours) of_a_step_.pop_front();
+    of_a_step_.push_back(*fit.energy / steps);
+  }
+}
+
+std::string InWords(const EnergyCounts& counts) {
+  std::vector<std::string> parts;
+  if (counts.replaced > 0) {
+    parts.push_back(fmt::format("{} that do not close by those before them", counts.replaced));
+  }
+  if (counts.left_out > 0) parts.push_back(fmt::format("{} by nothing", counts.left_out));
+  return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));
+}
+
+void RequireThatAlphaCanBeShared(const identification::FitOptions& fit,
+                                 std::span<const std::string> files) {
+  if (fit.model->shape_exponent || fit.fixed.contains("alpha")) {
+    throw InputError(
+        fmt::format("--alpha shared: alpha is not fitted: {} it",
+                    fit.fixed.contains("alpha") ? "--fix holds" : "--model prescribes"));
+  }
+  for (const std::string& file : files) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    const bool is_there_twice =
+        !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+    if (file != io::kStandardInput && is_there_twice) continue;
+    throw InputError(fmt::format(
+        "--alpha shared: {} can be read only once, and two passes are needed: write it to a file",
+        file));
+  }
+}
+
+void PoolAlpha(const CycleFit& fit, PooledValue& alpha) {
+  const bool is_known = !fit.HasFlag("not_converged") && !fit.HasFlag("alpha_open");
+  const FittedValue& own = fit.alpha;
+  if (!is_known || !own.value || !own.standard_error) return;
+  if (*own.standard_error > 0) alpha.Add(*own.value, *own.standard_error);
+}
+
+void RequireSharedAlpha(const PooledValue& alpha) {
+  if (alpha.count() > 0) return;
+  throw InputError(
+      "--alpha shared: no cycle determines alpha: --fix alpha=VALUE holds it at one that is "
+      "known");
+}
+
+std::string SharedAlphaInWords(const PooledValue& alpha) {
+  return fmt::format(
+      "alpha {:.6g} ± {:.2g} shared, of {} cycles that scatter by {:.2g} beyond their errors, {}",
+      alpha.mean(), alpha.standard_error(), alpha.count(), alpha.scatter(),
+      report::ChanceText(alpha.p_value(), 1));
+}
+
+std::string Repeats::InWords() const {
+  if (!p_value) return "no error is stated";
+  return exceed_errors() ? fmt::format("more than the errors, p {:.1g}", *p_value)
+                         : fmt::format("as the errors say, p {:.2g}", *p_value);
+}
+
+std::optional<Repeats> DescribeRepeats(std::span<const double> values,
+                                       std::span<const double> errors) {
+  if (!errors.empty()) RequireSameSize("values", values.size(), "errors", errors.size());
+  if (values.size() < 2) return std::nullopt;
+  const auto count = static_cast<double>(values.size());
+  Repeats repeats{.count = values.size()};
+  for (const double value : values) repeats.mean += value / count;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - repeats.mean) * (value - repeats.mean);
+  repeats.standard_deviation = std::sqrt(squares / (count - 1));
+  if (errors.empty()) return repeats;
+  double mean_square = 0.0;
+  double weights = 0.0;
+  double weighted = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    mean_square += errors[k] * errors[k] / count;
+    weights += 1 / (errors[k] * errors[k]);
+    weighted += values[k] / (errors[k] * errors[k]);
+  }
+  repeats.stated_error = std::sqrt(mean_square);
+  double chi_squared = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double off = (values[k] - weighted / weights) / errors[k];
+    chi_squared += off * off;
+  }
+  repeats.p_value = PValueOfChiSquared(chi_squared, count - 1);
+  return repeats;
+}
+
+}  // namespace mindahl::campaign

@@ -1,0 +1,161 @@
+#include "cli/output.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/io/output_file.h"
+
+namespace mindahl::cli {
+
+bool HasColours(const std::ostream& results) {
+  if (&results != &std::cout || ::isatty(STDOUT_FILENO) == 0) return false;
+  const char* const no_colour = std::getenv("NO_COLOR");
+  if (no_colour != nullptr && *no_colour != '\0') return false;
+  const char* const terminal = std::getenv("TERM");
+  return terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+void WriteText(std::string_view text, const std::string& path, Console& console) {
+  if (path == "-") {
+    console.out << text;
+  } else {
+    io::WriteFileAtomically(path, text);
+  }
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Writing to a device, a terminal or a pipe replaces nothing.
+bool CanBeReplaced(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  return !fs::exists(status) || fs::is_regular_file(status);
+}
+
+/// One file under one name or two, of which neither need be there yet.
+bool IsSameFile(const fs::path& first, const fs::path& second) {
+  std::error_code error;
+  if (fs::equivalent(first, second, error)) return CanBeReplaced(first);
+  if (fs::exists(first, error) || fs::exists(second, error)) return false;
+  const auto place = [&](const fs::path& path) {
+    const fs::path parent = path.parent_path();
+    return fs::weakly_canonical(parent.empty() ? fs::path(".") : parent, error) / path.filename();
+  };
+  return place(first) == place(second);
+}
+
+void RequireWritable(const OutputPath& output) {
+  std::error_code ignored;
+  if (fs::is_directory(output.path, ignored)) {
+    throw InputError(
+        fmt::format("{}: cannot write '{}': it is a directory", output.option, output.path));
+  }
+  const fs::path parent = fs::path(output.path).parent_path();
+  if (!parent.empty() && !fs::is_directory(parent, ignored)) {
+    throw InputError(fmt::format("{}: cannot write '{}': there is no directory '{}'", output.option,
+                                 output.path, parent.string()));
+  }
+}
+
+}  // namespace
+
+void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
+                        std::span<const std::string> inputs) {
+  std::vector<OutputPath> files;
+  for (const OutputPath& output : outputs) {
+    if (output.path.empty() || (output.dash_is_stdout && output.path == "-")) continue;
+    RequireWritable(output);
+    for (const std::string& input : inputs) {
+      if (input.empty() || !IsSameFile(output.path, input)) continue;
+      throw InputError(
+          fmt::format("{}: '{}' is the input '{}', which it would replace: write to another file",
+                      output.option, output.path, input));
+    }
+    for (const OutputPath& other : files) RequireDistinctOutputs(other, output);
+    files.push_back(output);
+  }
+}
+
+void RequireDistinctOutputs(const OutputPath& first, const OutputPath& second) {
+  if (first.path.empty() || second.path.empty() || !IsSameFile(first.path, second.path)) return;
+  throw InputError(fmt::format("{} and {} both write to '{}': give each a file of its own",
+                               first.option, second.option, second.path));
+}
+
+void RequireDistinctFiles(std::span<const std::string> files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!IsSameFile(files[i], files[k])) continue;
+      throw InputError(
+          fmt::format("'{}' and '{}' are one file, whose samples would count twice: give it once",
+                      files[k], files[i]));
+    }
+  }
+}
+
+void RequireNotThere(const OutputPath& output, std::string_view remedy) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(output.path, ignored)) return;  // a device loses nothing
+  throw InputError(fmt::format("{}: {} exists: add {}", output.option, output.path, remedy));
+}
+
+namespace {
+
+/// Writes to the terminal; a failure is no fault, since the result is elsewhere.
+void WriteToTerminal(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+    if (written <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace
+
+Progress::Progress(const std::ostream& messages, std::string what,
+                   std::chrono::milliseconds patience)
+    : what_(std::move(what)) {
+  if (&messages != &std::cerr || ::isatty(STDERR_FILENO) == 0) return;
+  thread_ = std::jthread([this, patience](const std::stop_token& stop) { Run(stop, patience); });
+}
+
+Progress::~Progress() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  thread_.join();
+}
+
+void Progress::Say(std::string what) {
+  const std::lock_guard lock(mutex_);
+  what_ = std::move(what);
+}
+
+void Progress::Run(const std::stop_token& stop, std::chrono::milliseconds patience) {
+  constexpr std::chrono::seconds kEvery{1};
+  constexpr std::string_view kErase = "\r\x1b[K";  // to the line's beginning, and what follows
+  bool is_shown = false;
+  std::unique_lock lock(mutex_);
+  const auto wait_until = [&](std::chrono::steady_clock::time_point time) {
+    ends_.wait_until(lock, stop, time, [] { return false; });
+    return !stop.stop_requested();
+  };
+  for (auto next = start_ + patience; wait_until(next); next += kEvery) {
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(next - start_).count();
+    WriteToTerminal(fmt::format("{}mindahl: {}, {} s", kErase, what_, seconds));
+    is_shown = true;
+  }
+  if (is_shown) WriteToTerminal(kErase);
+}
+
+}  // namespace mindahl::cli

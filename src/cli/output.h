@@ -1,0 +1,78 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <initializer_list>
+#include <iosfwd>
+#include <mutex>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "cli/app.h"
+
+namespace mindahl::cli {
+
+/// True if results are shown by a terminal that has colours: the stream is standard output and a
+/// terminal, TERM is not `dumb`, and NO_COLOR is not set (https://no-color.org).
+bool HasColours(const std::ostream& results);
+
+/// Writes to a file, whole or not at all, or to standard output for "-".
+/// @throws InputError when the file cannot be written
+void WriteText(std::string_view text, const std::string& path, Console& console);
+
+/// Names the output of an option; an empty path is an output that was not requested.
+struct OutputPath {
+  std::string_view option;
+  const std::string& path;
+  bool dash_is_stdout = false;  ///< true if "-" means standard output
+};
+
+/// Refuses before the work what could not be written after it: a run with several outputs leaves
+/// none behind, takes none for another and none for what it reads.
+/// @param inputs  files that the run reads
+/// @throws InputError naming the option and the path
+void RequireOutputPaths(std::initializer_list<OutputPath> outputs,
+                        std::span<const std::string> inputs = {});
+
+/// @throws InputError where two outputs are one file; an empty path is none
+void RequireDistinctOutputs(const OutputPath& first, const OutputPath& second);
+
+/// Refuses a file that is given twice, by one name or by two: its samples would count twice.
+/// @throws InputError naming both
+void RequireDistinctFiles(std::span<const std::string> files);
+
+/// A table is the work of hours: it is written over only where that is asked for.
+/// @param remedy  what to add, for the message
+/// @throws InputError where a file is there
+void RequireNotThere(const OutputPath& output, std::string_view remedy);
+
+/// A line on standard error that says what the program is about, from two seconds on and every
+/// second anew: "fitting 10001 samples, 3 s". Only where standard error is a terminal, and the
+/// stream that messages go to; it is erased when this ends.
+class Progress {
+ public:
+  /// @param messages  the console's; nothing is shown unless it is std::cerr
+  /// @param patience  before it is first shown
+  Progress(const std::ostream& messages, std::string what,
+           std::chrono::milliseconds patience = std::chrono::seconds(2));
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Replaces the text about the present work.
+  void Say(std::string what);
+
+ private:
+  void Run(const std::stop_token& stop, std::chrono::milliseconds patience);
+
+  std::mutex mutex_;  // of what_
+  std::string what_;
+  std::condition_variable_any ends_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::jthread thread_;  // the last: it uses the others
+};
+
+}  // namespace mindahl::cli

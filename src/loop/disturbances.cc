@@ -1,0 +1,546 @@
+#include "mindahl/loop/disturbances.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/statistics/univariate_statistics.hpp>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "core/extremes.h"
+#include "loop/scratch.h"
+#include "loop/statistics.h"
+#include "mindahl/core/error.h"
+
+namespace mindahl::loop {
+
+namespace {
+
+/// An encoder's record holds few values: most neighbours differ by whole steps or not at all. So
+/// they do where a drive runs evenly, or from rest to rest; but over an encoder's steps a drive has
+/// no fixed number of samples.
+bool IsQuantised(std::span<const double> displacement, double step) {
+  constexpr double kWhole = 1e-6;
+  constexpr double kMostBroken = 0.01;  // of the pairs
+  constexpr std::size_t kFewestRests = 3;
+  // Multiples of a finer step are no more whole than rounding leaves them, nor any reading's.
+  constexpr double kFinest = 1e-9;
+  if (displacement.empty()) return false;
+  const auto [lowest, highest] = ExtremesOf(displacement);
+  if (!(step > kFinest * (highest - lowest))) return false;
+  const auto pairs = static_cast<double>(displacement.size() - 1);
+  std::size_t broken = 0;
+  std::size_t rest = 1;                           // samples
+  std::array<std::size_t, kFewestRests> rests{};  // different ones
+  std::size_t known_rests = 0;
+  bool is_even = true;
+  for (std::size_t i = 1; i < displacement.size(); ++i) {
+    const double steps = std::abs(displacement[i] - displacement[i - 1]) / step;
+    const double nearest = std::round(steps);
+    if (!(std::abs(steps - nearest) < kWhole)) {
+      if (static_cast<double>(++broken) > kMostBroken * pairs) return false;
+    }
+    if (nearest > 1) is_even = false;
+    if (steps == 0) {
+      ++rest;
+    } else {
+      const auto end = rests.begin() + static_cast<std::ptrdiff_t>(known_rests);
+      if (known_rests < kFewestRests && std::find(rests.begin(), end, rest) == end) {
+        rests[known_rests++] = rest;
+      }
+      rest = 1;
+    }
+  }
+  return is_even ? known_rests == kFewestRests : known_rests > 1;
+}
+
+/// The value at t = 0 of the least-squares parabola through 2h + 1 samples is their sum with the
+/// weights (a − b·t²); its variance is the noise's times the middle one, a.
+struct ParabolaWeights {
+  explicit ParabolaWeights(std::size_t reach) {
+    const auto h = static_cast<double>(reach);
+    const double divisor = (2 * h - 1) * (2 * h + 1) * (2 * h + 3);
+    middle = reach == 0 ? 1.0 : 3 * (3 * h * h + 3 * h - 1) / divisor;
+    fall = reach == 0 ? 0.0 : 15 / divisor;
+  }
+
+  [[nodiscard]] double Apply(std::span<const double> values, std::size_t at,
+                             std::size_t reach) const {
+    double sum = middle * values[at];
+    for (std::size_t t = 1; t <= reach; ++t) {
+      const auto distance = static_cast<double>(t);
+      sum += (middle - fall * distance * distance) * (values[at - t] + values[at + t]);
+    }
+    return sum;
+  }
+
+  double middle;
+  double fall;
+};
+
+/// Windows that are tried, each about √2 times the last.
+constexpr std::array<std::size_t, 15> kReaches = {2,  3,  4,  6,  8,   11,  16, 23,
+                                                  32, 45, 64, 91, 128, 181, 256};
+
+/// Returns half of the widest window about a sample in which parabolas agree.
+std::size_t ReachOf(std::span<const double> values, std::size_t at, double noise) {
+  constexpr double kDeviations = 2.5;
+  const std::size_t room = std::min(at, values.size() - 1 - at);
+  double lowest = values[at] - kDeviations * noise;
+  double highest = values[at] + kDeviations * noise;
+  std::size_t widest = 0;
+  for (const std::size_t reach : kReaches) {
+    if (reach > room) break;
+    const ParabolaWeights weights(reach);
+    const double estimate = weights.Apply(values, at, reach);
+    const double deviation = kDeviations * noise * std::sqrt(weights.middle);
+    lowest = std::max(lowest, estimate - deviation);
+    highest = std::min(highest, estimate + deviation);
+    if (!(lowest <= highest)) break;
+    widest = reach;
+  }
+  return widest / 2;
+}
+
+}  // namespace
+
+double EncoderStep(std::span<const double> displacement) {
+  const double step = SmallestStep(displacement);
+  return IsQuantised(displacement, step) ? step : 0.0;
+}
+
+double EstimateDisplacementNoise(std::span<const double> displacement) {
+  return EstimateDisplacementNoise(displacement, std::pmr::get_default_resource());
+}
+
+double EstimateDisplacementNoise(std::span<const double> displacement,
+                                 std::pmr::memory_resource* scratch) {
+  constexpr double kStandardDeviationPerMedian = 1.482602218505602;  // 1/Φ⁻¹(3/4)
+  std::pmr::vector<double> x(scratch);
+  x.reserve(displacement.size());
+  std::ranges::unique_copy(displacement, std::back_inserter(x));
+  if (x.size() < 4) return 0.0;
+  for (std::size_t i = x.size() - 1; i >= 3; --i) {
+    x[i] = std::abs(x[i] - 3 * x[i - 1] + 3 * x[i - 2] - x[i - 3]);
+  }
+  const double median = boost::math::statistics::median(x.begin() + 3, x.end());
+  // The variance of a third difference is (1 + 9 + 9 + 1) times the noise's.
+  const double noise = kStandardDeviationPerMedian * median / std::sqrt(20.0);
+  return std::max(noise, EncoderStep(displacement) / std::sqrt(12.0));
+}
+
+DisplacementSmoother::DisplacementSmoother(std::span<const double> displacement, double noise)
+    : reach_(displacement.size(), 0) {
+  RequireNonNegative("displacement noise [m]", noise);
+  if (noise == 0) return;
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    reach_[i] = ReachOf(displacement, i, noise);
+  }
+}
+
+std::vector<double> DisplacementSmoother::Smooth(std::span<const double> displacement) const {
+  if (displacement.size() != reach_.size()) {
+    ThrowInvalid("samples to be smoothed [-]", static_cast<double>(displacement.size()),
+                 "must be as many as the windows");
+  }
+  std::vector<double> smoothed;
+  smoothed.reserve(displacement.size());
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    smoothed.push_back(ParabolaWeights(reach_[i]).Apply(displacement, i, reach_[i]));
+  }
+  return smoothed;
+}
+
+std::vector<std::size_t> MoveReversals(std::span<const double> smoothed,
+                                       std::span<const std::size_t> reversals) {
+  std::vector<std::size_t> moved;
+  for (std::size_t r = 0; r < reversals.size(); ++r) {
+    // From the last turning point, which has moved, to the next, which has not.
+    const std::size_t begin = moved.empty() ? 0 : moved.back();
+    const std::size_t end = r + 1 < reversals.size() ? reversals[r + 1] : smoothed.size() - 1;
+    const auto swing = smoothed.subspan(begin, end - begin + 1);
+    const auto outermost = smoothed[reversals[r]] > smoothed[end] ? std::ranges::max_element(swing)
+                                                                  : std::ranges::min_element(swing);
+    const auto at = static_cast<std::size_t>(outermost - swing.begin());
+    if (at > 0) moved.push_back(begin + at);  // else the record begins there
+  }
+  return moved;
+}
+
+namespace {
+
+using Readings = std::span<const double>;
+
+/// Fraction of the steps that are not zero which the usual one is not exceeded by.
+constexpr double kUsualShare = 0.9;
+
+/// Returns the usual step [unit of the column]; 0 where all are zero.
+double UsualStep(Readings values, std::pmr::memory_resource* scratch) {
+  std::pmr::vector<double> steps(scratch);
+  steps.reserve(values.size());
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step > 0) steps.push_back(step);
+  }
+  if (steps.empty()) return 0.0;
+  const auto at = steps.begin() +
+                  static_cast<std::ptrdiff_t>(kUsualShare * static_cast<double>(steps.size() - 1));
+  std::ranges::nth_element(steps, at);
+  return *at;
+}
+
+/// True if a step can be so many times the usual one: unless more than a tenth are so large that
+/// the largest is less than that next to them: the usual one is among these, or above.
+bool MayLeap(Readings values, double factor, std::pmr::memory_resource* scratch) {
+  if (values.size() < 2) return false;
+  std::pmr::vector<double> steps(values.size() - 1, scratch);
+  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = values[i + 1] - values[i];
+  const auto [least, greatest] = ExtremesOf(steps);
+  const double largest = std::max(greatest, -least);
+  std::size_t large = 0;
+  for (const double step : steps) large += factor * std::abs(step) >= largest ? 1U : 0U;
+  const std::size_t last = steps.size() - 1;  // at most, of those that are not zero
+  return large <= last - static_cast<std::size_t>(kUsualShare * static_cast<double>(last));
+}
+
+/// A column, what is wrong in it, and the column with lines over that.
+class MendedChannel {
+ public:
+  MendedChannel(Readings values, std::pmr::memory_resource* memory)
+      : values_(values), mended_(memory), glitches_(memory), memory_(memory) {}
+
+  [[nodiscard]] Readings values() const { return mended_.empty() ? values_ : Readings(mended_); }
+  [[nodiscard]] std::size_t size() const { return values_.size(); }
+  [[nodiscard]] double Step(std::size_t i) const { return std::abs(values()[i] - values()[i - 1]); }
+  /// Returns the usual step of the column as it is when this is first called.
+  double usual_step() {
+    if (!usual_step_) usual_step_ = UsualStep(values(), memory_);
+    return *usual_step_;
+  }
+
+  void LeaveOut(std::size_t begin, std::size_t end, Glitch kind) {
+    if (glitches_.empty()) {
+      glitches_.assign(values_.size(), Glitch::kNone);
+      mended_.assign(values_.begin(), values_.end());
+    }
+    std::fill(glitches_.begin() + static_cast<std::ptrdiff_t>(begin),
+              glitches_.begin() + static_cast<std::ptrdiff_t>(end), kind);
+    BridgeOver(begin, end);
+  }
+
+  /// Takes everything of a kind back where there is more of it than a fraction of the samples.
+  void TakeBackIfCommon(Glitch kind, double most) {
+    const auto count = static_cast<double>(std::ranges::count(glitches_, kind));
+    if (!(count > most * static_cast<double>(values_.size()))) return;
+    std::ranges::replace(glitches_, kind, Glitch::kNone);
+    mended_.assign(values_.begin(), values_.end());
+    for (std::size_t begin = 0; begin < size(); ++begin) {
+      if (glitches_[begin] == Glitch::kNone) continue;
+      std::size_t end = begin + 1;
+      while (end < size() && glitches_[end] != Glitch::kNone) ++end;
+      BridgeOver(begin, end);
+      begin = end;
+    }
+  }
+
+  [[nodiscard]] bool IsWhole() const {
+    return std::ranges::count(glitches_, Glitch::kNone) == std::ssize(glitches_);
+  }
+  [[nodiscard]] std::span<const Glitch> glitches() const { return glitches_; }
+  std::pmr::vector<double> TakeMended() { return std::move(mended_); }
+
+ private:
+  /// Draws a line between the samples about [begin, end); a level one at the record's ends.
+  void BridgeOver(std::size_t begin, std::size_t end) {
+    if (begin == 0 && end == size()) return;
+    const double last = mended_[end < size() ? end : begin - 1];
+    const double first = begin > 0 ? mended_[begin - 1] : last;
+    const auto steps = static_cast<double>(end - begin + 1);
+    for (std::size_t i = begin; i < end; ++i) {
+      const double share = static_cast<double>(i - begin + 1) / steps;
+      mended_[i] = first + share * (last - first);
+    }
+  }
+
+  Readings values_;
+  std::pmr::vector<double> mended_;
+  std::pmr::vector<Glitch> glitches_;
+  std::optional<double> usual_step_;
+  std::pmr::memory_resource* memory_;
+};
+
+/// Returns how far 0 lies outside the range of two values.
+double OutsideOf(double one, double other) {
+  return std::max({std::min(one, other), -std::max(one, other), 0.0});
+}
+
+/// Returns the steps [unit of the column] of neighbours of which neither reads 0 and 0.
+double UsualStepWithoutZeros(Readings values, const RecordView& record,
+                             std::pmr::memory_resource* scratch) {
+  std::pmr::vector<double> kept(scratch);
+  kept.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (record.displacement[i] != 0 || record.force[i] != 0) kept.push_back(values[i]);
+  }
+  return UsualStep(kept, scratch);
+}
+
+/// Successive samples: [begin, end).
+struct Run {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+
+  [[nodiscard]] bool IsInside(std::size_t samples) const { return begin > 0 && end < samples; }
+};
+
+/// Returns the samples that read 0 and 0.
+std::pmr::vector<Run> ZeroRuns(const RecordView& record, std::pmr::memory_resource* scratch) {
+  const auto is_zero = [x = record.displacement, force = record.force](std::size_t i) {
+    return x[i] == 0 && force[i] == 0;
+  };
+  std::pmr::vector<Run> runs(scratch);
+  const std::size_t size = record.size();
+  bool any = false;
+  for (std::size_t i = 0; i < size; ++i) any |= is_zero(i);
+  if (!any) return runs;  // as nearly always
+  for (std::size_t begin = 0; begin < size; ++begin) {
+    if (!is_zero(begin)) continue;
+    std::size_t end = begin + 1;
+    while (end < size && is_zero(end)) ++end;
+    runs.push_back({begin, end});
+    begin = end;
+  }
+  return runs;
+}
+
+void FindDropouts(const RecordView& record, const GlitchRules& rules, MendedChannel& displacement,
+                  MendedChannel& force, std::pmr::memory_resource* scratch) {
+  const std::pmr::vector<Run> runs = ZeroRuns(record, scratch);
+  if (runs.empty() || runs.front().end - runs.front().begin == record.size()) return;
+  const Readings x = record.displacement;
+  const double step_of_x = UsualStepWithoutZeros(x, record, scratch);
+  const double step_of_force = UsualStepWithoutZeros(record.force, record, scratch);
+  const auto lies_off = [&](const Run& run) {
+    if (!run.IsInside(record.size())) {
+      return std::abs(x[run.begin == 0 ? run.end : run.begin - 1]) > rules.end_dropout * step_of_x;
+    }
+    const auto outside = [&](Readings values) {
+      return OutsideOf(values[run.begin - 1], values[run.end]);
+    };
+    return outside(x) > rules.dropout * step_of_x ||
+           outside(record.force) > rules.dropout * step_of_force;
+  };
+  // If one run inside the record is a dropout, so are the others, wherever the loop was.
+  const bool any = std::ranges::any_of(
+      runs, [&](const Run& run) { return run.IsInside(record.size()) && lies_off(run); });
+  for (const Run& run : runs) {
+    if (!(any && run.IsInside(record.size())) && !lies_off(run)) continue;
+    displacement.LeaveOut(run.begin, run.end, Glitch::kDropout);
+    force.LeaveOut(run.begin, run.end, Glitch::kDropout);
+  }
+}
+
+/// Returns the third largest step about [begin, end), that into it and that out of it aside: a
+/// second spike makes two. 0 with fewer.
+double StepAbout(const MendedChannel& channel, std::size_t begin, std::size_t end,
+                 const GlitchRules& rules) {
+  std::array<double, 3> largest{};
+  const auto look_at = [&](std::size_t i) {
+    const double step = channel.Step(i);
+    if (step > largest[0]) {
+      largest = {step, largest[0], largest[1]};
+    } else if (step > largest[1]) {
+      largest = {largest[0], step, largest[1]};
+    } else if (step > largest[2]) {
+      largest[2] = step;
+    }
+  };
+  for (std::size_t i = begin - 1; i >= 1 && begin - i <= rules.about; --i) look_at(i);
+  const std::size_t size = channel.size();
+  for (std::size_t i = end + 1; i < size && i - end <= rules.about; ++i) look_at(i);
+  return largest[2];
+}
+
+/// Returns the number of samples of the spike that begins at i; 0 where none does.
+std::size_t SpikeAt(MendedChannel& channel, std::size_t i, const GlitchRules& rules) {
+  const Readings values = channel.values();
+  const double sense = values[i] > values[i - 1] ? 1.0 : -1.0;
+  const double before = sense * values[i - 1];
+  double least = sense * values[i];
+  for (std::size_t end = i + 1; end + 1 < values.size() && end <= i + rules.longest_spike; ++end) {
+    const double height = least - std::max(before, sense * values[end]);
+    if (height > rules.spike * channel.Step(end + 1) &&
+        height > rules.spike * StepAbout(channel, i, end, rules) &&
+        height > rules.spike * channel.usual_step()) {
+      return end - i;
+    }
+    least = std::min(least, sense * values[end]);
+  }
+  return 0;
+}
+
+/// Returns the next sample from one on, two or later, that leaves its neighbour by so many times
+/// the step before, as hardly one of a clean record does; the last but one where none does.
+std::size_t NextLeap(Readings values, std::size_t from, double factor) {
+  const std::size_t end = values.size() - 2;
+  double before = std::abs(values[from - 1] - values[from - 2]);
+  for (std::size_t i = from; i < end; ++i) {
+    const double step = std::abs(values[i] - values[i - 1]);
+    if (step > factor * before) return i;
+    before = step;
+  }
+  return end;
+}
+
+/// Makes one pass: a spike may hide another, until it is interpolated.
+bool FindSpikes(MendedChannel& channel, const GlitchRules& rules) {
+  if (channel.size() < 5) return false;
+  bool found = false;
+  Readings values = channel.values();
+  for (std::size_t i = NextLeap(values, 2, rules.spike); i + 2 < values.size();
+       i = NextLeap(values, i + 1, rules.spike)) {
+    const std::size_t samples = SpikeAt(channel, i, rules);
+    if (samples == 0) continue;
+    channel.LeaveOut(i, i + samples, Glitch::kSpike);
+    values = channel.values();
+    found = true;
+  }
+  return found;
+}
+
+double LargestStep(const MendedChannel& channel, std::size_t begin, std::size_t end) {
+  double largest = 0.0;
+  const std::size_t last = std::min(end, channel.size());
+  for (std::size_t i = std::max<std::size_t>(begin, 1); i < last; ++i) {
+    largest = std::max(largest, channel.Step(i));
+  }
+  return largest;
+}
+
+/// True if half of the samples of [begin, end) have another value than the one before them.
+bool Moves(const MendedChannel& channel, std::size_t begin, std::size_t end) {
+  std::size_t moves = 0;
+  for (std::size_t i = begin; i < end; ++i) moves += channel.Step(i) > 0 ? 1U : 0U;
+  return 2 * moves >= end - begin;
+}
+
+/// True if the column jumps at the end of the run [begin, end) of equal values.
+bool JumpsAtTheEnd(const MendedChannel& channel, std::size_t begin, std::size_t end,
+                   const GlitchRules& rules) {
+  const std::size_t length = end - begin;
+  const double about = std::max(LargestStep(channel, begin - std::min(begin, length), begin + 1),
+                                LargestStep(channel, end + 1, end + 1 + length));
+  return channel.Step(end) > rules.held_jump * about;
+}
+
+/// True if the column continues in the direction of the last samples of [begin, end).
+bool GoesOn(Readings values, std::size_t begin, std::size_t end) {
+  const std::size_t reach = std::min((end - begin) / 2, values.size() - end);
+  return (values[end - 1 + reach] - values[end - 1]) * (values[end - 1] - values[end - 1 - reach]) >
+         0;
+}
+
+/// The next run of at least so many equal values, two or more, from a sample on; empty at the end.
+/// One of n values has a pair of neighbours at a multiple of n − 1: other pairs are not looked at.
+Run NextRun(Readings values, std::size_t from, std::size_t shortest) {
+  for (std::size_t i = from; i + 1 < values.size(); i += shortest - 1) {
+    if (values[i] != values[i + 1]) continue;
+    std::size_t begin = i;
+    while (begin > from && values[begin - 1] == values[i]) --begin;
+    std::size_t end = i + 2;
+    while (end < values.size() && values[end] == values[i]) ++end;
+    if (end - begin >= shortest) return {begin, end};
+  }
+  return {values.size(), values.size()};
+}
+
+/// Finds where one channel reads one value, away from what it read before and reads again after.
+void FindFlatDropouts(MendedChannel& channel, const MendedChannel& other,
+                      const GlitchRules& rules) {
+  const std::size_t size = channel.size();
+  Readings values = channel.values();
+  for (Run run = NextRun(values, 1, rules.shortest_held); run.end < size;
+       run = NextRun(values, run.end, rules.shortest_held)) {
+    const auto& [begin, end] = run;
+    const std::size_t length = end - begin;
+    const double in = values[begin] - values[begin - 1];
+    const double out = values[end] - values[end - 1];
+    // The steps into it and out of it are what is looked at, not what is compared with.
+    const double about =
+        std::max({LargestStep(channel, begin - std::min(begin, length), begin),
+                  LargestStep(channel, end + 1, end + 1 + length), channel.usual_step()});
+    if (in * out < 0 && std::min(std::abs(in), std::abs(out)) > rules.held_jump * about &&
+        Moves(other, begin + 1, end) && !JumpsAtTheEnd(other, begin, end, rules)) {
+      channel.LeaveOut(begin, end, Glitch::kDropout);
+      values = channel.values();
+    }
+  }
+}
+
+void FindHeld(MendedChannel& channel, const MendedChannel& other, const GlitchRules& rules) {
+  const std::size_t size = channel.size();
+  Readings values = channel.values();
+  for (Run run = NextRun(values, 0, rules.shortest_held); run.end < size;
+       run = NextRun(values, run.end, rules.shortest_held)) {
+    const auto& [begin, end] = run;
+    if (Moves(other, begin + 1, end) && JumpsAtTheEnd(channel, begin, end, rules) &&
+        !JumpsAtTheEnd(other, begin, end, rules) && GoesOn(other.values(), begin, end) &&
+        channel.Step(end) > rules.held_jump * channel.usual_step()) {
+      channel.LeaveOut(begin + 1, end, Glitch::kHeld);
+      values = channel.values();
+    }
+  }
+}
+
+}  // namespace
+
+Mended FindAndMend(const RecordView& record, const GlitchRules& rules,
+                   std::pmr::memory_resource* memory) {
+  constexpr int kPasses = 3;
+  MendedChannel displacement(record.displacement, memory);
+  MendedChannel force(record.force, memory);
+  FindDropouts(record, rules, displacement, force, memory);
+  for (MendedChannel* channel : {&displacement, &force}) {
+    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
+    const bool may_have = MayLeap(channel->values(), rules.spike, memory);
+    for (int pass = 0; may_have && pass < kPasses && FindSpikes(*channel, rules); ++pass) continue;
+    channel->TakeBackIfCommon(Glitch::kSpike, rules.most);
+  }
+  FindFlatDropouts(displacement, force, rules);
+  FindFlatDropouts(force, displacement, rules);
+  FindHeld(displacement, force, rules);
+  FindHeld(force, displacement, rules);
+  Mended mended(memory);
+  for (MendedChannel* channel : {&displacement, &force}) {
+    channel->TakeBackIfCommon(Glitch::kDropout, rules.most);
+    channel->TakeBackIfCommon(Glitch::kHeld, rules.most);
+    if (channel->IsWhole()) continue;
+    if (mended.glitches.empty()) mended.glitches.assign(record.size(), Glitch::kNone);
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      if (channel->glitches()[i] != Glitch::kNone) mended.glitches[i] = channel->glitches()[i];
+    }
+    (channel == &displacement ? mended.displacement : mended.force) = channel->TakeMended();
+  }
+  return mended;
+}
+
+std::vector<Glitch> FindGlitches(const RecordView& record) {
+  Validate(record);
+  const Mended mended = FindAndMend(record, {}, std::pmr::get_default_resource());
+  return {mended.glitches.begin(), mended.glitches.end()};
+}
+
+GlitchCount CountGlitches(std::span<const Glitch> glitches) {
+  GlitchCount count;
+  for (std::size_t i = 0; i < glitches.size(); ++i) {
+    if (glitches[i] == Glitch::kNone) continue;
+    if (count.total() < GlitchCount::kMostExamples) count.examples[count.total()] = i;
+    if (glitches[i] == Glitch::kSpike) ++count.spikes;
+    if (glitches[i] == Glitch::kDropout) ++count.dropouts;
+    if (glitches[i] == Glitch::kHeld) ++count.held;
+  }
+  return count;
+}
+
+}  // namespace mindahl::loop

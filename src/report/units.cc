@@ -1,0 +1,154 @@
+#include "mindahl/report/units.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+namespace mindahl::report {
+
+namespace {
+
+struct Prefix {
+  double factor;
+  std::string_view name;
+};
+
+constexpr std::array<Prefix, 9> kPrefixes = {{
+    {1e-15, "f"},
+    {1e-12, "p"},
+    {1e-9, "n"},
+    {1e-6, "µ"},
+    {1e-3, "m"},
+    {1.0, ""},
+    {1e3, "k"},
+    {1e6, "M"},
+    {1e9, "G"},
+}};
+
+/// A stiffness is read against a displacement: N/µm, not MN/m.
+constexpr std::array<Prefix, 4> kStiffnesses = {{
+    {1.0, "N/m"},
+    {1e3, "N/mm"},
+    {1e6, "N/µm"},
+    {1e9, "N/nm"},
+}};
+
+constexpr std::array<Prefix, 4> kCompliances = {{
+    {1e-9, "nm/N"},
+    {1e-6, "µm/N"},
+    {1e-3, "mm/N"},
+    {1.0, "m/N"},
+}};
+
+/// Those that take a prefix before their first letter.
+constexpr std::array<std::string_view, 18> kPrefixed = {
+    "N",        "m",          "J",     "Pa",       "s",     "rad",
+    "N m",      "N/s",        "N m/s", "N m/rad",  "N s/m", "N m s/rad",
+    "N/sample", "N m/sample", "m/s",   "m/sample", "rad/s", "rad/sample"};
+
+const Prefix& Suiting(std::span<const Prefix> prefixes, double magnitude) {
+  // A value that rounds to 1000 at four digits is shown as 1 of the next prefix.
+  constexpr double kRoundsUp = 1 - 5e-5;
+  const Prefix* suiting = &prefixes.front();
+  for (const Prefix& prefix : prefixes) {
+    if (magnitude >= kRoundsUp * prefix.factor) suiting = &prefix;
+  }
+  return *suiting;
+}
+
+}  // namespace
+
+ScaledUnit UnitFor(std::string_view unit, double magnitude) {
+  const double size = std::abs(magnitude);
+  if (unit == "-") return {1.0, ""};
+  if (!(size > 0) || !std::isfinite(size)) return {1.0, std::string(unit)};
+  if (unit == "N/m") {
+    const Prefix& suiting = Suiting(kStiffnesses, size);
+    return {suiting.factor, std::string(suiting.name)};
+  }
+  if (unit == "m/N") {
+    const Prefix& suiting = Suiting(kCompliances, size);
+    return {suiting.factor, std::string(suiting.name)};
+  }
+  if (std::ranges::find(kPrefixed, unit) == kPrefixed.end()) return {1.0, std::string(unit)};
+  // Nobody reads kilometres or kiloradians.
+  const bool is_length = unit == "m" || unit == "rad" || unit == "s";
+  const Prefix& suiting =
+      Suiting(std::span(kPrefixes).first(is_length ? 6 : kPrefixes.size()), size);
+  return {suiting.factor, fmt::format("{}{}", suiting.name, unit)};
+}
+
+std::string WithUnit(std::string_view name, std::string_view unit) {
+  return unit.empty() || unit == "-" ? std::string(name) : fmt::format("{} [{}]", name, unit);
+}
+
+std::string Quantity(double value, std::string_view unit, int digits) {
+  const ScaledUnit scaled = UnitFor(unit, value);
+  const double number = value / scaled.factor;
+  // 120 of two digits is not 1.2e+02.
+  constexpr double kThousand = 1000.0;
+  const int places = std::abs(number) < 10          ? 1
+                     : std::abs(number) < 100       ? 2
+                     : std::abs(number) < kThousand ? 3
+                                                    : digits;
+  return fmt::format("{:.{}g}{}{}", number, std::max(digits, places),
+                     scaled.name.empty() ? "" : " ", scaled.name);
+}
+
+std::string RoundedTo(double error, double value) {
+  if (!(error > 0) || !std::isfinite(error)) return fmt::format("{:.6g}", value);
+  // The second digit of the error as it is printed, so that 0.0996 is 0.10 and not 0.100.
+  constexpr double kRoundsUp = 0.995;
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(error / kRoundsUp)));
+  constexpr int kMostDecimals = 9;
+  constexpr double kMostWritten = 1e6;    // beyond it zeros are counted
+  constexpr double kLeastWritten = 1e-4;  // below it zeros are counted too
+  if (decimals > kMostDecimals && std::abs(value) < kLeastWritten && value != 0) {
+    constexpr int kMostDigits = 5;
+    const int digits = static_cast<int>(std::floor(std::log10(std::abs(value)))) + decimals;
+    return fmt::format("{:.{}e}", value, std::clamp(digits, 0, kMostDigits));
+  }
+  if (decimals > kMostDecimals) return fmt::format("{:.6g}", value);
+  const double rounded =
+      decimals < 0 ? std::round(value * std::pow(10.0, decimals)) / std::pow(10.0, decimals)
+                   : value;
+  if (std::abs(rounded) >= kMostWritten && decimals <= 0) {
+    const int digits = static_cast<int>(std::floor(std::log10(std::abs(rounded)))) + decimals;
+    return fmt::format("{:.{}e}", rounded, std::max(0, digits));
+  }
+  const std::string text = fmt::format("{:.{}f}", rounded, std::max(0, decimals));
+  return text.find_first_not_of("-0.") == std::string::npos && text.starts_with('-')
+             ? text.substr(1)
+             : text;
+}
+
+std::string NumberWithError(double value, std::optional<double> error, double factor) {
+  const double scaled_error = error.value_or(0.0) / factor;
+  std::string number = RoundedTo(scaled_error, value / factor);
+  if (!std::isfinite(scaled_error)) return number + " ± open";
+  if (scaled_error == 0) return number;
+  return fmt::format("{} ± {}", number, RoundedTo(scaled_error, scaled_error));
+}
+
+std::string QuantityWithError(double value, std::optional<double> error, std::string_view unit) {
+  const bool has_error = error && std::isfinite(*error);
+  const ScaledUnit scaled = UnitFor(unit, std::max(std::abs(value), has_error ? *error : 0.0));
+  return fmt::format("{}{}{}", NumberWithError(value, error, scaled.factor),
+                     scaled.name.empty() ? "" : " ", scaled.name);
+}
+
+std::string IntervalText(std::optional<double> lower, std::optional<double> upper, double factor) {
+  // RoundedTo() leaves two digits of an error, here a tenth of the width.
+  constexpr double kOfWidth = 0.1;
+  const double error = lower && upper ? kOfWidth * (*upper - *lower) / factor : 0.0;
+  const auto end = [&](const std::optional<double>& value) {
+    return value ? RoundedTo(error, *value / factor) : std::string("open");
+  };
+  return fmt::format("{} … {}", end(lower), end(upper));
+}
+
+}  // namespace mindahl::report
