@@ -544,7 +544,8 @@ class SeparateRuns {
   struct Cells {
     std::string test;  // with the comma after it
     std::string sha256;
-    std::string rest;  // from the version to the options
+    std::string rest;   // from the version to the options
+    std::string fault;  // why there is no digest of a file that is there
   };
 
   [[nodiscard]] Cells CellsOf(const std::string& file) const;
@@ -565,10 +566,11 @@ class SeparateRuns {
 };
 
 SeparateRuns::Cells SeparateRuns::CellsOf(const std::string& file) const {
-  Cells cells{.test = io::CsvCell(file) + ",", .sha256 = "", .rest = ""};
+  Cells cells{.test = io::CsvCell(file) + ",", .sha256 = "", .rest = "", .fault = ""};
   try {
     cells.sha256 = io::Sha256OfFile(file).value_or("");
-  } catch (const InputError&) {  // NOLINT(bugprone-empty-catch): as the reader will say
+  } catch (const InputError& error) {
+    cells.fault = error.what();
   }
   cells.rest = fmt::format("{},{},{},", Version(), cells.sha256, options_word_);
   return cells;
@@ -662,13 +664,14 @@ void SeparateRuns::Track(const std::string& file) {
                 .before = cells.test + cells.rest + ",",
                 .offset = end_,
                 .has_rows = std::exchange(has_rows_, false)});
-  run.TrackOneOfMany();
+  if (cells.fault.empty()) run.TrackOneOfMany();
   end_ = run.end();
-  if (!run.fault().empty()) {
-    AppendFault(cells.test + cells.rest, run.fault());
-    messages_.Warn(run.fault());
+  const std::string& fault = cells.fault.empty() ? run.fault() : cells.fault;
+  if (!fault.empty()) {
+    AppendFault(cells.test + cells.rest, fault);
+    messages_.Warn(fault);
   }
-  tests_.Add(file, run.fault(), run.test(), /*was_there=*/false);
+  tests_.Add(file, fault, run.test(), /*was_there=*/false);
 }
 
 void SeparateRuns::Go() {

@@ -167,19 +167,6 @@ bool OpensSlipForce(const FitResult& without, const FitResult& with, double wide
   return is_closed(without) && !is_closed(with);
 }
 
-/// True if, of a loop that mostly slides, Tc left the half gap that was measured by more than a
-/// quarter.
-bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
-  constexpr double kMostlySlides = 0.5;  // energy ratio
-  constexpr double kRunsAway = 1.25;     // times the half gap
-  if (!facts.half_gap || !(facts.energy_ratio > kMostlySlides)) return false;
-  const auto is_that_of_the_gap = [&](double slip_force) {
-    const double ratio = slip_force / std::abs(*facts.half_gap);
-    return ratio <= kRunsAway && ratio >= 1 / kRunsAway;
-  };
-  return is_that_of_the_gap(without) && !is_that_of_the_gap(with);
-}
-
 /// True if the search of a term stopped at a bound of the program's own: no parameter would be
 /// known. Where a contact that slides was unloaded is no such term, and others end where the theory
 /// does.
@@ -794,13 +781,12 @@ void Selection::Run(const FitOptions& options) {
   MakeScores(options, result_.fit, candidates);
   facts_ = result_.fit.WidestRecord().facts;
   load_ratio_ = result_.fit.WidestRecord().load_ratio;
+  samples_ = CountedSamples(result_.fit, records_);
   CandidateModel base;
   base.fit = result_.fit;
   std::optional<CandidateModel> start = FitFrom(base, options, {});
   if (!start) return;
   base = std::move(*start);
-  samples_ = CountedSamples(base.fit, records_);
-  base.sum_of_squares = SquaresOf(base.fit.rms);
   DivideIntoParts(base.fit);
 
   FitResult judged = result_.fit;

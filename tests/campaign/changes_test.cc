@@ -135,6 +135,22 @@ TEST(Changes, AreHardlyFoundInSlowNoiseBelowFastNoise) {
   EXPECT_LE(found, 22);
 }
 
+TEST(Changes, TheSlopeHasTheChanceOfItsLineThroughTwelveCycles) {
+  // 100 + k/5 ± 1 in turn, k = 1 … 12: Σ(k − 6.5)² = 143, Σ(k − 6.5)(±1) = 6. Neighbours that turn
+  // their sign inflate nothing, and a line takes two of twelve degrees of freedom.
+  Course course;
+  for (std::size_t k = 1; k <= 12; ++k) {
+    course.Add(k, 100 + 0.2 * static_cast<double>(k) + (k % 2 == 0 ? 1.0 : -1.0));
+  }
+  const CourseDescription description = FindChanges(course);
+  ASSERT_EQ(description.stretches.size(), 1U);
+  const double slope = 0.2 + 6.0 / 143;
+  const double variance = (12 - 6.0 * 6.0 / 143) / 10;
+  EXPECT_NEAR(description.stretches[0].slope, slope, 1e-12);
+  EXPECT_NEAR(description.stretches[0].slope_p_value,
+              std::erfc(slope / std::sqrt(2 * variance / 143)), 1e-12);
+}
+
 TEST(Changes, SlopesOfCorrelatedCyclesAreJudgedByFewerOfThem) {
   // Neighbours correlated by 0.8: n cycles tell as much as n/9, and a slope by chance is beyond
   // 0.01 in two courses of five where they count for n.

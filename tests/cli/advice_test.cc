@@ -41,7 +41,8 @@ Words FollowAdvice(Words fit) {
     EXPECT_NE(outcome.status, kBadInput) << outcome.err << ::testing::PrintToString(fit);
     if (outcome.status == kBadInput || outcome.out.empty()) break;
     std::string advice;
-    for (const json& cause : outcome.Json()["adequacy"]["causes"]) {
+    const json causes = outcome.Json()["adequacy"]["causes"];
+    for (const json& cause : causes) {
       if (cause["try"].is_null() || given.contains(cause["try"])) continue;
       advice = cause["try"];
       break;

@@ -218,7 +218,8 @@ TEST_F(TrackCommand, HasNoInfinityInItsTableNorInItsSummary) {
         std::string::npos)
         << word;
   }
-  for (const auto& [name, quantity] : outcome.Json()["quantities"].items()) {
+  const nlohmann::json quantities = outcome.Json()["quantities"];
+  for (const auto& [name, quantity] : quantities.items()) {
     for (const nlohmann::json& stretch : quantity["stretches"]) {
       for (const char* key : {"at_start", "at_end", "slope", "slope_p_value"}) {
         EXPECT_TRUE(stretch[key].is_number()) << name << ' ' << key;

@@ -65,6 +65,16 @@ TEST(Doubts, AreOfAContactAsLargeAsItsBody) {
       << "by Hertz's radius";
 }
 
+TEST(Doubts, AreOfAContactAsLargeAsTheSmallerOfTwoBodies) {
+  KnownContact known = SteelContact();
+  known.normal_load = std::nullopt;
+  known.contact_radius = 0.005;
+  known.body_2.radius = 0.014;
+  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("the radius 0.014 m of a body")));
+  known.body_2.radius = -0.014;  // a seat
+  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("the radius 0.014 m of a body")));
+}
+
 TEST(Doubts, AreOfAFrictionBeyondWhatSlides) {
   EXPECT_THAT(DoubtsAbout({}, 5.0), IsEmpty());
   EXPECT_THAT(DoubtsAbout({}, 6.0), ElementsAre(HasSubstr("mu = 6 is above 5")));

@@ -262,6 +262,33 @@ TEST(ShapeUnderLoad, PropagatesTheFit) {
               1.5, kRounding / kRelative);
 }
 
+TEST(ShapeUnderLoad, PropagatesTheFitToTheModulusOfOneBodyAndWhatFollowsFromIt) {
+  // ln σ = −ln E*/3 − ln G* + …: with d ln E* = w·e and d ln G* = −v·e, the body's fractions of the
+  // compliances 1/E* and G*, one per cent of σ is e = 1/(v − w/3) of E; and a = σG*/8.
+  constexpr double kRelative = 1e-3;
+  const Truth truth = Make(kSteelBall, kGlassSeat);
+  const auto of_normal = [](const Body& body) {
+    return (1 - body.poisson_ratio * body.poisson_ratio) / body.youngs_modulus;
+  };
+  const auto of_tangential = [](const Body& body) {
+    return (2 - body.poisson_ratio) / ShearModulus(body);
+  };
+  const double w = of_normal(kGlassSeat) * truth.effective_modulus;
+  const double v = of_tangential(kGlassSeat) / truth.compliance;
+  const double e = 1 / (v - w / 3);
+  KnownContact known = Known(kSteelBall, kGlassSeat);
+  known.body_2.youngs_modulus.reset();
+  const ShapeUnderLoad sphere =
+      IdentifyShape(ContactShape::kSphere, {truth.stiffness, kRelative * truth.stiffness}, known);
+  const auto power = [&](const std::optional<PropagatedValue>& value) {
+    return value->fit_error / value->value / kRelative;
+  };
+  EXPECT_NEAR(power(sphere.youngs_modulus), e, kRounding / kRelative);
+  EXPECT_NEAR(power(sphere.tangential_compliance), v * e, kRounding / kRelative);
+  EXPECT_NEAR(power(sphere.effective_modulus), w * e, kRounding / kRelative);
+  EXPECT_NEAR(power(sphere.contact_radius), std::abs(1 - v * e), kRounding / kRelative);
+}
+
 TEST(ShapeUnderLoad, LeavesOpenIntervalsOfTheFitOpen) {
   const KnownContact known = Known(kSteelBall, kGlassSeat);
   const UncertainValue open{4e7, std::numeric_limits<double>::infinity()};

@@ -123,6 +123,37 @@ TEST(Conversion, ToCoulombsFrictionLosesTheEnergyOfTheLoopAndNoPresliding) {
   }
 }
 
+TEST(Conversion, ToCoulombsFrictionOverARangeIsTheLeastMeanSquareOfEachLoopOverItsPeak) {
+  // A stroke's mean square difference is F² − 2F·W/4X and what does not depend on F; of one
+  // amplitude and nine from end to end, each over its T*².
+  const AmplitudeRange range{0.2 * kGrossSlip, 3 * kGrossSlip};
+  const Conversion joint = To(Target::kUrdf, kMindlin, {.range = range});
+  double mean = 0.0;
+  double weights = 0.0;
+  const auto add = [&](double amplitude) {
+    const double peak = models::SteadyPeakForce(*kMindlin.model, kMindlin.law, amplitude);
+    mean += LoopEnergy(kMindlin, amplitude) / (4 * amplitude) / (peak * peak);
+    weights += 1 / (peak * peak);
+  };
+  add(kAmplitude);
+  for (int i = 0; i <= 8; ++i) add(range.lower * std::pow(range.upper / range.lower, i / 8.0));
+  const double friction = std::get<ModelLaw>(joint.law).law.slip_force;
+  EXPECT_NEAR(friction, mean / weights, 1e-12 * friction);
+}
+
+TEST(Conversion, LargestErrorsIncludeThoseAtTheEndsOfTheRange) {
+  const AmplitudeRange range{0.3 * kGrossSlip, 3 * kGrossSlip};
+  for (const Target target : {Target::kLuGre, Target::kLammps, Target::kUrdf}) {
+    const Conversion conversion = To(target, kMindlin, {.range = range});
+    for (const double amplitude : {range.lower, range.upper}) {
+      const LoopError error = CompareLoops(conversion.law, kMindlin, amplitude);
+      constexpr double kRounding = 1e-9;  // of the amplitude, by its logarithm
+      EXPECT_GE(conversion.largest.force, error.force - kRounding);
+      EXPECT_GE(conversion.largest.energy, std::abs(error.energy) - kRounding);
+    }
+  }
+}
+
 TEST(Conversion, IsRefittedToTheLeastMeanSquareError) {
   // No parameter can be moved to a smaller error, and 3 % make it larger.
   constexpr double kMove = 1.03;

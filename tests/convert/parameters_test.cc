@@ -34,6 +34,13 @@ TEST(Parameters, HaveAFrictionCoefficientWhereTheLoadIsKnown) {
   EXPECT_EQ(parameters[2].value, parameters[1].value / 100.0);
 }
 
+TEST(Parameters, OfAMujocoActuatorHaveItsKneeWhereStiffnessReachesCoulombsForce) {
+  const std::vector<Parameter> parameters = ParametersOf(To(Target::kMujoco), Target::kMujoco);
+  ASSERT_GE(parameters.size(), 3U);
+  EXPECT_EQ(parameters[2].name, "knee");
+  EXPECT_EQ(parameters[2].value, parameters[1].value / parameters[0].value);
+}
+
 TEST(InputLines, OfLammpsNeedANormalLoad) {
   const Conversion conversion = To(Target::kLammps);
   EXPECT_THROW(InputLines(conversion, Target::kLammps), InputError);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -53,9 +55,30 @@ const std::vector<Words> kOptionsOfFit = {{"--model", "auto"},
                                           {"--inertia", "fit"},
                                           {"--viscous", "fit", "--speed-exponent", "fit"},
                                           {"--covariate", "3=fit"},
-                                          {"--skip-cycles", "1"}};
-const std::vector<Words> kOptionsOfTrack = {
-    {"--average", "2"}, {"--every", "3"}, {"--alpha", "shared"}, {"--broken-rows", "skip"}};
+                                          {"--skip-cycles", "1"},
+                                          {"--backlash", "fit"},
+                                          {"--backlash", "2e-7"},
+                                          {"--rig-stiffness", "1e8+-3%"},
+                                          {"--rig-stiffness", "1e8+-1e7"},
+                                          {"--slip-trend", "fit"},
+                                          {"--terms", "backlash,slip_trend"},
+                                          {"--encoding", "utf-16le"}};
+const std::vector<Words> kOptionsOfTrack = {{"--average", "2"},      {"--every", "3"},
+                                            {"--alpha", "shared"},   {"--broken-rows", "skip"},
+                                            {"--backlash", "2e-7"},  {"--rig-stiffness", "1e8+-3%"},
+                                            {"--slip-trend", "fit"}, {"--encoding", "latin1"}};
+const std::vector<Words> kOptionsOfSweep = {{},
+                                            {"--model", "mindlin"},
+                                            {"--model", "jenkins"},
+                                            {"--fix", "sigma=1e7"},
+                                            {"--fix", "alpha=0.5"},
+                                            {"--fix", "slip_force=50"},
+                                            {"--response-noise", "1e5"},
+                                            {"--confidence", "0.5"},
+                                            {"--displacement", "1"},
+                                            {"--force", "1"},
+                                            {"--response", "2"},
+                                            {"--response-unit", "um/N"}};
 
 /// Appends the options that a byte stands for.
 void AddOptions(Words& words, const std::vector<Words>& more, Bytes& bytes) {
@@ -121,6 +144,37 @@ std::string RecordOfCycles(int cycles) {
   return text;
 }
 
+/// Returns the parts of a text between separators, as files of the memory; at least one.
+std::vector<std::unique_ptr<MemoryFile>> FilesOf(const std::string& text) {
+  constexpr char kSeparator = '\x1d';
+  constexpr std::size_t kMost = 4;
+  std::vector<std::unique_ptr<MemoryFile>> files;
+  std::size_t begin = 0;
+  while (files.size() < kMost && begin <= text.size()) {
+    const std::size_t end = std::min(text.find(kSeparator, begin), text.size());
+    files.push_back(std::make_unique<MemoryFile>(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return files;
+}
+
+void Append(Words& words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+}
+
+/// Returns a command and its files, before options that take any number of values.
+Words NamesAfter(const std::string& command,
+                 const std::vector<std::unique_ptr<MemoryFile>>& files) {
+  Words words = {command};
+  for (const auto& file : files) words.push_back(file->name());
+  return words;
+}
+
+std::string WithoutHeader(const std::string& table) {
+  const std::size_t end = table.find('\n');
+  return end == std::string::npos ? "" : table.substr(end + 1);
+}
+
 std::vector<std::string> LinesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -167,6 +221,72 @@ void TrackRecords(Input input) {
   words[1] = record.name();
   const Outcome outcome = Run(words);
   RequireFiniteCells(output.Content());
+  if (outcome.status == cli::kBadInput) return;
+  RequireNumbers(outcome.out);
+}
+
+void JoinRecords(Input input) {
+  Bytes bytes(input);
+  const bool is_track = bytes.Byte() % 2 == 1;
+  const MemoryFile output("");
+  Words options = {"--join", "--json", "-"};
+  if (is_track) Append(options, {"--output", output.name(), "--overwrite", "--threads", "1"});
+  AddOptions(options, is_track ? kOptionsOfTrack : kOptionsOfFit, bytes);
+  const auto files = FilesOf(bytes.Text());
+  Words words = NamesAfter(is_track ? "track" : "fit", files);
+  Append(words, options);
+  const Outcome outcome = Run(words);
+  RequireFiniteCells(output.Content());
+  if (outcome.status == cli::kBadInput) return;
+  RequireNumbers(outcome.out);
+}
+
+void TrackSeparateTests(Input input) {
+  Bytes bytes(input);
+  Words options = {"--threads", "1", "--json", "-"};
+  AddOptions(options, kOptionsOfTrack, bytes);
+  const std::uint32_t cut = bytes.Number(2);
+  const auto files = FilesOf(bytes.Text());
+  const auto track = [&](const MemoryFile& output, const Words& more) {
+    Words words = NamesAfter("track", files);
+    Append(words, options);
+    Append(words, {"--output", output.name()});
+    Append(words, more);
+    return Run(words);
+  };
+  const MemoryFile whole("");
+  const Outcome outcome = track(whole, {"--separate", "--overwrite"});
+  RequireFiniteCells(whole.Content());
+  if (outcome.status == cli::kBadInput) return;
+  RequireNumbers(outcome.out);
+  std::string joined;
+  for (const char* const shard : {"1/2", "2/2"}) {
+    const MemoryFile part("");
+    Require(track(part, {"--overwrite", "--shard", shard}).status != cli::kBadInput,
+            "a shard of what is tracked is tracked");
+    joined += WithoutHeader(part.Content());
+  }
+  const std::string table = whole.Content();
+  Require(joined == WithoutHeader(table), "the tables of the shards are that of all tests");
+  const std::string before = table.substr(0, cut % (table.size() + 1));
+  const MemoryFile resumed(before);
+  if (track(resumed, {"--separate", "--resume"}).status == cli::kBadInput) {
+    Require(resumed.Content() == before, "a table that is refused is left alone");
+    Require(before.find('\n') == std::string::npos, "whole rows are gone on with");
+  } else {
+    Require(resumed.Content() == table, "tests that are gone on with become the undisturbed");
+  }
+}
+
+void FitSweeps(Input input) {
+  Bytes bytes(input);
+  Words words = {"fit", "", "--json", "-", "--sweep", bytes.Byte() % 2 == 0 ? "secant" : "tangent"};
+  for (int k = 0; k < 2; ++k) {
+    Append(words, kOptionsOfSweep[bytes.Byte() % kOptionsOfSweep.size()]);
+  }
+  const MemoryFile sweep(bytes.Text());
+  words[1] = sweep.name();
+  const Outcome outcome = Run(words);
   if (outcome.status == cli::kBadInput) return;
   RequireNumbers(outcome.out);
 }

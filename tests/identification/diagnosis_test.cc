@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -132,6 +134,25 @@ TEST(FoundRigAlternative, HasBothReadings) {
   EXPECT_EQ(finding.Number("alpha"), 0.4);
   EXPECT_EQ(FoundTurningPoints(2e-8).Number("overshoot"), 2e-8);
   EXPECT_EQ(FoundTurningPoints(2e-8).severity, Severity::kNote);
+}
+
+TEST(FindSearchLimit, IsNoneOfAnOriginFromWhichTheContactSlidBeforeItsRecord) {
+  const auto displacement = testing::Cycling(testing::Wave::kSine, 2e-6, 2.0, 40);
+  testing::Stages stages(testing::MakeRecord(
+      displacement,
+      testing::Respond(testing::Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0}, displacement)));
+  const Parameters& parameters = stages.problem.parameters;
+  const std::size_t origin = parameters.PositionOf("displacement_offset", 0);
+  Solution solution = stages.Solve();
+  solution.theta[origin] = parameters[origin].lower;
+  solution.side[origin] = BoundSide::kLower;
+  // Micrometres from the bound to the record: a contact that slips at 1.5 µm slid, one that is ten
+  // thousand times softer did not.
+  EXPECT_FALSE(FindSearchLimit(stages.problem, solution));
+  solution.theta[kStiffness] -= std::log(1e4);
+  const std::optional<Finding> finding = FindSearchLimit(stages.problem, solution);
+  ASSERT_TRUE(finding);
+  EXPECT_EQ(finding->parameters.front(), "displacement_offset");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/probability.h"
 #include "recovery/recovered.h"
 
 // Intervals of fits whose model misses something that comes back in every stroke.
@@ -84,6 +85,23 @@ TEST(Discrepancy, InflatesIntervalsMoreForLargerMisfit) {
   };
   EXPECT_LT(width(0.02), width(0.08));
   EXPECT_LT(width(0.08), width(0.3));
+}
+
+TEST(Discrepancy, ContainsTheGapOfAFurtherCycleWhereCyclesScatter) {
+  // Cycles 15 % stronger and weaker in turn: of n half gaps with deviation s another one lies
+  // within t(n − 1)·s·√(1 + 1/n) of the mean.
+  Record record = Loop();
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.force[i] *= (i / 300) % 2 == 0 ? 1.15 : 0.85;
+  }
+  const FitResult fit = FitNoisy(record);
+  const ParameterEstimate& slip_force = *fit.Find("slip_force");
+  const LoopFacts& facts = fit.records[0].facts;
+  ASSERT_TRUE(slip_force.includes_discrepancy && facts.half_gap_standard_deviation);
+  const auto cycles = static_cast<double>(facts.steady_cycles);
+  const double margin = StudentQuantile(cycles - 1, 0.95) * *facts.half_gap_standard_deviation *
+                        std::sqrt(1 + 1 / cycles);
+  EXPECT_LE(*slip_force.lower95, *facts.half_gap - margin);
 }
 
 TEST(Discrepancy, LoopThatDoesNotSlideKeepsItsVerdictOnTheSlipForce) {

@@ -33,6 +33,19 @@ void SetResiduals(std::vector<double> residuals, FitResult& fit) {
   fit.records[0].residual = std::move(residuals);
 }
 
+TEST(Grade, LeavesTheHalfGapWhereTcIsMoreThanAQuarterOffToEitherSide) {
+  loop::LoopFacts facts;
+  facts.half_gap = -8.0;
+  facts.energy_ratio = 0.6;
+  EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 9.9));
+  EXPECT_TRUE(LeavesHalfGap(facts, 8.0, 10.1));
+  EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.5));
+  EXPECT_TRUE(LeavesHalfGap(facts, 8.0, 6.3));
+  EXPECT_FALSE(LeavesHalfGap(facts, 11.0, 6.3)) << "it was not there before";
+  facts.energy_ratio = 0.5;
+  EXPECT_FALSE(LeavesHalfGap(facts, 8.0, 6.3)) << "the loop does not mostly slide";
+}
+
 TEST(Grade, LoopSlidesWhereItIsARectangleWithAGap) {
   const Thresholds thresholds;
   const auto slides = [&](loop::LoopFacts facts) {

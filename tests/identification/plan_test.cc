@@ -229,6 +229,16 @@ TEST(Plan, OnlyVirginLoopDistinguishesMasingFromDahl) {
   EXPECT_NEAR(ExpectFit(noisy, Loop(0.8)).law_evidence / evidence, 0.01, 0.01 * kRounding);
 }
 
+TEST(Plan, CorrelatedNoiseDistinguishesTheLawsByFewerSamples) {
+  // Of noise correlated by 0.5 Σρ² over all lags is (1 + 0.5²)/(1 − 0.5²) = 5/3.
+  Expectation correlated = Quiet();
+  correlated.autocorrelation = 0.5;
+  constexpr double kLeftOut = 1e-8;  // of lags beyond which a correlation is below 1e-9
+  EXPECT_NEAR(
+      ExpectFit(correlated, Loop(0.8)).law_evidence / ExpectFit(Quiet(), Loop(0.8)).law_evidence,
+      0.6, kLeftOut);
+}
+
 TEST(Plan, LeastAmplitudeReachesWantedPrecisionAndSmallerOneDoesNot) {
   const WantedPrecision wanted = {{"alpha", {.value = 0.01}},
                                   {"slip_force", {.value = 0.01, .is_relative = true}}};

@@ -108,6 +108,7 @@ TEST(FitSweep, FindsTheLawOfExactResponses) {
           }
           const SweepFit fit = FitSweep(amplitudes, Responses(options, alpha, amplitudes), options);
           EXPECT_TRUE(fit.converged) << fit.message;
+          EXPECT_EQ(fit.degrees_of_freedom, amplitudes.size() - 3);
           EXPECT_NEAR(fit.parameter("sigma").value, kSigma, kDigits * kSigma);
           EXPECT_NEAR(fit.parameter("alpha").value, alpha, kDigits);
           EXPECT_NEAR(fit.parameter("slip_force").value, kSlipForce, kDigits * kSlipForce);

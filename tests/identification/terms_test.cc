@@ -159,6 +159,27 @@ TEST(Terms, AreFactorsOfColumnsOfTheRecord) {
   EXPECT_EQ(FindTerm("sigma")->column, Regressor::kNone);
 }
 
+TEST(Parameters, EndsOfTheTheorysOwnAreNoSearchLimits) {
+  const auto is_limit = [](std::string_view name, BoundSide side) {
+    const Parameter parameter{.term = FindTerm(name)};
+    return IsSearchLimit(parameter, side);
+  };
+  struct Case {
+    std::string_view term;
+    bool below;
+    bool above;
+  };
+  // Jenkins' α, a logarithm of the speed, no slip force at rest, no gap, no drag; rigs have both.
+  for (const auto& [term, below, above] :
+       {Case{"alpha", false, true}, Case{"slip_speed_exponent", false, true},
+        Case{"slip_speed", true, false}, Case{"backlash", false, true},
+        Case{"drag_fraction", false, false}, Case{"rig_stiffness", true, true}}) {
+    EXPECT_EQ(is_limit(term, BoundSide::kLower), below) << term;
+    EXPECT_EQ(is_limit(term, BoundSide::kUpper), above) << term;
+    EXPECT_FALSE(is_limit(term, BoundSide::kInside)) << term;
+  }
+}
+
 TEST(Parameters, LieAtABoundWithinABillionthOfItsRange) {
   EXPECT_EQ(SideOf(0.0, 0.0, 2.0), BoundSide::kLower);
   EXPECT_EQ(SideOf(1e-9, 0.0, 2.0), BoundSide::kLower);

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/input_file.h"
@@ -263,6 +264,15 @@ TEST(Clock, ReadsTimesAndDatesOfAllCommonForms) {
   for (const char* cell : {"", "12", "12:30", "1.5", "24:00:00", "12:60:00", "13:00:00 PM",
                            "2022-02-30 12:00:00", "31.12.2022", "12:00:00x", "12:00:00.", "a"}) {
     EXPECT_EQ(ClockReader().Read(cell), std::nullopt) << cell;
+  }
+}
+
+TEST(Clock, TakesTheMonthFirstBetweenStrokesAndTheDayFirstBetweenPoints) {
+  for (const auto& [evening, night] : {std::pair{"3/4/2024 23:59:59", "3/5/2024 00:00:01"},
+                                       std::pair{"4.3.2024 23:59:59", "5.3.2024 00:00:01"}}) {
+    ClockReader clock;
+    EXPECT_EQ(clock.Read(evening), 86'399.0);
+    EXPECT_EQ(clock.Read(night), 86'401.0) << "the next day, not the next month";
   }
 }
 

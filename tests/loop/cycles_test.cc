@@ -292,6 +292,25 @@ TEST(ForceSense, OfGrossSlipLoopFollowsEnergyDespiteFallingPlateau) {
   EXPECT_EQ(ForceSense(record, Reversals(record)), 1);
 }
 
+TEST(ForceSense, FollowsTheEnergyThatExceedsFiveDeviationsOfItsNoise) {
+  // Four cycles of 40 samples, X = 1: friction of 1 on a spring of −2, and a noise of ±e in turn. A
+  // cycle loses 4 but for the steps at the turns. Second differences of the noise are 4e, of which
+  // 4e/(0.6745·√6) = 2.42e is a deviation; with Σ((x[i+1] − x[i−1])/2)² = 80·sin²9° that of the
+  // mean energy is 0.847e. The energy is five of them at e = 0.939.
+  const auto sign_under = [](double noise) {
+    Record record;
+    for (int i = 0; i <= 160; ++i) {
+      const double x = -std::cos(2 * kPi * i / 40);
+      const double friction = i % 20 == 0 ? 0.0 : i % 40 < 20 ? 1.0 : -1.0;
+      record.displacement.push_back(x);
+      record.force.push_back(-2 * x + friction + (i % 2 == 0 ? noise : -noise));
+    }
+    return ForceSense(record, Reversals(record));
+  };
+  EXPECT_EQ(sign_under(0.8 * 0.939), 1);
+  EXPECT_EQ(sign_under(1.2 * 0.939), -1);  // of the spring
+}
+
 TEST(ForceSense, WithoutClosedCycleFollowsTheCovariance) {
   EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {5, 6, 8}, {}, {}}, {}), 1);
   EXPECT_EQ(ForceSense(Record{{0, 1, 2}, {-5, -6, -8}, {}, {}}, {}), -1);

@@ -120,6 +120,16 @@ TEST(Trim, LeavesOutRampsOfTheAmplitude) {
   EXPECT_EQ(trim.parts[1].cycles, 2U);
 }
 
+TEST(Trim, ARampMayStandStillForACycle) {
+  const Trim trim = FindTrim(Cycled(16, [](double cycle) {
+    return cycle < 1 ? 0.4 : cycle < 4 ? 0.7 : 1.0;
+  }));
+  ASSERT_EQ(trim.parts.size(), 1U);
+  EXPECT_EQ(trim.parts[0].reason, TrimReason::kRamp);
+  EXPECT_EQ(trim.parts[0].last, 4 * kCycle + kTurn);
+  EXPECT_EQ(trim.parts[0].cycles, 4U);
+}
+
 TEST(Trim, TakesNoAmplitudesInTurnAndNoGrowingSineForRamps) {
   const OfCycle growing = [](double cycle) { return 0.1 + 0.09 * cycle; };
   const OfCycle in_turn = [](double cycle) { return static_cast<int>(cycle) % 2 == 0 ? 1.0 : 0.6; };

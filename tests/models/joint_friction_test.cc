@@ -141,11 +141,13 @@ TEST(JointState, HasTheTangentOfItsForce) {
   double at = 0.0;
   for (const double move : {0.4, 0.3, -0.9, -0.2, 1.3}) {
     at += move * knee;
-    joint.Move(at, 17.0);
-    const double step = std::copysign(1e-6 * knee, move);
-    const double slope = (joint.Peek(at + step, 17.0) - joint.Peek(at, 17.0)) / step;
-    // Half a step times the second derivative, and the rounding of two forces over the step.
-    EXPECT_NEAR(joint.TangentStiffness(17.0) / slope, 1.0, 1e-5) << move;
+    for (const double load : {17.0, -17.0}) {
+      joint.Move(at, load);
+      const double step = std::copysign(1e-6 * knee, move);
+      const double slope = (joint.Peek(at + step, load) - joint.Peek(at, load)) / step;
+      // Half a step times the second derivative, and the rounding of two forces over the step.
+      EXPECT_NEAR(joint.TangentStiffness(load) / slope, 1.0, 1e-5) << move << ", " << load;
+    }
   }
   joint.Reset();
   EXPECT_EQ(joint.State(), 0.0);

@@ -60,6 +60,12 @@ TEST(BackboneText, NamesTheNearestLaw) {
                                     HasSubstr("leaves the band at 1 of 3 displacements")));
 }
 
+TEST(BackboneText, CountsALawOnEitherSideOfTheBand) {
+  BackboneEstimate backbone = Made();
+  backbone.points[1].law = 9.25;
+  EXPECT_THAT(TextOf(backbone), HasSubstr("leaves the band at 2 of 3 displacements"));
+}
+
 TEST(BackboneText, SaysThatTheSlipForceIsTheLawsUnlessThereIsAPlateau) {
   BackboneEstimate backbone = Made();
   EXPECT_THAT(TextOf(backbone), HasSubstr("slip_force is the law's extrapolation"));

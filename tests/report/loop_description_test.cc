@@ -194,5 +194,12 @@ TEST(LoopDescription, IsMeasuredOnTheWidestSteadyCyclesWhereOneIsClosed) {
   EXPECT_DOUBLE_EQ(*loop.energy_ratio, 6e-6 / (4 * 1.5e-6 * 20.0));
 }
 
+TEST(LoopDescription, EnergyOfTheLawIsThatOfTheWidestCyclesAlone) {
+  FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
+  fit.records[0].facts.cycles = {{.steady = true}, {.steady = false}, {.steady = true}};
+  fit.records[0].law_energy = {2e-6, 11e-6, 4e-6};
+  EXPECT_DOUBLE_EQ(DescribeLoop(fit).model_energy, 3e-6);
+}
+
 }  // namespace
 }  // namespace mindahl::report::loop_description_test

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "identification/diagnosis/diagnosis.h"
 #include "identification/intervals.h"
@@ -26,6 +27,17 @@ bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thre
   constexpr double kOfPeak = 0.5;  // less is no plateau: the strokes were not separated
   return facts.closed && facts.energy_ratio >= thresholds.sliding_energy_ratio && facts.half_gap &&
          *facts.half_gap > kOfPeak * facts.peak_force;
+}
+
+bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with) {
+  constexpr double kMostlySlides = 0.5;  // energy ratio
+  constexpr double kRunsAway = 1.25;     // times the half gap
+  if (!facts.half_gap || !(facts.energy_ratio > kMostlySlides)) return false;
+  const auto is_that_of_the_gap = [&](double slip_force) {
+    const double ratio = slip_force / std::abs(*facts.half_gap);
+    return ratio <= kRunsAway && ratio >= 1 / kRunsAway;
+  };
+  return is_that_of_the_gap(without) && !is_that_of_the_gap(with);
 }
 
 std::optional<double> MeasuredHalfGap(const FitResult& result) {
@@ -68,7 +80,8 @@ Adequacy GradeUse(const Thresholds& thresholds, const FitResult& result) {
   adequacy.misfit = missed;
   adequacy.misfit_over_half_gap.reset();
   if (half_gap) adequacy.misfit_over_half_gap = missed / *half_gap;
-  const double ratio = half_gap ? missed / *half_gap : missed / ScaleOfMisfit(result, thresholds);
+  const double scale = half_gap ? *half_gap : ScaleOfMisfit(result, thresholds);
+  const double ratio = scale > 0 ? missed / scale : std::numeric_limits<double>::infinity();
   const bool is_seen = !FindUnseenLoop(result, thresholds);
   adequacy.use = is_seen && ratio <= thresholds.quantitative_misfit ? Use::kQuantitative
                  : is_seen && ratio <= thresholds.failing_misfit    ? Use::kIndicative

@@ -17,6 +17,12 @@ namespace mindahl::identification {
 /// than half of T*. That gap is then the slip force's, whatever the law.
 bool SlidesOverMostOfStroke(const loop::LoopFacts& facts, const Thresholds& thresholds);
 
+/// True if, of a loop that mostly slides, Tc left the half gap that was measured by more than a
+/// quarter.
+/// @param without  Tc [N] of the smaller model
+/// @param with     of the larger one
+bool LeavesHalfGap(const loop::LoopFacts& facts, double without, double with);
+
 /// Returns half the gap between the strokes of the widest record [N], as it would be at the mean
 /// load of all; empty in a fit of the displacement, and where none was measured or it is not > 0.
 std::optional<double> MeasuredHalfGap(const FitResult& result);

@@ -1,0 +1,52 @@
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "mindahl/core/error.h"
+#include "mindahl/io/record_reader.h"
+#include "temporary_directory.h"
+
+// Tables of a stiffness or compliance over the amplitude, in SI whatever their units are.
+namespace mindahl::io::sweep_reader_test {
+namespace {
+
+using Numbers = std::vector<double>;
+
+SweepFile Read(const std::string& text, const RecordColumns& columns = {},
+               const ColumnChoice& response = {}) {
+  const TemporaryDirectory directory;
+  return ReadSweep(directory.Write("sweep.csv", text), columns, response);
+}
+
+TEST(ReadSweep, TakesAForceOverALengthForAStiffness) {
+  const SweepFile sweep = Read("displacement amplitude [mm],stiffness [kN/mm]\n2,0.5\n4,0.25\n");
+  EXPECT_EQ(sweep.amplitude, (Numbers{2e-3, 4e-3}));
+  EXPECT_EQ(sweep.response, (Numbers{5e5, 2.5e5}));
+  EXPECT_FALSE(sweep.over_force);
+  EXPECT_FALSE(sweep.is_compliance);
+}
+
+TEST(ReadSweep, TakesALengthOverAForceForACompliance) {
+  const SweepFile sweep = Read("force [kN],k [mm/kN]\n1,2\n3,4\n");
+  EXPECT_EQ(sweep.amplitude, (Numbers{1e3, 3e3}));
+  EXPECT_EQ(sweep.response, (Numbers{2e-6, 4e-6}));
+  EXPECT_TRUE(sweep.over_force);
+  EXPECT_TRUE(sweep.is_compliance);
+}
+
+TEST(ReadSweep, GoesByTheNameWhereNoUnitIsStated) {
+  EXPECT_TRUE(Read("force,compliance\n1,2\n").is_compliance);
+  EXPECT_FALSE(Read("force,stiffness\n1,2\n").is_compliance);
+  EXPECT_TRUE(Read("force,stiffness\n1,2\n", {}, {.column = "", .unit = "m/N"}).is_compliance);
+}
+
+TEST(ReadSweep, RefusesAResponseThatIsNotPositiveByItsPlace) {
+  EXPECT_NE(MessageOf<InputError>([] {
+              Read("x [m],k [N/m]\n1,2\n1,0\n");
+            }).find("sweep.csv:3:2: 0 in SI units must be > 0"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace mindahl::io::sweep_reader_test
