@@ -1,30 +1,19 @@
 #include "cli/progress.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <iostream>
 #include <string_view>
 #include <utility>
 
+#include "core/platform.h"
+
 namespace mindahl::cli {
-namespace {
-
-/// Writes to the terminal; a failure is no fault, since the result is elsewhere.
-void WriteToTerminal(std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
-    if (written <= 0) return;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-}  // namespace
 
 Progress::Progress(const std::ostream& messages, std::string what,
                    std::chrono::milliseconds patience)
     : what_(std::move(what)) {
-  if (&messages != &std::cerr || ::isatty(STDERR_FILENO) == 0) return;
+  if (&messages != &std::cerr || !IsTerminal(Stream::kMessages)) return;
   thread_ = std::jthread([this, patience](const std::stop_token& stop) { Run(stop, patience); });
 }
 
@@ -50,10 +39,10 @@ void Progress::Run(const std::stop_token& stop, std::chrono::milliseconds patien
   };
   for (auto next = start_ + patience; wait_until(next); next += kEvery) {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(next - start_).count();
-    WriteToTerminal(fmt::format("{}mindahl: {}, {} s", kErase, what_, seconds));
+    WriteMessage(fmt::format("{}mindahl: {}, {} s", kErase, what_, seconds));
     is_shown = true;
   }
-  if (is_shown) WriteToTerminal(kErase);
+  if (is_shown) WriteMessage(kErase);
 }
 
 }  // namespace mindahl::cli
