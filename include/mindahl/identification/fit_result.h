@@ -8,6 +8,7 @@
 
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/identification/law_choice.h"
 #include "mindahl/identification/likelihood_profile.h"
 #include "mindahl/identification/memory.h"
@@ -60,6 +61,12 @@ struct IntervalPart {
   std::optional<double> upper = {};
 };
 
+/// Holds what the records say of a parameter without the priors of the fit.
+struct WithoutPriors {
+  double value = 0.0;
+  std::optional<double> standard_error;  ///< empty when fixed, at a bound or undetermined
+};
+
 struct ParameterEstimate {
   std::string name;
   std::string unit;
@@ -72,6 +79,12 @@ struct ParameterEstimate {
   Identifiability identifiability = Identifiability::kNotIdentifiable;
   /// The contributions of which the interval is the union; empty where there is none.
   std::vector<IntervalPart> interval = {};
+  std::optional<Prior> prior = {};                   ///< of this parameter, where it has one
+  std::optional<WithoutPriors> without_priors = {};  ///< where any parameter has one
+
+  /// Returns by how many of the standard errors without priors the priors moved the value; empty
+  /// where there is none.
+  [[nodiscard]] std::optional<double> MovedByPriors() const;
 
   /// True if a contribution of this kind sets an end of the interval.
   [[nodiscard]] bool IsSetBy(IntervalSource source) const;
@@ -189,6 +202,9 @@ struct FitResult {
   std::optional<MemoryTest> memory;
   /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
+  /// With FitOptions::regions, from Depth::kFull on: of σ and α and of Tc and α, each where both
+  /// parameters are inside their bounds and the model is not inadequate.
+  std::optional<std::vector<ConfidenceRegion>> regions;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;
