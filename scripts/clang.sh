@@ -25,4 +25,4 @@ fi
 jq -r '.[].command' "$build/compile_commands.json" |
   sed -E "s| -o [^ ]+ -c | -fsyntax-only -nostdinc++ -isystem $headers -fexperimental-library -c |
           s|^ccache ||" |
-  xargs -P "$(nproc)" -d '\n' -n 1 bash -c 'echo "${0##* }" && $0 || exit 255'
+  xargs -P "$(nproc)" -d '\n' -n 1 bash -c 'echo "${0##* }" && eval "$0" || exit 255'
