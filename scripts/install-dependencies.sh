@@ -6,6 +6,7 @@
 #   install-dependencies.sh --peers     also the programs that bench/peers and tests/convert compare with
 #   install-dependencies.sh --coverage  also what counts the lines that tests run
 #   install-dependencies.sh --fuzz      also the compiler whose libFuzzer runs tests/fuzz
+#   install-dependencies.sh --clang     also the other compiler
 #   install-dependencies.sh --workflow  also the engine that workflow/ is for
 #   install-dependencies.sh --readers   also what reads other files and runs the notebooks, in Python
 #   install-dependencies.sh --site      also what makes the pages a site and looks at the licences
@@ -34,18 +35,19 @@ for group in "$@"; do
       node_packages+=(@mujoco/mujoco@3)  # no Debian package: Google's WebAssembly build
       ;;
     --coverage) packages+=(gcovr) ;;
+    --clang) packages+=(clang-19) ;;
     --fuzz) packages+=(clang-19 libclang-rt-19-dev) ;;
     --workflow) packages+=(snakemake) ;;
     --readers)
       packages+=(
         python3-scipy python3-h5py python3-openpyxl python3-pint python3-xarray
-        python3-nbclient python3-nbformat python3-ipykernel
+        python3-nbclient python3-nbformat python3-ipykernel python3-emcee
       )
       ;;
     --site) packages+=(mkdocs reuse) ;;
     *)
       echo "install-dependencies: there is no group '$group': --tests, --checks, --packages, --peers," \
-        "--coverage, --fuzz, --workflow, --readers or --site" >&2
+        "--coverage, --fuzz, --clang, --workflow, --readers or --site" >&2
       exit 2
       ;;
   esac

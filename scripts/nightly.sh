@@ -13,10 +13,11 @@ part() {
   "$@" || failed+=("$*")
 }
 
-./scripts/install-dependencies.sh --checks --packages --peers --workflow --readers || exit
+./scripts/install-dependencies.sh --checks --packages --peers --workflow --readers --clang || exit
 part ./scripts/test.sh ci
 part ./scripts/test.sh asan-full
 part ./scripts/tidy.sh --thorough
+part ./scripts/clang.sh
 part ./scripts/fuzz.sh --seconds 600
 part ./scripts/packages.sh
 part cmake --build build/ci --target coverage

@@ -5,7 +5,7 @@
     result.sigma.value, result.slip_force.interval, result.adequacy.verdict
     print(result)
 
-fit() fits a record or several, track() every cycle of a long one, batch() many files each on its own;
+fit() fits a record or several, sweep() stiffnesses over an amplitude, track() every cycle of a long one, batch() many files each on its own;
 plan() says what should be measured, contact() predicts the force from materials, validate() tests the
 mapping. simulate() and ContactState compute the force of a contact, along excitation() or any motion;
 recommend() and tradeoff() say by which model and method, convert() writes it as another law;
@@ -16,11 +16,12 @@ other programs; FitResult.load() reads a result that was written as JSON. docs/p
 from ._batch import BatchTable, batch
 from ._contact import Conversion, contact, convert, excitation, simulate
 from ._design import plan, recommend, tradeoff, validate
-from ._fit import fit
+from ._fit import fit, sweep
 from ._mindahl import ContactState, InputError, JointState, Record, __version__
 from ._readers import read_excel, read_hdf5, read_mat
 from ._records import read_csv
-from ._result import FitResult, FittedRecord, FitWarning, Message, Parameter, Report, Section
+from ._result import (FitResult, FittedRecord, FitWarning, LogLikelihood, Message, Parameter,
+                      Region, Report, Section)
 from ._track import CycleTable, track
 
 for _public in (ContactState, InputError, JointState, Record):
@@ -28,7 +29,8 @@ for _public in (ContactState, InputError, JointState, Record):
 
 __all__ = [
     "BatchTable", "ContactState", "Conversion", "CycleTable", "FitResult", "FitWarning",
-    "FittedRecord", "InputError", "JointState", "Message", "Parameter", "Record", "Report", "Section",
-    "__version__", "batch", "contact", "convert", "excitation", "fit", "plan", "read_csv",
-    "read_excel", "read_hdf5", "read_mat", "recommend", "simulate", "tradeoff", "track", "validate",
+    "FittedRecord", "InputError", "JointState", "LogLikelihood", "Message", "Parameter", "Record",
+    "Region", "Report", "Section", "__version__", "batch", "contact", "convert", "excitation", "fit",
+    "plan", "read_csv", "read_excel", "read_hdf5", "read_mat", "recommend", "simulate", "sweep",
+    "tradeoff", "track", "validate",
 ]

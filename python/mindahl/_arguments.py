@@ -100,6 +100,15 @@ def assignments(name: str, values: Optional[Mapping[str, Any]]) -> dict[str, flo
             for parameter, value in mapping(name, values, "numbers").items()}
 
 
+def priors_of(values: Optional[Mapping[str, Any]]) -> dict[str, _mindahl.UncertainValue]:
+    """Parameter to (value, standard uncertainty)."""
+    priors = {}
+    for parameter, value in mapping("prior", values, "(value, uncertainty)").items():
+        middle, error = pair(f"prior[{parameter!r}]", value)
+        priors[parameter] = uncertain(f"prior[{parameter!r}]", (middle, error))
+    return priors
+
+
 def column_name(name: str, value: Any) -> str:
     """A column by its name, or by its number counted from 1."""
     if value is None:

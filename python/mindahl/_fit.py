@@ -7,12 +7,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 from . import _mindahl
-from ._arguments import (Uncertain, assignments, contact_options, count, counts, fitted_or_number,
-                         interval, mapping, names_of, number, on_off, optional_number, pair,
-                         uncertain)
+from ._arguments import (Uncertain, array, assignments, column_name, contact_options, count, counts,
+                         fitted_or_number, interval, mapping, names_of, number, on_off,
+                         optional_number, pair, path_text, priors_of, uncertain)
+from ._contact import report_of
 from ._mindahl import Record
-from ._records import Column, RecordArguments, records_of
-from ._result import FitResult, FitWarning
+from ._records import Column, RecordArguments, columns_of, is_path, records_of
+from ._result import FitResult, FitWarning, Report
 
 Range = tuple[float, float]
 Asked = Union[float, str]
@@ -23,7 +24,7 @@ def request_of(
     terms: Mapping[str, Any], covariate: Any, fix: Any, start: Any, bound: Any, loss: str,
     starts: int, seed: int, force_noise: Any, displacement_noise: Any, reversal_gate: Any,
     noise_in: str = "force", term_choice: Union[None, str, Sequence[str]] = None,
-    confidence: float = 0.95,
+    confidence: float = 0.95, prior: Any = None, regions: bool = False,
 ) -> _mindahl.FitRequest:
     request = _mindahl.FitRequest()
     request.model = model
@@ -39,6 +40,8 @@ def request_of(
             request.add_covariate(column, None)
     request.fix = assignments("fix", fix)
     request.start = assignments("start", start)
+    request.prior = priors_of(prior)
+    request.regions = regions
     for parameter, value in mapping("bound", bound, "(low, high)").items():
         low, high = pair(f"bound[{parameter!r}]", value)
         request.set_bound(parameter, number(f"bound[{parameter!r}]", low),
@@ -90,7 +93,8 @@ def fit(
     terms: Union[None, str, Sequence[str]] = None,
     covariate: Union[None, str, Sequence[str], Mapping[str, Asked]] = None,
     fix: Optional[Mapping[str, float]] = None, start: Optional[Mapping[str, float]] = None,
-    bound: Optional[Mapping[str, Range]] = None, cycles: Optional[tuple[int, int]] = None,
+    bound: Optional[Mapping[str, Range]] = None, prior: Optional[Mapping[str, Range]] = None,
+    regions: bool = False, cycles: Optional[tuple[int, int]] = None,
     samples: Optional[tuple[int, int]] = None, skip_cycles: int = 0,
     trim: str = "off", time_window: Optional[Range] = None, load_window: Optional[Range] = None, loss: str = "none",
     starts: int = 1, seed: int = 1, confidence: float = 0.95,
@@ -142,7 +146,8 @@ def fit(
             that the law follows to no better than 5 % of the half gap, where no term is given.
         covariate: column or columns in proportion to which a force is added, or a dict of them
             with "fit" or the known factor [N/unit].
-        fix, start: parameter to value; bound: parameter to (low, high); SI units.
+        fix, start: parameter to value; bound: parameter to (low, high); prior: parameter to
+            (value, standard uncertainty), what is known of it before the fit; SI units.
 
     What counts
         cycles, samples: (first, last), counted from 1. skip_cycles: so many at the start.
@@ -153,7 +158,7 @@ def fit(
         time_window: (low, high) [s]. load_window: (low, high) [N].
         loss: "none", "huber", "cauchy", "tukey". force_noise [N], displacement_noise [m]: known
             standard deviations. reversal_gate [m]: smaller excursions are noise.
-        confidence: of every interval.
+        confidence: of every interval. regions: joint confidence regions, result.regions.
         starts: starting points refined. seed: of those drawn at random.
 
     What is known of the contact, each a number or (number, standard uncertainty)
@@ -173,6 +178,61 @@ def fit(
     return result
 
 
+def sweep(
+    source: Any = None, *, kind: str = "secant", displacement: Any = None, force: Any = None,
+    response: Any = None, displacement_unit: Optional[str] = None,
+    force_unit: Optional[str] = None, response_unit: Optional[str] = None,
+    response_noise: Optional[float] = None, encoding: str = "", model: str = "mindlin-dahl",
+    fix: Optional[Mapping[str, float]] = None, confidence: float = 0.95,
+) -> Report:
+    """Fits sigma, alpha and Tc to stiffnesses or compliances over the amplitude, as `mindahl fit --sweep`.
+
+    The sweep, one of
+        sweep(path), sweep(frame): columns recognised by name, or named by force or displacement, of
+            which the amplitudes are, and response.
+        sweep(force=amplitudes, response=stiffnesses): arrays, [N] or displacement [m], and [N/m],
+            or in force_unit, displacement_unit and response_unit; "m/N" and the like are compliances.
+    kind: "secant", of the loop from end to end, or "tangent", of a small oscillation at a force.
+    response_noise: known standard deviation of a response [N/m] or [m/N].
+    model: "mindlin-dahl", "mindlin" or "jenkins". fix: parameter to value. confidence: of intervals.
+    Returns the sections of `mindahl fit --sweep --json`; .to_pandas() has a row a parameter.
+    Raises InputError (a ValueError) for a fault in data or options, ValueError for one of a value.
+    """
+    request = _mindahl.FitRequest()
+    request.model = model
+    request.fix = assignments("fix", fix)
+    request.confidence = number("confidence", confidence)
+    names: list[str] = []
+    arrays: list[Any] = []
+    roles: dict[str, Any] = {"displacement": displacement, "force": force, "response": response}
+    units: dict[str, Optional[str]] = {
+        "displacement": displacement_unit, "force": force_unit, "response": response_unit}
+    if source is None:
+        for role, values in roles.items():
+            if values is None:
+                continue
+            names.append(role)
+            arrays.append(array(role, values))
+            roles[role] = len(names)
+            units[role] = units[role] or {"displacement": "m", "force": "N", "response": "N/m"}[role]
+        if len(names) != 2 or "response" not in names:
+            raise ValueError("a sweep of arrays is of response and one of force and displacement")
+    elif not is_path(source):
+        names = [str(column) for column in source.columns]
+        arrays = [array(column, source.iloc[:, k].to_numpy(), keep_missing=True)
+                  for k, column in enumerate(names)]
+    request.columns = columns_of(
+        displacement=roles["displacement"], force=roles["force"], time=None,
+        normal_load_column=None, displacement_unit=units["displacement"],
+        force_unit=units["force"], time_unit=None, normal_load_unit=None, encoding=encoding)
+    name = path_text(source) if is_path(source) else "sweep"
+    answer = _mindahl.sweep(
+        request, kind, name, names, arrays,
+        _mindahl.ColumnChoice(column_name("response", roles["response"]), units["response"] or ""),
+        optional_number("response_noise", response_noise))
+    return report_of(answer, "sweep", ("parameters",))
+
+
 _KNOWN = ("youngs_modulus_1", "poisson_1", "radius_1", "youngs_modulus_2", "poisson_2", "radius_2",
           "contact_radius", "compliance")
 
@@ -183,7 +243,7 @@ def request_and_arguments(given: Mapping[str, Any]) -> tuple[_mindahl.FitRequest
         terms=given, term_choice=given["terms"],
         **{name: given[name] for name in (
             "model", "initial_state", "force_sign", "noise_in", "offsets", "covariate", "fix",
-            "start", "bound", "loss", "starts", "seed", "force_noise", "displacement_noise",
+            "start", "bound", "prior", "regions", "loss", "starts", "seed", "force_noise", "displacement_noise",
             "reversal_gate", "confidence")})
     request.set_cycles(counts("cycles", given["cycles"]))
     request.set_samples(counts("samples", given["samples"]))

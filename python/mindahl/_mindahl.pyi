@@ -84,6 +84,8 @@ class FitRequest:
     seed: int
     fix: dict[str, float]
     start: dict[str, float]
+    prior: dict[str, UncertainValue]
+    regions: bool
     confidence: float
     force_noise: Optional[float]
     displacement_noise: Optional[float]
@@ -116,7 +118,16 @@ class Fitted:
     @property
     def notes(self) -> list[str]: ...
 
+class Likelihood:
+    def __init__(self, fitted: Fitted) -> None: ...
+    @property
+    def names(self) -> list[str]: ...
+    def __call__(self, values: Floats) -> float: ...
+
 def fit(records: Sequence[Record], request: FitRequest) -> Fitted: ...
+def sweep(request: FitRequest, kind: str, name: str, names: Sequence[str],
+          arrays: Sequence[Floats], response: ColumnChoice,
+          response_noise: Optional[float]) -> Answer: ...
 def terms() -> list[tuple[str, str]]: ...
 
 class TrackedTest:

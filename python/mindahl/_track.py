@@ -125,7 +125,7 @@ def track(
     backlash: Optional[Asked] = None, terms: Union[str, Sequence[str]] = "none",
     fix: Optional[Mapping[str, float]] = None,
     start: Optional[Mapping[str, float]] = None, bound: Optional[Mapping[str, Range]] = None,
-    loss: str = "none", starts: int = 1, seed: int = 1, confidence: float = 0.95,
+    prior: Optional[Mapping[str, Range]] = None, loss: str = "none", starts: int = 1, seed: int = 1, confidence: float = 0.95,
     force_noise: Optional[float] = None,
     displacement_noise: Optional[float] = None, reversal_gate: Optional[float] = None,
     average: int = 1, every: int = 1, alpha: str = "cycle", broken_rows: str = "refuse", threads: Optional[int] = None,
@@ -156,7 +156,7 @@ def track(
                "speed_exponent": speed_exponent, "inertia": inertia,
                "slip_position": slip_position, "slip_speed": slip_speed, "slip_trend": slip_trend,
                "ripple": ripple, "backlash": backlash},
-        covariate=None, fix=fix, start=start, bound=bound, loss=loss, starts=starts, seed=seed,
+        covariate=None, fix=fix, start=start, bound=bound, prior=prior, loss=loss, starts=starts, seed=seed,
         force_noise=force_noise, displacement_noise=displacement_noise,
         reversal_gate=reversal_gate, term_choice=terms,
         confidence=confidence)

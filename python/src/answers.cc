@@ -9,11 +9,13 @@
 
 #include "bindings.h"
 #include "mindahl/core/error.h"
+#include "mindahl/io/csv_table.h"
 #include "mindahl/request/batch.h"
 #include "mindahl/request/contact_request.h"
 #include "mindahl/request/conversion.h"
 #include "mindahl/request/plan.h"
 #include "mindahl/request/recommendation.h"
+#include "mindahl/request/sweep.h"
 #include "mindahl/request/tradeoff.h"
 #include "mindahl/request/validation.h"
 #include "record.h"
@@ -138,6 +140,25 @@ Answer Validate(std::size_t cases, std::uint64_t seed) {
   });
 }
 
+/// @param table  names and values of the columns; empty: the request's file is read
+Answer Sweep(const request::FitRequest& request, const std::string& kind, const std::string& name,
+             const std::vector<std::string>& names, const std::vector<Array>& arrays,
+             const io::ColumnChoice& response, std::optional<double> response_noise) {
+  std::vector<io::NamedColumn> table = ColumnsOfArrays(names, arrays);
+  bool converged = false;
+  Answer answer = AnswerOf([&](const request::Tell& note) {
+    io::SweepFile sweep = table.empty() ? io::ReadSweep(name, request.columns, response)
+                                        : io::SweepOf(io::TableOfColumns(std::move(table), name),
+                                                      request.columns, response);
+    request::FittedSweep fitted =
+        request::FitSweep(request, name, std::move(sweep), kind, response_noise, note);
+    converged = fitted.fit.converged;
+    return fitted;
+  });
+  answer.established = converged;
+  return answer;
+}
+
 BatchEntry FitOne(const NamedRecord& record, const request::FitRequest& request,
                   const std::string& strict) {
   const py::gil_scoped_release others_may_run;
@@ -231,6 +252,8 @@ void AddAnswers(py::module_& module) {
       .def_readonly("established", &Answer::established)
       .def_readonly("warnings", &Answer::warnings);
   module.def("contact", &Contact, py::arg("options"));
+  module.def("sweep", &Sweep, py::arg("request"), py::arg("kind"), py::arg("name"),
+             py::arg("names"), py::arg("arrays"), py::arg("response"), py::arg("response_noise"));
   module.def(
       "convert",
       [](double sigma, double alpha, double slip_force, double amplitude, const std::string& from,

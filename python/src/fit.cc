@@ -79,6 +79,30 @@ py::list RecordsOf(const py::object& self) {
   return records;
 }
 
+/// The log-likelihood of a fit, which keeps its records.
+class Likelihood {
+ public:
+  explicit Likelihood(std::shared_ptr<const Fitted> fitted)
+      : fitted_(std::move(fitted)), of_(LikelihoodOf(*fitted_)) {}
+
+  [[nodiscard]] std::vector<std::string> names() const {
+    return {of_.names().begin(), of_.names().end()};
+  }
+  double operator()(const Array& values) { return of_(SpanOf(values, "values")); }
+
+ private:
+  static identification::LogLikelihood LikelihoodOf(const Fitted& fitted) {
+    const Report& report = fitted.report;
+    if (report.failed()) throw InputError("a fit that failed has no likelihood");
+    std::vector<loop::RecordView> views;
+    for (const io::RecordFile& input : report.records) views.emplace_back(input.record);
+    return {views, report.options, report.fit};
+  }
+
+  std::shared_ptr<const Fitted> fitted_;
+  identification::LogLikelihood of_;
+};
+
 void SetTerm(FitRequest& request, const std::string& name, std::optional<double> value,
              const std::string& form, std::optional<double> standard_uncertainty) {
   const identification::Term* term = identification::FindTerm(name);
@@ -128,6 +152,8 @@ void AddFit(py::module_& module) {
       .def_readwrite("seed", &FitRequest::seed)
       .def_readwrite("fix", &FitRequest::fix)
       .def_readwrite("start", &FitRequest::start)
+      .def_readwrite("prior", &FitRequest::prior)
+      .def_readwrite("regions", &FitRequest::regions)
       .def("set_bound", &SetBound, py::arg("name"), py::arg("lower"), py::arg("upper"))
       .def_readwrite("confidence", &FitRequest::confidence)
       .def_readwrite("force_noise", &FitRequest::force_noise)
@@ -162,6 +188,11 @@ void AddFit(py::module_& module) {
                                                 std::string(fitted.report.units.force));
                              })
       .def_readonly("notes", &Fitted::notes);
+  py::class_<Likelihood>(module, "Likelihood")
+      .def(py::init([](const std::shared_ptr<Fitted>& fitted) { return Likelihood(fitted); }),
+           py::arg("fitted"))
+      .def_property_readonly("names", &Likelihood::names)
+      .def("__call__", &Likelihood::operator(), py::arg("values"));
   module.def("fit", &Fit, py::arg("records"), py::arg("request"));
   module.def("terms", [] {
     std::vector<std::pair<std::string, std::string>> terms;

@@ -15,6 +15,16 @@ namespace py = pybind11;
 using io::ColumnChoice;
 using io::RecordColumns;
 
+std::vector<io::NamedColumn> ColumnsOfArrays(const std::vector<std::string>& names,
+                                             const std::vector<Array>& arrays) {
+  std::vector<io::NamedColumn> table;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const std::span<const double> values = SpanOf(arrays.at(k), names[k].c_str());
+    table.push_back({names[k], {values.begin(), values.end()}});
+  }
+  return table;
+}
+
 namespace {
 
 NamedRecord ReadCsv(const std::string& path, const RecordColumns& columns,
@@ -29,12 +39,7 @@ NamedRecord ReadCsv(const std::string& path, const RecordColumns& columns,
 
 NamedRecord RecordOfColumns(const std::string& name, const std::vector<std::string>& names,
                             const std::vector<Array>& arrays, const RecordColumns& columns) {
-  std::vector<io::NamedColumn> table;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    const std::span<const double> values = SpanOf(arrays.at(k), names[k].c_str());
-    table.push_back({names[k], {values.begin(), values.end()}});
-  }
-  return {name, io::RecordOf(io::TableOfColumns(std::move(table), name), columns)};
+  return {name, io::RecordOf(io::TableOfColumns(ColumnsOfArrays(names, arrays), name), columns)};
 }
 
 py::object ViewUnlessEmpty(const py::object& self, const std::vector<double>& values) {

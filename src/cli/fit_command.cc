@@ -120,7 +120,8 @@ void RunFit(const FitCommandOptions& options, const CLI::App& command, Console& 
       options.response_noise) {
     throw InputError("--response: a record has none: add --sweep secant or --sweep tangent");
   }
-  const FitRequest& request = options.request;
+  FitRequest request = options.request;
+  request.regions = request.regions || !options.report_path.empty();  // which the page draws
   Validate(request.contact);
   RequireDistinctFiles(request.files);
   std::vector<std::string> read = console.inputs;
@@ -205,6 +206,11 @@ void AddFitCommand(CLI::App& app, Console& console) {
                    "everything as one page of HTML with its figures, to read,\n"
                    "send and print; it loads nothing")
       ->type_name("PATH")
+      ->group(group);
+  command
+      ->add_flag("--regions", options->request.regions,
+                 "joint confidence regions of sigma and alpha and of slip_force and\n"
+                 "alpha, in the JSON and on the page; --report has them too")
       ->group(group);
   AddStrict(*command, options->strict, "exit status 3", group);
   command->callback([options, command, &console] { RunFit(*options, *command, console); });

@@ -410,6 +410,17 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
                   "start from a value instead of the data's");
   add_assignments("--bound", options.bound, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2",
                   &ParseInterval, "keep a parameter between two values");
+  add_assignments(
+      "--prior", options.prior, "NAME=V±U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
+      [](std::string_view value, std::string_view option, std::string_view) {
+        const contact::UncertainValue prior = ParseUncertainValue(value, option);
+        if (prior.standard_error > 0) return prior;
+        throw InputError(fmt::format(
+            "{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value", option,
+            value));
+      },
+      "what is known of a parameter before the fit, with its standard uncertainty:\n"
+      "one more residual; also V+-U, V±5%");
   command.add_option("--confidence", options.confidence, "confidence of every interval [-]")
       ->type_name("C")
       ->capture_default_str()

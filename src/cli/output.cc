@@ -1,7 +1,6 @@
 #include "cli/output.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -11,13 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "core/platform.h"
 #include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
 
 namespace mindahl::cli {
 
 bool HasColours(const std::ostream& results) {
-  if (&results != &std::cout || ::isatty(STDOUT_FILENO) == 0) return false;
+  if (&results != &std::cout || !IsTerminal(Stream::kOutput)) return false;
   const char* const no_colour = std::getenv("NO_COLOR");
   if (no_colour != nullptr && *no_colour != '\0') return false;
   const char* const terminal = std::getenv("TERM");
@@ -110,23 +110,10 @@ void RequireNotThere(const OutputPath& output, std::string_view remedy) {
   throw InputError(fmt::format("{}: {} exists: add {}", output.option, output.path, remedy));
 }
 
-namespace {
-
-/// Writes to the terminal; a failure is no fault, since the result is elsewhere.
-void WriteToTerminal(std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
-    if (written <= 0) return;
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-}  // namespace
-
 Progress::Progress(const std::ostream& messages, std::string what,
                    std::chrono::milliseconds patience)
     : what_(std::move(what)) {
-  if (&messages != &std::cerr || ::isatty(STDERR_FILENO) == 0) return;
+  if (&messages != &std::cerr || !IsTerminal(Stream::kMessages)) return;
   thread_ = std::jthread([this, patience](const std::stop_token& stop) { Run(stop, patience); });
 }
 
@@ -152,10 +139,10 @@ void Progress::Run(const std::stop_token& stop, std::chrono::milliseconds patien
   };
   for (auto next = start_ + patience; wait_until(next); next += kEvery) {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(next - start_).count();
-    WriteToTerminal(fmt::format("{}mindahl: {}, {} s", kErase, what_, seconds));
+    WriteMessage(fmt::format("{}mindahl: {}, {} s", kErase, what_, seconds));
     is_shown = true;
   }
-  if (is_shown) WriteToTerminal(kErase);
+  if (is_shown) WriteMessage(kErase);
 }
 
 }  // namespace mindahl::cli

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <span>
 
+#include "core/instruction_sets.h"
+
 namespace mindahl {
 
 struct Extremes {
@@ -18,7 +20,7 @@ struct Extremes {
 /// Returns the least and greatest of values that are no NaN, at least one. In registers side by
 /// side, as comparisons one after the other would wait for each other.
 [[nodiscard]] inline Extremes ExtremesOf(std::span<const double> values) {
-  using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+  using Pair = Lanes<2>;
   constexpr std::size_t kSideBySide = 4;
   const Pair first = {values[0], values[0]};
   std::array<Pair, kSideBySide> least = {first, first, first, first};

@@ -1,38 +1,24 @@
 #include "mindahl/core/memory.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
+
+#include "core/platform.h"
 
 namespace mindahl {
 
 std::uintmax_t MemoryOfProcess() {
-  std::uintmax_t least = std::numeric_limits<std::uintmax_t>::max();
-  const long pages = ::sysconf(_SC_PHYS_PAGES);
-  const long page = ::sysconf(_SC_PAGESIZE);
-  if (pages > 0 && page > 0) {
-    least = static_cast<std::uintmax_t>(pages) * static_cast<std::uintmax_t>(page);
-  }
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
-    least = std::min<std::uintmax_t>(least, limit.rlim_cur);
-  }
+  std::uintmax_t least = std::min(MemoryOfMachine(), MemoryLimit());
   std::uintmax_t of_group = 0;  // no number where the file says "max"
   if (std::ifstream("/sys/fs/cgroup/memory.max") >> of_group) least = std::min(least, of_group);
   return least;
 }
 
 std::string OutOfMemoryText() {
-  constexpr std::uintmax_t kKibibyte = 1024;
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
   return fmt::format("memory ran out: the process had {} and may have {}",
-                     BytesInWords(static_cast<std::uintmax_t>(usage.ru_maxrss) * kKibibyte),
-                     BytesInWords(MemoryOfProcess()));
+                     BytesInWords(PeakMemory()), BytesInWords(MemoryOfProcess()));
 }
 
 std::string BytesInWords(std::uintmax_t bytes) {

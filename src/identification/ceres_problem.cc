@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory_resource>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "identification/problem/problem.h"
 #include "identification/solve/unprojected_record.h"
 #include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
 #include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
@@ -162,6 +164,82 @@ void CeresProblem::AddTo(ceres::Problem& problem, std::unique_ptr<ceres::LossFun
     problem.SetParameterLowerBound(&parameter.theta, 0, parameter.lower);
     problem.SetParameterUpperBound(&parameter.theta, 0, parameter.upper);
   }
+}
+
+struct LogLikelihood::State {
+  State(std::span<const loop::RecordView> given, const FitOptions& options, const FitResult& fit)
+      : problem(given, options, fit, fit.ResponseNoise()) {}
+
+  CeresProblem problem;
+  double effective_fraction = 1.0;  // of the samples
+  std::vector<std::string> names;
+  std::vector<std::size_t> places;  // of these, among the problem's parameters
+  struct Record {
+    std::unique_ptr<ceres::CostFunction> cost;
+    std::vector<double const*> blocks;
+    std::vector<double> residual;
+  };
+  std::vector<Record> records;
+};
+
+LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const FitOptions& options,
+                             const FitResult& fit) {
+  RequirePositive("noise of the fit", fit.ResponseNoise());
+  const bool is_forced = fit.response == loop::Channel::kDisplacement;
+  std::size_t counted = 0;
+  for (const RecordFit& record : fit.records) {
+    counted += record.residual.size() - record.left_out;
+    if (options.loss == Loss::kNone && (is_forced || !(record.displacement_noise > 0)) &&
+        record.overshoot.empty()) {
+      continue;
+    }
+    throw InvalidArgument(
+        "a log-likelihood is of samples of equal weight: fit without a robust loss, without noise "
+        "of the displacement and without turning points between samples");
+  }
+  state_ = std::make_unique<State>(records, options, fit);
+  state_->effective_fraction =
+      std::min(fit.residuals.effective_samples / static_cast<double>(counted), 1.0);
+  const std::span<CeresParameter> parameters = state_->problem.parameters();
+  std::vector<bool> has_effect(parameters.size(), false);
+  for (std::size_t r = 0; r < state_->problem.records(); ++r) {
+    State::Record& record = state_->records.emplace_back();
+    record.cost = state_->problem.MakeCostFunction(r);
+    record.residual.resize(static_cast<std::size_t>(record.cost->num_residuals()));
+    for (const std::size_t place : state_->problem.BlocksOf(r)) {
+      record.blocks.push_back(&parameters[place].theta);
+      has_effect[place] = true;
+    }
+  }
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].fixed || !has_effect[i]) continue;
+    state_->names.push_back(parameters[i].name);
+    state_->places.push_back(i);
+  }
+}
+
+LogLikelihood::LogLikelihood(LogLikelihood&&) noexcept = default;
+LogLikelihood& LogLikelihood::operator=(LogLikelihood&&) noexcept = default;
+LogLikelihood::~LogLikelihood() = default;
+
+std::span<const std::string> LogLikelihood::names() const { return state_->names; }
+
+double LogLikelihood::operator()(std::span<const double> values) {
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  RequireSameSize("values", values.size(), "free parameters", state_->places.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    CeresParameter& parameter = state_->problem.parameters()[state_->places[i]];
+    if (parameter.positive && !(values[i] > 0)) return kNone;
+    const double theta = parameter.ThetaAt(values[i]);
+    if (!(theta >= parameter.lower && theta <= parameter.upper)) return kNone;
+    parameter.theta = theta;
+  }
+  double squares = 0.0;
+  for (State::Record& record : state_->records) {
+    if (!record.cost->Evaluate(record.blocks.data(), record.residual.data(), nullptr)) return kNone;
+    for (const double residual : record.residual) squares += residual * residual;
+  }
+  return std::isfinite(squares) ? -state_->effective_fraction * squares / 2 : kNone;
 }
 
 }  // namespace mindahl::identification

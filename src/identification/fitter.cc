@@ -133,6 +133,8 @@ void FillParameters(const Problem& problem, const Solution& solution, FitResult&
     WithdrawInterval(estimate);
     estimate.includes_discrepancy = false;
     estimate.identifiability = Identifiability::kNotIdentifiable;
+    estimate.prior.reset();
+    estimate.without_priors.reset();
   }
   result.law = parameters.LawAt(solution.theta);
   result.rig = parameters.RigAt(solution.theta);
@@ -242,7 +244,7 @@ FitOptions OptionsAlone(const FitOptions& options, const FitResult& series, std:
     alone.preparation.held_out = {options.preparation.held_out[r]};
   }
   alone.start.clear();
-  alone.stated.clear();
+  alone.priors.clear();
   std::erase_if(alone.terms,
                 [](const std::string& name) { return FindTerm(name)->scope == Scope::kContact; });
   // A record's own lose their number, those of the others go.
@@ -320,18 +322,28 @@ bool TellsTheLaw(const FitResult& result) {
   });
 }
 
-/// Returns the noise of the force [N] against which stated values weigh: as it is known, else what
-/// a fit with the values held leaves.
-double StatedNoise(std::span<const RecordView> records, const FitOptions& options) {
-  if (options.force_noise) return *options.force_noise;
-  FitOptions held = options;
-  held.stated.clear();
-  for (const auto& [name, stated] : options.stated) {
-    std::erase(held.terms, name);
-    held.start.erase(name);
-    held.fixed.emplace(name, stated.value);
+/// Fits without priors: what the records say by themselves, and the noise that priors weigh
+/// against.
+FitResult FitWithoutPriors(std::span<const RecordView> records, Depth depth,
+                           const FitOptions& options) {
+  FitOptions open = options;
+  open.priors.clear();
+  return Fitter(open).Fit(records, std::min(depth, Depth::kErrors));
+}
+
+/// Adds to each parameter which prior it has and what it is without any.
+FitResult AddPriors(const FitOptions& options, const Problem& problem, const FitResult& without,
+                    FitResult result) {
+  for (std::size_t k = 0; k < result.parameters.size(); ++k) {
+    ParameterEstimate& estimate = result.parameters[k];
+    if (problem.parameters[problem.parameters.reported()[k]].has_prior()) {
+      estimate.prior = options.priors.at(estimate.name);
+    }
+    if (const ParameterEstimate* open = without.Find(estimate.name)) {
+      estimate.without_priors = {open->value, open->standard_error};
+    }
   }
-  return Fitter(held).Fit(records, Depth::kEstimate).rms;
+  return result;
 }
 
 }  // namespace
@@ -374,7 +386,11 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   ScaledRecords data = Scale(prepared, given, &arena);
   AddCovariates(given.covariates, depth >= Depth::kIntervals, prepared, given.offsets, data);
   AddColumnsOfTerms(given, data);
-  data.stated_noise = given.stated.empty() ? 0.0 : StatedNoise(records, given) / data.force;
+  std::optional<FitResult> without_priors;
+  if (!given.priors.empty()) {
+    without_priors = FitWithoutPriors(records, depth, given);
+    data.prior_noise = without_priors->ResponseNoise() / data.response_unit();
+  }
   if (HasTerm(given, "lag")) SetClocks(data);
   ThinnedRecords thin(data, &arena);
   RequireOneLoad(data);
@@ -384,6 +400,9 @@ void Fitter::State::Fit(std::span<const RecordView> records, Depth depth, const 
   const Attempt attempt{given, depth, prepared, data, thin, buffers, &arena};
   SolvedFit solved = SolveFit(attempt);
   result = Assemble(attempt, solved, std::move(result));
+  if (without_priors) {
+    result = AddPriors(given, solved.best.problem, *without_priors, std::move(result));
+  }
   if (depth < Depth::kErrors || !std::isfinite(solved.solution().sum_of_squares)) return;
   if (depth >= Depth::kIntervals && !given.preparation.displacement_noise &&
       solved.noise.force > kOnlyRounding) {

@@ -1,24 +1,19 @@
 #include "mindahl/io/plot.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <span>
-#include <stdexcept>
 #include <string_view>
 
+#include "core/platform.h"
 #include "io/html.h"
 #include "io/panel_drawing.h"
 #include "io/unfinished_output.h"
@@ -250,53 +245,27 @@ std::string Content(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Runs `rsvg-convert --format=png --output=PNG SVG`, with no shell, and returns its wait status.
-int SpawnAndWait(const std::string& svg, const std::string& png, const std::string& messages) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  std::array<std::string, 4> words = {"rsvg-convert", "--format=png", "--output=" + png, svg};
-  const std::array<char*, 5> arguments = {words[0].data(), words[1].data(), words[2].data(),
-                                          words[3].data(), nullptr};
-  // Ends it where its file may not grow.
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t defaults;
-  sigemptyset(&defaults);
-  sigaddset(&defaults, SIGXFSZ);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-  pid_t child = 0;
+/// Runs `rsvg-convert --format=png --output=PNG SVG`; false where it fails.
+bool Convert(const std::string& svg, const std::string& png, const std::string& messages) {
+  bool succeeded = false;
   const int error =
-      ::posix_spawnp(&child, words[0].c_str(), &actions, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
+      RunProgram({"rsvg-convert", "--format=png", "--output=" + png, svg}, messages, succeeded);
   if (error == ENOENT) {
     throw InputError(
         "pictures in PNG need rsvg-convert, which is not on PATH: install it (Debian: "
         "librsvg2-bin), or give a name that ends in .svg");
   }
-  if (error != 0) {
-    throw InputError(fmt::format("cannot start rsvg-convert: {}", std::strerror(error)));
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) {
-      throw std::runtime_error(
-          fmt::format("cannot wait for rsvg-convert: {}", std::strerror(errno)));
-    }
-  }
-  return status;
+  if (error != 0)
+    throw InputError(fmt::format("cannot run rsvg-convert: {}", std::strerror(error)));
+  return succeeded;
 }
 
 /// Returns the picture of an SVG file as PNG.
 std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
   std::string pattern = (std::filesystem::temp_directory_path() / "mindahl-plot-XXXXXX").string();
-  if (::mkdtemp(pattern.data()) == nullptr) {
+  if (const int error = MakeNewDirectory(pattern); error != 0) {
     throw InputError(
-        fmt::format("cannot make the directory '{}': {}", pattern, std::strerror(errno)));
+        fmt::format("cannot make the directory '{}': {}", pattern, std::strerror(error)));
   }
   const TemporaryName scratch(pattern);
   const TemporaryName drawing(pattern + "/plot.svg");
@@ -305,8 +274,7 @@ std::string ToPng(const std::string& svg, const std::filesystem::path& path) {
   if (!(std::ofstream(drawing.name(), std::ios::binary) << svg).flush()) {
     throw InputError(fmt::format("cannot write '{}': is the disk full?", drawing.name()));
   }
-  const int status = SpawnAndWait(drawing.name(), picture.name(), messages.name());
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+  if (!Convert(drawing.name(), picture.name(), messages.name())) {
     throw InputError(fmt::format("cannot draw '{}': rsvg-convert failed: {}", path.string(),
                                  FirstLine(messages.name())));
   }

@@ -908,7 +908,11 @@ RecordFile ReadRecord(const std::filesystem::path& path, const RecordColumns& co
 
 SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
                     const ColumnChoice& response) {
-  const CsvTable table = ReadCsvTable(path, {}, columns.encoding);
+  return SweepOf(ReadCsvTable(path, {}, columns.encoding), columns, response);
+}
+
+SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
+                  const ColumnChoice& response) {
   std::vector<std::string> names;
   for (const std::string& name : table.names()) names.push_back(WithoutAmplitude(name));
   const ColumnFinder finder(table, names);

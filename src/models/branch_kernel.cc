@@ -176,11 +176,10 @@ MINDAHL_INLINE void EvaluateBlock(const ScaledBranch<double>& branch, double sha
   const RunConstants run = ConstantsOf(branch, shape_exponent);
   const double start = branch.force;
   const double height = branch.height;
-  ForEach(
-      count, [&](std::size_t i) __attribute__((always_inline)) {
-        const Sample sample = SampleAt(run, block.displacement[i]);
-        block.t[i] = Clamp(start + sample.sign * (height * ForceOf(sample)), limit);
-      });
+  ForEach(count, [&](std::size_t i) MINDAHL_INLINE_LAMBDA {
+    const Sample sample = SampleAt(run, block.displacement[i]);
+    block.t[i] = Clamp(start + sample.sign * (height * ForceOf(sample)), limit);
+  });
 }
 
 MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch<double>& branch,
@@ -200,30 +199,29 @@ MINDAHL_INLINE void DifferentiateBlock(const ScaledBranch<double>& branch,
   const double elastic_shape = height * start.log_rate[kShape];
   const double elastic_unloaded = height * start.log_rate[kUnloaded];
   const double slope_unloaded = start.origin_per_unloaded * height * branch.rate;
-  ForEach(
-      count, [&](std::size_t i) __attribute__((always_inline)) {
-        const Sample sample = SampleAt(run, block.displacement[i]);
-        const auto [k, s] = sample.reduction;
-        const auto [scale, part] = sample.exponential;
-        const double phi = ForceOf(sample);
-        const double remaining = scale + scale * part;
-        const double per_z = 1 / sample.z;
-        const double slope = sample.slips ? 0.0 : remaining * per_z;
-        const double elastic = sample.y * slope;
-        // (w/(1−w) + log1p(−w))/w² = ½(1−s)²·[1/(1+s) + s·P], and 1/(1+s) = (1 + 1/z)/2
-        const double less = 1 - s;
-        const double curvature = 0.5 * less * less * (0.5 * (1 + per_z) + s * sample.series);
-        const double near = remaining * sample.y * (sample.y * curvature);
-        const double far = (elastic + remaining * sample.log_remaining) * run.per_beta;
-        const double by_shape = sample.slips ? 0.0 : k == 0 ? near : far;
-        block.t[i] = Clamp(force_start + sample.sign * (height * phi), limit);
-        block.log_rate[i] = force_rate + sample.sign * (height_rate * phi + elastic_rate * elastic);
-        block.shape_exponent[i] =
-            force_shape +
-            sample.sign * (height_shape * phi + elastic_shape * elastic - height * by_shape);
-        block.unloaded[i] = force_unloaded - slope_unloaded * slope +
-                            sample.sign * (height_unloaded * phi + elastic_unloaded * elastic);
-      });
+  ForEach(count, [&](std::size_t i) MINDAHL_INLINE_LAMBDA {
+    const Sample sample = SampleAt(run, block.displacement[i]);
+    const auto [k, s] = sample.reduction;
+    const auto [scale, part] = sample.exponential;
+    const double phi = ForceOf(sample);
+    const double remaining = scale + scale * part;
+    const double per_z = 1 / sample.z;
+    const double slope = sample.slips ? 0.0 : remaining * per_z;
+    const double elastic = sample.y * slope;
+    // (w/(1−w) + log1p(−w))/w² = ½(1−s)²·[1/(1+s) + s·P], and 1/(1+s) = (1 + 1/z)/2
+    const double less = 1 - s;
+    const double curvature = 0.5 * less * less * (0.5 * (1 + per_z) + s * sample.series);
+    const double near = remaining * sample.y * (sample.y * curvature);
+    const double far = (elastic + remaining * sample.log_remaining) * run.per_beta;
+    const double by_shape = sample.slips ? 0.0 : k == 0 ? near : far;
+    block.t[i] = Clamp(force_start + sample.sign * (height * phi), limit);
+    block.log_rate[i] = force_rate + sample.sign * (height_rate * phi + elastic_rate * elastic);
+    block.shape_exponent[i] =
+        force_shape +
+        sample.sign * (height_shape * phi + elastic_shape * elastic - height * by_shape);
+    block.unloaded[i] = force_unloaded - slope_unloaded * slope +
+                        sample.sign * (height_unloaded * phi + elastic_unloaded * elastic);
+  });
 }
 
 }  // namespace

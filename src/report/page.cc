@@ -287,12 +287,22 @@ std::string FigureSection(const Report& report) {
 }
 
 std::string LikelihoodSection(const Report& report) {
-  const auto panel = SlipForceLikelihood(report);
-  if (!panel) return "";
-  return Heading("Likelihood") +
-         Grid(Figure(*panel, "likelihood", "Likelihood of the slip force",
-                     "Where the curve stays below the line, the record does not distinguish "
-                     "those slip forces from the best: a side that never rises is open."));
+  std::string figures;
+  constexpr const char* kText =
+      "The noise alone leaves both parameters in here; intervals may reach further, for what the "
+      "model misses. A long slanted region is a combination that the record determines better.";
+  if (const auto panel = RegionPanel(report, "sigma")) {
+    figures += Figure(*panel, "region-sigma", "Stiffness and exponent together", kText);
+  }
+  if (const auto panel = RegionPanel(report, "slip_force")) {
+    figures += Figure(*panel, "region-slip-force", "Slip force and exponent together", kText);
+  }
+  if (const auto panel = SlipForceLikelihood(report)) {
+    figures += Figure(*panel, "likelihood", "Likelihood of the slip force",
+                      "Where the curve stays below the line, the record does not distinguish "
+                      "those slip forces from the best: a side that never rises is open.");
+  }
+  return figures.empty() ? "" : Heading("Likelihood") + Grid(figures);
 }
 
 // --- the model's loop, the contact, the mapping

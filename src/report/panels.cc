@@ -488,6 +488,40 @@ std::optional<PlotPanel> SlipForceLikelihood(const Report& report) {
   return panel;
 }
 
+std::optional<PlotPanel> RegionPanel(const Report& report, std::string_view first) {
+  const auto& regions = report.fit.regions;
+  if (!regions) return std::nullopt;
+  const auto region = std::ranges::find_if(
+      *regions, [&](const auto& candidate) { return candidate.parameters[0] == first; });
+  const identification::ParameterEstimate* estimate = report.fit.Find(first);
+  if (region == regions->end() || WhatIsShown(*estimate) != Shown::kValue ||
+      WhatIsShown(*report.fit.Find("alpha")) != Shown::kValue) {
+    return std::nullopt;
+  }
+  const ScaledUnit unit = UnitFor(estimate->unit, estimate->value);
+  PlotSeries boundary{fmt::format("{} region{}", ConfidenceWords(report.fit),
+                                  region->closed ? "" : ", open where it ends"),
+                      {},
+                      {},
+                      PlotStyle::kLine};
+  boundary.shade = kDataShade;
+  for (std::size_t i = 0; i <= region->boundary.size(); ++i) {
+    const auto& [x, y] = region->boundary[i % region->boundary.size()];
+    boundary.x.push_back(x / unit.factor);
+    boundary.y.push_back(y);
+  }
+  const auto [low, high] = std::ranges::minmax(boundary.x);
+  PlotSeries best{"estimate",
+                  {estimate->value / unit.factor},
+                  {report.fit.law.shape_exponent},
+                  PlotStyle::kMarkers};
+  PlotSeries mindlin{"Mindlin's α = 1/3", {low, high}, {1.0 / 3, 1.0 / 3}, PlotStyle::kLine};
+  return PlotPanel{.x_label = fmt::format(
+                       "{} [{}]", first == "sigma" ? "stiffness σ" : "slip force Tc", unit.name),
+                   .y_label = "shape exponent α",
+                   .series = {std::move(boundary), std::move(best), std::move(mindlin)}};
+}
+
 std::vector<PlotPanel> LoadPanels(const Report& report, const PanelUnits& units) {
   std::vector<PlotPanel> panels;
   if (!report.load_series) return panels;

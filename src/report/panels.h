@@ -46,6 +46,11 @@ io::PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units
 /// ±1.96/√n of white noise. Empty for fewer than eight samples, or where nothing is left over.
 std::optional<io::PlotPanel> ResidualAutocorrelation(const Report& report);
 
+/// Draws a joint confidence region, with the estimate and Mindlin's exponent; nothing without a
+/// region of these parameters or where either is not identified.
+/// @param first  "sigma" or "slip_force"; the second is alpha
+std::optional<io::PlotPanel> RegionPanel(const Report& report, std::string_view first);
+
 /// Returns the likelihood along the slip force. Empty where the fit had no need to look at it, and
 /// under a model that is inadequate.
 std::optional<io::PlotPanel> SlipForceLikelihood(const Report& report);

@@ -140,6 +140,31 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return Number(item.estimate.upper95); }, WhyIntervalOpen},
       {"ci95_parts", "", "contributions to ci95, their union",
        [](const Item& item) { return List(IntervalFields(), item.estimate.interval); }},
+      {"prior.value", "of the parameter", "centre of its prior; absent without one",
+       [](const Item& item) {
+         return item.estimate.prior ? Number(item.estimate.prior->value) : Value{};
+       }},
+      {"prior.standard_uncertainty", "of the parameter", "of the prior",
+       [](const Item& item) {
+         return item.estimate.prior ? Number(item.estimate.prior->standard_uncertainty) : Value{};
+       }},
+      {"without_priors.value", "of the parameter",
+       "estimate of a fit without the priors of all parameters; absent where there is none",
+       [](const Item& item) {
+         const auto& without = item.estimate.without_priors;
+         return without ? Number(without->value) : Value{};
+       }},
+      {"without_priors.standard_error", "of the parameter", "its standard error",
+       [](const Item& item) {
+         const auto& without = item.estimate.without_priors;
+         return without ? Number(without->standard_error) : Value{};
+       },
+       [](const Item&) { return std::string("held, or not determined without the priors"); }},
+      {"without_priors.moved", "-", "value less this one, over this standard error",
+       [](const Item& item) {
+         return item.estimate.without_priors ? Number(item.estimate.MovedByPriors()) : Value{};
+       },
+       [](const Item&) { return std::string("held, or not determined without the priors"); }},
       {"status", "", "free, fixed, at_lower_bound or at_upper_bound",
        [](const Item& item) { return Text(Name(item.estimate.status)); }},
       {"identifiability", "",
@@ -147,6 +172,32 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return Text(Name(item.estimate.identifiability)); }},
   };
   return fields;
+}
+
+const std::vector<Field<identification::ConfidenceRegion>>& RegionFields() {
+  using Item = identification::ConfidenceRegion;
+  static const std::vector<Field<Item>> fields = {
+      {"parameters[0]", "", "name of the first parameter",
+       [](const Item& item) { return Text(item.parameters[0]); }},
+      {"parameters[1]", "", "name of the second",
+       [](const Item& item) { return Text(item.parameters[1]); }},
+      {"closed", "", "the boundary was reached in every direction, or alpha = 0 before it",
+       [](const Item& item) { return Flag(item.closed); }},
+      {"boundary", "of the parameters", "points [first, second], once around the estimate",
+       [](const Item& item) {
+         Value::Array points;
+         for (const auto& [first, second] : item.boundary) {
+           points.push_back({Value::Array{Number(first), Number(second)}});
+         }
+         return Value{std::move(points)};
+       }},
+  };
+  return fields;
+}
+
+Value Regions(const Report& report) {
+  if (!report.fit.regions) return {};
+  return report.fit.regions->empty() ? Missing() : List(RegionFields(), *report.fit.regions);
 }
 
 ParameterEstimate NotEstimated(const char* name, const char* unit) {
@@ -208,9 +259,20 @@ void AddParameterFields(FieldTable& table) {
       {"parameters", "", "one member a parameter, by name", Parameters},
       {"correlation", "-", "correlation of the errors of free parameters, by their names",
        Correlations},
+      {"regions", "",
+       "joint confidence regions of sigma and alpha and of slip_force and alpha, of the noise "
+       "alone; only with --regions or --report",
+       Regions,
+       [](const Report& report) {
+         return report.failed() ? WhyFailed(report)
+                                : std::string(
+                                      "the model is inadequate, or alpha is held, at a "
+                                      "bound or not determined");
+       }},
   });
   table.Describe("parameters.NAME.", ParameterFields());
   table.Describe("parameters.NAME.ci95_parts[].", IntervalFields());
+  table.Describe("regions[].", RegionFields());
   table.items.push_back({"correlation.NAME.NAME", "-", "of the errors of two free parameters"});
 }
 

@@ -440,6 +440,13 @@ std::string RigNotTried(const Finding& finding, const FitResult&, const Units&) 
                 : "keep to one load with --load-window, or measure the rig's stiffness");
 }
 
+std::string PriorContradicted(const Finding& finding, const FitResult&, const Units&) {
+  return fmt::format(
+      "the prior of {} lies {:.2g} standard deviations from what the record says without it: the "
+      "fit is between the two, and neither; check the prior and its unit, and the model",
+      fmt::join(finding.parameters, ", "), Needed(finding, "distance"));
+}
+
 std::string NoiseInDisplacement(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "the displacement is the noisier channel, {:.2g} % of X against {:.2g} % of T*, and the "
@@ -509,6 +516,7 @@ constexpr auto kSentences = std::to_array<SentenceRow>({
     {"several_minima", SeveralMinima},
     {"shape_or_rig", ShapeOrRig},
     {"rig_not_tried", RigNotTried},
+    {"prior_contradicted", PriorContradicted},
     {"law_undecided", LawUndecided},
     {"other_law_fits_better", OtherLawFitsBetter},
     {"memory_contradicts_law", MemoryContradictsLaw},

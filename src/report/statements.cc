@@ -145,6 +145,27 @@ std::string SlipStatement(const LoopDescription& loop, const Units& units) {
                      100 * loop.slip_force_share);
 }
 
+std::string PriorStatement(const FitResult& fit) {
+  std::vector<std::string> priors;
+  std::vector<std::string> moved;
+  for (const ParameterEstimate& estimate : fit.parameters) {
+    if (estimate.prior) {
+      priors.push_back(
+          fmt::format("{} = {}", estimate.name,
+                      QuantityWithError(estimate.prior->value, estimate.prior->standard_uncertainty,
+                                        estimate.unit)));
+    }
+    if (const std::optional<double> by = estimate.MovedByPriors()) {
+      moved.push_back(fmt::format("{} by {:+.2g}", estimate.name, *by));
+    } else if (estimate.without_priors && estimate.status != ParameterStatus::kFixed) {
+      moved.push_back(fmt::format("{}, which the record alone does not determine", estimate.name));
+    }
+  }
+  if (priors.empty()) return "";
+  return fmt::format("prior: {}; it moves, in standard errors without it, {}",
+                     fmt::join(priors, ", "), fmt::join(moved, ", "));
+}
+
 std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   if (fit.adequacy.verdict != identification::AdequacyVerdict::kDoubtful) return "";
   const double quantile = NormalQuantile(fit.confidence);

@@ -54,6 +54,10 @@ std::string VarianceStatement(const contact::PropagatedValue& value);
 /// Says whether the contact slips as a whole, and from where on.
 std::string SlipStatement(const LoopDescription& loop, const Units& units);
 
+/// Returns which priors the fit has, and by how many standard errors they moved each parameter;
+/// empty without any.
+std::string PriorStatement(const identification::FitResult& fit);
+
 /// Says why intervals are far wider than standard errors make them; "" where none is.
 std::string WideIntervalStatement(const identification::FitResult& fit, const Units& units);
 

@@ -536,6 +536,8 @@ std::string ToText(const Report& report, const TextOptions& options) {
   text += "\n" + tables.first;
   const std::string slip_forces = SlipForcesStatement(report);
   if (!slip_forces.empty()) text += Wrapped(slip_forces, 13);
+  const std::string priors = PriorStatement(fit);
+  if (!priors.empty()) text += Wrapped(priors, 7);
   std::string rest = tables.rest;
   const std::string wide = WideIntervalStatement(fit, report.units);
   if (!wide.empty()) rest += Wrapped(wide, 2);

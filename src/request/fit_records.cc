@@ -230,25 +230,26 @@ void UseMeasuredNormalLoad(contact::KnownContact& known, const identification::F
 }
 
 /// Makes the requested fit, of the model and terms that are named or left to be chosen.
+/// @param options    changed to those of the model and terms that are chosen
 /// @param selection  written where the model is chosen
 /// @param terms      written where terms are chosen or named together
-identification::FitResult FitAsked(const FitRequest& request, const FitOptions& options,
+identification::FitResult FitAsked(const FitRequest& request, FitOptions& options,
                                    std::span<const Record> records,
                                    std::optional<identification::ModelSelection>& selection,
                                    std::optional<identification::TermSelection>& terms) {
   try {
     const bool by_default = ChoosesTermsByDefault(request) && records.size() == 1;
     const bool chooses_terms = by_default || request.term_choice == kAutomatic;
-    FitOptions of_terms = options;
     if (request.model == kAutomatic) {
       selection = identification::SelectModel(records, options);
-      if (!chooses_terms) return selection->fit;
       const identification::ModelScore& chosen = selection->scores[selection->chosen];
-      of_terms.model = chosen.model;
-      if (chosen.rig) of_terms.terms.emplace_back("rig_stiffness");
+      options.model = chosen.model;
+      if (chosen.rig) options.terms.emplace_back("rig_stiffness");
+      if (!chooses_terms) return selection->fit;
     }
     if (chooses_terms) {
-      terms = identification::SelectTerms(records, of_terms, {.only_for_use = by_default});
+      terms = identification::SelectTerms(records, options, {.only_for_use = by_default});
+      options = terms->options;
       identification::FitResult fit = std::move(terms->fit);
       // A law that is enough is reported as without a choice.
       if (by_default && terms->considered.empty()) terms.reset();
@@ -256,7 +257,10 @@ identification::FitResult FitAsked(const FitRequest& request, const FitOptions& 
     }
     const std::vector<std::string> named = NamedTerms(request);
     if (!named.empty() && options.response() == loop::Channel::kForce) {
-      return identification::SelectTerms(records, options, {.named = named}).fit;
+      identification::TermSelection selected =
+          identification::SelectTerms(records, options, {.named = named});
+      options = std::move(selected.options);
+      return std::move(selected.fit);
     }
     return identification::Fit(records, options, identification::Depth::kThorough);
   } catch (const identification::TooFewSamples& error) {
@@ -429,6 +433,7 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   return report::MakeReport({.files = std::move(names),
                              .records = std::move(inputs),
                              .fit = std::move(fit),
+                             .options = options,
                              .known = known,
                              .load_window = options.preparation.load_window,
                              .trims = std::move(trims),

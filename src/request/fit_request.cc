@@ -75,7 +75,7 @@ void ApplyTerm(const Term& term, const TermRequest& asked, FitOptions& fit) {
                                                     *asked.value);
   if (asked.standard_uncertainty && !fit.fixed.contains(name)) {
     fit.terms.push_back(name);
-    fit.stated[name] = {*asked.value, *asked.standard_uncertainty};
+    fit.priors[name] = {*asked.value, *asked.standard_uncertainty};
     return;
   }
   if (!fit.fixed.emplace(name, *asked.value).second) {
@@ -151,7 +151,7 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
   }
 }
 
-/// A start or a bound of what the fit does not move would be taken without a word.
+/// A start, a bound or a prior of what the fit does not move would be taken without a word.
 void RequireFitted(std::string_view option, const std::string& name, bool is_automatic,
                    const FitOptions& fit) {
   const auto refuse = [&](std::string_view why) {
@@ -326,8 +326,17 @@ FitOptions MakeFitOptions(const FitRequest& options) {
   for (const auto& [name, interval] : fit.bounds) {
     RequireOrdered("--bound", interval.lower, interval.upper);
   }
+  for (const auto& [name, value] : options.prior) {
+    if (!fit.priors.emplace(name, identification::Prior{value.value, value.standard_error})
+             .second) {
+      throw InputError(
+          fmt::format("--prior {} and --rig-stiffness say the same: give one of the two", name));
+    }
+  }
+  fit.regions = options.regions;
   const bool is_automatic = options.model == kAutomatic;
   RequireWithinBounds(fit);
+  for (const auto& [name, value] : fit.priors) RequireFitted("--prior", name, is_automatic, fit);
   for (const auto& [name, value] : fit.start) RequireFitted("--start", name, is_automatic, fit);
   for (const auto& [name, interval] : fit.bounds) {
     RequireFitted("--bound", name, is_automatic, fit);

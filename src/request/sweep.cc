@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 #include "mindahl/core/error.h"
 #include "mindahl/core/version.h"
@@ -38,9 +41,11 @@ bool FittedSweep::established(Strictness strictness) const {
          (!is_doubtful() || strictness != Strictness::kAdequate);
 }
 
-FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
-                         const io::ColumnChoice& response, std::optional<double> response_noise,
-                         const Tell& note) {
+FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::SweepFile sweep,
+                     const std::string& kind, std::optional<double> response_noise,
+                     const Tell& note) {
+  constexpr std::array<std::string_view, 2> kKinds = {"secant", "tangent"};
+  RequireOneOf("--sweep", kind, kKinds);
   const std::string& model = request.model;
   if (model != "mindlin-dahl" && model != "mindlin" && model != "jenkins") {
     throw InputError(
@@ -48,13 +53,7 @@ FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
                     "jenkins",
                     model));
   }
-  if (request.files.size() != 1) {
-    throw InputError("--sweep: is of one file: fit each by itself");
-  }
-  FittedSweep fitted{.file = request.files.front(),
-                     .sweep = io::ReadSweep(request.files.front(), request.columns, response),
-                     .asked = {},
-                     .fit = {}};
+  FittedSweep fitted{.file = file, .sweep = std::move(sweep), .asked = {}, .fit = {}};
   for (const std::string& text : fitted.sweep.notes) note(text);
   SweepOptions& asked = fitted.asked;
   asked.stiffness = kind == "tangent" ? identification::SweepStiffness::kTangent
@@ -68,6 +67,17 @@ FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
   for (const auto& [name, value] : MakeFitOptions(request).fixed) asked.fixed[name] = value;
   fitted.fit = identification::FitSweep(fitted.sweep.amplitude, fitted.sweep.response, asked);
   return fitted;
+}
+
+FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
+                         const io::ColumnChoice& response, std::optional<double> response_noise,
+                         const Tell& note) {
+  if (request.files.size() != 1) {
+    throw InputError("--sweep: is of one file: fit each by itself");
+  }
+  const std::string& file = request.files.front();
+  return FitSweep(request, file, io::ReadSweep(file, request.columns, response), kind,
+                  response_noise, note);
 }
 
 std::string ToJson(const FittedSweep& fitted) {

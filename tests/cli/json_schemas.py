@@ -99,6 +99,7 @@ COMMANDS = [
     ("tradeoff --excitation micro", 0),
     ("validate --cases 2", 0),
     ("validate --cases 1 --seed 3", None),
+    ("fit loop.csv --terms none --prior sigma=4e7±10% --prior force_offset=0±1 --regions", 0),
     ("fit sweep.csv --sweep tangent", 0),
     ("fit sweep.csv --sweep tangent --model mindlin", 0),
     ("track long.csv --output cycles.csv --normal-load 50", 0),

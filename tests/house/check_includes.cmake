@@ -54,6 +54,20 @@ foreach(module core contact loop models methods tradeoff convert identification 
     endif()
   endforeach()
 endforeach()
+# What a port to another system or compiler has to write anew stands in one place each.
+file(GLOB_RECURSE files ${SOURCE_DIR}/include/*.h ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/src/*.cc
+     ${SOURCE_DIR}/python/src/*)
+foreach(file IN LISTS files)
+  file(STRINGS ${file} lines
+       REGEX "^#include <(unistd|fcntl|spawn|malloc|poll|dirent|pthread|termios|sys/[a-z]+)\\.h>")
+  if(lines AND NOT file STREQUAL "${SOURCE_DIR}/src/core/platform.cc")
+    list(APPEND errors "${file}: only src/core/platform.cc may have: ${lines}")
+  endif()
+  file(STRINGS ${file} lines REGEX "__attribute__|__builtin_|\\[\\[gnu::")
+  if(lines AND NOT file STREQUAL "${SOURCE_DIR}/src/core/instruction_sets.h")
+    list(APPEND errors "${file}: only src/core/instruction_sets.h may have: ${lines}")
+  endif()
+endforeach()
 if(errors)
   list(JOIN errors "\n" text)
   message(FATAL_ERROR "${text}")

@@ -83,7 +83,7 @@ TEST(ModelTerms, StatedRigIsBetweenOneThatIsHeldAndOneThatIsFitted) {
   const auto fit_with = [&](double relative) {
     FitOptions options;
     options.terms = {"rig_stiffness"};
-    options.stated["rig_stiffness"] = {kOff * kRig, relative * kOff * kRig};
+    options.priors["rig_stiffness"] = {kOff * kRig, relative * kOff * kRig};
     return FitOne(record, options);
   };
   const auto covers = [](const FitResult& fit, const char* name, double truth) {
@@ -117,21 +117,6 @@ TEST(ModelTerms, StatedRigIsBetweenOneThatIsHeldAndOneThatIsFitted) {
   constexpr double kHardlyStated = 1e-3;
   EXPECT_NEAR(std::log(vague.Find("rig_stiffness")->value / open.Find("rig_stiffness")->value), 0,
               kHardlyStated);
-}
-
-TEST(ModelTerms, StatedValuesAreOfTheRigAndOfPlainFits) {
-  const Record record = SprungLoop(kMindlin, kRig);
-  FitOptions options;
-  options.terms = {"rig_stiffness"};
-  options.stated["rig_stiffness"] = {kRig, 0.0};
-  EXPECT_THAT(RefusalOf(record, options),
-              HasSubstr("standard uncertainty of rig_stiffness [N/m] = 0"));
-  options.stated["rig_stiffness"] = {kRig, 0.03 * kRig};
-  options.loss = Loss::kHuber;
-  EXPECT_THAT(RefusalOf(record, options), HasSubstr("a stated uncertainty has no place"));
-  options.loss = Loss::kNone;
-  options.stated["sigma"] = {1e7, 1e5};
-  EXPECT_THAT(RefusalOf(record, options), HasSubstr("sigma cannot be stated"));
 }
 
 TEST(ModelTerms, StiffnessOfContactAndRigTogetherIsKnownBetterThanEither) {

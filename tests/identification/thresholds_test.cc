@@ -172,6 +172,16 @@ bool AsymmetryIsUntold(const Thresholds& thresholds, double never_slips) {
   return FindUntoldAsymmetry(result, thresholds).has_value();
 }
 
+/// A prior of α so many standard deviations off, which prior and record make in equal parts.
+bool PriorIsContradicted(const Thresholds& thresholds, double distance) {
+  FitResult result = Made();
+  ParameterEstimate& alpha = result.parameters[kShape];
+  constexpr double kError = 0.01;
+  alpha.without_priors = {alpha.value, kError};
+  alpha.prior = {alpha.value + distance * std::numbers::sqrt2 * kError, kError};
+  return FindContradictedPrior(result, thresholds).has_value();
+}
+
 /// A push and a way back, of a contact that was unloaded away from the first sample [of X].
 bool PastIsUnknown(const Thresholds& thresholds, double away) {
   History displacement;
@@ -938,6 +948,10 @@ const std::map<std::string_view, Case>& Cases() {
        [](const Thresholds& t) {
          return !NoiseIsInDisplacement(kBelow * 0.05, 0.01, t) &&
                 NoiseIsInDisplacement(kAbove * 0.05, 0.01, t);
+       }},
+      {"prior_distance",
+       [](const Thresholds& t) {
+         return !PriorIsContradicted(t, kBelow * 3.0) && PriorIsContradicted(t, kAbove * 3.0);
        }},
       {"never_slips",
        [](const Thresholds& t) {

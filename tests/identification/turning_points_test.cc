@@ -51,6 +51,27 @@ testing::History Nested() {
   return history;
 }
 
+/// A prior that is a million times as sharp as the record holds its parameter.
+TEST(TurningPoints, PriorsAreInTheirFit) {
+  const testing::History history = Nested();
+  FitOptions options;
+  const double stiffness = 1.02 * kLaw.tangential_stiffness;
+  Stages stages(Sparse(MakeRecord(history, Respond(Model("mindlin-dahl"), kLaw, history)), 3, 7),
+                options);
+  const Solution start = stages.Solve();
+  options.priors["sigma"] = {stiffness, 1e-9 * stiffness};
+  stages.data.prior_noise = 1e-3;
+  stages.problem.parameters =
+      Parameters(stages.data, options, InitialState::kVirgin, Stages::Memory());
+  Response response;
+  const TurningPointFit fit = FitTurningPoints(
+      stages.problem, start, std::vector<double>(LongestOvershoots(stages.data).size(), 0.0),
+      SolverOptions{}, response);
+  EXPECT_NEAR(fit.solution.theta[kStiffness],
+              stages.problem.parameters[kStiffness].ToTheta(stiffness), 1e-6);
+  EXPECT_GT(std::abs(start.theta[kStiffness] - fit.solution.theta[kStiffness]), 1e-3);
+}
+
 TEST(TurningPoints, ColumnsAreTheDerivativesByTheOvershoots) {
   constexpr double kStep = 1e-6;
   constexpr double kDifferences = 1e-5;  // of forces of order one: rounding over the step, twice

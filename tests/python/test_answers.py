@@ -104,6 +104,47 @@ def test_tradeoff_is_the_program_s_but_for_what_is_timed():
     assert len(result.to_pandas("model_regions")) == len(result.model_regions)
 
 
+def sweep_file(directory, header):
+    forces = np.arange(4.0, 55.0, 4.0)
+    stiffness = 40 * (1 - forces / 60) ** 0.333 + (forces * 7919 % 11) / 50
+    path = directory / "sweep.csv"
+    path.write_text("\n".join([header, *(f"{q},{k}" for q, k in zip(forces, stiffness))]) + "\n")
+    return path, forces, stiffness
+
+
+@pytest.mark.parametrize("keywords, options", [
+    ({"kind": "tangent"}, ["tangent"]),
+    ({"kind": "secant", "fix": {"slip_force": 60.0}, "confidence": 0.9},
+     ["secant", "--fix", "slip_force=60", "--confidence", "0.9"]),
+    ({"kind": "tangent", "model": "mindlin", "response_noise": 1e5, "response": "stiffness",
+      "force": 1, "force_unit": "N"},
+     ["tangent", "--model", "mindlin", "--response-noise", "1e5", "--response", "stiffness",
+      "--force", "1", "--force-unit", "N"]),
+])
+def test_sweep_is_the_program_s(tmp_path, keywords, options):
+    path, forces, stiffness = sweep_file(tmp_path, "force amplitude [N],stiffness [N/um]")
+    result = mindahl.sweep(path, **keywords)
+    same_document(result, "fit", path, "--sweep", *options)
+    assert result.established and list(result.to_pandas()["name"]) == list(result.parameters)
+    frame = pandas.DataFrame({"force amplitude [N]": forces, "stiffness [N/um]": stiffness})
+    assert mindahl.sweep(frame, **keywords).parameters == result.parameters
+    if "response" not in keywords:
+        arrays = mindahl.sweep(force=forces, response=stiffness, response_unit="N/um", **keywords)
+        assert arrays.parameters == result.parameters
+
+
+def test_a_sweep_names_what_is_wrong(tmp_path):
+    _, forces, stiffness = sweep_file(tmp_path, "force amplitude [N],stiffness [N/um]")
+    with pytest.raises(ValueError, match="response and one of force and displacement"):
+        mindahl.sweep(force=forces)
+    with pytest.raises(mindahl.InputError, match="is of a Masing law"):
+        mindahl.sweep(force=forces, response=stiffness, model="dahl")
+    with pytest.raises(mindahl.InputError, match="both"):
+        mindahl.sweep(force=forces, response=stiffness, kind="both")
+    with pytest.raises(mindahl.InputError, match="must be > 0 in a sweep"):
+        mindahl.sweep(force=forces, response=-stiffness)
+
+
 def test_validate_is_the_program_s():
     result = mindahl.validate(cases=2, seed=3)
     same_document(result, "validate", "--cases", "2", "--seed", "3")

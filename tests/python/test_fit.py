@@ -312,6 +312,69 @@ def test_what_a_person_should_act_on_is_warned_of():
     assert not result.slip_force.identifiability == "identifiable"
 
 
+def test_a_prior_is_the_program_s_and_says_how_far_it_moved(tmp_path):
+    path = DATA / "partial_slip.csv"
+    free = mindahl.fit(path, terms="none")
+    value, error = free.sigma.value, free.sigma.standard_error
+    result = mindahl.fit(path, terms="none", prior={"sigma": (value + error, error)})
+    output = tmp_path / "fit.json"
+    program("fit", path, "--terms", "none", "--prior", f"sigma={value + error!r}±{error!r}",
+            "--json", output)
+    assert result.to_json() == output.read_text()
+    assert result.sigma.prior == (value + error, error)
+    # A prior as sharp as the record moves the value by half of their distance, but for curvature.
+    assert result.sigma.moved_by_priors == pytest.approx(0.5, abs=0.05)
+    assert result.alpha.prior is None and result.alpha.moved_by_priors is not None
+    assert "prior: sigma = " in result.text()
+    assert free.sigma.prior is None and free.sigma.moved_by_priors is None
+    with pytest.raises(mindahl.InputError, match="prior: lag is not fitted"):
+        mindahl.fit(path, prior={"lag": (1e-3, 1e-4)})
+    with pytest.raises(ValueError, match="must be a pair"):
+        mindahl.fit(path, prior={"sigma": 1e7})
+
+
+def test_regions_are_boundaries_around_the_estimate():
+    result = mindahl.fit(SPHERE, terms="none", regions=True)
+    assert [region.parameters for region in result.regions] == [
+        ("sigma", "alpha"), ("slip_force", "alpha")]
+    for region in result.regions:
+        assert region.closed and region.boundary.shape[1] == 2
+        for k, name in enumerate(region.parameters):
+            low, high = region.boundary[:, k].min(), region.boundary[:, k].max()
+            assert low < result.parameters[name].value < high
+        pyplot = pytest.importorskip("matplotlib.pyplot")
+        axes = pyplot.figure().add_subplot()
+        assert region.plot(axes, color="k") is axes and len(axes.lines) == 1
+    assert mindahl.fit(SPHERE, terms="none").regions == ()
+
+
+def test_a_sampler_of_the_log_likelihood_finds_the_intervals():
+    emcee = pytest.importorskip("emcee")
+    rng = np.random.default_rng(5)
+    _, displacement = mindahl.excitation("sine", amplitude=2.5e-6, cycles=2, samples_per_cycle=60)
+    force = mindahl.simulate(displacement, sigma=5e7, slip_force=60.0, alpha=0.4)
+    result = mindahl.fit(displacement, force + 0.3 * rng.standard_normal(force.size),
+                         force_noise=0.3, displacement_noise=0.0, terms="none")
+    likelihood = result.log_likelihood()
+    highest = likelihood(likelihood.values)
+    assert likelihood(likelihood.values + likelihood.standard_errors) < highest
+    assert likelihood(-likelihood.values) == -np.inf
+    with pytest.raises(ValueError):
+        likelihood(likelihood.values[1:])
+    walkers = 24
+    start = likelihood.values + 0.5 * likelihood.standard_errors * rng.standard_normal(
+        (walkers, len(likelihood.names)))
+    sampler = emcee.EnsembleSampler(walkers, len(likelihood.names), likelihood)
+    sampler.random_state = np.random.RandomState(3).get_state()
+    sampler.run_mcmc(start, 600)
+    chain = sampler.get_chain(discard=200, flat=True)
+    for k, name in enumerate(likelihood.names):
+        low, high = np.percentile(chain[:, k], [2.5, 97.5])
+        expected = result.parameters[name].interval
+        # 24 walkers over 400 steps are some 200 independent draws: 0.25 of an error at either end.
+        assert [low, high] == pytest.approx(expected, abs=likelihood.standard_errors[k]), name
+
+
 def test_every_option_of_the_program_s_fit_is_a_keyword():
     options = set(re.findall(r"^ {2}(?:-\w, ?)?--([a-z0-9-]+)", program("fit", "--help"), re.M))
     keywords = set(inspect.signature(mindahl.fit).parameters)

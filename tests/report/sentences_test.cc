@@ -72,7 +72,8 @@ Finding Complete(FindingCode code, std::string_view kind = "") {
                      {"deviation", 2.4e-9},
                      {"p_value", 0.0035},
                      {"dahl_p_value", 0.25},
-                     {"never_slips", 0.12}};
+                     {"never_slips", 0.12},
+                     {"distance", 4.5}};
   return finding;
 }
 
@@ -147,6 +148,7 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
        {"Masing's law", "ΔAICc = -31.5", "of Dahl's memory", "0.25", "0.0035"}},
       {"memory_contradicts_law", "dahl", {"Dahl's own law", "of Masing's memory"}},
       {"rig_not_tried", "", {"alpha = 0.0625", "--load-window"}},
+      {"prior_contradicted", "", {"4.5 standard deviations", "check the prior"}},
       {"rig_not_tried", "imposed_force", {"alpha = 0.0625", "take its part off"}},
       {"noise_in_displacement", "", {"4.5 % of X", "0.5 % of T*", "--noise-in displacement"}},
       {"displacement_noise_estimated", "", {"2.4 nm", "--displacement-noise"}},

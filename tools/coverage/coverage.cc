@@ -463,7 +463,8 @@ std::vector<Scenario> Scenarios() {
       {.name = "rig of 3 sigma stated to 3 %, which is drawn, lambda 1.2",
        .lowest_coverage = 0.93,
        .rig = 3.0,
-       .rig_uncertainty = 0.03},
+       .prior = "rig_stiffness",
+       .prior_uncertainty = 0.03},
       {.name = "30 samples a cycle, late by 1.5 samples: lag fitted",
        .samples_per_cycle = 30,
        .steps_a_reading = 20,
@@ -488,6 +489,31 @@ std::vector<Scenario> Scenarios() {
        .force_noise = 0.001,
        .displacement_noise = 0.002,
        .noise_is_known = false},
+      {.name = "sigma known to 0.3 % before, lambda 0.6",
+       .lambda = 0.6,
+       .lowest_coverage = kPartialSlipLow,
+       .highest_coverage = 1.0,
+       .prior = "sigma",
+       .prior_uncertainty = 0.003},
+      {.name = "alpha known to 5 % before, lambda 0.6",
+       .lambda = 0.6,
+       .lowest_coverage = kPartialSlipLow,
+       .highest_coverage = 1.0,
+       .prior = "alpha",
+       .prior_uncertainty = 0.05},
+      {.name = "regions: white 1 %, lambda 1.2",
+       .lowest_coverage = kWhiteLow,
+       .highest_coverage = kWhiteHigh,
+       .counts_regions = true},
+      {.name = "regions: white 1 %, lambda 0.6",
+       .lambda = 0.6,
+       .lowest_coverage = kPartialSlipLow,
+       .highest_coverage = 1.0,
+       .counts_regions = true},
+      {.name = "regions: AR(1) 0.9, 1 %, 10 cycles",
+       .cycles = 10,
+       .noise = Noise::kAutoregressive,
+       .counts_regions = true},
       {.name = "imposed force to 0.95 Tc, displacement noise 1 %",
        .noise = Noise::kAnswer,
        .displacement_noise = 0.01,
@@ -539,6 +565,23 @@ std::vector<Scenario> Scenarios() {
   };
 }
 
+namespace {
+
+double PriorTruth(const Scenario& scenario) {
+  if (scenario.prior == "rig_stiffness") return RigOf(scenario).stiffness;
+  const BranchLaw law = LawOf(scenario);
+  if (scenario.prior == "alpha") return law.shape_exponent;
+  return scenario.prior == "sigma" ? law.tangential_stiffness : law.slip_force;
+}
+
+/// Of a positive parameter the logarithm is normal, of α the value.
+identification::Prior PriorAt(const Scenario& scenario, double value) {
+  const double of = scenario.prior == "alpha" ? PriorTruth(scenario) : value;
+  return {value, scenario.prior_uncertainty * of};
+}
+
+}  // namespace
+
 Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t first_seed) {
   const BranchLaw law = LawOf(scenario);
   const bool is_asymmetric = scenario.asymmetry != 0;
@@ -553,7 +596,8 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
                                                                      scenario.FourthParameter()};
   const std::size_t parameters = names.back().empty() ? truth.size() - 1 : truth.size();
   const std::vector<Record> clean = CleanRecords(scenario);
-  const FitOptions options = OptionsOf(scenario);
+  FitOptions options = OptionsOf(scenario);
+  options.regions = scenario.counts_regions;
 
   // The bound of Cramér and Rao for white noise of what is fitted: the parabola at the truth.
   std::array<double, Coverage::kParameters> bound{};
@@ -565,9 +609,8 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
   } else {
     known.force_noise = ForceNoise(scenario);
   }
-  if (scenario.rig_uncertainty > 0) {
-    const double stiffness = RigOf(scenario).stiffness;
-    known.stated["rig_stiffness"] = {stiffness, scenario.rig_uncertainty * stiffness};
+  if (!scenario.prior.empty()) {
+    known.priors[scenario.prior] = PriorAt(scenario, PriorTruth(scenario));
   }
   const identification::FitResult at_truth = identification::Fit(clean, known);
   for (std::size_t k = 0; k < parameters; ++k) {
@@ -588,14 +631,22 @@ Coverage Measure(const Scenario& scenario, std::size_t loops, std::uint64_t firs
       records.push_back(NoisyRecord(scenario, scenario.loads[r], clean[r], normal));
     }
     FitOptions of_loop = options;
-    if (scenario.rig_uncertainty > 0) {
-      const double value =
-          RigOf(scenario).stiffness * std::exp(scenario.rig_uncertainty * normal());
-      of_loop.stated["rig_stiffness"] = {value, scenario.rig_uncertainty * value};
+    if (!scenario.prior.empty()) {
+      const double drawn = scenario.prior_uncertainty * normal();
+      of_loop.priors[scenario.prior] =
+          PriorAt(scenario,
+                  PriorTruth(scenario) * (scenario.prior == "alpha" ? 1 + drawn : std::exp(drawn)));
     }
     const identification::FitResult fit = identification::Fit(records, of_loop);
     const bool is_adequate = fit.adequacy.verdict == identification::AdequacyVerdict::kAdequate;
     coverage.doubted += is_adequate ? 0.0 : 1 / static_cast<double>(loops);
+    for (const identification::ConfidenceRegion& region :
+         fit.regions.value_or(std::vector<identification::ConfidenceRegion>())) {
+      const bool is_of_slip = region.parameters[0] == "slip_force";
+      const double first = is_of_slip ? law.slip_force : law.tangential_stiffness;
+      if (!region.Contains(first, law.shape_exponent)) continue;
+      coverage.regions_covered.at(is_of_slip ? 1 : 0) += 1 / static_cast<double>(loops);
+    }
     coverage.rejected += fit.adequacy.p_value < 0.05 ? 1 / static_cast<double>(loops) : 0.0;
     for (std::size_t k = 0; k < parameters; ++k) {
       const identification::ParameterEstimate& estimate = *fit.Find(names[k]);

@@ -69,6 +69,7 @@ inline constexpr auto kFindings = [] {
       {"several_minima", kIdentifiable, kNote},
       {"shape_or_rig", kNotIdentifiable},
       {"rig_not_tried", kNotIdentifiable},
+      {.code = "prior_contradicted"},
       // about the law: under its own law a parameter is as well known as before
       {"law_undecided", kIdentifiable, kNote},
       {"other_law_fits_better", kIdentifiable, kWarning, true},

@@ -19,10 +19,11 @@ using loop::Interval;
 /// Sets the weight of large residuals: full, or less (reweighting.h has the constants).
 enum class Loss { kNone, kHuber, kCauchy, kTukey };
 
-/// Holds a stated parameter with its uncertainty: its logarithm is normally distributed.
-struct StatedValue {
-  double value = 0.0;                 ///< in the parameter's unit, > 0
-  double standard_uncertainty = 0.0;  ///< likewise
+/// What is known of a parameter before the fit: a normal law, of the logarithm of one that is
+/// positive.
+struct Prior {
+  double value = 0.0;                 ///< in the parameter's unit
+  double standard_uncertainty = 0.0;  ///< likewise, > 0
 };
 
 /// Sets what is fitted and how. Parameters have the names of Terms(); with several records those of
@@ -71,8 +72,9 @@ struct FitOptions {
   Loss loss = Loss::kNone;
 
   std::map<std::string, double> fixed;  ///< parameter held at a value
-  /// Terms that are fitted with what is known of them as one more reading: rig_stiffness.
-  std::map<std::string, StatedValue> stated;
+  /// What is known of parameters that are fitted: each is one more residual, (θ − θ_prior)/u
+  /// against the noise that a fit without priors finds.
+  std::map<std::string, Prior> priors;
   std::map<std::string, double> start;     ///< replaces the starting value found from the data
   std::map<std::string, Interval> bounds;  ///< replaces the default bounds
 
@@ -83,6 +85,10 @@ struct FitOptions {
   /// … or 20 steps together raise twice the log-likelihood by less than 1e-3 …
   /// … or it has made this many steps: then the result is not converged.
   int max_iterations = 500;
+
+  /// Adds the joint confidence regions of σ and α and of Tc and α, from Depth::kFull on: some 300
+  /// searches.
+  bool regions = false;
 
   /// Starting points refined on all samples, best first: up to four of a look at the plane of σ/Tc
   /// and α, and beyond them drawn at random.

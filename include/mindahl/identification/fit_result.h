@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
+#include "mindahl/identification/fit_options.h"
 #include "mindahl/loop/cycles.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/facts.h"
@@ -32,6 +34,19 @@ struct ProfilePoint {
 struct LikelihoodProfile {
   double critical = 0.0;             ///< F(1, ν) beyond which points are outside the 95 % interval
   std::vector<ProfilePoint> points;  ///< in order of slip force
+};
+
+/// Joint confidence region of two parameters, all others fitted again at every point of its
+/// boundary: 2 ln Λ = 2·F(2, ν), against the noise that the intervals have. It does not include
+/// the model discrepancy.
+struct ConfidenceRegion {
+  std::array<std::string, 2> parameters;        ///< by name
+  std::vector<std::array<double, 2>> boundary;  ///< [their units], once around the best fit
+  /// True if the likelihood reaches the critical value in every direction, or α = 0 before it.
+  bool closed = true;
+
+  /// True if a point [their units] lies within the boundary.
+  [[nodiscard]] bool Contains(double first, double second) const;
 };
 
 /// Masing's law (Mindlin's, Full-Dahl) or Dahl's own: which of the two a record is of. σ and Tc are
@@ -130,6 +145,12 @@ struct IntervalPart {
   std::optional<double> upper = {};
 };
 
+/// Holds what the records say of a parameter without the priors of the fit.
+struct WithoutPriors {
+  double value = 0.0;
+  std::optional<double> standard_error;  ///< empty when fixed, at a bound or undetermined
+};
+
 struct ParameterEstimate {
   std::string name;
   std::string unit;
@@ -142,6 +163,12 @@ struct ParameterEstimate {
   Identifiability identifiability = Identifiability::kNotIdentifiable;
   /// The contributions of which the interval is the union; empty where there is none.
   std::vector<IntervalPart> interval = {};
+  std::optional<Prior> prior = {};                   ///< of this parameter, where it has one
+  std::optional<WithoutPriors> without_priors = {};  ///< where any parameter has one
+
+  /// Returns by how many of the standard errors without priors the priors moved the value; empty
+  /// where there is none.
+  [[nodiscard]] std::optional<double> MovedByPriors() const;
 
   /// True if a contribution of this kind sets an end of the interval.
   [[nodiscard]] bool IsSetBy(IntervalSource source) const;
@@ -259,6 +286,9 @@ struct FitResult {
   std::optional<MemoryTest> memory;
   /// Likelihood along Tc, from Depth::kErrors on; empty where the parabola was good enough.
   std::optional<LikelihoodProfile> slip_force_profile;
+  /// With FitOptions::regions, from Depth::kFull on: of σ and α and of Tc and α, each where both
+  /// parameters are inside their bounds and the model is not inadequate.
+  std::optional<std::vector<ConfidenceRegion>> regions;
   std::vector<ParameterEstimate> parameters;
   /// Correlation of the parameters in the order of `parameters`, row-major; NaN where undefined
   std::vector<double> correlation;

@@ -64,6 +64,7 @@ struct Thresholds {
   double visible_noise = 0.002;
   double noisier_displacement = 5.0;
   double never_slips = 0.01;
+  double prior_distance = 3.0;
 };
 
 struct ThresholdRow {

@@ -154,6 +154,9 @@ struct SweepFile {
 /// @throws InputError as ReadRecord(); for both amplitudes or none; for a value that is not > 0
 SweepFile ReadSweep(const std::filesystem::path& path, const RecordColumns& columns,
                     const ColumnChoice& response);
+/// The same of a table.
+SweepFile SweepOf(const CsvTable& table, const RecordColumns& columns,
+                  const ColumnChoice& response);
 
 /// Displacements [m] to impose, one for each row, in order; with the unit m the very doubles of the
 /// file.

@@ -31,6 +31,7 @@ struct ReportInput {
   std::vector<std::string> files;       ///< name of each record, as it is to be printed
   std::vector<io::RecordFile> records;  ///< records that were fitted, as read
   identification::FitResult fit;
+  identification::FitOptions options = {};  ///< of the fit, with what was chosen by it
   contact::KnownContact known = {};  ///< known properties of the contact, in addition to the fit
   /// Normal loads [N] of the samples that counted, as given to the fit.
   std::optional<identification::Interval> load_window = {};

@@ -85,6 +85,8 @@ struct FitRequest {
   std::map<std::string, double> fix;
   std::map<std::string, double> start;
   std::map<std::string, identification::Interval> bound;
+  std::map<std::string, contact::UncertainValue> prior;
+  bool regions = false;
   double confidence = 0.95;
   std::optional<double> force_noise;
   std::optional<double> displacement_noise;

@@ -22,10 +22,16 @@ struct FittedSweep {
   [[nodiscard]] bool established(Strictness strictness) const;
 };
 
-/// Fits the request's one file; of the request its model, confidence, columns and what is held
-/// count.
+/// Fits a sweep; of the request its model, confidence and what is held count.
+/// @param file  its name
 /// @param kind  "secant" or "tangent"
-/// @throws InputError for a model that is no Masing law, and for more than one file
+/// @throws InputError for a model that is no Masing law
+FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::SweepFile sweep,
+                     const std::string& kind, std::optional<double> response_noise,
+                     const Tell& note);
+
+/// Fits the request's one file, whose columns the request has too.
+/// @throws InputError likewise, and for more than one file
 FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
                          const io::ColumnChoice& response, std::optional<double> response_noise,
                          const Tell& note);

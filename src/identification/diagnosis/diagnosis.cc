@@ -110,6 +110,30 @@ std::optional<Finding> FoundSeveralMinima(std::vector<std::string> apart) {
   return Finding{.code = "several_minima", .parameters = std::move(apart)};
 }
 
+std::optional<Finding> FindContradictedPrior(const FitResult& result,
+                                             const Thresholds& thresholds) {
+  Finding finding{.code = "prior_contradicted"};
+  double farthest = 0.0;
+  for (const ParameterEstimate& estimate : result.parameters) {
+    if (!estimate.prior || !estimate.without_priors || !estimate.without_priors->standard_error) {
+      continue;
+    }
+    const auto& [prior, uncertainty] = *estimate.prior;
+    const auto& [value, error] = *estimate.without_priors;
+    const Term* term = FindTerm(TermNameOf(estimate.name), result.response);
+    const bool is_positive = term != nullptr && term->positive;
+    const double distance =
+        is_positive ? std::log(value / prior) / std::hypot(*error / value, uncertainty / prior)
+                    : (value - prior) / std::hypot(*error, uncertainty);
+    if (!(std::abs(distance) > thresholds.prior_distance)) continue;
+    finding.parameters.push_back(estimate.name);
+    farthest = std::max(farthest, std::abs(distance));
+  }
+  if (finding.parameters.empty()) return std::nullopt;
+  finding.numbers = {{"distance", farthest}};
+  return finding;
+}
+
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds) {
   struct Row {
     std::string_view name;

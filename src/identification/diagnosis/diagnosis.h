@@ -29,6 +29,9 @@ std::optional<Finding> FoundUndecidedPast(std::vector<std::string> apart);
 /// Parameters that another minimum has outside their intervals; nothing without any.
 std::optional<Finding> FoundSeveralMinima(std::vector<std::string> apart);
 
+/// `prior_contradicted`: parameters whose prior lies far from what the records say without it.
+std::optional<Finding> FindContradictedPrior(const FitResult& result, const Thresholds& thresholds);
+
 /// Closed intervals too wide to call a parameter known.
 std::vector<Finding> FindWideIntervals(const FitResult& result, const Thresholds& thresholds);
 

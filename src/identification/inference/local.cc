@@ -181,19 +181,18 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
   result.determined.assign(count, true);
   if (count == 0) return result;
 
-  // A stated parameter is one more reading, with the noise of the others.
-  Eigen::MatrixXd stated = Eigen::MatrixXd::Zero(0, size);
-  for (std::size_t j = 0; j < count; ++j) {
-    const double root_weight = problem.parameters[result.columns[j]].stated_root_weight;
-    if (!(root_weight > 0)) continue;
-    stated = Eigen::MatrixXd::Zero(1, size);
-    stated(0, static_cast<Eigen::Index>(j)) = root_weight;
+  // A prior is one more reading, with the noise of the others.
+  Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(size, size);
+  for (Eigen::Index j = 0; j < size; ++j) {
+    priors(j, j) =
+        problem.parameters[result.columns[static_cast<std::size_t>(j)]].prior_root_weight;
   }
+  const bool any_prior = !priors.isZero(0.0);
   const bool is_white = displacement.residuals.size() == 0 && noise.autocorrelation.order == 0;
   Eigen::MatrixXd triangle = TriangleOf(jacobian);
-  if (stated.rows() > 0) {
-    Eigen::MatrixXd rows(triangle.rows() + stated.rows(), size);
-    rows << triangle, stated;
+  if (any_prior) {
+    Eigen::MatrixXd rows(2 * size, size);
+    rows << triangle, priors;
     triangle = TriangleOf(rows);
   }
   Eigen::VectorXd norms = triangle.colwise().norm();
@@ -216,8 +215,8 @@ LocalUncertainty AnalyseJacobian(const Problem& problem, std::vector<std::size_t
                                 orthonormal)
             : CorrelatedProduct(*problem.data, noise.autocorrelation, orthonormal);
     result.absorbed = product.trace();
-    const Eigen::MatrixXd of_stated = stated * (inverse_norms.asDiagonal() * half);
-    product += of_stated.transpose() * of_stated;
+    const Eigen::MatrixXd of_priors = priors * (inverse_norms.asDiagonal() * half);
+    product += of_priors.transpose() * of_priors;
     root = half * RootOf(product);
   }
   const Eigen::MatrixXd in_theta = inverse_norms.asDiagonal() * root;

@@ -288,7 +288,7 @@ class Weighting {
 void FillResidual(const Problem& problem, Response& response, Solution& solution) {
   solution.residual.resize(problem.size());
   EvaluateResidual(problem, solution.theta, response, solution.residual);
-  solution.sum_of_squares = 0.0;
+  solution.sum_of_squares = problem.parameters.PriorCost(solution.theta);
   for (const double r : solution.residual) solution.sum_of_squares += r * r;
   solution.report.final_cost = solution.sum_of_squares / 2;
 }

@@ -202,6 +202,9 @@ constexpr std::array kTable = {
         "a steady loop that leaves more of the slip force unreached determines no asymmetry",
         "what never slips keeps a force between its limits, of which nothing is known: it "
         "moves the asymmetry by as much"},
+    ThresholdRow{"prior_distance", &Thresholds::prior_distance, "standard deviations",
+                 "a prior further from what the records say without it contradicts them",
+                 "of a right prior that happens once in 370 fits"},
 };
 
 }  // namespace

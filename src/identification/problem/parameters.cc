@@ -164,6 +164,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
     : parameters_(memory),
       free_(memory),
       reported_(memory),
+      with_prior_(memory),
       records_(data.records.size()),
       origin_term_(OriginTerm(data.excitation)),
       state_(state) {
@@ -189,7 +190,7 @@ Parameters::Parameters(const ScaledRecords& data, const FitOptions& options,
       }
     }
   }
-  ApplyOptions(options, data.stated_noise);
+  ApplyOptions(options, data.prior_noise);
   RequireShapedColumns();
   RequireOneMotion();
   if (options.model->memory == models::Memory::kReturnPoint) {
@@ -212,6 +213,7 @@ Parameters::Parameters(const Parameters& all, std::size_t record, std::pmr::memo
     : parameters_(memory),
       free_(memory),
       reported_(memory),
+      with_prior_(memory),
       origin_term_(all.origin_term_),
       state_(all.state_.Of(record)) {
   for (const Parameter& parameter : all) {
@@ -227,6 +229,7 @@ Parameters::Parameters(const Parameters& other, std::pmr::memory_resource* memor
     : parameters_(other.parameters_, memory),
       free_(other.free_, memory),
       reported_(other.reported_, memory),
+      with_prior_(other.with_prior_, memory),
       records_(other.records_),
       origin_term_(other.origin_term_),
       state_(other.state_) {}
@@ -292,11 +295,13 @@ void Parameters::KeepShapeBelowOne(const FitOptions& options) {
 void Parameters::Sort() {
   free_.clear();
   reported_.clear();
+  with_prior_.clear();
   free_.reserve(parameters_.size());
   reported_.reserve(parameters_.size());
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     if (!parameters_[i].fixed) free_.push_back(i);
     if (!parameters_[i].absent) reported_.push_back(i);
+    if (parameters_[i].has_prior()) with_prior_.push_back(i);
   }
 }
 
@@ -374,7 +379,7 @@ Parameter& Parameters::Find(std::string_view name) {
   throw InvalidArgument(fmt::format("parameter {}", UnknownAmong(name, names)));
 }
 
-void Parameters::ApplyOptions(const FitOptions& options, double stated_noise) {
+void Parameters::ApplyOptions(const FitOptions& options, double prior_noise) {
   for (const std::string& name : options.terms) {
     const Term* term = FindTerm(name, options.response());
     if (term == nullptr ||
@@ -418,17 +423,7 @@ void Parameters::ApplyOptions(const FitOptions& options, double stated_noise) {
     Hold(parameter, value);
     parameter.absent = false;
   }
-  for (const auto& [name, stated] : options.stated) {
-    Parameter& parameter = Find(name);
-    RequireInDomain(parameter, name, stated.value);
-    RequirePositive(fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit),
-                    stated.standard_uncertainty);
-    if (parameter.term->name != "rig_stiffness" || parameter.fixed) {
-      throw InvalidArgument(fmt::format("{} cannot be stated: only rig_stiffness, fitted", name));
-    }
-    parameter.theta = parameter.stated_theta = parameter.ToTheta(stated.value);
-    parameter.stated_root_weight = stated_noise * stated.value / stated.standard_uncertainty;
-  }
+  ApplyPriors(options, prior_noise);
   for (const auto& [name, value] : options.start) {
     const Parameter& parameter = Find(name);
     RequireInDomain(parameter, name, value);
@@ -440,6 +435,32 @@ void Parameters::ApplyOptions(const FitOptions& options, double stated_noise) {
                  fmt::format("must lie within its bounds {:.6g} … {:.6g}",
                              std::min(one_end, other_end), std::max(one_end, other_end)));
   }
+}
+
+void Parameters::ApplyPriors(const FitOptions& options, double noise) {
+  for (const auto& [name, prior] : options.priors) {
+    Parameter& parameter = Find(name);
+    RequireInDomain(parameter, name, prior.value);
+    RequirePositive(fmt::format("standard uncertainty of {} [{}]", name, parameter.term->unit),
+                    prior.standard_uncertainty);
+    if (parameter.absent || options.fixed.contains(name)) {
+      throw InvalidArgument(
+          fmt::format("a prior of {} has no effect: it is not fitted; leave it out", name));
+    }
+    if (parameter.fixed) continue;  // by the model, or in this initial state
+    const double unit = parameter.term->positive ? prior.value : std::abs(parameter.scale);
+    parameter.theta = parameter.prior_theta = parameter.ToTheta(prior.value);
+    parameter.prior_root_weight = noise * unit / prior.standard_uncertainty;
+  }
+}
+
+double Parameters::PriorCost(std::span<const double> theta) const {
+  double cost = 0.0;
+  for (const std::size_t p : with_prior_) {
+    const double off = parameters_[p].prior_root_weight * (theta[p] - parameters_[p].prior_theta);
+    cost += off * off;
+  }
+  return cost;
 }
 
 bool Parameters::FindStart(const FitOptions& options, std::size_t i, double& theta) const {

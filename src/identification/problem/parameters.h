@@ -38,12 +38,12 @@ struct Parameter {
   bool confounded = false;  // held at 0, as an offset that is fitted says the same
   bool assumed = false;     // held, not where the file has its zero, but where the record begins
 
-  /// θ that is stated, and the root weight of θ's difference from it as one more residual; 0 where
-  /// nothing is stated.
-  double stated_theta = 0.0;
-  double stated_root_weight = 0.0;
+  /// θ of a prior, and the root weight of θ's difference from it as one more residual; 0 without
+  /// a prior.
+  double prior_theta = 0.0;
+  double prior_root_weight = 0.0;
 
-  [[nodiscard]] bool is_stated() const { return stated_root_weight > 0; }
+  [[nodiscard]] bool has_prior() const { return prior_root_weight > 0; }
   [[nodiscard]] double ToValue(double at_theta) const;
   [[nodiscard]] double ToTheta(double value) const;
 };
@@ -97,6 +97,10 @@ class Parameters {
 
   /// Positions of the free ones.
   [[nodiscard]] const std::pmr::vector<std::size_t>& free() const { return free_; }
+  /// Positions of those with a prior, held ones included.
+  [[nodiscard]] const std::pmr::vector<std::size_t>& with_prior() const { return with_prior_; }
+  /// Σ of the squared residuals of the priors.
+  [[nodiscard]] double PriorCost(std::span<const double> theta) const;
   /// Positions of those that a result reports.
   [[nodiscard]] const std::pmr::vector<std::size_t>& reported() const { return reported_; }
   /// Returns the place of a record's reference position, in the imposed channel.
@@ -149,7 +153,8 @@ class Parameters {
   [[nodiscard]] models::SeriesSpring RigAt(std::span<const double> theta) const;
 
  private:
-  void ApplyOptions(const FitOptions& options, double stated_noise);
+  void ApplyOptions(const FitOptions& options, double prior_noise);
+  void ApplyPriors(const FitOptions& options, double noise);
   void RequireShapedColumns() const;
   void RequireOneMotion() const;
   void HoldConfoundedAsymmetry();
@@ -161,6 +166,7 @@ class Parameters {
   std::pmr::vector<Parameter> parameters_;
   std::pmr::vector<std::size_t> free_;
   std::pmr::vector<std::size_t> reported_;
+  std::pmr::vector<std::size_t> with_prior_;
   std::size_t records_ = 1;
   std::string_view origin_term_;
   RecordStates state_;

@@ -121,12 +121,6 @@ void RequireOptions(const FitOptions& options) {
     ThrowInvalid("maximum iterations [-]", options.max_iterations, "must be >= 1");
   }
   if (options.starts < 1) ThrowInvalid("starts [-]", 0, "must be >= 1");
-  if (!options.stated.empty() &&
-      (options.loss != Loss::kNone || options.response() != loop::Channel::kForce)) {
-    throw InvalidArgument(
-        "a stated uncertainty has no place in a fit with a robust loss or of the displacement: "
-        "state the value alone");
-  }
 }
 
 void RequireInitialStates(const FitOptions& options, std::size_t records) {
@@ -178,7 +172,7 @@ void RequireToldAsymmetry(const Problem& problem) {
 
 void RequireRigStifferThanLoop(const FitOptions& options, const loop::PreparedRecords& records) {
   const auto rig = options.fixed.find("rig_stiffness");
-  if (rig == options.fixed.end() || !(rig->second > 0)) return;  // one that is stated is fitted
+  if (rig == options.fixed.end() || !(rig->second > 0)) return;  // one with a prior is fitted
   for (const loop::PreparedRecord& record : records.records) {
     const double stiffness = StiffnessOfLoop(record, records.force_sense);
     if (rig->second > stiffness) continue;

@@ -119,7 +119,7 @@ struct ScaledRecords {
   double reference_load = 0.0;         // [N]: the mean of these; 0 where they are not known
   bool is_load_series = false;         // do these differ?
   bool load_varies = false;            // within a record, and the law knows it
-  double stated_noise = 0.0;           // noise by which stated values weigh, in response units
+  double prior_noise = 0.0;            // noise against which priors weigh, in response units
   bool turns_are_fitted = false;       // are turning points between samples parameters of the fit?
 
   /// True if the force is imposed, and the displacement fitted.

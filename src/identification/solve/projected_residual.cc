@@ -34,6 +34,8 @@ double LeastLogSlipForce(const Problem& problem) {
   return std::log(largest) + kShortOfSlip;  // −∞ where none is steady
 }
 
+bool IsLinear(const Parameter& parameter) { return parameter.term->column != Regressor::kNone; }
+
 /// True if a coordinate's derivative is one column of t for all samples.
 bool IsOneColumn(const Problem& problem, const SearchedParameter& searched) {
   const bool is_of_all = problem.data->records.size() == 1 ||
@@ -51,6 +53,7 @@ void ProjectedResidual::Bind(const Problem& problem, Response& response) {
   response.Bind(problem);
   samples_ = problem.size();
   held_.assign(problem.parameters.size(), 0);
+  for (const std::size_t p : problem.parameters.with_prior()) held_[p] = 1;  // not eliminated
   theta_.resize(problem.parameters.size());
   for (std::size_t p = 0; p < problem.parameters.size(); ++p) {
     theta_[p] = problem.parameters[p].theta;
@@ -70,11 +73,12 @@ void ProjectedResidual::ChooseSearched() {
   const Parameter& slip_force = parameters[kSlipForce];
   const Parameter& rig = parameters[kRig];
   const auto is_tied = [](const Parameter& parameter) {
-    return parameter.fixed || parameter.bounded_by_user || parameter.is_stated();
+    return parameter.fixed || parameter.bounded_by_user || parameter.has_prior();
   };
-  scale_is_linear_ = is_forced() ? !is_tied(stiffness)
-                                 : !slip_force.fixed && !is_tied(stiffness) &&
-                                       !(parameters.has_rig() && is_tied(rig));
+  scale_is_linear_ = is_forced()
+                         ? !is_tied(stiffness)
+                         : !slip_force.fixed && !slip_force.has_prior() && !is_tied(stiffness) &&
+                               !(parameters.has_rig() && is_tied(rig));
   searched_.clear();
   const auto eliminate = [&](std::size_t p, double lower, double upper, double LawPoint::*point,
                              std::span<double> ResponseColumns::*column) {
@@ -104,7 +108,7 @@ void ProjectedResidual::ChooseSearched() {
   }
   for (const std::size_t p : parameters.free()) {
     const bool is_searched = p == kShape || p >= kLoadExponent;
-    if (!is_searched || parameters[p].term->column != Regressor::kNone) continue;
+    if (!is_searched || (IsLinear(parameters[p]) && !parameters[p].has_prior())) continue;
     searched_.push_back({.parameter = p,
                          .lower = parameters[p].lower,
                          .upper = parameters[p].upper,
@@ -150,9 +154,13 @@ void ProjectedResidual::FactoriseColumns() {
 }
 
 void ProjectedResidual::ReleaseLinear() {
-  if (std::ranges::count(held_, 1) == 0) return;
-  std::ranges::fill(held_, 0);
-  FactoriseColumns();
+  bool any = false;
+  for (std::size_t p = 0; p < held_.size(); ++p) {
+    const unsigned char held = problem_->parameters[p].has_prior() ? 1 : 0;
+    any = any || held_[p] != held;
+    held_[p] = held;
+  }
+  if (any) FactoriseColumns();
 }
 
 bool ProjectedResidual::HoldPassed(std::span<double> theta) {
@@ -173,7 +181,8 @@ LawPoint ProjectedResidual::PointOf(std::span<const double> u) {
   for (std::size_t j = 0; j < searched_.size(); ++j) {
     const std::size_t p = searched_[j].parameter;
     if (searched_[j].eliminated != nullptr) continue;
-    columns_move = columns_move || (theta_[p] != u[j] && ShapesColumns(*problem_, p));
+    const bool moves = ShapesColumns(*problem_, p) || IsLinear(problem_->parameters[p]);
+    columns_move = columns_move || (theta_[p] != u[j] && moves);
     theta_[p] = u[j];
   }
   if (columns_move) FactoriseColumns();
@@ -235,9 +244,7 @@ double ProjectedResidual::Regress(double log_rate, bool is_free, double held_sca
     if (!(best > 0)) scale_ = lower;
   }
   Subtract(scale_, response_values_, measured_, residual_);
-  const Parameter& rig = problem_->parameters[kRig];
-  const double off = rig.stated_root_weight * (theta_[kRig] - rig.stated_theta);
-  const double cost = Dot(residual_, residual_) + off * off;
+  const double cost = Dot(residual_, residual_) + problem_->parameters.PriorCost(theta_);
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
@@ -302,22 +309,28 @@ void ProjectedResidual::DifferentiateResponse(const LawPoint& point) {
   }
 }
 
-/// Fills the derivatives by what shapes linear columns, over the scale and without weights, at the
-/// linear parameters that were eliminated.
+/// Fills the derivatives by linear parameters that are searched and by what shapes linear columns,
+/// over the scale and without weights, at the linear parameters that were eliminated.
 void ProjectedResidual::DifferentiateColumns() {
-  const auto shapes = [&](const SearchedParameter& searched) {
-    return ShapesColumns(*problem_, searched.parameter);
+  const auto moves_columns = [&](const SearchedParameter& searched) {
+    return ShapesColumns(*problem_, searched.parameter) ||
+           IsLinear(problem_->parameters[searched.parameter]);
   };
-  if (std::ranges::none_of(searched_, shapes)) return;
+  if (std::ranges::none_of(searched_, moves_columns)) return;
   std::vector<double> theta = theta_;
   columns_.Solve(scale_, theta);
   for (std::size_t j = 0; j < searched_.size(); ++j) {
-    if (!shapes(searched_[j])) continue;
+    if (!moves_columns(searched_[j])) continue;
+    const std::size_t p = searched_[j].parameter;
     std::size_t row = 0;
     for (std::size_t r = 0; r < problem_->data->records.size(); ++r) {
       const std::size_t size = problem_->data->records[r].size();
-      AddDerivativeOfColumns(*problem_, searched_[j].parameter, r, theta, 1 / scale_,
-                             Derivative(j).subspan(row, size));
+      const std::span<double> column = Derivative(j).subspan(row, size);
+      if (IsLinear(problem_->parameters[p])) {
+        AddColumn(*problem_, p, r, theta, 1 / scale_, column);
+      } else {
+        AddDerivativeOfColumns(*problem_, p, r, theta, 1 / scale_, column);
+      }
       row += size;
     }
   }
@@ -344,10 +357,10 @@ double ProjectedResidual::Linearise(std::span<const double> u) {
       normal_(row, other) = normal_(other, row) = Dot(column, Derivative(k));
     }
     const Parameter& parameter = problem_->parameters[searched_[j].parameter];
-    if (!parameter.is_stated()) continue;
-    const double weight = parameter.stated_root_weight * parameter.stated_root_weight;
+    if (!parameter.has_prior()) continue;
+    const double weight = parameter.prior_root_weight * parameter.prior_root_weight;
     normal_(row, row) += weight;
-    gradient_[row] += weight * (u[j] - parameter.stated_theta);
+    gradient_[row] += weight * (u[j] - parameter.prior_theta);
   }
   return cost;
 }

@@ -26,9 +26,10 @@ struct SearchedParameter {
 /// of the response, orthogonal to the eliminated columns.
 ///
 /// Tc is eliminated where t is searched over σ/Tc (and Tc/k of a rig). Where the user holds or
-/// bounds σ or k, these and Tc are searched instead. In a fit of the displacement Tc is searched
-/// and its factor Tc/σ eliminated, unless the user holds or bounds σ. A bound on an eliminated
-/// factor clamps it.
+/// bounds σ or k, or one of the three has a prior, these and Tc are searched instead. In a fit of
+/// the displacement Tc is searched and its factor Tc/σ eliminated, unless the user holds or bounds
+/// σ or gives it a prior. A bound on an eliminated factor clamps it. Linear parameters with a prior
+/// are searched too; the residuals of priors are in the cost, not in residual().
 class ProjectedResidual {
  public:
   /// @param problem   must outlive the use; its weights may change before the next Bind()

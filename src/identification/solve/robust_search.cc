@@ -1,6 +1,7 @@
 #include "identification/solve/robust_search.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 
 #include <algorithm>
 #include <memory>
@@ -44,6 +45,13 @@ void SolveRobustly(const Problem& problem, Loss loss, double scale, const Solver
       ceres_problem.AddResidualBlock(CostOfSample(record, i).release(), loss_function.get(),
                                      blocks);
     }
+  }
+  for (const std::size_t p : problem.parameters.with_prior()) {
+    const Parameter& parameter = problem.parameters[p];
+    ceres_problem.AddResidualBlock(
+        new ceres::NormalPrior(Eigen::MatrixXd::Constant(1, 1, parameter.prior_root_weight / scale),
+                               Eigen::VectorXd::Constant(1, parameter.prior_theta)),
+        nullptr, &theta[p]);
   }
   for (std::size_t p = 0; p < theta.size(); ++p) {
     if (!ceres_problem.HasParameterBlock(&theta[p])) continue;

@@ -65,7 +65,7 @@ void AddStartsOfSmallerModels(Candidate& candidate, ThinnedRecords& thinned,
     // Only terms that an option names; their further coefficients stay with them.
     const Term& term = *parameters[p].term;
     const bool is_on_demand = term.presence == Presence::kOnDemand && !term.option.empty();
-    if (is_on_demand && !parameters[p].is_stated()) terms.push_back(p);
+    if (is_on_demand && !parameters[p].has_prior()) terms.push_back(p);
   }
   if (terms.empty()) return;
   Solution& solution = buffers.smaller[std::min(terms.size(), kMostNested) - 1];
@@ -189,7 +189,7 @@ void SearchBesideMinimum(Candidate& candidate, const FitOptions& options, Search
   Rivals rivals(options, buffers, best, descents);
   const Parameters& parameters = candidate.problem.parameters;
   const Parameter& rig = parameters[kRig];
-  if (!rig.absent && !rig.fixed && !rig.is_stated()) SearchOtherRigs(rivals);
+  if (!rig.absent && !rig.fixed && !rig.has_prior()) SearchOtherRigs(rivals);
   if (IsAmongKinks(parameters, best)) SearchAcrossKinks(candidate.problem, rivals);
 }
 

@@ -109,7 +109,7 @@ class Plane {
     if (parameters.has_rig()) {
       // The look's reach is that of contact and rig together: 1/σ_app = 1/σ + 1/k. Tc is about 1.
       const Parameter& rig = parameters[kRig];
-      const double stiffness = rig.fixed || rig.is_stated()
+      const double stiffness = rig.fixed || rig.has_prior()
                                    ? std::exp(rig.theta)
                                    : look.reach * (1 + look.rig_ratio) / look.rig_ratio;
       const double softer = 1 / look.reach - 1 / stiffness;
@@ -133,7 +133,7 @@ class Plane {
       return;
     }
     if (!parameters[kStiffness].fixed) theta_[kStiffness] = point.log_rate + theta_[kSlipForce];
-    if (parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].is_stated()) {
+    if (parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].has_prior()) {
       theta_[kRig] = theta_[kSlipForce] - point.log_travel;
     }
     if (parameters[kStiffness].fixed && !parameters[kSlipForce].fixed) {
@@ -282,7 +282,7 @@ void LookAround(Plane& plane, const Parameters& parameters, std::size_t guess, d
                 Looks& best) {
   const Parameter& shape = parameters[kShape];
   const bool rig_is_open =
-      parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].is_stated();
+      parameters.has_rig() && !parameters[kRig].fixed && !parameters[kRig].has_prior();
   const auto look_at = [&](std::size_t group, double reach, double alpha) {
     if (!rig_is_open) {
       KeepBetter(best[group], plane, {.reach = reach, .shape = alpha, .guess = guess});

@@ -8,14 +8,6 @@
 namespace mindahl::identification {
 namespace {
 
-/// A register of the instruction set.
-template <std::size_t kLanes>
-struct Vector {
-  using Lanes [[gnu::vector_size(kLanes * sizeof(double))]] = double;
-};
-template <std::size_t kLanes>
-using Lanes = typename Vector<kLanes>::Lanes;
-
 template <typename Vector>
 MINDAHL_INLINE void Load(const double* from, Vector& to) {
   std::memcpy(&to, from, sizeof to);

@@ -1,6 +1,7 @@
 #include "identification/solve/turning_points.h"
 
 #include <ceres/ceres.h>
+#include <ceres/normal_prior.h>
 
 #include <algorithm>
 #include <array>
@@ -441,6 +442,21 @@ class StrokeCost final : public ceres::CostFunction {
   std::vector<Eigen::Index> overshoots_;
 };
 
+/// Adds the residuals of the priors, as one block of all free parameters.
+void AddPriors(const Parameters& parameters, std::vector<double>& free,
+               ceres::Problem& ceres_problem) {
+  if (parameters.with_prior().empty() || free.empty()) return;
+  const auto size = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd root_weights = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd means = Eigen::VectorXd::Zero(size);
+  for (Eigen::Index j = 0; j < size; ++j) {
+    const Parameter& parameter = parameters[parameters.free()[static_cast<std::size_t>(j)]];
+    root_weights(j, j) = parameter.prior_root_weight;
+    means[j] = parameter.prior_theta;
+  }
+  ceres_problem.AddResidualBlock(new ceres::NormalPrior(root_weights, means), nullptr, free.data());
+}
+
 /// First rows of the strokes of all records, and behind the last.
 std::vector<Eigen::Index> StrokesOf(const ScaledRecords& data) {
   std::vector<Eigen::Index> first;
@@ -530,13 +546,15 @@ TurningPointFit FitTurningPoints(const Problem& problem, const Solution& start,
     ceres_problem.SetParameterLowerBound(&residuals.overshoot[k], 0, 0.0);
     ceres_problem.SetParameterUpperBound(&residuals.overshoot[k], 0, longest[k]);
   }
+  AddPriors(problem.parameters, residuals.free, ceres_problem);
   ceres::Solver::Summary summary;
   ceres::Solve(CeresOptionsOf(options, ceres::SPARSE_NORMAL_CHOLESKY), &ceres_problem, &summary);
 
   TurningPointFit fit{nullptr, start};
   residuals.PrepareForEvaluation(/*evaluate_jacobians=*/false, /*new_evaluation_point=*/true);
   fit.solution.theta = residuals.Theta();
-  fit.solution.sum_of_squares = residuals.system().residual.squaredNorm();
+  fit.solution.sum_of_squares =
+      residuals.system().residual.squaredNorm() + problem.parameters.PriorCost(fit.solution.theta);
   fit.solution.converged = summary.termination_type == ceres::CONVERGENCE;
   fit.solution.report = {
       .solver = "solve",

@@ -1,0 +1,190 @@
+#include "core/platform.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+
+namespace mindahl {
+namespace {
+
+int NumberOf(Stream stream) {
+  return stream == Stream::kInput    ? STDIN_FILENO
+         : stream == Stream::kOutput ? STDOUT_FILENO
+                                     : STDERR_FILENO;
+}
+
+constexpr std::uintmax_t kUnknown = std::numeric_limits<std::uintmax_t>::max();
+
+}  // namespace
+
+bool IsTerminal(Stream stream) { return ::isatty(NumberOf(stream)) != 0; }
+
+void WriteMessage(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+    if (written <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void OccupyClosedStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0) continue;
+    // Writing results must fail, writing messages need not.
+    if (::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY) != stream) return;
+  }
+}
+
+void KeepFreedMemory() {
+#ifdef __GLIBC__
+  constexpr int kMost = 1 << 30;  // [bytes]
+  mallopt(M_MMAP_THRESHOLD, kMost);
+  mallopt(M_TRIM_THRESHOLD, kMost);
+#endif
+}
+
+void IgnoreFileSizeSignal() { std::signal(SIGXFSZ, SIG_IGN); }
+
+void EndAtOnce(int status) { ::_exit(status); }
+
+int ProcessNumber() { return ::getpid(); }
+
+std::uintmax_t MemoryOfMachine() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  const long page = ::sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || page <= 0) return kUnknown;
+  return static_cast<std::uintmax_t>(pages) * static_cast<std::uintmax_t>(page);
+}
+
+std::uintmax_t MemoryLimit() {
+  rlimit limit{};
+  const bool is_known = ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return is_known ? limit.rlim_cur : kUnknown;
+}
+
+std::uintmax_t PeakMemory() {
+  constexpr std::uintmax_t kKibibyte = 1024;
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uintmax_t>(usage.ru_maxrss) * kKibibyte;
+}
+
+int OpenFile(const std::string& name, Opening opening, int& file) {
+  const int flags = opening == Opening::kNew        ? O_CREAT | O_EXCL
+                    : opening == Opening::kExisting ? O_APPEND
+                                                    : O_CREAT;
+  file = ::open(name.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666);
+  return file < 0 ? errno : 0;
+}
+
+int WriteFile(int file, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(file, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+int EndFileAt(int file, std::uintmax_t size) {
+  const auto end = static_cast<off_t>(size);
+  return ::ftruncate(file, end) != 0 || ::lseek(file, end, SEEK_SET) != end ? errno : 0;
+}
+
+int WriteToDisk(int file) { return ::fsync(file) != 0 && errno != EINVAL ? errno : 0; }
+
+int WriteDirectoryToDisk(const std::string& name) {
+  const int directory = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (directory < 0) return errno == EACCES ? 0 : errno;
+  const int error = WriteToDisk(directory);
+  ::close(directory);
+  return error;
+}
+
+int CloseFile(int file) { return ::close(file) != 0 ? errno : 0; }
+
+int CopyPermissions(const std::string& from, int file) {
+  struct stat status {};
+  if (::stat(from.c_str(), &status) != 0) return errno;
+  return ::fchmod(file, status.st_mode & 07777) != 0 ? errno : 0;
+}
+
+void RemoveName(const char* name) {
+  if (::unlink(name) != 0) ::rmdir(name);
+}
+
+int MakeNewDirectory(std::string& name) { return ::mkdtemp(name.data()) == nullptr ? errno : 0; }
+
+void HandleSignalAgain(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  ::sigaction(signal, &action, nullptr);
+}
+
+void HandleEndingSignals(void (*handler)(int)) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    // The program may have been started to ignore the signal, as by nohup.
+    if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+    HandleSignalAgain(signal, handler);
+  }
+}
+
+void CallEverySecond(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  ::sigaction(SIGALRM, &action, nullptr);
+  ::alarm(1);
+}
+
+void CallInASecond() { ::alarm(1); }
+
+void EndBySignal(int signal) {
+  std::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+int RunProgram(std::vector<std::string> words, const std::string& messages, bool& succeeded) {
+  succeeded = false;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  // Ends it where its file may not grow.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  sigaddset(&defaults, SIGXFSZ);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  pid_t child = 0;
+  const int error =
+      ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) return error;
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) return errno;
+  }
+  succeeded = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return 0;
+}
+
+}  // namespace mindahl

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mindahl {
+
+// What the project asks of the operating system: a port writes platform.cc anew, and what compilers
+// differ in is in instruction_sets.h. Nothing else includes headers of POSIX. Functions that return
+// an error return errno's value, 0 where there is none.
+
+enum class Stream { kInput, kOutput, kMessages };
+
+/// True if a person sees what is written there.
+bool IsTerminal(Stream stream);
+/// Writes past all buffers; a failure is ignored. A signal handler may call it.
+void WriteMessage(std::string_view text);
+/// Opens nothing in the place of a standard stream that whoever started the program had closed: the
+/// next file would get its number, and what is printed. Writing results fails then.
+void OccupyClosedStreams();
+/// Keeps what a fit's columns of samples allocate and free, instead of asking the system for it
+/// anew: a tenth of the time of a fit of 10,000 samples.
+void KeepFreedMemory();
+/// Makes a file that may not grow an error of the write.
+void IgnoreFileSizeSignal();
+/// Ends the process without running anything that is registered for its end.
+[[noreturn]] void EndAtOnce(int status);
+int ProcessNumber();
+
+/// Returns the machine's memory [bytes], or the largest number where that is not known.
+std::uintmax_t MemoryOfMachine();
+/// Returns the limit of this process [bytes]; the largest number where there is none.
+std::uintmax_t MemoryLimit();
+/// Returns the most memory that the process had [bytes].
+std::uintmax_t PeakMemory();
+
+enum class Opening {
+  kNew,       ///< fails where the file exists
+  kExisting,  ///< appends to what exists
+  kCreated    ///< creates it where it does not exist
+};
+/// Opens a file for writing; children do not have it.
+int OpenFile(const std::string& name, Opening opening, int& file);
+/// Writes all of it.
+int WriteFile(int file, std::string_view content);
+/// Ends the file at a size, after which the next write goes.
+int EndFileAt(int file, std::uintmax_t size);
+/// Waits until a file, or the directory of that name, is on the disk, so that it survives a loss of
+/// power. A file system that has no such request, and a directory that may not be read, are left
+/// to themselves.
+int WriteToDisk(int file);
+int WriteDirectoryToDisk(const std::string& name);
+int CloseFile(int file);
+/// Gives a file another's permissions.
+int CopyPermissions(const std::string& from, int file);
+/// Removes a file or an empty directory. A signal handler may call it.
+void RemoveName(const char* name);
+/// Makes a directory of a name that ends in XXXXXX, which is replaced by what makes it new.
+int MakeNewDirectory(std::string& name);
+
+/// Calls a handler once for each signal that ends the program by a person's or a system's wish,
+/// unless the program was started to ignore it; what waits for input is not resumed.
+void HandleEndingSignals(void (*handler)(int signal));
+/// Calls it once more for one of them.
+void HandleSignalAgain(int signal, void (*handler)(int signal));
+/// Calls a handler after about a second, and again whenever it asks for it.
+void CallEverySecond(void (*handler)(int));
+void CallInASecond();
+/// Ends the program by a signal.
+void EndBySignal(int signal);
+
+/// Runs a program, found on PATH, with no shell, no input, and its messages in a file.
+/// @param succeeded  written: it ended by itself, with status 0
+int RunProgram(std::vector<std::string> words, const std::string& messages, bool& succeeded);
+
+}  // namespace mindahl

@@ -1,0 +1,278 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "identification/sample_loop.h"
+#include "mindahl/core/error.h"
+#include "mindahl/identification/fit.h"
+#include "recovery/recovered.h"
+
+// What is known of parameters before a fit, regions of two of them together, and the log-likelihood
+// that a sampler takes.
+namespace mindahl::identification::prior_test {
+namespace {
+
+using namespace loop;
+using namespace models;
+
+using testing::Cycling;
+using testing::FitOne;
+using testing::Generator;
+using ::testing::HasSubstr;
+using testing::kLaw;
+using testing::MakeRecord;
+using testing::Model;
+using testing::Respond;
+using testing::Wave;
+using testing::WithForceNoise;
+
+constexpr double kNoise =
+    0.002;  // of Tc: steps of a standard error are small, and cost is a parabola
+
+/// A loop in slip, with time, whose noise is known: the fit's residuals decide no weight.
+Record TimedLoop(double reach = 1.5, double noise = kNoise) {
+  const testing::History displacement = Cycling(Wave::kSine, reach * testing::kReach, 2.0, 240);
+  Generator generator(7);
+  Record record =
+      WithForceNoise(MakeRecord(displacement, Respond(Model("mindlin-dahl"), kLaw, displacement)),
+                     noise * kLaw.slip_force, generator);
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    record.time.push_back(0.01 * static_cast<double>(i));
+  }
+  return record;
+}
+
+FitOptions Options() {
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  options.preparation.force_sense = 1;
+  options.preparation.displacement_noise = 0.0;
+  options.force_noise = kNoise * kLaw.slip_force;
+  return options;
+}
+
+/// Value and variance of what a normal law and a reading of a parameter say together.
+struct Combined {
+  double value;
+  double variance;
+};
+
+Combined Combine(double value, double error, const Prior& prior) {
+  const double reading = 1 / (error * error);
+  const double before = 1 / (prior.standard_uncertainty * prior.standard_uncertainty);
+  return {(reading * value + before * prior.value) / (reading + before), 1 / (reading + before)};
+}
+
+/// A prior two standard errors off, as sharp as the record: value and error are those of two normal
+/// laws, for law, linear and nonlinear terms alike. Steps are 1 % at most of a parameter, the
+/// parabola's third-order term as much of the step.
+TEST(Prior, OfEveryKindOfParameterIsCombinedWithTheRecordByItsPrecision) {
+  constexpr double kThirdOrder = 0.03;
+  const Record record = TimedLoop();
+  FitOptions options = Options();
+  options.terms = {"viscous", "force_drift", "lag"};
+  const FitResult without = FitOne(record, options);
+  for (const char* name : {"sigma", "alpha", "slip_force", "force_offset", "viscous", "force_drift",
+                           "lag", "displacement_offset"}) {
+    const ParameterEstimate& alone = *without.Find(name);
+    ASSERT_TRUE(alone.standard_error) << name;
+    const double error = *alone.standard_error;
+    const Prior prior{alone.value + 2 * error, error};
+    FitOptions with = options;
+    with.priors[name] = prior;
+    const FitResult fit = FitOne(record, with);
+    const ParameterEstimate& estimate = *fit.Find(name);
+    const Combined expected = Combine(alone.value, error, prior);
+    EXPECT_NEAR(estimate.value, expected.value, kThirdOrder * error) << name;
+    ASSERT_TRUE(estimate.standard_error) << name;
+    EXPECT_NEAR(*estimate.standard_error, std::sqrt(expected.variance), kThirdOrder * error)
+        << name;
+    ASSERT_TRUE(estimate.prior && estimate.without_priors) << name;
+    EXPECT_EQ(estimate.prior->value, prior.value) << name;
+    EXPECT_DOUBLE_EQ(estimate.without_priors->value, alone.value) << name;
+    EXPECT_NEAR(*estimate.MovedByPriors(), 1.0, kThirdOrder) << name;
+    EXPECT_EQ(fit.FindFinding("prior_contradicted"), nullptr) << name;
+  }
+}
+
+/// The offset of another record, and of a robust loss whose weights are all nearly one.
+TEST(Prior, OfOneRecordsOffsetAndWithARobustLossIsTheSame) {
+  constexpr double kOfWeights = 0.1;  // Huber's weights of a normal law are 5 % below one
+  const std::vector<Record> records = {TimedLoop(), TimedLoop(1.2)};
+  FitOptions options = Options();
+  options.loss = Loss::kHuber;
+  const FitResult without = Fit(records, options);
+  const ParameterEstimate& alone = *without.Find("force_offset_2");
+  const Prior prior{alone.value + 2 * *alone.standard_error, *alone.standard_error};
+  options.priors["force_offset_2"] = prior;
+  const FitResult fit = Fit(records, options);
+  const Combined expected = Combine(alone.value, *alone.standard_error, prior);
+  EXPECT_NEAR(fit.Find("force_offset_2")->value, expected.value,
+              kOfWeights * *alone.standard_error);
+  EXPECT_FALSE(fit.Find("force_offset_1")->prior);
+}
+
+TEST(Prior, OfAnImposedForceIsOfTheDisplacementsNoise) {
+  constexpr double kThirdOrder = 0.03;
+  Record record = TimedLoop(0.6, 0.0);
+  Generator generator(11);
+  const double noise = 1e-3 * testing::kReach;
+  for (double& value : record.displacement) value += noise * testing::Normal(generator);
+  FitOptions options;
+  options.initial_state = InitialState::kVirgin;
+  options.preparation.force_sense = 1;
+  options.preparation.excitation = Channel::kForce;
+  options.preparation.displacement_noise = noise;
+  const FitResult without = FitOne(record, options);
+  for (const char* name : {"sigma", "slip_force"}) {
+    const ParameterEstimate& alone = *without.Find(name);
+    ASSERT_TRUE(alone.standard_error) << name;
+    FitOptions with = options;
+    with.priors[name] = {alone.value, *alone.standard_error};
+    const FitResult fit = FitOne(record, with);
+    EXPECT_NEAR(*fit.Find(name)->standard_error, *alone.standard_error / std::sqrt(2.0),
+                kThirdOrder * *alone.standard_error)
+        << name;
+  }
+}
+
+TEST(Prior, FarFromWhatTheRecordSaysIsReported) {
+  const Record record = TimedLoop();
+  FitOptions options = Options();
+  options.priors["slip_force"] = {1.2 * kLaw.slip_force, 0.01 * kLaw.slip_force};
+  const FitResult fit = FitOne(record, options);
+  const Finding* finding = fit.FindFinding("prior_contradicted");
+  ASSERT_NE(finding, nullptr);
+  EXPECT_EQ(finding->parameters, std::vector<std::string>{"slip_force"});
+}
+
+TEST(Prior, IsRefusedOfWhatIsNotFittedAndWithoutAnUncertainty) {
+  const Record record = TimedLoop();
+  const auto refusal = [&](const FitOptions& options) -> std::string {
+    try {
+      FitOne(record, options);
+    } catch (const InvalidArgument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  FitOptions options = Options();
+  options.priors["viscous"] = {1.0, 0.1};
+  EXPECT_THAT(refusal(options), HasSubstr("a prior of viscous has no effect"));
+  options.priors = {{"sigma", {kLaw.tangential_stiffness, 0.0}}};
+  EXPECT_THAT(refusal(options), HasSubstr("standard uncertainty of sigma [N/m] = 0"));
+  options.priors = {{"alpha", {-0.1, 0.1}}};
+  EXPECT_THAT(refusal(options), HasSubstr("alpha"));
+  options.fixed["alpha"] = 0.3;
+  options.priors = {{"alpha", {0.3, 0.1}}};
+  EXPECT_THAT(refusal(options), HasSubstr("a prior of alpha has no effect"));
+}
+
+/// Every boundary point, fitted again from nothing with both parameters held: 2 ln Λ is that of
+/// χ²(2) at 95 %, as the noise is known.
+TEST(ConfidenceRegion, HasTheCriticalLikelihoodAllAroundIt) {
+  constexpr double kCritical = 5.991464547107979;  // −2·ln 0.05
+  constexpr double kOfRoot = 0.02;                 // roots are found to 1 %
+  const Record record = TimedLoop(0.7, 0.01);
+  FitOptions options = Options();
+  options.force_noise = 0.01 * kLaw.slip_force;
+  options.regions = true;
+  const FitResult fit = FitOne(record, options);
+  ASSERT_TRUE(fit.regions);
+  ASSERT_EQ(fit.regions->size(), 2U);
+  const double noise = *options.force_noise;
+  const auto squares = [&](const FitResult& result) {
+    return result.rms * result.rms * static_cast<double>(record.size());
+  };
+  for (const ConfidenceRegion& region : *fit.regions) {
+    EXPECT_TRUE(region.closed);
+    EXPECT_TRUE(region.Contains(fit.Find(region.parameters[0])->value, fit.law.shape_exponent));
+    for (std::size_t k = 0; k < region.boundary.size(); k += 7) {
+      FitOptions held = options;
+      held.regions = false;
+      held.fixed[region.parameters[0]] = region.boundary[k][0];
+      held.fixed[region.parameters[1]] = region.boundary[k][1];
+      const double ratio = (squares(FitOne(record, held)) - squares(fit)) / (noise * noise);
+      EXPECT_NEAR(ratio / kCritical, 1.0, kOfRoot) << region.parameters[0] << ' ' << k;
+    }
+  }
+}
+
+TEST(ConfidenceRegion, IsOpenFarFromSlipAndAbsentOfAHeldExponent) {
+  const Record record = TimedLoop(0.15, 0.01);
+  FitOptions options = Options();
+  options.force_noise = 0.01 * kLaw.slip_force;
+  options.regions = true;
+  const FitResult far = FitOne(record, options);
+  ASSERT_TRUE(far.regions);
+  for (const ConfidenceRegion& region : *far.regions) EXPECT_FALSE(region.closed);
+  options.fixed["alpha"] = kLaw.shape_exponent;
+  const FitResult held = FitOne(record, options);
+  ASSERT_TRUE(held.regions);
+  EXPECT_TRUE(held.regions->empty());
+}
+
+TEST(ConfidenceRegion, ContainsWhatIsWithinItsBoundaryOnly) {
+  // An arrowhead: (0.9, 0.5) lies in its bounding box, and between its barbs.
+  const ConfidenceRegion region{.parameters = {"sigma", "alpha"},
+                                .boundary = {{0, 0.5}, {1, 0}, {0.5, 0.5}, {1, 1}}};
+  EXPECT_TRUE(region.Contains(0.3, 0.5));
+  EXPECT_TRUE(region.Contains(0.8, 0.15));
+  EXPECT_FALSE(region.Contains(0.9, 0.5));
+  EXPECT_FALSE(region.Contains(-0.1, 0.5));
+}
+
+/// At the fit −½Σ(r/s)² of its own residuals, and less than that everywhere else.
+TEST(LogLikelihood, IsThatOfTheResidualsAndHighestAtTheFit) {
+  constexpr double kRounding = 1e-9;
+  const Record record = TimedLoop();
+  const FitOptions options = Options();
+  const FitResult fit = FitOne(record, options);
+  const RecordView view(record);
+  LogLikelihood likelihood({&view, 1}, options, fit);
+  std::vector<double> values;
+  std::vector<double> errors;
+  for (const std::string& name : likelihood.names()) {
+    values.push_back(fit.Find(name)->value);
+    errors.push_back(fit.Find(name)->standard_error.value_or(0.0));
+  }
+  double squares = 0.0;
+  for (const double r : fit.records.front().residual) squares += r * r;
+  const double fraction =
+      std::min(fit.residuals.effective_samples / static_cast<double>(record.size()), 1.0);
+  const double highest = likelihood(values);
+  EXPECT_NEAR(highest, -fraction * squares / (2 * *options.force_noise * *options.force_noise),
+              kRounding * std::abs(highest));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (const double sign : {-1.0, 1.0}) {
+      std::vector<double> moved = values;
+      moved[i] += sign * errors[i];
+      // At least the parabola with the others free, 1/2 of a standard error.
+      EXPECT_LT(likelihood(moved), highest - 0.4 * fraction) << likelihood.names()[i];
+    }
+  }
+  std::vector<double> outside = values;
+  outside.front() = -1.0;  // σ
+  EXPECT_EQ(likelihood(outside), -std::numeric_limits<double>::infinity());
+  outside.pop_back();
+  EXPECT_THROW((void)likelihood(outside), InvalidArgument);
+}
+
+TEST(LogLikelihood, IsRefusedWhereWeightsBelongToOneSolution) {
+  const Record record = TimedLoop();
+  FitOptions options = Options();
+  options.loss = Loss::kHuber;
+  const FitResult fit = FitOne(record, options);
+  const RecordView view(record);
+  EXPECT_THROW(LogLikelihood({&view, 1}, options, fit), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace mindahl::identification::prior_test
