@@ -52,6 +52,16 @@ TEST(CycleFitter, FindsTheTruthOfACleanCycle) {
   }
 }
 
+TEST(CycleFitter, HasNoFrictionCoefficientUnderALoadOfTheOtherSign) {
+  CycleFitter fitter({});
+  Cycle cycle = CyclesOf(TestRecord(4, 1, 0.0)).front();
+  cycle.record.normal_load.assign(cycle.record.size(), -50.0);
+  const CycleFit fit = fitter.Fit(cycle);
+  EXPECT_EQ(fit.normal_load, -50.0);
+  EXPECT_TRUE(fit.slip_force.value);
+  EXPECT_FALSE(fit.friction_coefficient);
+}
+
 TEST(CycleFitter, HasTheMinimumAndTheErrorsOfAFitAlone) {
   constexpr double kSolverTolerance = 1e-2;  // standard errors, as of Fitter::Continue()
   identification::FitOptions options;

@@ -41,6 +41,18 @@ TEST(Parameters, OfAMujocoActuatorHaveItsKneeWhereStiffnessReachesCoulombsForce)
   EXPECT_EQ(parameters[2].value, parameters[1].value / parameters[0].value);
 }
 
+TEST(Parameters, OfBoucAndWenShareTheExponentsUnitBetweenBetaAndGamma) {
+  const Conversion conversion =
+      Convert({models::FindFrictionModel("mindlin-dahl"),
+               {.tangential_stiffness = 4e7, .shape_exponent = 1.0 / 3, .slip_force = 40.0}},
+              Target::kBoucWen, {.amplitude = 1.2e-6, .beta = 0.2});
+  const std::vector<Parameter> parameters = ParametersOf(conversion, Target::kBoucWen);
+  ASSERT_EQ(parameters.size(), 6U);
+  EXPECT_EQ(parameters[3].name, "beta");
+  EXPECT_EQ(parameters[4].name, "gamma");
+  EXPECT_NEAR(parameters[4].value / parameters[3].value, 4.0, 1e-14 * 4);
+}
+
 TEST(InputLines, OfLammpsNeedANormalLoad) {
   const Conversion conversion = To(Target::kLammps);
   EXPECT_THROW(InputLines(conversion, Target::kLammps), InputError);

@@ -38,6 +38,8 @@ TEST(NearestName, AllowsAThirdOfTheLettersAtLeastOneAndAtMostThree) {
   EXPECT_EQ(NearestName("XXXXefghijklmnopqrst", names), std::nullopt);
   EXPECT_EQ(NearestName("pos", std::vector<std::string>{"pox"}), "pox");
   EXPECT_EQ(NearestName("pos", std::vector<std::string>{"dis"}), std::nullopt);
+  EXPECT_EQ(NearestName("XXcdef", std::vector<std::string>{"abcdef"}), "abcdef");
+  EXPECT_EQ(NearestName("XXcde", std::vector<std::string>{"abcde"}), std::nullopt);
 }
 
 TEST(NearestName, PaysNoHeedToCase) {

@@ -197,7 +197,7 @@ TEST(LoopDescription, IsMeasuredOnTheWidestSteadyCyclesWhereOneIsClosed) {
 TEST(LoopDescription, EnergyOfTheLawIsThatOfTheWidestCyclesAlone) {
   FitResult fit = MadeFit({MadeRecord(1e-6)}, 1e-6);
   fit.records[0].facts.cycles.resize(3);
-  for (const std::size_t widest : {0, 2}) fit.records[0].facts.cycles[widest].steady = true;
+  fit.records[0].facts.cycles[0].steady = fit.records[0].facts.cycles[2].steady = true;
   fit.records[0].law_energy = {2e-6, 11e-6, 4e-6};
   EXPECT_DOUBLE_EQ(DescribeLoop(fit).model_energy, 3e-6);
 }

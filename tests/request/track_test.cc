@@ -10,7 +10,7 @@ using ::testing::HasSubstr;
 
 TrackedTest TestOf(std::size_t fits) {
   TrackedTest test;
-  for (std::size_t k = 0; k < fits; ++k) test.Add({.number = k + 1});
+  for (std::size_t k = 0; k < fits; ++k) test.Add({});
   return test;
 }
 
@@ -19,6 +19,17 @@ TEST(SeparateTests, CountTheFitsThatWereThereApart) {
   tests.Add("a.csv", "", TestOf(3), /*was_there=*/true);
   tests.Add("b.csv", "", TestOf(4), /*was_there=*/false);
   EXPECT_THAT(tests.ToText(), HasSubstr("2 tests, 7 fits in table.csv\n3 of them were there"));
+}
+
+TEST(TrackedTest, CountsACycleOnceThatHasTwoFlags) {
+  TrackedTest test;
+  campaign::CycleFit open;
+  open.flags = {"sigma_open", "alpha_open"};
+  test.Add(open);
+  test.Add({});
+  EXPECT_EQ(test.fits, 2U);
+  EXPECT_EQ(test.flagged, 1U);
+  EXPECT_EQ(test.flags.at("alpha_open"), 1U);
 }
 
 }  // namespace

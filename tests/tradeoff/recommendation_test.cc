@@ -197,5 +197,15 @@ TEST(Recommend, RefusesOptionsOutOfRange) {
   EXPECT_THROW(RecommendFor({}, {}), InvalidArgument);
 }
 
+TEST(Recommend, OfEquallyPreciseOnesWithinTheCostTheCheapestIsChosen) {
+  // Of a contact that stays where it is no energy is lost and no error of it is known.
+  const Recommendation rest =
+      RecommendFor({0, 0, 0, 0}, {.criterion = Criterion::kEnergy, .largest_cost = 1e9});
+  ASSERT_TRUE(rest.choice);
+  for (const Candidate& candidate : rest.candidates) {
+    EXPECT_GE(candidate.point.cost, rest.candidates[*rest.choice].point.cost);
+  }
+}
+
 }  // namespace
 }  // namespace mindahl::tradeoff::recommendation_test
