@@ -233,7 +233,7 @@ def make_pages(program, scratch):
 
     hostile = scratch / "<script>alert(1)<b>&.csv"
     shutil.copy(DATA / "mindlin_sphere_on_plane.csv", hostile)
-    page = fit("contact", set(), hostile, "--normal-load", 50, "--youngs-modulus-1", "210e9",
+    page = fit("contact", {"region-sigma", "region-slip-force"}, hostile, "--normal-load", 50, "--youngs-modulus-1", "210e9",
                "--poisson-1", 0.3, "--radius-1", 0.01, "--youngs-modulus-2", "210e9",
                "--poisson-2", 0.3, "--radius-2", "inf")
     text = page.read_text(encoding="utf-8")

@@ -134,6 +134,17 @@ TEST(Page, OfAnInadequateModelHasNoContactAndNoLikelihood) {
   EXPECT_EQ(FigureOf(page, "likelihood"), "");
 }
 
+TEST(Page, DrawsARegionWhereBothParametersAreIdentified) {
+  ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
+  EXPECT_EQ(FigureOf(PageOf(input), "region-sigma"), "");
+  input.fit.regions = {
+      {{.parameters = {"sigma", "alpha"}, .boundary = {{3.9e7, 0.3}, {4.1e7, 0.32}, {4e7, 0.36}}}}};
+  EXPECT_THAT(FigureOf(PageOf(input), "region-sigma"), HasSubstr("<circle class=\"marker"));
+  EXPECT_EQ(FigureOf(PageOf(input), "region-slip-force"), "");
+  input.fit.parameters[1].identifiability = identification::Identifiability::kNotIdentifiable;
+  EXPECT_EQ(FigureOf(PageOf(input), "region-sigma"), "");
+}
+
 TEST(Page, DrawsTheLikelihoodThatTheFitLookedAt) {
   ReportInput input = JudgedInput(AdequacyVerdict::kAdequate);
   EXPECT_EQ(FigureOf(PageOf(input), "likelihood"), "");
