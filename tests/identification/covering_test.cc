@@ -1,9 +1,8 @@
-#include "identification/inference/covering.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
 #include "identification/stages.h"
 

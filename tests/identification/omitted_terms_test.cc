@@ -7,11 +7,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "identification/inference/adequacy_test.h"
 #include "identification/inference/column_test.h"
 #include "identification/inference/departures.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/evidence.h"
+#include "identification/inference/noise.h"
 #include "identification/stages.h"
 
 // What residuals are asked for in addition to the model: degrees of freedom, several columns, and
