@@ -16,7 +16,7 @@
 #include "identification/backbone_prior.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/moved_samples.h"
-#include "identification/solve/nonnegative.h"
+#include "identification/solve/linear_columns.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/terms.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 namespace mindahl::identification {
+
 namespace {
 
 /// Opens an end that is no number.

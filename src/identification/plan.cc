@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "identification/inference/displacement_errors.h"
 #include "identification/inference/estimates.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/moved_samples.h"

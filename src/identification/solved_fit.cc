@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "identification/diagnosis/adequacy.h"
-#include "identification/inference/evidence.h"
-#include "identification/inference/record_noise.h"
+#include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/inference/turning_point_test.h"
 #include "identification/problem/requirements.h"

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "identification/inference/displacement_errors.h"
 #include "identification/inference/noise.h"
+#include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/solve/search.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "identification/backbone_prior.h"
-#include "identification/solve/nonnegative.h"
+#include "identification/solve/linear_columns.h"
 #include "mindahl/core/error.h"
 #include "recovery/recovered.h"
 #include "support/masing_record.h"

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "identification/diagnosis/advice.h"
-#include "identification/inference/lag_trial.h"
+#include "identification/diagnosis/adequacy.h"
+#include "identification/inference/trials.h"
 #include "identification/stages.h"
 
 // Which cause is named first: contacts with something beside the law, as measured records have it,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "identification/cycle_energy.h"
-#include "identification/inference/covering.h"
+#include "identification/inference/estimates.h"
 #include "identification/inference/local.h"
 #include "identification/intervals.h"
 #include "identification/stages.h"

@@ -1,11 +1,10 @@
-#include "identification/inference/covering.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
 #include "identification/stages.h"
 

@@ -1,11 +1,10 @@
-#include "identification/inference/displacement_errors.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
+#include "identification/inference/reweighting.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 

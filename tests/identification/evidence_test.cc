@@ -1,10 +1,9 @@
-#include "identification/inference/evidence.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/probability.h"
+#include "identification/inference/noise.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/stages.h"
 

@@ -1,5 +1,3 @@
-#include "identification/inference/heavy_tails.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "identification/inference/evidence.h"
+#include "identification/inference/irregularities.h"
+#include "identification/inference/noise.h"
 #include "support/histories.h"
 
 // Readings that are far off, counted by hand.

@@ -1,5 +1,3 @@
-#include "identification/inference/law_choice.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "identification/inference/law_tests.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "identification/diagnosis/law_findings.h"
+#include "identification/diagnosis/diagnosis.h"
 #include "mindahl/identification/fit_result.h"
 #include "recovery/recovered.h"
 

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "identification/diagnosis/adequacy.h"
-#include "identification/inference/adequacy_test.h"
 #include "identification/inference/column_test.h"
 #include "identification/inference/departures.h"
 #include "identification/inference/estimates.h"
-#include "identification/inference/evidence.h"
+#include "identification/inference/noise.h"
 #include "identification/stages.h"
 
 // What residuals are asked for in addition to the model: degrees of freedom, several columns, and

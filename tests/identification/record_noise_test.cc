@@ -1,5 +1,3 @@
-#include "identification/inference/record_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -7,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "identification/inference/noise.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
 #include "mindahl/core/error.h"

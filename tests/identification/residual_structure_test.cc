@@ -1,3 +1,5 @@
+#include "identification/diagnosis/residual_structure.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <functional>
 #include <vector>
 
-#include "identification/diagnosis/main_strokes.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/adequacy.h"
 #include "recovery/recovered.h"

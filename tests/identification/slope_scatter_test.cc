@@ -1,9 +1,8 @@
-#include "identification/inference/slope_scatter.h"
-
 #include <gtest/gtest.h>
 
 #include <cstddef>
 
+#include "identification/inference/sampled_time.h"
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
 

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "identification/inference/displacement_errors.h"
 #include "identification/inference/noise.h"
 #include "identification/inference/reweighting.h"
 #include "identification/problem/problem.h"

@@ -65,15 +65,15 @@ enum class Regressor {
 ///   value = scale·exp(θ) where positive,  else  value = reference + scale·θ
 struct Term {
   std::string_view name;
-  std::string_view unit;
+  std::string_view unit = "-";
   std::string_view meaning;  ///< one line, for tables of the documents
   Scope scope = Scope::kContact;
   Entry entry = Entry::kLaw;
-  Presence presence = Presence::kAlways;
+  Presence presence = Presence::kOnDemand;
   bool positive = false;
   double lowest = 0.0;  ///< default bounds, in units of the data
   double highest = 0.0;
-  double (*scale)(const TermUnits&) = nullptr;
+  double (*scale)(const TermUnits&) = [](const TermUnits& /*units*/) { return 1.0; };
   double (*reference)(const TermUnits&) = nullptr;  ///< none: 0
   Regressor column = Regressor::kNone;
   bool needs_time = false;

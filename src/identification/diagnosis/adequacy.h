@@ -2,10 +2,13 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "identification/inference/adequacy_test.h"
+#include "identification/inference/column_test.h"
 #include "identification/inference/irregularities.h"
+#include "identification/problem/problem.h"
 #include "mindahl/identification/adequacy.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_options.h"
@@ -13,6 +16,14 @@
 #include "mindahl/identification/thresholds.h"
 
 namespace mindahl::identification {
+
+/// Returns the options, as a cause names them, that the program accepts in addition to those of the
+/// fit: as they are, with what they need in addition, or nothing where they would be refused. Every
+/// advice is checked here, against what the fit's own requirements refuse.
+/// @param wanted  words of the command line, e.g. "--viscous fit --speed-exponent fit"; may be
+/// empty
+std::string AcceptedOptions(const Problem& problem, const FitOptions& options,
+                            std::string_view wanted);
 
 /// True if noise hardly makes what all omitted terms, or the best of them, explain.
 bool IsDoubtful(const AdequacyTest& test, const Thresholds& thresholds);

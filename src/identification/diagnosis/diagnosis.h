@@ -4,16 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "identification/inference/law_tests.h"
 #include "identification/inference/local.h"
 #include "identification/inference/profile.h"
-#include "identification/inference/shape_tests.h"
 #include "mindahl/identification/finding.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/identification/thresholds.h"
 
+namespace mindahl::identification {
+
 /// Derives the findings on a fit, as data: pure functions of the results of earlier stages. None of
 /// them decides on a verdict.
-namespace mindahl::identification {
 
 /// Parameters on which, alone or combined, the records do not depend.
 std::optional<Finding> FindUndetermined(const Problem& problem, const LocalUncertainty& local);
@@ -77,5 +78,19 @@ std::optional<Finding> FindSearchLimit(const Problem& problem, const Solution& s
 
 /// `alpha_limited_by_load`: α at the bound that the law of a varying load sets.
 std::optional<Finding> FindShapeLimitedByLoad(const Problem& problem, const Solution& solution);
+
+/// Returns what is reported of the choice between Masing's law and Dahl's own: of a model that is
+/// inadequate only a choice against it, as the other law may be why.
+std::optional<LawChoice> ReportedLaw(const std::optional<LawChoice>& choice,
+                                     AdequacyVerdict verdict);
+
+/// Finds the other law, of a choice that is reported, where it fits better or as well.
+std::optional<Finding> FindOtherLaw(const std::optional<LawChoice>& choice);
+
+/// `memory_contradicts_law` where branches, compared with each other, are of one law's memory alone
+/// and the other law fits better all the same.
+std::optional<Finding> FindContradictedLaw(const MemoryTest& memory,
+                                           const std::optional<LawChoice>& choice,
+                                           const models::FrictionModel& fitted);
 
 }  // namespace mindahl::identification

@@ -11,7 +11,7 @@
 
 #include "core/probability.h"
 #include "identification/diagnosis/grade.h"
-#include "identification/diagnosis/main_strokes.h"
+#include "identification/diagnosis/residual_structure.h"
 
 namespace mindahl::identification {
 namespace {

@@ -8,9 +8,8 @@
 #include <ranges>
 
 #include "identification/inference/branch_places.h"
-#include "identification/inference/displacement_departures.h"
 #include "identification/inference/sampled_time.h"
-#include "identification/problem/one_channel.h"
+#include "identification/problem/scaled_records.h"
 
 namespace mindahl::identification {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -48,5 +49,12 @@ std::span<const Departure> Departures();
 /// @param most  columns that are wanted; fewer where the next term's do not fit
 DepartureColumns ColumnsOfDepartures(const Problem& problem, std::span<const double> theta,
                                      Response& response, std::size_t most);
+
+/// Omitted terms of a displacement that responds to an imposed force, to first order: the same
+/// codes, where they have a meaning, as displacements in proportion to one to three columns.
+/// @param most  columns that are wanted; fewer where the next term's do not fit
+DepartureColumns ColumnsOfDisplacementDepartures(const Problem& problem,
+                                                 std::span<const double> theta, Response& response,
+                                                 std::size_t most);
 
 }  // namespace mindahl::identification

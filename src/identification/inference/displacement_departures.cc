@@ -1,5 +1,3 @@
-#include "identification/inference/displacement_departures.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "identification/inference/departures.h"
 #include "identification/inference/sampled_time.h"
 
 namespace mindahl::identification {

@@ -1,17 +1,23 @@
 #include "identification/inference/irregularities.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "identification/inference/evidence.h"
-#include "identification/inference/heavy_tails.h"
-#include "identification/inference/ripple.h"
-#include "identification/inference/stick_slip.h"
+#include "core/probability.h"
+#include "identification/inference/noise.h"
 
 namespace mindahl::identification {
+
 namespace {
 
 enum IrregularityRow : std::size_t { kHeavyTails, kStickSlip, kRipple };
@@ -99,6 +105,459 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
     add(kStickSlip, stick_slip);
   }
   return found;
+}
+
+namespace {
+
+constexpr double kNormalMedian = 0.6744897501960817;  // of |z|
+constexpr std::size_t kAlike = 60;                    // samples that one width is taken from
+constexpr double kFar = 6.0;                          // of their widths
+/// Chance that a reading is so far off: 2e-9 of a normal law whose width is known, and below this
+/// of one that 60 samples determine to 15 % (1.17/√60).
+constexpr double kChance = 1e-5;
+constexpr std::size_t kNearATurn = 3;  // samples, on which a law's own misfit is as narrow
+
+struct Difference {
+  std::size_t sample = 0;
+  double value = 0.0;  // u
+  double steepness = 0.0;
+  double width = 0.0;
+};
+
+std::vector<Difference> DifferencesOf(std::span<const FittedSample> samples) {
+  std::vector<std::size_t> to_turn(samples.size(), samples.size());
+  for (std::size_t i = 0, since = samples.size(); i < samples.size(); ++i) {
+    const bool begins = i == 0 || samples[i].record != samples[i - 1].record;
+    since = samples[i].turns || begins ? 0 : std::min(since + 1, samples.size());
+    to_turn[i] = since;
+  }
+  for (std::size_t k = samples.size(), since = samples.size(); k-- > 0;) {
+    const bool ends = k + 1 == samples.size() || samples[k].record != samples[k + 1].record;
+    since = samples[k].turns || ends ? 0 : std::min(since + 1, samples.size());
+    to_turn[k] = std::min(to_turn[k], since);
+  }
+  std::vector<Difference> differences;
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+    const FittedSample& before = samples[i - 1];
+    const FittedSample& after = samples[i + 1];
+    if (to_turn[i] < kNearATurn || !before.counts || !samples[i].counts || !after.counts) continue;
+    differences.push_back({i, samples[i].residual - (before.residual + after.residual) / 2,
+                           std::abs(after.response - before.response)});
+  }
+  return differences;
+}
+
+/// Each the width of those on which the force is as steep: noise of the displacement is larger on
+/// the steep ones.
+void FindWidths(std::vector<Difference>& differences) {
+  std::vector<std::size_t> order(differences.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return differences[i].steepness; });
+  const std::size_t blocks = std::max<std::size_t>(differences.size() / kAlike, 1);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t begin = b * kAlike;
+    const std::size_t end = b + 1 < blocks ? begin + kAlike : order.size();
+    std::vector<double> sizes;
+    for (std::size_t k = begin; k < end; ++k) {
+      sizes.push_back(std::abs(differences[order[k]].value));
+    }
+    const double width =
+        boost::math::statistics::median(sizes.begin(), sizes.end()) / kNormalMedian;
+    for (std::size_t k = begin; k < end; ++k) differences[order[k]].width = width;
+  }
+}
+
+}  // namespace
+
+std::optional<IrregularityFit> FindHeavyTails(std::span<const FittedSample> samples,
+                                              const Evidence& evidence) {
+  std::vector<Difference> differences = DifferencesOf(samples);
+  if (differences.size() < kAlike) return std::nullopt;
+  FindWidths(differences);
+  std::size_t count = 0;
+  double of_the_off = 0.0;
+  for (std::size_t k = 1; k + 1 < differences.size(); ++k) {
+    const Difference& here = differences[k];
+    const Difference& before = differences[k - 1];
+    const Difference& after = differences[k + 1];
+    const bool adjoin = before.sample + 1 == here.sample && here.sample + 1 == after.sample;
+    // A reading alone makes −½ of its own difference in both neighbours'.
+    const auto is_its_shadow = [&](const Difference& other) {
+      return other.value * here.value < -here.value * here.value / 4 &&
+             std::abs(other.value) < std::abs(here.value);
+    };
+    const bool is_off = here.width > 0 && std::abs(here.value) > kFar * here.width;
+    if (!is_off || !adjoin || !is_its_shadow(before) || !is_its_shadow(after)) continue;
+    ++count;
+    of_the_off += samples[here.sample].residual * samples[here.sample].residual;
+  }
+  if (count == 0) return std::nullopt;
+  double all = 0.0;
+  double counted = 0.0;
+  for (const FittedSample& sample : samples) {
+    if (!sample.counts) continue;
+    all += sample.residual * sample.residual;
+    ++counted;
+  }
+  IrregularityFit fit;
+  const auto off = static_cast<double>(count);
+  fit.p_value = PoissonAbove(off - 1, kChance * static_cast<double>(differences.size()));
+  fit.size = off / counted;
+  fit.explains = all > 0 ? std::min(of_the_off / all, 1.0) : 0.0;
+  // Two widths for one: n ln(SS/n) against that of either share, and who belongs to which.
+  const double share = off / counted;
+  const double rest = std::max(1 - fit.explains, 1e-300);
+  const double mixing = -2 * (share * std::log(share) + (1 - share) * std::log1p(-share));
+  const double widths = share * std::log(std::max(fit.explains, 1e-300) / share) +
+                        (1 - share) * std::log(rest / (1 - share));
+  constexpr double kParameters = 2.0;  // the other width, and the fraction
+  fit.delta_aicc = 2 * kParameters - evidence.LikelihoodRatio(1.0, std::exp(mixing + widths));
+  return fit;
+}
+
+namespace {
+
+constexpr double kSliding = 0.8;          // of the largest force: the plateau
+constexpr double kLarge = 5.0;            // deviations of the steps
+constexpr double kNormal = 1.4826;        // standard deviation over median deviation
+constexpr std::size_t kFewestSteps = 20;  // steps that determine their own deviation
+
+/// The residual's change from one sample to the next while the contact slides, as the measured
+/// force grows along the motion.
+struct Step {
+  std::size_t sample = 0;  // the first of the two
+  double growth = 0.0;
+};
+
+std::vector<Step> StepsOfSliding(std::span<const FittedSample> samples) {
+  double peak = 0.0;
+  for (const FittedSample& sample : samples) peak = std::max(peak, std::abs(sample.response));
+  std::vector<Step> steps;
+  for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
+    const FittedSample& here = samples[i];
+    const FittedSample& next = samples[i + 1];
+    if (here.record != next.record || !here.counts || !next.counts) continue;
+    const double way = next.displacement - here.displacement;
+    if (way == 0) continue;
+    const double sense = way > 0 ? 1.0 : -1.0;
+    const auto slides = [&](const FittedSample& at) {
+      return sense * at.response > kSliding * peak;
+    };
+    if (slides(here) && slides(next)) {
+      steps.push_back({i, -sense * (next.residual - here.residual)});
+    }
+  }
+  return steps;
+}
+
+/// The residuals once each tooth on the plateau has its own mean and all have one slope along the
+/// way.
+struct Teeth {
+  std::vector<double> left;  // of all samples
+  std::size_t count = 0;
+};
+
+Teeth FitTeeth(std::span<const FittedSample> samples, std::span<const Step> steps,
+               const std::vector<bool>& is_drop) {
+  Teeth teeth;
+  std::vector<double> way(samples.size());  // from the tooth's middle
+  for (const FittedSample& sample : samples) teeth.left.push_back(sample.residual);
+  double xx = 0.0;
+  double xr = 0.0;
+  for (std::size_t k = 0; k < steps.size(); ++teeth.count) {
+    const std::size_t begin = steps[k].sample;
+    while (!is_drop[k] && k + 1 < steps.size() && steps[k + 1].sample == steps[k].sample + 1) ++k;
+    const std::size_t end = steps[k].sample + (is_drop[k] ? 1 : 2);
+    ++k;
+    const auto count = static_cast<double>(end - begin);
+    double mean_x = 0.0;
+    double mean_r = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      mean_x += samples[i].displacement / count;
+      mean_r += samples[i].residual / count;
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      way[i] = samples[i].displacement - mean_x;
+      teeth.left[i] -= mean_r;
+      xx += way[i] * way[i];
+      xr += way[i] * teeth.left[i];
+    }
+  }
+  if (!(xx > 0)) return teeth;
+  for (std::size_t i = 0; i < samples.size(); ++i) teeth.left[i] -= xr / xx * way[i];
+  return teeth;
+}
+
+}  // namespace
+
+std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> samples) {
+  const std::vector<Step> steps = StepsOfSliding(samples);
+  if (steps.size() < kFewestSteps) return std::nullopt;
+  std::vector<double> growths;
+  growths.reserve(steps.size());
+  for (const Step& step : steps) growths.push_back(step.growth);
+  std::vector<double> work = growths;
+  const double middle = boost::math::statistics::median(work.begin(), work.end());
+  for (double& growth : work) growth = std::abs(growth - middle);
+  const double width = kNormal * boost::math::statistics::median(work.begin(), work.end());
+  std::vector<bool> is_drop(steps.size(), false);
+  std::vector<double> drops;
+  std::size_t rises = 0;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const double from_middle = growths[k] - middle;
+    if (from_middle > kLarge * width) ++rises;
+    is_drop[k] = from_middle < -kLarge * width;
+    if (is_drop[k]) drops.push_back(-from_middle);
+  }
+  if (drops.empty()) return std::nullopt;
+  const Teeth teeth = FitTeeth(samples, steps, is_drop);
+  std::vector<unsigned char> counts;
+  double before = 0.0;
+  double after = 0.0;
+  std::size_t counted = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    counts.push_back(samples[i].counts ? 1 : 0);
+    if (!samples[i].counts) continue;
+    before += samples[i].residual * samples[i].residual;
+    after += teeth.left[i] * teeth.left[i];
+    ++counted;
+  }
+  IrregularityFit fit;
+  const auto count = static_cast<double>(drops.size());
+  fit.p_value = BinomialAbove(count - 1, count + static_cast<double>(rises), 0.5);
+  fit.size = boost::math::statistics::median(drops.begin(), drops.end());
+  fit.explains = before > 0 ? std::clamp(1 - after / before, 0.0, 1.0) : 0.0;
+  // The teeth autocorrelate the residuals: the rest determines how many are independent.
+  const std::span<const double> left = teeth.left;
+  const std::span<const unsigned char> mask = counts;
+  const double effective = static_cast<double>(counted) /
+                           EstimateAutocorrelation({&left, 1}, {&mask, 1}).SquaredCorrelations();
+  const Evidence evidence(counted, effective);
+  const double parameters = static_cast<double>(teeth.count) + 1;  // a mean a tooth, and the slope
+  fit.delta_aicc = 2 * parameters - evidence.LikelihoodRatio(before, after);
+  return fit;
+}
+
+namespace {
+
+constexpr double kOnPlateau = 0.8;         // of the largest force: the plateau
+constexpr std::size_t kFewest = 16;        // readings of a stroke
+constexpr std::size_t kFewestStrokes = 2;  // of a direction, to share a phase
+constexpr std::size_t kMostPoints = 256;   // that a stroke is looked at by
+constexpr std::size_t kMostStrokes = 64;   // that the period is looked for in
+constexpr double kFewestPeriods = 3.0;     // on the plateau
+constexpr double kReadingsAPeriod = 4.0;   // at least
+constexpr double kFinest = 1.0 / 10;       // of the step between frequencies, at last
+constexpr double kOfFree = 0.8;            // of what a phase for each stroke explains
+constexpr double kOfAnyFree = 0.3;         // likewise of another period
+constexpr Eigen::Index kHarmonics = 3;
+
+/// A stroke's plateau: residuals less their own line.
+struct Plateau {
+  bool rises = true;
+  std::size_t begin = 0;  // samples
+  std::size_t end = 0;
+  std::vector<double> displacement;
+  std::vector<double> residual;
+
+  [[nodiscard]] double length() const {
+    const auto [least, most] = std::ranges::minmax(displacement);
+    return most - least;
+  }
+};
+
+void TakeOffLine(std::span<const double> x, std::span<double> y) {
+  const auto count = static_cast<double>(x.size());
+  double mean_x = 0.0;
+  double mean_y = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    mean_x += x[i] / count;
+    mean_y += y[i] / count;
+  }
+  double xx = 0.0;
+  double xy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - mean_x) * (x[i] - mean_x);
+    xy += (x[i] - mean_x) * (y[i] - mean_y);
+  }
+  const double slope = xx > 0 ? xy / xx : 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) y[i] -= mean_y + slope * (x[i] - mean_x);
+}
+
+std::vector<Plateau> PlateausOf(std::span<const FittedSample> samples) {
+  double peak = 0.0;
+  for (const FittedSample& sample : samples) peak = std::max(peak, std::abs(sample.response));
+  const auto slides = [&](const FittedSample& at) {
+    return at.counts && std::abs(at.response) > kOnPlateau * peak;
+  };
+  std::vector<Plateau> plateaus;
+  for (std::size_t i = 0; i < samples.size();) {
+    const std::size_t begin = i;
+    const auto is_same = [&](const FittedSample& at) {
+      return slides(at) && at.record == samples[begin].record &&
+             at.response * samples[begin].response > 0;
+    };
+    while (i < samples.size() && is_same(samples[i])) ++i;
+    if (i == begin) ++i;
+    if (i - begin < kFewest) continue;
+    Plateau plateau;
+    plateau.rises = samples[begin].response > 0;
+    plateau.begin = begin;
+    plateau.end = i;
+    const std::size_t group = (i - begin + kMostPoints - 1) / kMostPoints;
+    for (std::size_t k = begin; k + group <= i; k += group) {
+      double x = 0.0;
+      double r = 0.0;
+      for (std::size_t j = k; j < k + group; ++j) {
+        x += samples[j].displacement / static_cast<double>(group);
+        r += samples[j].residual / static_cast<double>(group);
+      }
+      plateau.displacement.push_back(x);
+      plateau.residual.push_back(r);
+    }
+    TakeOffLine(plateau.displacement, plateau.residual);
+    plateaus.push_back(std::move(plateau));
+    if (plateaus.size() == kMostStrokes) break;
+  }
+  return plateaus;
+}
+
+/// Sums of squares that a cosine and a sine of one frequency explain.
+struct PhaseFit {
+  double by_one = 0.0;   // phase for each direction
+  double by_free = 0.0;  // phase for each stroke
+};
+
+PhaseFit ExplainedAt(double frequency, std::span<const Plateau> plateaus) {
+  std::array<std::complex<double>, 2> sums{};
+  std::array<double, 2> counts{};
+  PhaseFit explained;
+  for (const Plateau& plateau : plateaus) {
+    std::complex<double> sum;
+    for (std::size_t i = 0; i < plateau.residual.size(); ++i) {
+      const double phase = 2 * std::numbers::pi * frequency * plateau.displacement[i];
+      sum += plateau.residual[i] * std::complex(std::cos(phase), std::sin(phase));
+    }
+    const auto count = static_cast<double>(plateau.residual.size());
+    explained.by_free += 2 * std::norm(sum) / count;
+    sums[plateau.rises ? 0 : 1] += sum;
+    counts[plateau.rises ? 0 : 1] += count;
+  }
+  for (std::size_t d = 0; d < sums.size(); ++d) {
+    if (counts[d] > 0) explained.by_one += 2 * std::norm(sums[d]) / counts[d];
+  }
+  return explained;
+}
+
+/// The residuals without the period's first harmonics, by least squares in each direction; a line
+/// for each stroke, which is no part of the ripple, is left in.
+std::vector<double> WithoutRipple(std::span<const FittedSample> samples,
+                                  std::span<const Plateau> plateaus, double frequency) {
+  std::vector<double> left;
+  for (const FittedSample& sample : samples) left.push_back(sample.residual);
+  for (const bool rises : {true, false}) {
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(2 * kHarmonics, 2 * kHarmonics);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * kHarmonics);
+    const auto columns_at = [&](double x) {
+      Eigen::VectorXd columns(2 * kHarmonics);
+      for (Eigen::Index h = 0; h < kHarmonics; ++h) {
+        const double phase = 2 * std::numbers::pi * frequency * static_cast<double>(h + 1) * x;
+        columns[2 * h] = std::cos(phase);
+        columns[2 * h + 1] = std::sin(phase);
+      }
+      return columns;
+    };
+    for (const Plateau& plateau : plateaus) {
+      if (plateau.rises != rises) continue;
+      for (std::size_t i = 0; i < plateau.residual.size(); ++i) {
+        const Eigen::VectorXd columns = columns_at(plateau.displacement[i]);
+        normal += columns * columns.transpose();
+        right += plateau.residual[i] * columns;
+      }
+    }
+    const Eigen::VectorXd factors = normal.completeOrthogonalDecomposition().solve(right);
+    for (const Plateau& plateau : plateaus) {
+      if (plateau.rises != rises) continue;
+      for (std::size_t i = plateau.begin; i < plateau.end; ++i) {
+        left[i] -= columns_at(samples[i].displacement).dot(factors);
+      }
+    }
+  }
+  return left;
+}
+
+double IndependentSamples(std::span<const FittedSample> samples, const std::vector<double>& left,
+                          std::size_t counted) {
+  std::vector<unsigned char> counts;
+  for (const FittedSample& sample : samples) counts.push_back(sample.counts ? 1 : 0);
+  const std::span<const double> values = left;
+  const std::span<const unsigned char> mask = counts;
+  return static_cast<double>(counted) /
+         EstimateAutocorrelation({&values, 1}, {&mask, 1}).SquaredCorrelations();
+}
+
+}  // namespace
+
+std::optional<IrregularityFit> FindRipple(std::span<const FittedSample> samples) {
+  const std::vector<Plateau> plateaus = PlateausOf(samples);
+  std::array<std::size_t, 2> strokes{};
+  double length = 0.0;
+  double travel = 0.0;
+  double points = 0.0;
+  for (const Plateau& plateau : plateaus) {
+    ++strokes[plateau.rises ? 0 : 1];
+    length = std::max(length, plateau.length());
+    travel += plateau.length();
+    points += static_cast<double>(plateau.residual.size());
+  }
+  if (std::ranges::max(strokes) < kFewestStrokes || !(length > 0)) return std::nullopt;
+  const double step = 1 / (2 * length);
+  const double highest = points / kReadingsAPeriod / travel;
+  double best = 0.0;
+  double tried = 0.0;
+  PhaseFit most;
+  double most_by_free = 0.0;  // at any frequency
+  const auto look_at = [&](double frequency) {
+    const PhaseFit explained = ExplainedAt(frequency, plateaus);
+    most_by_free = std::max(most_by_free, explained.by_free);
+    if (!(explained.by_one > most.by_one)) return;
+    most = explained;
+    best = frequency;
+  };
+  for (double frequency = kFewestPeriods / length; frequency <= highest; frequency += step) {
+    look_at(frequency);
+    ++tried;
+  }
+  if (!(most.by_one > 0)) return std::nullopt;
+  const double coarse = best;
+  for (double part = -1; part <= 1; part += kFinest) look_at(coarse + part * step);
+  // For noise, free phases explain more by a factor of the number of strokes.
+  if (most.by_one < std::max(kOfFree * most.by_free, kOfAnyFree * most_by_free)) {
+    return std::nullopt;
+  }
+
+  const std::vector<double> left = WithoutRipple(samples, plateaus, best);
+  double before = 0.0;
+  double after = 0.0;
+  std::size_t counted = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!samples[i].counts) continue;
+    before += samples[i].residual * samples[i].residual;
+    after += left[i] * left[i];
+    ++counted;
+  }
+  const double effective = IndependentSamples(samples, left, counted);
+  constexpr double kColumns = 4.0 * kHarmonics;
+  const double degrees = effective - kColumns;
+  if (!(degrees > 1) || !(after > 0) || !(before > after)) return std::nullopt;
+  const double f = (before - after) / kColumns / (after / degrees);
+  IrregularityFit ripple;
+  ripple.p_value = std::min(1.0, tried * PValueOfF(f, kColumns, degrees));
+  ripple.size = 1 / best;
+  ripple.explains = 1 - after / before;
+  ripple.delta_aicc =
+      2 * (kColumns + 1) - Evidence(counted, effective).LikelihoodRatio(before, after);
+  return ripple;
 }
 
 }  // namespace mindahl::identification

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -50,5 +51,29 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
                                                 std::span<const double> residual,
                                                 const Noise& noise, bool robust, bool doubtful,
                                                 Response& response);
+
+/// Readings that are far off both their neighbours, more of them than noise of one width makes.
+///   uᵢ = rᵢ − (rᵢ₋₁ + rᵢ₊₁)/2
+/// is free of whatever is smooth along the loop. A reading is off where |uᵢ| is beyond six
+/// deviations of the samples on which the force is as steep, by their median, and its neighbours'
+/// are of the other sign: a corner of the residuals, or a step, is none.
+/// @returns with the fraction of such readings as its size; empty where there is none
+std::optional<IrregularityFit> FindHeavyTails(std::span<const FittedSample> samples,
+                                              const Evidence& evidence);
+
+/// Drops of the force, against the motion, that recur while the contact slides: a sawtooth. Of the
+/// steps between samples on the plateau those beyond five deviations are counted; noise, whatever
+/// its tails, makes as many rises as drops. Teeth of fewer than four samples pass for noise.
+/// @returns with the median drop as its size [units of the data]; empty where there is none
+std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> samples);
+
+/// Looks for a periodic force where the contact slides, as a drive screw or a gear makes: of the
+/// periods between four readings and a third of the plateau the one whose cosine and sine, one
+/// pair for each direction, explain most of the residuals' deviation from a line over each stroke.
+/// It is a ripple where a pair for each stroke explains hardly more (stick-slip has another phase
+/// in each), and none of another period three times as much; it is fitted with its first three
+/// harmonics.
+/// @returns with the period as its size [units of the data]; empty where there is none
+std::optional<IrregularityFit> FindRipple(std::span<const FittedSample> samples);
 
 }  // namespace mindahl::identification

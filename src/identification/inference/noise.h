@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "identification/problem/problem.h"
+
 namespace mindahl::identification {
 
 /// The autocorrelation of a fit's residuals: an autoregressive process, the same for all records,
@@ -68,5 +70,46 @@ struct Noise {
   /// practically infinite where it is known.
   [[nodiscard]] double degrees_of_freedom(std::size_t parameters) const;
 };
+
+/// Compares two fits to the same samples; every comparison of fits uses it.
+class Evidence {
+ public:
+  /// @param samples    that count
+  /// @param effective  as many independent ones as say the same, of what is compared
+  Evidence(std::size_t samples, double effective);
+
+  /// Takes the sample size over the variance inflation from autocorrelation.
+  explicit Evidence(const Noise& noise) : Evidence(noise.samples, noise.effective_samples()) {}
+
+  /// 2 ln Λ of the fit with the smaller sum of squares against the other: n_eff·ln(SS₀/SS₁), of
+  /// sums that are both no less than rounding errors leave.
+  [[nodiscard]] double LikelihoodRatio(double held, double free) const;
+
+  /// Returns the same statistic where its distribution is asked for: F = (SS₀ − SS₁)/s²·n_eff/n of
+  /// one more parameter, s² the variance of a residual.
+  [[nodiscard]] double FStatistic(double held, double free, double variance) const;
+
+  /// Akaike's criterion with its small-sample term (Hurvich & Tsai 1989), for Gaussian residuals of
+  /// unknown variance. The effective samples weigh the likelihood only: a wrong law leaves a
+  /// handful of them, for which the small-sample term would outweigh any difference of two fits.
+  [[nodiscard]] double Aicc(double sum_of_squares, std::size_t parameters) const;
+
+ private:
+  [[nodiscard]] double Floored(double sum_of_squares) const;
+
+  double samples_;
+  double effective_;
+};
+
+/// Bartlett's test that the residuals of all records have one variance: Σν_r·ln(s²/s_r²) against χ²
+/// of one degree less than records, ν_r each record's effective samples less its parameters. A
+/// record with few of them has no say.
+/// @param residual  weighted, of every sample
+/// @returns the chance that noise of one variance makes them so unlike; 1 of one record, and where
+///   residuals are rounding errors
+double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual);
+
+/// Parameters that a record takes up: its own, and its part of the contact's by its samples.
+double ParametersOfRecord(const Problem& problem, std::size_t record);
 
 }  // namespace mindahl::identification

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "identification/inference/estimates.h"
-#include "identification/inference/evidence.h"
+#include "identification/inference/noise.h"
 #include "identification/intervals.h"
 #include "identification/solve/search.h"
 #include "mindahl/identification/fit_result.h"

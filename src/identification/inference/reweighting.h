@@ -1,15 +1,52 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <cstddef>
 #include <vector>
 
-#include "identification/inference/displacement_errors.h"
+#include "identification/inference/local.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/problem.h"
 #include "identification/solve/solver.h"
 #include "mindahl/identification/fit_options.h"
+#include "mindahl/loop/preparation.h"
 
 namespace mindahl::identification {
+
+/// Simulates the effect of errors of the displacement on a model's force: readings of the smoothed
+/// record are drawn, with its noise or its encoder's phase, and smoothed and settled as the record
+/// was.
+///
+/// An error of a turning point goes along with the whole branch that starts there, one of an
+/// encoder with all turning points at that count, and smoothing ties neighbours together: no
+/// variance of a sample represents that; a drawn record has it all.
+class DisplacementErrors {
+ public:
+  /// @param data  the prepared records, scaled; must outlive this
+  DisplacementErrors(const loop::PreparedRecords& records, const ScaledRecords& data);
+
+  /// True if the displacement of a record is inexact.
+  [[nodiscard]] bool any() const { return !draws_.empty(); }
+
+  /// T(drawn) − T(as smoothed) of the problem's model at θ, in units of the data: one row a sample,
+  /// one column a drawn set of records. The same draws every time. Their mean is not taken off: the
+  /// outermost of several noisy samples lies a little too far out, and that too is an error.
+  [[nodiscard]] Eigen::MatrixXd ForceErrors(const Problem& problem,
+                                            std::span<const double> theta) const;
+
+ private:
+  struct Drawn {
+    std::vector<double> displacement;
+    std::vector<std::size_t> reversals;
+  };
+
+  const ScaledRecords& data_;
+  std::vector<std::vector<Drawn>> draws_;  // of all records each
+};
+
+/// Returns the effect of these errors on a solution's weighted residuals; empty if exact.
+DisplacementEffect EffectOf(const DisplacementErrors& errors, const Problem& problem,
+                            const Solution& solution, const Noise& noise);
 
 /// Standard deviation of normal values of mean 0 by the median of their magnitudes, which outliers
 /// do not move.
@@ -26,11 +63,11 @@ Noise PlainNoise(const ScaledRecords& data, const FitOptions& options, double su
 ///   sample (effective variance, Orear 1982): w = σ_F²/(σ_F² + σ_T²), so that steep branches do not
 ///   dominate; σ_F² where it is not known is what the residuals leave for it
 /// - a robust loss of the standardised residual, whose scale is the median absolute deviation:
-///   ceres::Solve minimises it (solve/robust_search.h), and the weights ψ(z)/z that it implies at
+///   ceres::Solve minimises it (solve/search.h), and the weights ψ(z)/z that it implies at
 ///   the minimum are those of the errors
 /// @param problem   of `data`
 /// @param data      its weights are written
-/// - records that differ in their noise (record_noise.h) each have its own σ_F, and weigh by it:
+/// - records that differ in their noise (noise.h) each have its own σ_F, and weigh by it:
 ///   w = σ²/σ_r², σ² the mean of all samples' variances
 /// @param solution  refitted from where it is
 /// @param noise      what the weights stand for

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/probability.h"
-#include "identification/inference/evidence.h"
 #include "identification/inference/local.h"
+#include "identification/inference/noise.h"
 #include "identification/solve/search.h"
 
 namespace mindahl::identification {

@@ -9,7 +9,6 @@
 
 #include "identification/problem/moved_samples.h"
 #include "identification/problem/parameters.h"
-#include "identification/problem/record_states.h"
 #include "identification/problem/scaled_records.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "identification/solve/ceres_options.h"
-#include "identification/solve/compressed_residual.h"
+#include "identification/solve/projected_residual.h"
 
 namespace mindahl::identification {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "identification/solve/compressed_residual.h"
+#include "identification/solve/projected_residual.h"
 
 namespace mindahl::identification {
 
