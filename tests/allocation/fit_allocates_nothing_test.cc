@@ -1,13 +1,11 @@
-#include <gtest/gtest.h>
 
 #include <atomic>
-#include <cstddef>
 #include <cstdlib>
 #include <new>
-#include <vector>
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
+#include "support/prelude.h"
 
 // What a fitter allocates from the free store once it is warm. Every allocation of the program goes
 // through the operators here: the tests have an executable of their own.
@@ -40,11 +38,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Generator;
-using testing::kLaw;
-using testing::kReach;
-using testing::WithForceNoise;
 
 /// Samples so dense that σ times the longest step beside a reversal is lost in the noise: no
 /// turning point between them is looked for. A(2π/N)²/2 of an amplitude A = 125 N, over 1 % of

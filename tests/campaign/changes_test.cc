@@ -1,19 +1,11 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <vector>
 
 #include "mindahl/campaign/evolution.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::changes_test {
 namespace {
-
-using testing::Generator;
-using testing::Normal;
 
 constexpr double kLevel = 60.0;
 constexpr double kNoise = 0.5;

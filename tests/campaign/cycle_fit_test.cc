@@ -1,24 +1,11 @@
 #include "mindahl/campaign/cycle_fit.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "campaign/test_record.h"
 #include "mindahl/campaign/cycle_splitter.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::cycle_fit_test {
 namespace {
-
-using testing::kCycleLaw;
-using testing::kCycleReach;
-using testing::kCycleSamples;
-using testing::LinesOf;
-using testing::TestRecord;
 
 std::vector<Cycle> CyclesOf(const loop::Record& record) {
   CycleSplitter splitter(0.0);

@@ -1,22 +1,10 @@
 #include "mindahl/campaign/cycle_splitter.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "campaign/test_record.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::cycle_splitter_test {
 namespace {
-
-using testing::Generator;
-using testing::kCycleReach;
-using testing::kCycleSamples;
-using testing::LinesOf;
-using testing::TestRecord;
 
 loop::RecordView Part(const loop::Record& record, std::size_t begin, std::size_t end) {
   const auto part = [&](const std::vector<double>& values) {

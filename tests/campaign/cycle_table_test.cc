@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
 
 #include "mindahl/campaign/cycle_fit.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::cycle_table_test {
 namespace {

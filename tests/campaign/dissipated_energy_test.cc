@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "mindahl/campaign/test_summary.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::dissipated_energy_test {
 namespace {

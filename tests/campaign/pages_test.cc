@@ -1,20 +1,11 @@
 #include "mindahl/campaign/pages.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "mindahl/campaign/evolution.h"
-#include "mindahl/core/error.h"
 #include "support/page_text.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::pages_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::SizeIs;
 
 /// Falls by a tenth after its 60th cycle.
 Evolution Step(bool has_errors) {

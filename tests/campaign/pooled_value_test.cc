@@ -1,18 +1,11 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
 
 #include "mindahl/campaign/test_summary.h"
-#include "mindahl/core/error.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::pooled_value_test {
 namespace {
-
-using testing::Generator;
-using testing::Normal;
 
 TEST(PooledValue, OfOneIsThatOne) {
   PooledValue pooled;

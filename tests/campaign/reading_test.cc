@@ -1,12 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "mindahl/campaign/cycle_splitter.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::reading_test {
 namespace {

@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
 
 #include "mindahl/campaign/test_summary.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::repeats_test {
 namespace {

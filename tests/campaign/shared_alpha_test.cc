@@ -1,18 +1,11 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "mindahl/campaign/test_summary.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::shared_alpha_test {
 namespace {
-
-using ::testing::HasSubstr;
 
 CycleFit Cycle(double alpha, double error, std::vector<std::string> flags = {}) {
   CycleFit fit;

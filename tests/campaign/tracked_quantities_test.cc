@@ -1,18 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <string>
-#include <vector>
 
 #include "mindahl/campaign/evolution.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::tracked_quantities_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 CycleFit WithSlipForce(std::size_t number, double value, double error) {
   CycleFit fit;

@@ -1,20 +1,11 @@
 #include "mindahl/campaign/tracker.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "campaign/test_record.h"
 #include "mindahl/campaign/cycle_fit.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::campaign::tracker_test {
 namespace {
-
-using testing::LinesOf;
-using testing::TestRecord;
 
 constexpr std::size_t kCycles = 150;  // two batches and a part
 

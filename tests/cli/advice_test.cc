@@ -1,27 +1,19 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
 #include "support/measured.h"
+#include "support/prelude.h"
 
 // What a fit advises is accepted, and named first where it is right.
 namespace mindahl::cli::advice_test {
 namespace {
 
 using nlohmann::json;
-using testing::Outcome;
-using testing::RunCommand;
 using Words = std::vector<std::string>;
 
 Words SplitWords(const std::string& text) {

@@ -1,25 +1,13 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // Every option that takes a number or a word, with values that break its rule; and records with
 // every kind of broken cell, first, in the middle and last.
 namespace mindahl::cli::bad_values_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::SampleRecord;
-using ::testing::SizeIs;
 
 using Words = std::vector<std::string>;
 

@@ -1,24 +1,16 @@
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // mindahl batch: each file a fit of its own.
 namespace mindahl::batch_command_test {
 namespace {
-
-using testing::Cells;
-using testing::Lines;
-using testing::Outcome;
-using testing::RunCommand;
 
 class BatchCommand : public ::testing::Test {
  protected:

@@ -1,17 +1,13 @@
-#include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // What is measured of a contact that is the model's is not to be doubted.
 namespace mindahl::cli::clean_records_test {
 namespace {
 
-using testing::Outcome;
-using testing::RunCommand;
 using Words = std::vector<std::string>;
 
 Outcome FitOf(Words drive, const Words& options) {

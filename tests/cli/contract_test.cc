@@ -1,29 +1,19 @@
 #include "support/contract.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
 #include "report/fields.h"
+#include "support/prelude.h"
 
 // docs/contract.md against the program: it names every option, key and code, and none besides.
 namespace mindahl::cli::contract_test {
 namespace {
 
 using nlohmann::json;
-using testing::ContractSections;
-using ::testing::IsEmpty;
-using testing::Matches;
-using testing::RunCommand;
-using testing::SampleRecord;
 using Words = std::vector<std::string>;
 
 const Words kCommands = {"fit",      "simulate",  "validate", "contact", "convert",

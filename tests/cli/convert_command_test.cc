@@ -1,28 +1,17 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 namespace mindahl::cli::convert_command_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Outcome;
-using testing::RunCommand;
-using ::testing::StartsWith;
 using Words = std::vector<std::string>;
 
 constexpr models::BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};

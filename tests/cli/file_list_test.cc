@@ -1,28 +1,15 @@
 #include "cli/file_list.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cstddef>
 #include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::cli::file_list_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Outcome;
-using testing::RunCommand;
-using ::testing::SizeIs;
 
 TEST(FilesOf, AreTheNamedOnesAndThoseOfTheListInOrder) {
   const TemporaryDirectory directory;

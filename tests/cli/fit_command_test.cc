@@ -1,28 +1,16 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <regex>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // fit: the JSON that scripts rely on, files in every unit and format, outputs, exit status.
 namespace mindahl::cli::fit_command_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::SampleRecord;
-using ::testing::SizeIs;
 using Words = std::vector<std::string>;
 
 json FitJson(Words words) {

@@ -1,19 +1,12 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <numbers>
 #include <ostream>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
 #include "mindahl/models/variable_load.h"
+#include "support/prelude.h"
 
 // fit: what the model may have beside σ, α and Tc, which samples count and how much, the choice
 // between models, and what the report says of each.
@@ -21,13 +14,6 @@ namespace mindahl::cli::fit_terms_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Outcome;
-using testing::RunCommand;
-using ::testing::SizeIs;
 using Words = std::vector<std::string>;
 
 // Mindlin's contact of every loop here: δc = 3Tc/(2σ) = 1.5 µm.

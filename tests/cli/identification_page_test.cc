@@ -1,22 +1,17 @@
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "identification/inference/departures.h"
 #include "identification/inference/irregularities.h"
 #include "mindahl/identification/terms.h"
 #include "mindahl/identification/thresholds.h"
 #include "support/contract.h"
+#include "support/prelude.h"
 
 // docs/identification.md against the library: its tables are those of the parameters, of the
 // departures and of the thresholds, row by row.
 namespace mindahl::identification::identification_page_test {
 namespace {
 
-using testing::PageSections;
 using Rows = std::vector<std::string>;
 
 /// Rows of the table in a section, without its head.

@@ -1,27 +1,17 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // fit: one file under several constant loads.
 namespace mindahl::cli::load_steps_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::HasSubstr;
-using testing::Outcome;
-using testing::RunCommand;
 using Words = std::vector<std::string>;
 
 constexpr double kSigma = 4e7;  // at 50 N

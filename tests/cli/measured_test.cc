@@ -1,15 +1,9 @@
 #include "support/measured.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
+#include "support/prelude.h"
 
 // Measured records of other people, in place: what a good tool must notice in each
 // (../shared/measured/README.md). Reference values are those of the README, found by others.
@@ -17,9 +11,6 @@ namespace mindahl::cli::measured_test {
 namespace {
 
 using nlohmann::json;
-using testing::MeasuredPath;
-using testing::Outcome;
-using testing::RunCommand;
 using Words = std::vector<std::string>;
 
 class MeasuredRecord : public ::testing::Test {

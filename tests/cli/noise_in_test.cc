@@ -1,27 +1,17 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <numbers>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // fit --noise-in displacement: loops whose force is imposed.
 namespace mindahl::cli::noise_in_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using testing::Outcome;
-using testing::RunCommand;
 using Words = std::vector<std::string>;
 
 constexpr double kSigma = 5e7;

@@ -1,27 +1,14 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // simulate, contact and validate.
 namespace mindahl::cli::other_commands_test {
 namespace {
 
 using nlohmann::json;
-using testing::Cells;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Lines;
-using testing::Outcome;
-using testing::RunCommand;
-using ::testing::SizeIs;
 using Words = std::vector<std::string>;
 
 /// Columns of simulate's output, without the header.

@@ -1,28 +1,18 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // Where results go: no output replaces an input or another output, and what cannot be written is an
 // error that is said.
 namespace mindahl::cli::outputs_test {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::SampleRecord;
-using ::testing::SizeIs;
 using Words = std::vector<std::string>;
 
 class Outputs : public ::testing::Test {

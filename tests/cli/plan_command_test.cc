@@ -1,21 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 namespace mindahl::cli::plan_command_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::HasSubstr;
-using testing::Outcome;
-using testing::RunCommand;
 using Words = std::vector<std::string>;
 
 Outcome RunPlan(const Words& more) {

@@ -1,25 +1,18 @@
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-#include <array>
 #include <chrono>
 #include <iostream>
 #include <sstream>
-#include <string>
 #include <thread>
 
 #include "cli/output.h"
+#include "support/prelude.h"
 
 // What whoever waits at a terminal sees, and that nobody else does.
 namespace mindahl::cli::progress_test {
 namespace {
-
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr const char* kErase = "\r\x1b[K";
 

@@ -1,26 +1,17 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/provenance.h"
 #include "io/input_file.h"
 #include "io/temporary_directory.h"
 #include "support/page_text.h"
+#include "support/prelude.h"
 
 // --report of fit, batch and track: pages for people.
 namespace mindahl::cli::report_page_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::SampleRecord;
 
 class ReportPage : public ::testing::Test {
  protected:

@@ -1,18 +1,11 @@
 #include "cli/toml.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "io/temporary_directory.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::cli::toml_test {
 namespace {
 
-using ::testing::HasSubstr;
 using Strings = std::vector<std::string>;
 
 TEST(Toml, HasKeysWithStringsNumbersAndWords) {

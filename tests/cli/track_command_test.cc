@@ -1,32 +1,22 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "campaign/test_record.h"
 #include "cli/command_line.h"
 #include "cli/standard_input.h"
 #include "io/temporary_directory.h"
 #include "mindahl/campaign/tracker.h"
+#include "support/prelude.h"
 
 // mindahl track: a table that nothing ends half-way.
 namespace mindahl::track_command_test {
 namespace {
-
-using testing::Cells;
-using testing::Lines;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::TestRecord;
 
 constexpr std::size_t kCycles = 200;  // three batches and a part
 

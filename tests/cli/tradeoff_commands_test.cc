@@ -1,35 +1,16 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // simulate --method, tradeoff and recommend.
 namespace mindahl::cli::tradeoff_commands_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::AllOf;
-using testing::Cells;
-using ::testing::Contains;
-using ::testing::Each;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Lines;
-using ::testing::Not;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::SampleRecord;
-using ::testing::SizeIs;
 using Words = std::vector<std::string>;
 
 std::vector<double> Forces(Words words) {

@@ -1,14 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/contact_options.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // What is known of the contact, with its standard uncertainty: how it is read, and what becomes of
 // it in every command that takes it.
@@ -19,13 +14,6 @@ using namespace contact;
 
 using cli::ParseUncertainValue;
 using nlohmann::json;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::SampleRecord;
-using ::testing::SizeIs;
 using Words = std::vector<std::string>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();

@@ -1,28 +1,17 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <cstdlib>
 #include <iostream>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/standard_input.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 // Help, exit status and messages, of good usage and bad.
 namespace mindahl::cli::usage_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using testing::Outcome;
-using testing::RunCommand;
-using testing::SampleRecord;
-using ::testing::SizeIs;
-using ::testing::StartsWith;
 
 using Words = std::vector<std::string>;
 

@@ -1,18 +1,14 @@
 // Hertz and the scales of Cattaneo and Mindlin within the bounds of their docstrings, from atomic
 // to tectonic, against the same closed forms at 50 digits; and refused where no double holds them.
 
-#include <gtest/gtest.h>
-
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <limits>
 #include <random>
-#include <string>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
 #include "support/message_of.h"
+#include "support/prelude.h"
 
 namespace mindahl::contact::accuracy_test {
 namespace {

@@ -1,14 +1,8 @@
 #include "mindahl/contact/cattaneo_mindlin.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "printed_equations.h"
 #include "support/message_of.h"
+#include "support/prelude.h"
 
 namespace mindahl::contact::cattaneo_mindlin_test {
 namespace {
@@ -26,14 +20,14 @@ const MindlinContact kAtomic{
 const MindlinContact kTectonic{
     .contact_radius = 2.3e3, .tangential_compliance = 1.13e-10, .slip_force = 3.7e12};
 
-class MindlinAccuracy : public testing::TestWithParam<MindlinContact> {};
+class MindlinAccuracy : public ::testing::TestWithParam<MindlinContact> {};
 
-std::string ContactName(const testing::TestParamInfo<MindlinContact>& contact) {
+std::string ContactName(const ::testing::TestParamInfo<MindlinContact>& contact) {
   return contact.index == 0 ? "Laboratory" : contact.index == 1 ? "Atomic" : "Tectonic";
 }
 
 INSTANTIATE_TEST_SUITE_P(Contacts, MindlinAccuracy,
-                         testing::Values(kLaboratory, kAtomic, kTectonic), ContactName);
+                         ::testing::Values(kLaboratory, kAtomic, kTectonic), ContactName);
 
 /// Fractions of a limit: every decade from both ends, with odd mantissas, and the last ulps.
 std::vector<double> FractionsOfALimit() {

@@ -1,16 +1,10 @@
 // Where the paper (Peyret et al. 2017) prints something that cannot hold, each test shows first
 // that the printed form fails and then that the one used here does not. See docs/theory.md §3.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "printed_equations.h"
+#include "support/prelude.h"
 
 namespace mindahl::contact::errata_test {
 namespace {

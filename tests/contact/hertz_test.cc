@@ -1,12 +1,7 @@
 #include "mindahl/contact/hertz.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-
 #include "support/message_of.h"
+#include "support/prelude.h"
 
 namespace mindahl::contact::hertz_test {
 namespace {

@@ -1,19 +1,10 @@
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 
-#include <gtest/gtest.h>
-
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "support/message_of.h"
+#include "support/prelude.h"
 
 namespace mindahl::contact::mindlin_dahl_mapping_test {
 namespace {

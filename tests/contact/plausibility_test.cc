@@ -1,16 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <limits>
 
 #include "mindahl/contact/mindlin_dahl_mapping.h"
+#include "support/prelude.h"
 
 namespace mindahl::contact::plausibility_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 const KnownBody kSteelSphere{.youngs_modulus = 210e9, .poisson_ratio = 0.3, .radius = 0.05};
 const KnownBody kSteelPlane{.youngs_modulus = 210e9,

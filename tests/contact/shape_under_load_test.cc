@@ -1,23 +1,12 @@
 #include "mindahl/contact/shape_under_load.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
-#include <optional>
-
-#include "mindahl/core/error.h"
 #include "support/message_of.h"
+#include "support/prelude.h"
 
 // What a stiffness under a load says of a contact of a known kind of shape: a contact is made
 // forward by Hertz and Mindlin, and its parts are taken away one by one.
 namespace mindahl::contact::shape_under_load_test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 // A power of at most three of a handful of operations, and a root found to the last bits of ln E,
 // which is 25 here.

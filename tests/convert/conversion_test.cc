@@ -1,24 +1,16 @@
 #include "mindahl/convert/conversion.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <numeric>
 #include <variant>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::convert::conversion_test {
 namespace {
 
 using models::BranchLaw;
-using testing::Model;
 
 const ModelLaw kMindlin{&Model("mindlin-dahl"), {4e7, 1.0 / 3, 40.0}};
 constexpr double kGrossSlip = 1.5e-6;  // 3Tc/(2σ) [m]

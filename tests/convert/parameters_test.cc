@@ -1,11 +1,8 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
 
 #include "mindahl/convert/conversion.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
+#include "support/prelude.h"
 
 namespace mindahl::convert::parameters_test {
 namespace {

@@ -1,26 +1,16 @@
 #include "mindahl/convert/steady_law.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::convert::steady_law_test {
 namespace {
 
 using models::BranchLaw;
-using testing::History;
-using testing::Model;
-using testing::Respond;
 
 /// Places of a rising branch between ±X, and its displacements.
 struct Branch {

@@ -1,14 +1,11 @@
-#include "mindahl/core/error.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <limits>
+#include "support/prelude.h"
 
 namespace mindahl::error_test {
 namespace {
 
-using testing::StrEq;
+using ::testing::StrEq;
 
 template <typename Action>
 std::string MessageOf(Action action) {

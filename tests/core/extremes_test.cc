@@ -1,10 +1,6 @@
 #include "core/extremes.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <span>
-#include <vector>
+#include "support/prelude.h"
 
 namespace mindahl::extremes_test {
 namespace {

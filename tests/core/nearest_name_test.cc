@@ -1,9 +1,6 @@
 #include "core/nearest_name.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
+#include "support/prelude.h"
 
 namespace mindahl::nearest_name_test {
 namespace {

@@ -1,8 +1,6 @@
 #include "mindahl/core/units.h"
 
-#include <gtest/gtest.h>
-
-#include <numbers>
+#include "support/prelude.h"
 
 namespace mindahl::units_test {
 namespace {

@@ -1,16 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "identification/solve/projected_residual.h"
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 // Forces of speed by a power, of position and direction, of a ripple and of a mass: recovered from
 // loops that have them, with exact derivatives.
@@ -19,15 +11,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using ::testing::HasSubstr;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Stages;
-using testing::Wave;
 
 constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
 constexpr double kReach = 4e-6;  // 2 of gross slip

@@ -1,18 +1,7 @@
 #include "mindahl/identification/adequacy.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Whether a fit knows that its model is the wrong one, and what is beside it.
 namespace mindahl::identification::adequacy_test {
@@ -20,15 +9,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Respond;
-using testing::Wave;
 
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-6;  // [m], twice gross slip

@@ -1,18 +1,9 @@
 // Slip forces Tc(1 + a) and Tc(1 − a) in the two senses of the motion: what tells them, and what
 // does not.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/model_selection.h"
+#include "support/prelude.h"
 
 namespace mindahl::identification::asymmetry_test {
 namespace {
@@ -20,22 +11,7 @@ namespace {
 using namespace loop;
 using namespace models;
 
-using testing::Cycling;
-using testing::FitOne;
-using testing::From;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::kNoiseFree;
-using testing::MakeRecord;
-using testing::Model;
 using testing::PathOf;
-using testing::Recovers;
-using testing::Respond;
-using testing::Shifted;
-using testing::Stages;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{5e7, 1.0 / 3, 60.0};
 constexpr std::size_t kSamplesPerCycle = 160;

@@ -1,36 +1,16 @@
 #include "mindahl/identification/backbone_estimate.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "identification/backbone_prior.h"
 #include "identification/solve/linear_columns.h"
-#include "mindahl/core/error.h"
 #include "recovery/recovered.h"
 #include "support/masing_record.h"
+#include "support/prelude.h"
 
 // The backbone of a contact whose law nobody has written down.
 namespace mindahl::identification::backbone_estimate_test {
 namespace {
 
 using loop::Record;
-using testing::Asperities;
-using testing::Backbone;
-using testing::Cycling;
-using testing::FitOne;
-using testing::FollowBackbone;
-using testing::FourParameterIwan;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Respond;
-using testing::Wave;
 
 constexpr double kNoise = 0.005;  // of the slip force
 constexpr double kAutocorrelated = 0.7;

@@ -1,15 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/term_selection.h"
+#include "support/prelude.h"
 
 // A gap before the contact that is crossed at zero force. The records are made from the contact's
 // own motion: δ = x + (g/2)·sgn F(x), so that the fit's rule for finding x is not used.
@@ -18,16 +11,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Stages;
-using testing::Wave;
 
 constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
 constexpr double kReach = 4e-6;  // 2 of gross slip

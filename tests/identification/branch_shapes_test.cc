@@ -1,15 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <map>
-#include <string>
-#include <vector>
 
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Whether one shape fits all branches, and whether it is Mindlin's.
 namespace mindahl::identification::branch_shapes_test {
@@ -17,18 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::History;
-using ::testing::IsEmpty;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::SprungLoop;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 4e-6;  // [m], 2.7 of gross slip for α = 1/3, 2 for α = 1/2

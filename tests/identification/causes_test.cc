@@ -1,17 +1,9 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <numbers>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/inference/trials.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Which cause is named first: contacts with something beside the law, as measured records have it,
 // whose cause is known because it was put in.
@@ -20,13 +12,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Generator;
-using testing::History;
-using testing::Model;
-using testing::Normal;
-using testing::Respond;
-using testing::Stages;
 
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-5;  // [m], twenty times gross slip, as a damper or a seal has it

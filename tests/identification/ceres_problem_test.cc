@@ -2,22 +2,12 @@
 
 #include <ceres/ceres.h>
 #include <ceres/gradient_checker.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "identification/sample_loop.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/terms.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // The unprojected problem as Ceres sees it: its gradients, and its minimum beside the fit's.
 namespace mindahl::identification::ceres_problem_test {
@@ -25,15 +15,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::kLaw;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Wave;
-using testing::WithForceNoise;
 
 /// A loop with time, half of it in partial slip; dense enough for no turn between the samples.
 Record TimedLoop(const std::string& model, double reach, std::uint64_t seed, double noise = 0.01) {

@@ -1,23 +1,13 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "core/probability.h"
 #include "identification/sample_loop.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "support/prelude.h"
 
 // The confidence of intervals is one setting: what it changes, and whether it is kept.
 namespace mindahl::identification::confidence_test {
 namespace {
-
-using testing::Generator;
-using testing::kLaw;
-using testing::Loop;
-using testing::WithForceNoise;
 
 loop::Record NoisyLoop(std::uint64_t seed) {
   Generator generator(seed);

@@ -1,13 +1,5 @@
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "identification/cycle_energy.h"
 #include "identification/inference/estimates.h"
@@ -15,6 +7,7 @@
 #include "identification/intervals.h"
 #include "identification/stages.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 // What a fit may not say at once.
 namespace mindahl::identification::contradictions_test {
@@ -22,17 +15,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Stages;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{5e7, 1.0 / 3, 40.0};
 

@@ -1,15 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "identification/sample_loop.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/terms.h"
+#include "support/prelude.h"
 
 // Forces in proportion to other columns of a record: as terms, and as what a fit finds unasked.
 namespace mindahl::identification::covariate_test {
@@ -17,15 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::FitOne;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::kLaw;
-using testing::kNoiseFree;
-using testing::Loop;
-using testing::Recovers;
-using testing::WithForceNoise;
 
 /// Wanders by ±1 in no step with the motion.
 std::vector<double> Wandering(std::size_t samples, double middle, double pace) {

@@ -1,12 +1,9 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Intervals that reach to what can be read off a loop.
 namespace mindahl::identification::covering_test {

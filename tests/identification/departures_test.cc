@@ -1,18 +1,10 @@
 #include "identification/inference/departures.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <functional>
 #include <memory>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "identification/solve/turning_points.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Each column against records in which the contact departs so, by a little.
 namespace mindahl::identification::departures_test {
@@ -20,10 +12,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::History;
-using testing::Model;
-using testing::Stages;
 
 /// Above 1/2, so that the slope is continuous where slip begins.
 constexpr double kShapeExponent = 0.6;

@@ -1,20 +1,11 @@
 #include "identification/diagnosis/diagnosis.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Findings from results made by hand.
 namespace mindahl::identification::diagnosis_test {
 namespace {
-
-using ::testing::ElementsAre;
 
 /// Far below slip.
 FitResult Made() { return testing::MadeFit(/*peak_force=*/2.0); }

@@ -1,14 +1,8 @@
 #include "identification/diagnosis/discrepancy.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-
 #include "core/probability.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Intervals of fits whose model misses something that comes back in every stroke.
 namespace mindahl::identification::discrepancy_test {
@@ -16,16 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 6e-6;  // [m], four times gross slip

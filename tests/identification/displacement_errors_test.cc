@@ -1,12 +1,9 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <vector>
 
 #include "identification/inference/reweighting.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Drawn readings against readings that are drawn here.
 namespace mindahl::identification::displacement_errors_test {
@@ -14,16 +11,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Stages;
-using testing::Uniform;
-using testing::Wave;
 
 /// Root mean square of the errors of the drawn displacements over the half range: a Jenkins element
 /// that never slips is a spring, whose force errs in proportion.

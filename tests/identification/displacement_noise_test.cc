@@ -1,14 +1,10 @@
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/disturbances.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // What noise of the displacement does to a fit, and what the fit says of it.
 namespace mindahl::identification::displacement_noise_test {
@@ -16,15 +12,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::kLaw;
-using testing::kReach;
-using testing::Normal;
-using testing::Uniform;
-using testing::Wave;
 
 constexpr double kForceNoise = 0.005 * 60.0;  // [N]
 constexpr std::size_t kReversals = 6;

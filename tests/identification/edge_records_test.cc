@@ -1,16 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "identification/sample_loop.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Records of which next to nothing follows, and options that no loop can be under: a result that
 // says so, or a refusal in words; never a broken number.
@@ -18,15 +11,6 @@ namespace mindahl::identification::edge_records_test {
 namespace {
 
 using loop::Record;
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::kLaw;
-using testing::Loop;
-using testing::MakeRecord;
-using testing::Normal;
-using testing::Wave;
 
 std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
   try {

@@ -1,16 +1,11 @@
 #include "identification/inference/estimates.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "core/probability.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Standard errors, intervals and correlations against the formulas of a linearised fit, whose
 // Jacobian is found here by central differences of the model's force.
@@ -19,18 +14,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::kLaw;
-using testing::KnownNoise;
-using testing::Loop;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Stages;
-using testing::Wave;
-using testing::WithForceNoise;
 
 /// Central differences of a step of 1e-5 leave 1e-10 of the third derivative and 1e-11 of rounding
 /// over the step: 1e-6 of a column, which the condition of the fit, 1e2, may magnify.

@@ -1,11 +1,10 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
 
 #include "core/probability.h"
 #include "identification/inference/noise.h"
 #include "identification/problem/scaled_records.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // The one comparison of fits, by hand.
 namespace mindahl::identification::evidence_test {

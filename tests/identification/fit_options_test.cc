@@ -1,16 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "identification/sample_loop.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // What Fit accepts, what it refuses with which words, and what each option does.
 namespace mindahl::identification::fit_options_test {
@@ -18,20 +11,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::kLaw;
-using testing::kNoiseFree;
-using testing::kReach;
-using testing::Loop;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Recovers;
-using testing::Respond;
-using testing::Wave;
 
 std::string RefusalOf(const std::vector<Record>& records, const FitOptions& options) {
   try {

@@ -1,15 +1,8 @@
 #include "mindahl/identification/fit.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 #include "identification/sample_loop.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // What a fit reports beside the parameters: state, drift, correlation, residuals, verdicts.
 namespace mindahl::identification::fit_test {
@@ -17,22 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::From;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::kLaw;
-using testing::kNoiseFree;
-using testing::kReach;
-using testing::Loop;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Recovers;
-using testing::Respond;
-using testing::Wave;
 
 TEST(Fit, DistinguishesVirginFromSteadyRecordWithAndWithoutNoise) {
   Generator generator(1);

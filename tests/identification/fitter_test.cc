@@ -1,13 +1,8 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
+#include "support/prelude.h"
 
 // One fitter for many records, at the depth that is wanted.
 namespace mindahl::identification::fitter_test {
@@ -15,12 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Generator;
-using testing::kLaw;
-using testing::kReach;
-using testing::Loop;
-using testing::WithForceNoise;
 
 Record NoisyLoop(std::uint64_t seed, double cycles = 2.0) {
   Generator generator(seed);

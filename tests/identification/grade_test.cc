@@ -1,10 +1,7 @@
 #include "identification/diagnosis/grade.h"
 
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // What a fit is good for, by the force that it misses over what was measured without a model.
 namespace mindahl::identification::grade_test {

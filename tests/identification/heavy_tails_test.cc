@@ -1,13 +1,9 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <vector>
 
 #include "identification/inference/irregularities.h"
 #include "identification/inference/noise.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 // Readings that are far off, counted by hand.
 namespace mindahl::identification::heavy_tails_test {

@@ -1,9 +1,9 @@
-#include "identification/held_out.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "identification/term_scores.h"
 
 // Parts of records that are predicted by fits to the rest, and the mean of what is missed.
 namespace mindahl::identification::held_out_test {

@@ -1,18 +1,11 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "identification/inference/local.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/response.h"
 #include "support/message_of.h"
+#include "support/prelude.h"
 
 // Fits of the displacement that answers an imposed force.
 namespace mindahl::identification::imposed_force_fit_test {
@@ -22,19 +15,6 @@ using loop::Channel;
 using loop::Record;
 using models::BranchLaw;
 using models::InitialState;
-using testing::Cycling;
-using testing::FitOne;
-using testing::From;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Recovers;
-using testing::Scaled;
-using testing::Shifted;
-using testing::Wave;
 
 constexpr double kSlipForce = 60.0;  // [N]
 constexpr int kSamplesPerCycle = 120;

@@ -1,15 +1,7 @@
 #include "identification/inference/irregularities.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-#include <vector>
-
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // What comes and goes in a record: that it is found where it is, with its size, and nowhere else.
 namespace mindahl::identification::irregularities_test {
@@ -17,15 +9,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Respond;
-using testing::Wave;
 
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 6e-6;  // [m], four times gross slip

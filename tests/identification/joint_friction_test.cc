@@ -2,17 +2,11 @@
 
 #include <ceres/ceres.h>
 #include <ceres/gradient_checker.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "mindahl/identification/ceres_problem.h"
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Dahl's own law whose force follows the torque carried and differs between the directions.
 namespace mindahl::identification::joint_friction_test {
@@ -22,7 +16,6 @@ using loop::Record;
 using loop::RecordView;
 using models::BranchLaw;
 using models::InitialState;
-using testing::FitOne;
 
 constexpr double kTwoPi = 6.283185307179586;
 constexpr int kSamples = 200;  // a cycle

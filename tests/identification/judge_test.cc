@@ -1,21 +1,10 @@
 #include "identification/judge/judge.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
+#include "support/prelude.h"
 
 // Verdicts from estimates and findings alone, by precedence.
 namespace mindahl::identification::judge_test {
 namespace {
-
-using ::testing::ElementsAre;
 
 ParameterEstimate Known(const char* name) {
   return {.name = name,

@@ -1,17 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "identification/problem/moved_samples.h"
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 // A force that is read some time after the displacement: what a fit makes of it.
 namespace mindahl::identification::lag_test {
@@ -19,18 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::FitOne;
-using testing::From;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::kNoiseFree;
-using testing::MakeRecord;
-using testing::Recovers;
-using testing::Respond;
-using testing::Stages;
-using testing::WithForceNoise;
 
 constexpr double kStep = 0.005;  // [s]
 constexpr int kSamplesPerCycle = 200;

@@ -1,15 +1,10 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "identification/inference/law_tests.h"
 #include "identification/stages.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 // Which of the two laws a record is of.
 namespace mindahl::identification::law_choice_test {
@@ -18,17 +13,6 @@ namespace {
 using namespace models;
 
 using loop::Record;
-using testing::Cycling;
-using testing::FitOne;
-using testing::From;
-using testing::Generator;
-using testing::History;
-using testing::kNoiseFree;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // [m]

@@ -1,16 +1,10 @@
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/steady_loop.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Records of one contact under several loads: Tc = μN, σ ∝ N^p, α shared.
 namespace mindahl::identification::load_series_test {
@@ -18,7 +12,6 @@ namespace {
 
 using loop::Record;
 using models::BranchLaw;
-using testing::Generator;
 
 constexpr std::array kLoads = {25.0, 50.0, 105.0};  // [N], of mean 60
 constexpr double kMeanLoad = 60.0;

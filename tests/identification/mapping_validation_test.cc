@@ -1,12 +1,6 @@
 #include "mindahl/identification/mapping_validation.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <vector>
-
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::identification::mapping_validation_test {
 namespace {

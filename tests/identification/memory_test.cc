@@ -1,17 +1,9 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "identification/diagnosis/diagnosis.h"
 #include "mindahl/identification/fit_result.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Branches compared with each other: is a record of Masing's memory, of Dahl's, or of neither?
 namespace mindahl::identification::memory_test {
@@ -20,15 +12,6 @@ namespace {
 using namespace models;
 
 using loop::Record;
-using testing::Cycling;
-using testing::From;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Respond;
-using testing::Wave;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // [m]

@@ -1,14 +1,7 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Records that no choice of parameters follows, and what the fit then says of them.
 namespace mindahl::identification::misfit_test {
@@ -16,18 +9,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using ::testing::StartsWith;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-6;  // [m], twice gross slip

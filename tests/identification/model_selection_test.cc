@@ -1,17 +1,8 @@
 #include "mindahl/identification/model_selection.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "mindahl/core/error.h"
 #include "recovery/recovered.h"
 #include "support/measured.h"
+#include "support/prelude.h"
 
 // Which model SelectModel finds behind records of known contacts, and when it says that it cannot.
 namespace mindahl::identification::model_selection_test {
@@ -20,16 +11,7 @@ namespace {
 using namespace loop;
 using namespace models;
 
-using ::testing::Contains;
-using testing::Cycling;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
 using testing::PathOf;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{5e7, 1.0 / 3.0, 60.0};  // slips at 1.8e-6 m
 constexpr double kReach = 2.2e-6;

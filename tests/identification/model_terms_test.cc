@@ -1,16 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "identification/sample_loop.h"
-#include "mindahl/core/error.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // What a fit may add to the contact - a rig's spring, a sloped plateau, drift, a varying load - and
 // what it may leave out.
@@ -19,23 +11,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::kLaw;
-using testing::kNoiseFree;
-using testing::kReach;
-using testing::Loop;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Recovers;
-using testing::Respond;
-using testing::SprungLoop;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;

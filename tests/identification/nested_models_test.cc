@@ -1,25 +1,15 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
 
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // A model with one term more contains the model without it.
 namespace mindahl::identification::nested_models_test {
 namespace {
 
 using namespace loop;
-
-using testing::Generator;
-using testing::kLaw;
-using testing::Loop;
-using testing::WithForceNoise;
 
 /// A loop whose knee is rounded by a force that a square root of the speed makes, which neither a
 /// lag nor a viscous term describes: the likelihood of a lag has several minima.

@@ -1,19 +1,10 @@
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <deque>
-#include <numbers>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "identification/inference/noise.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // The noise of a loop as an autoregressive process, and the standard errors that follow from it.
 namespace mindahl::identification::noise_model_test {
@@ -21,17 +12,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Respond;
-using testing::Uniform;
-using testing::Wave;
 
 constexpr std::size_t kSamples = 5000;
 

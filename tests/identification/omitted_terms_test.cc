@@ -1,11 +1,6 @@
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <boost/math/distributions/fisher_f.hpp>
-#include <cmath>
-#include <cstddef>
-#include <vector>
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/inference/column_test.h"
@@ -13,6 +8,7 @@
 #include "identification/inference/estimates.h"
 #include "identification/inference/noise.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // What residuals are asked for in addition to the model: degrees of freedom, several columns, and
 // the move of a parameter, each by a calculation of its own.
@@ -21,10 +17,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Generator;
-using testing::Normal;
-using testing::Stages;
 
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kReach = 3e-6;  // [m], twice gross slip

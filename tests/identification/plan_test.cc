@@ -1,16 +1,11 @@
 #include "mindahl/identification/plan.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
 #include <random>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
+#include "support/prelude.h"
 
 namespace mindahl::identification::plan_test {
 namespace {

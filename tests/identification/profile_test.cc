@@ -1,15 +1,7 @@
 #include "identification/inference/profile.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Where the likelihood is profiled, what that gives, and what it does to intervals.
 namespace mindahl::identification::profile_test {
@@ -17,17 +9,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::KnownNoise;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Stages;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // [m]

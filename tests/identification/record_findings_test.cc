@@ -1,15 +1,10 @@
 #include "identification/diagnosis/record_findings.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string_view>
-#include <vector>
-
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/identification/thresholds.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 // What is found in records, from facts made by hand, and what a whole fit makes of them.
 namespace mindahl::identification::record_findings_test {
@@ -17,12 +12,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using testing::kLaw;
-using testing::kReach;
-using ::testing::SizeIs;
 
 std::vector<std::string_view> Codes(const std::vector<Finding>& findings) {
   std::vector<std::string_view> codes;

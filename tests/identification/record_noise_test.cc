@@ -1,28 +1,17 @@
-#include <gtest/gtest.h>
 
 #include <boost/math/distributions/chi_squared.hpp>
-#include <cmath>
-#include <cstddef>
-#include <vector>
 
 #include "identification/inference/noise.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
+#include "support/prelude.h"
 
 // Records of one contact whose noise differs, and records that another past precedes.
 namespace mindahl::identification::record_noise_test {
 namespace {
 
 using models::InitialState;
-
-using testing::Generator;
-using testing::kLaw;
-using testing::Loop;
-using testing::Normal;
-using testing::Stages;
-using testing::WithForceNoise;
 
 constexpr double kQuiet = 0.2;  // [N]
 constexpr double kLoud = 2.0;

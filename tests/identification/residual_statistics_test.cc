@@ -1,17 +1,11 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <span>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/identification/adequacy.h"
+#include "support/prelude.h"
 
 namespace mindahl::identification::residual_statistics_test {
 namespace {
 
-using ::testing::HasSubstr;
 using Series = std::vector<std::vector<double>>;
 
 // A handful of additions and a division: a few roundings.

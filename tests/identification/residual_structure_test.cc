@@ -1,29 +1,14 @@
 #include "identification/diagnosis/residual_structure.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <vector>
-
-#include "mindahl/core/error.h"
 #include "mindahl/identification/adequacy.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // What comes back in every stroke, told from noise.
 namespace mindahl::identification::residual_structure_test {
 namespace {
 
 using namespace loop;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::History;
-using testing::Normal;
-using testing::Wave;
 
 constexpr std::size_t kBins = 20;
 

@@ -1,14 +1,8 @@
 #include "identification/inference/reweighting.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // The variance that weighted residuals stand for, by hand.
 namespace mindahl::identification::reweighting_test {
@@ -16,12 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::FitWeighted;
-using testing::Generator;
-using testing::kLaw;
-using testing::Loop;
-using testing::Stages;
 
 Record WithOutliers(double share) {
   Generator generator(5);

@@ -1,15 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Outliers must not move the parameters, and expecting them must cost little where there are none.
 namespace mindahl::identification::robust_loss_test {
@@ -17,17 +9,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::History;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Uniform;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};
 constexpr double kNoise = 0.005 * 40.0;  // [N]

@@ -1,21 +1,14 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string_view>
-#include <vector>
 
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/models/excitation.h"
+#include "support/prelude.h"
 
 namespace mindahl::identification::simpler_laws_test {
 namespace {
 
 using models::BranchLaw;
-using testing::Generator;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40};
 

@@ -1,22 +1,13 @@
-#include <gtest/gtest.h>
 
-#include <cstddef>
 
 #include "identification/inference/sampled_time.h"
 #include "identification/sample_loop.h"
 #include "mindahl/identification/fit.h"
+#include "support/prelude.h"
 
 // Noise of the displacement that the record does not show by stepping back, and the residuals do.
 namespace mindahl::identification::slope_scatter_test {
 namespace {
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::kLaw;
-using testing::kReach;
-using testing::Normal;
-using testing::Wave;
 
 constexpr double kForceNoise = 0.001 * 60.0;           // [N]
 constexpr double kDisplacementNoise = 0.003 * kReach;  // [m]

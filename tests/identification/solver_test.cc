@@ -1,16 +1,10 @@
 #include "identification/solve/solver.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Variable projection against what it stands for: the least squares of all parameters.
 namespace mindahl::identification::solver_test {
@@ -18,12 +12,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Generator;
-using testing::kLaw;
-using testing::Loop;
-using testing::Stages;
-using testing::WithForceNoise;
 
 Record NoisyLoop(std::uint64_t seed = 4) {
   Generator generator(seed);

@@ -1,13 +1,9 @@
 #include "mindahl/identification/sweep.h"
 
-#include <gtest/gtest.h>
-
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <cmath>
 #include <random>
-#include <vector>
 
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 // Stiffness against amplitude: the closed forms, and what is fitted to them.
 namespace mindahl::identification::sweep_test {

@@ -1,17 +1,7 @@
 #include "mindahl/identification/term_selection.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "mindahl/core/error.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Which terms SelectTerms adds to the law of records whose terms are known.
 namespace mindahl::identification::term_selection_test {
@@ -19,15 +9,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using ::testing::ElementsAre;
-using testing::Generator;
-using ::testing::IsEmpty;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kLaw{5e7, 0.4, 60.0};
 constexpr double kReach = 4e-6;  // 2 of gross slip

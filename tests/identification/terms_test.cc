@@ -1,16 +1,11 @@
 #include "mindahl/identification/terms.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <set>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "identification/problem/parameters.h"
 #include "identification/sample_loop.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // The table of parameters, and θ of each.
 namespace mindahl::identification::terms_test {

@@ -1,17 +1,6 @@
 #include "mindahl/identification/thresholds.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <functional>
 #include <map>
-#include <numbers>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
 #include "identification/diagnosis/adequacy.h"
 #include "identification/diagnosis/diagnosis.h"
@@ -27,6 +16,7 @@
 #include "identification/stages.h"
 #include "mindahl/identification/model_selection.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 // What each threshold decides: a case a row, whose expectations are written for the value that the
 // row states, and which no longer hold when it is twice or half of it.
@@ -35,18 +25,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::History;
-using testing::KnownNoise;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Normal;
-using testing::Respond;
-using testing::Stages;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // [m]

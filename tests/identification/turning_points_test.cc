@@ -1,15 +1,8 @@
 #include "identification/solve/turning_points.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 #include "identification/inference/turning_point_test.h"
 #include "identification/stages.h"
+#include "support/prelude.h"
 
 // Turning points between samples: what an overshoot does to the forces, and when it is fitted.
 namespace mindahl::identification::turning_points_test {
@@ -17,15 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::Generator;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Respond;
-using testing::Stages;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kLaw{4e7, 0.4, 40.0};
 constexpr double kReach = 1.4e-6;  // [m]

@@ -1,17 +1,10 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "identification/stages.h"
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/variable_load.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Loads that vary within a record: the fit's law is that of elements in parallel.
 namespace mindahl::identification::varying_load_test {
@@ -19,7 +12,6 @@ namespace {
 
 using loop::Record;
 using models::BranchLaw;
-using testing::Generator;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kFriction = 0.4;

@@ -1,13 +1,11 @@
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <csignal>
-#include <string>
 #include <thread>
 
-#include "mindahl/core/error.h"
 #include "mindahl/io/output_file.h"
+#include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::atomic_file_test {

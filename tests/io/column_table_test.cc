@@ -1,13 +1,8 @@
-#include <gtest/gtest.h>
 
-#include <limits>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"
 #include "mindahl/io/record_reader.h"
+#include "support/prelude.h"
 
 namespace mindahl::io::column_table_test {
 namespace {

@@ -1,14 +1,9 @@
 #include "mindahl/io/csv_table.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <string>
-#include <vector>
-
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::csv_table_test {

@@ -1,12 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"
+#include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::csv_writer_test {

@@ -1,10 +1,9 @@
-#include <gtest/gtest.h>
 
 #include <fstream>
-#include <string>
 
 #include "io/input_file.h"
 #include "io/temporary_directory.h"
+#include "support/prelude.h"
 
 namespace mindahl::io::digest_test {
 namespace {

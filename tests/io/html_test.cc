@@ -1,23 +1,10 @@
 #include "io/html.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "io/panel_drawing.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::io::html_test {
 namespace {
-
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 PlotPanel OnePanel(PlotSeries series) {
   return {.x_label = "displacement [µm]", .y_label = "force [N]", .series = {std::move(series)}};

@@ -1,15 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 
 #include "mindahl/io/record_reader.h"
+#include "support/prelude.h"
 
 namespace mindahl::io::load_pieces_test {
 namespace {
-
-using ::testing::IsEmpty;
 
 /// Four cycles of 40 samples at 20 N, four at 50 N; the lines of the file begin with a header.
 RecordFile TwoLoads() {

@@ -1,32 +1,23 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <iconv.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "io/input_file.h"
 #include "io/number_cell.h"
 #include "io/temporary_directory.h"
-#include "mindahl/core/error.h"
 #include "mindahl/core/units.h"
 #include "mindahl/io/record_reader.h"
 #include "mindahl/io/record_stream.h"
 #include "support/measured.h"
+#include "support/prelude.h"
 
 // Files as loggers write them: each is read whole and as a stream, to the same numbers.
 namespace mindahl::io::logger_file_test {
 namespace {
 
-using ::testing::Contains;
 using ::testing::DoubleEq;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 /// Returns a text in another encoding, by iconv of the system: what the reader must undo.
 std::string Encoded(std::string text, const char* encoding) {

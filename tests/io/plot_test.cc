@@ -1,18 +1,10 @@
 #include "mindahl/io/plot.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <optional>
 #include <set>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::plot_test {

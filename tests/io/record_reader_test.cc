@@ -1,14 +1,9 @@
 #include "mindahl/io/record_reader.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <filesystem>
-#include <numbers>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::record_reader_test {

@@ -1,16 +1,11 @@
 #include "mindahl/io/record_stream.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/io/record_reader.h"
+#include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::record_stream_test {

@@ -1,13 +1,12 @@
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 
 #include "io/unfinished_output.h"
 #include "mindahl/io/output_file.h"
+#include "support/prelude.h"
 #include "temporary_directory.h"
 
 namespace mindahl::io::temporary_names_test {

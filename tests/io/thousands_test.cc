@@ -1,16 +1,8 @@
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "io/number_cell.h"
-#include "mindahl/core/error.h"
 #include "mindahl/io/csv_table.h"
+#include "support/prelude.h"
 
 // Marks that separate thousands in a file that has no decimals, and decimals that look like them.
 namespace mindahl::io::thousands_test {

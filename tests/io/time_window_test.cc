@@ -1,16 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <string>
 
-#include "mindahl/core/error.h"
 #include "mindahl/io/record_reader.h"
+#include "support/prelude.h"
 
 namespace mindahl::io::time_window_test {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 RecordFile TimedFile() {
   RecordFile file;

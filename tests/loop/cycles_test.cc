@@ -1,24 +1,14 @@
 #include "mindahl/loop/cycles.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
 #include <random>
-#include <vector>
 
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
+#include "support/prelude.h"
 
 namespace mindahl::loop::cycles_test {
 namespace {
-
-using testing::Generator;
 
 constexpr double kPi = std::numbers::pi;
 

@@ -1,22 +1,12 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
 
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/reversals.h"
+#include "support/prelude.h"
 
 namespace mindahl::loop::displacement_noise_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
-using testing::Normal;
 
 History Sine(double cycles, std::size_t samples_per_cycle) {
   const auto per_cycle = static_cast<double>(samples_per_cycle);

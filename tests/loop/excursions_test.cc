@@ -1,17 +1,14 @@
-#include <gtest/gtest.h>
 
 #include <memory_resource>
 
 #include "loop/strokes.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 // The staircase of the number of reversals over the gate.
 namespace mindahl::loop::excursions_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
 
 std::pmr::vector<Excursion> Excursions(const History& history) {
   return FindExcursions(history, std::pmr::get_default_resource());

@@ -1,27 +1,15 @@
 #include "mindahl/loop/facts.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <memory_resource>
-#include <numbers>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 #include "support/measured.h"
+#include "support/prelude.h"
 
 // What a record says before any model is asked, on loops whose facts are known in closed form.
 namespace mindahl::loop::facts_test {
 namespace {
-
-using testing::Generator;
-using testing::Normal;
 
 /// Rounding of sums of a few hundred terms.
 constexpr double kRounding = 1e-10;

@@ -1,32 +1,17 @@
-#include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <functional>
 #include <memory_resource>
-#include <numbers>
-#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "loop/scratch.h"
-#include "mindahl/core/error.h"
 #include "mindahl/loop/disturbances.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
 #include "support/measured.h"
+#include "support/prelude.h"
 
 // Samples that no contact and no drive has made, and those that some contact or drive has.
 namespace mindahl::loop::glitches_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
-using testing::LogUniform;
-using testing::Normal;
-using testing::Uniform;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 

@@ -1,14 +1,9 @@
-#include <gtest/gtest.h>
 
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <numbers>
-#include <vector>
 
 #include "mindahl/loop/segments.h"
+#include "support/prelude.h"
 
 namespace mindahl::loop::load_steps_test {
 namespace {

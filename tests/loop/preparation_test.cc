@@ -1,23 +1,14 @@
 #include "mindahl/loop/preparation.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
 #include <memory_resource>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 // What is known of records before any model is asked.
 namespace mindahl::loop::preparation_test {
 namespace {
-
-using testing::Generator;
-using testing::Normal;
 
 constexpr double kTwoPi = 6.283185307179586;
 constexpr int kCycle = 100;  // samples

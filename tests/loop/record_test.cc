@@ -1,11 +1,6 @@
 #include "mindahl/loop/record.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <string>
-
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::loop::record_test {
 namespace {

@@ -1,27 +1,17 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <functional>
 #include <memory_resource>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "loop/rules.h"
 #include "loop/scratch.h"
 #include "loop/strokes.h"
 #include "mindahl/loop/disturbances.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 // Each rule of the gate between a record on which it just holds and one on which it just does not:
 // at twice or half of it one of them comes out otherwise.
 namespace mindahl::loop::reversal_rules_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
 
 ReversalGate Choose(const History& history, const ReversalRules& rules) {
   return ChooseReversalGate(history, rules, std::pmr::get_default_resource());

@@ -1,25 +1,12 @@
 #include "mindahl/loop/reversals.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <vector>
-
 #include "../support/histories.h"
 #include "../support/measured.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::loop::reversals_test {
 namespace {
 
-using testing::Generator;
-using testing::History;
-using testing::Normal;
-using testing::Uniform;
 using Indices = std::vector<std::size_t>;
 
 History Sine(double cycles, std::size_t samples_per_cycle, double phase = 0.0) {

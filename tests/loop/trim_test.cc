@@ -1,22 +1,14 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "mindahl/loop/segments.h"
 #include "mindahl/models/friction_model.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::loop::trim_test {
 namespace {
 
 using models::BranchLaw;
-using testing::Generator;
-using testing::History;
 
 constexpr std::size_t kCycle = 100;  // samples
 constexpr std::size_t kTurn = kCycle / 4;

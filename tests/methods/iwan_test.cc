@@ -1,25 +1,14 @@
 #include "mindahl/methods/iwan.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "responses.h"
+#include "support/prelude.h"
 
 namespace mindahl::methods::iwan_test {
 namespace {
 
 using namespace models;
-
-using testing::Displacements;
-using testing::LargestDifference;
-using testing::ReferenceDisplacement;
-using testing::RespondBy;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr IwanSpacing kSpacings[] = {IwanSpacing::kEqualForce, IwanSpacing::kOptimal};

@@ -1,27 +1,14 @@
 // What a method keeps of the past: reversals, loops that close between samples, amplitudes.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string_view>
-#include <vector>
-
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/response.h"
 #include "responses.h"
+#include "support/prelude.h"
 
 namespace mindahl::methods::memory_test {
 namespace {
 
 using namespace models;
-
-using testing::Displacements;
-using testing::LargestDifference;
-using testing::ReferenceDisplacement;
-using testing::RespondBy;
 
 constexpr std::array kFollowers = {std::string_view("euler"), std::string_view("rk4"),
                                    std::string_view("dopri5"), std::string_view("backward-euler"),

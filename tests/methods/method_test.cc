@@ -1,34 +1,15 @@
 #include "mindahl/methods/method.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "responses.h"
+#include "support/prelude.h"
 
 namespace mindahl::methods::method_test {
 namespace {
 
 using namespace models;
-
-using testing::DefinedForce;
-using testing::Displacements;
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::Largest;
-using testing::LargestDifference;
-using testing::LogUniform;
-using testing::RandomHistory;
-using testing::ReferenceDisplacement;
-using testing::RespondBy;
 
 using Digits100 = boost::multiprecision::cpp_bin_float_100;
 

@@ -1,18 +1,13 @@
-#include <gtest/gtest.h>
 
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "mindahl/methods/method.h"
+#include "support/prelude.h"
 
 namespace mindahl::methods::operations_test {
 namespace {
 
 using models::BranchLaw;
-using testing::Model;
 
 constexpr BranchLaw kMindlin{1.0, 1.0 / 3, 1.0};
 

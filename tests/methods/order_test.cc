@@ -1,23 +1,12 @@
 // How the error of each method falls with its steps, before gross slip and next to it.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "responses.h"
+#include "support/prelude.h"
 
 namespace mindahl::methods::order_test {
 namespace {
 
 using namespace models;
-
-using testing::Displacements;
-using testing::LargestDifference;
-using testing::ReferenceDisplacement;
-using testing::RespondBy;
 
 /// A tolerance that rejects no step, so that dopri5's number of steps is the one asked for.
 constexpr double kNoControl = 1e9;

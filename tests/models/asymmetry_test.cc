@@ -1,20 +1,13 @@
 // Slip forces that differ in the two senses of the motion, against elements that know no history.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <random>
-#include <span>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/loading_path.h"
 #include "mindahl/models/normalized_response.h"
 #include "mindahl/models/response.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::asymmetry_test {
 namespace {

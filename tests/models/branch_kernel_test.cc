@@ -3,21 +3,15 @@
 
 #include "models/branch_kernel.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "../support/worst.h"
 #include "mindahl/models/backbone.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::branch_kernel_test {
 namespace {
 
-using testing::Worst;
 using Gradient = Differentiation<DirectShape>::BranchGradient;
 using Reference = long double;
 

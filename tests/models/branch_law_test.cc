@@ -1,12 +1,6 @@
 #include "mindahl/models/branch_law.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::branch_law_test {
 namespace {

@@ -1,25 +1,14 @@
 #include "mindahl/models/contact_state.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cfenv>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <new>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "../support/histories.h"
 #include "../support/message_of.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
+#include "support/prelude.h"
 
 namespace {
 std::size_t allocations = 0;

@@ -1,29 +1,14 @@
 // Inputs at the ends of the number range: a right answer or a refusal that names the limit.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::edges_test {
 namespace {
-
-using ::testing::HasSubstr;
-using testing::History;
-using testing::Model;
-using testing::PathOf;
-using testing::Respond;
 
 constexpr double kDenormal = std::numeric_limits<double>::denorm_min();
 constexpr double kSmallest = std::numeric_limits<double>::min();

@@ -1,25 +1,13 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "../support/histories.h"
 #include "../support/worst.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::equivalent_law_test {
 namespace {
-
-using testing::History;
-using testing::Model;
-using testing::Respond;
-using testing::Worst;
 
 /// 60 digits: α = 100 at y = 1e12 leaves 50 of them.
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<60>>;

@@ -1,19 +1,10 @@
 #include "mindahl/models/excitation.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/math/constants/constants.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/random/mersenne_twister.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <vector>
 
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::excitation_test {
 namespace {

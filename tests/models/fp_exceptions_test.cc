@@ -1,13 +1,7 @@
 // No invalid operation, overflow or division by zero inside the models, over the whole box of
 // docs/accuracy.md. Underflow and inexact are part of the answers.
 
-#include <gtest/gtest.h>
-
 #include <cfenv>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "../../tools/reference/box.h"
 #include "../support/histories.h"
@@ -15,12 +9,10 @@
 #include "mindahl/models/excitation.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::fp_exceptions_test {
 namespace {
-
-using testing::History;
-using testing::PathOf;
 
 constexpr int kTrapped = FE_INVALID | FE_OVERFLOW | FE_DIVBYZERO;
 

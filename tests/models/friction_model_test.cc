@@ -1,11 +1,6 @@
 #include "mindahl/models/friction_model.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string_view>
-#include <vector>
+#include "support/prelude.h"
 
 namespace mindahl::models::friction_model_test {
 namespace {

@@ -1,31 +1,18 @@
 // EvaluateForceAndGradient against central differences of the literal laws at 100 digits.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <limits>
 #include <ostream>
-#include <string>
 #include <tuple>
-#include <vector>
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::gradient_test {
 namespace {
 
-using testing::Generator;
-using testing::History;
-using testing::Model;
-using testing::PathOf;
-using testing::Respond;
 using Real = boost::multiprecision::cpp_bin_float_100;
 using Law = reference::Law<Real>;
 

@@ -1,31 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
 #include "../support/message_of.h"
 #include "mindahl/contact/cattaneo_mindlin.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/response.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::imposed_force_test {
 namespace {
-
-using testing::Generator;
-using ::testing::HasSubstr;
-using testing::History;
-using testing::LogUniform;
-using testing::Model;
-using testing::Respond;
-using testing::Uniform;
 
 using Real = boost::multiprecision::cpp_bin_float_100;
 

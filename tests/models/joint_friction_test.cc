@@ -1,16 +1,10 @@
 #include "mindahl/models/joint_friction.h"
 
-#include <gtest/gtest.h>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/models/response.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::joint_friction_test {
 namespace {

@@ -1,16 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <limits>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::limit_law_test {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr BranchLaw kLaw{.tangential_stiffness = 4.0, .slip_force = 3.0};
 

@@ -1,18 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "../support/histories.h"
 #include "../support/message_of.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/contact_state.h"
 #include "mindahl/models/variable_load.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::loaded_contact_state_test {
 namespace {

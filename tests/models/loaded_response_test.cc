@@ -1,26 +1,13 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "../support/histories.h"
 #include "../support/message_of.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/normalized_response.h"
 #include "mindahl/models/variable_load.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::loaded_response_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
-using testing::LogUniform;
-using testing::Uniform;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr std::array kShapeExponents = {0.0, 0.1, 1.0 / 3, 0.5, 0.7, 0.95};

@@ -1,22 +1,13 @@
 #include "mindahl/models/loading_path.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "mindahl/loop/reversals.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::loading_path_test {
 namespace {
 
 using namespace loop;
-
-using testing::Generator;
-using testing::History;
 
 LoadingPath MasingPath(const History& history, const InitialContact& initial = {},
                        double gate = 0.0) {

@@ -1,24 +1,12 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string_view>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/models/normalized_response.h"
 #include "mindahl/models/response.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::normalized_displacement_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
-using testing::Model;
-using testing::Uniform;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kExponents[] = {0.0, 0.2, 1.0 / 3, 0.5, 0.9, 1.0, 1.5, 3.0};

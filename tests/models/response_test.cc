@@ -1,31 +1,15 @@
 #include "mindahl/models/response.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/excitation.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::response_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
-using testing::Model;
-using testing::PathOf;
-using testing::Respond;
-using testing::Uniform;
 
 /// The contact of Peyret et al. (2017) §3; σ from eq. 21, not the printed value.
 constexpr double kRadius = 0.0027;

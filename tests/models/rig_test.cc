@@ -1,39 +1,21 @@
 // A spring in series with the contact: against the contact's own response taken as a parameter of
 // the path, and against the laws as they are defined at 50 digits.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <functional>
-#include <limits>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "../../tools/reference/exact_history.h"
 #include "../support/histories.h"
 #include "../support/worst.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::rig_test {
 namespace {
 
-using testing::Generator;
-using testing::History;
-using testing::LogUniform;
-using testing::Model;
-using testing::PathOf;
-using testing::Respond;
-using testing::Uniform;
-using testing::Worst;
 using Real = boost::multiprecision::cpp_bin_float_50;
 using Law = reference::Law<Real>;
 

@@ -1,25 +1,15 @@
 // Dense sweeps across every switch between formulas: no jump, no step back, no force beyond Tc.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 #include "../../tools/reference/box.h"
 #include "../support/histories.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/response.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::seams_test {
 namespace {
-
-using testing::History;
-using testing::Model;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 

@@ -1,23 +1,10 @@
 #include "mindahl/models/steady_loop.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::steady_loop_test {
 namespace {
-
-using testing::History;
-using testing::Model;
-using testing::Respond;
 
 constexpr double kShapeExponents[] = {0.0, 1e-8, 0.1, 1.0 / 3.0, 0.5, 1 - 1e-8, 1.0, 1.5, 2.0, 5.0};
 constexpr double kAmplitudes[] = {0.05, 0.4, 1.0, 1.5, 3.0, 20.0};  // elastic limits

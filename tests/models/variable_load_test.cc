@@ -1,32 +1,14 @@
 #include "mindahl/models/variable_load.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cfenv>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <vector>
 
 #include "../support/histories.h"
 #include "../support/winkler_foundation.h"
 #include "../support/worst.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::variable_load_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
-using testing::LogUniform;
-using testing::Model;
-using testing::Uniform;
-using testing::WinklerFoundation;
-using testing::Worst;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kPi = std::numbers::pi;

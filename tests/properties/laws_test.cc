@@ -1,30 +1,14 @@
 // One test per law of friction, run over every model. A law that a model lacks is listed here with
 // the reason, and its test then demands that the model breaks it.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "../support/histories.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::laws_test {
 namespace {
-
-using testing::Generator;
-using testing::History;
-using testing::PathOf;
-using testing::RandomHistory;
-using testing::Respond;
-using testing::Uniform;
 
 /// What a law's test may find between two evaluations that are equal in exact arithmetic, over Tc:
 /// twice the error bound of response.h.

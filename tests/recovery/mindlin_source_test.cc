@@ -1,13 +1,10 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
 #include <tuple>
-#include <vector>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Mindlin's contact must come back from any correct source of its loops: the equations for an
 // imposed displacement, those for an imposed force, and an ensemble of spring-slider elements that
@@ -18,14 +15,6 @@ namespace {
 using namespace contact;
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::History;
-using testing::kNoiseFree;
-using testing::MakeRecord;
-using testing::Recovers;
-using testing::Wave;
 
 // The contact of the paper's section 3, a rounded.
 constexpr MindlinContact kContact{

@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <vector>
 
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // Every identifiable model, and every way in which a correct record may be cut, shifted, mirrored
 // or sampled.
@@ -13,19 +10,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::From;
-using testing::Generator;
-using testing::History;
-using testing::kNoiseFree;
-using testing::MakeRecord;
-using testing::Model;
-using testing::Recovers;
-using testing::Respond;
-using testing::Uniform;
-using testing::Wave;
 
 // Elastic limit Tc/σ of one micrometre.
 constexpr double kElasticLimit = 1e-6;

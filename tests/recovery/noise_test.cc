@@ -1,15 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "recovery/recovered.h"
 #include "support/measured.h"
+#include "support/prelude.h"
 
 // What the fit says of itself when the record is noisy or says little: intervals that hold the
 // truth as often as they state, and verdicts that do not claim what the record does not show.
@@ -18,18 +11,6 @@ namespace {
 
 using namespace loop;
 using namespace models;
-
-using testing::Cycling;
-using testing::FitOne;
-using testing::Generator;
-using testing::History;
-using ::testing::IsEmpty;
-using testing::MakeRecord;
-using testing::Model;
-using ::testing::Not;
-using testing::Respond;
-using testing::Wave;
-using testing::WithForceNoise;
 
 constexpr BranchLaw kMindlin{4e7, 1.0 / 3, 40.0};
 constexpr double kGrossSlip = 1.5e-6;  // Tc/(σ(1 − α))

@@ -1,14 +1,10 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/mindlin_dahl_mapping.h"
 #include "recovered.h"
+#include "support/prelude.h"
 
 namespace mindahl::identification::turning_points_test {
 namespace {

@@ -2,25 +2,17 @@
 // box of docs/accuracy.md, against the closed forms at 150 or 500 digits.
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <map>
-#include <string>
 
 #include "../../tools/accuracy/measurements.h"
 #include "../support/histories.h"
 #include "../support/worst.h"
 #include "mindahl/models/branch_law.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::accuracy_bounds_test {
 namespace {
-
-using testing::Model;
-using testing::Worst;
 
 std::string Describe(const BranchLaw& law, double x) {
   return fmt::format("alpha = {}, sigma = {}, Tc = {}, x = {}", law.shape_exponent,

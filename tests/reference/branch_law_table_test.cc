@@ -1,24 +1,14 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
 
 #include "../support/histories.h"
 #include "../support/reference_table.h"
 #include "mindahl/models/backbone.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::branch_law_table_test {
 namespace {
-
-using testing::Model;
-using testing::ReadTable;
-using testing::ToDouble;
-using testing::ToLongDouble;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 

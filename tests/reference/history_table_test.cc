@@ -1,22 +1,12 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "../support/histories.h"
 #include "../support/reference_table.h"
 #include "mindahl/models/branch_law.h"
+#include "support/prelude.h"
 
 namespace mindahl::models::history_table_test {
 namespace {
-
-using testing::Model;
-using testing::ReadTable;
-using testing::Respond;
-using testing::ToDouble;
-using testing::ToLongDouble;
 
 /// What response.h promises. A force is a sum of at most 40 branches, each with a few roundings of
 /// a number below 2Tc: 40·2·2⁻⁵³ = 9e-15, and as much again from the argument of φ.

@@ -1,17 +1,12 @@
 #include "apart.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <stdexcept>
-#include <string>
-#include <vector>
+
+#include "support/prelude.h"
 
 namespace mindahl::reliability::apart_test {
 namespace {
-
-using testing::HasSubstr;
 
 std::vector<Ending> RunEach(std::size_t pieces, const ApartOptions& options,
                             const std::function<std::string(std::size_t)>& work) {

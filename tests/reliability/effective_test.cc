@@ -1,8 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <cstddef>
 
 #include "other_laws.h"
+#include "support/prelude.h"
 
 // Loops of other laws than the fitted one: what is effective contains what is true of them.
 namespace mindahl::reliability::effective_test {

@@ -1,13 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
-#include <string_view>
-#include <vector>
 
 #include "kind.h"
 #include "mindahl/loop/record.h"
+#include "support/prelude.h"
 
 namespace mindahl::reliability::kinds_test {
 namespace {

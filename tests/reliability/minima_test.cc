@@ -1,11 +1,6 @@
 #include "minima.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string_view>
-
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::reliability::minima_test {
 namespace {

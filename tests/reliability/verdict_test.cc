@@ -1,9 +1,7 @@
 #include "verdict.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "mindahl/identification/fit.h"
+#include "support/prelude.h"
 
 namespace mindahl::reliability::verdict_test {
 namespace {

@@ -1,21 +1,16 @@
 #include "report/adequacy.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "support/contract.h"
+#include "support/prelude.h"
 
 // The verdict on the model and what the residuals look like, in words and in the JSON.
 namespace mindahl::report::adequacy_test {
@@ -24,10 +19,6 @@ namespace {
 using namespace identification;
 
 using nlohmann::json;
-using ::testing::HasSubstr;
-using testing::MadeInput;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 Cause MadeCause(std::string_view code, double size = 0.0, std::string_view unit = "",
                 std::string_view option = "") {

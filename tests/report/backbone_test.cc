@@ -1,22 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // The backbone without a law, as a table and in words.
 namespace mindahl::report::backbone_test {
 namespace {
 
 using identification::BackboneEstimate;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::MadeInput;
-using ::testing::Not;
 
 BackboneEstimate Made() {
   BackboneEstimate backbone;

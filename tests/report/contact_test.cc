@@ -1,14 +1,8 @@
 #include "mindahl/report/contact.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // From a fit to the contact, by rules that hold for every caller of the library.
 namespace mindahl::report::contact_test {
@@ -21,13 +15,7 @@ using namespace identification;
 using report::IdentifyFittedContact;
 using report::MeanNormalLoad;
 using report::WhyFrictionIsWithheld;
-using ::testing::HasSubstr;
-using testing::kSigma;
 using testing::kSlipForce;
-using testing::MadeFit;
-using testing::MadeInput;
-using testing::MadeRecord;
-using ::testing::Not;
 
 constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
 constexpr double kLoad = 100.0;  // [N]

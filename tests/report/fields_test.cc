@@ -1,18 +1,13 @@
 #include "report/fields.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <set>
-#include <string>
 
 #include "support/contract.h"
+#include "support/prelude.h"
 
 // The table of a report's fields, as the contract has it.
 namespace mindahl::report::fields_test {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::string Row(const report::FieldDescription& field) {
   return "| `" + field.path + "` | " + field.unit + " | " + field.label + " |\n";

@@ -1,14 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <map>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 namespace mindahl::report::figure_test {
 namespace {
@@ -17,10 +12,6 @@ using namespace loop;
 using namespace io;
 
 using report::ToPlot;
-using ::testing::ElementsAre;
-using testing::MadeInput;
-using testing::MadeRecord;
-using ::testing::SizeIs;
 
 /// Metres to the unit that the axis names.
 double PerMetre(const std::string& label) {

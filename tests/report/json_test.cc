@@ -1,13 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // The JSON from the library's side. tests/cli walks that of many runs of the program.
 namespace mindahl::report::json_test {
@@ -18,8 +14,6 @@ using namespace contact;
 using nlohmann::json;
 using report::MakeReport;
 using report::ToJson;
-using testing::FailedInput;
-using testing::MadeInput;
 
 json Parsed(report::ReportInput input) { return json::parse(ToJson(MakeReport(std::move(input)))); }
 

@@ -1,24 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // Masing's law or Dahl's own, in the JSON and in the text.
 namespace mindahl::report::law_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::kSigma;
-using testing::kSlipForce;
-using testing::MadeInput;
-using ::testing::Not;
 
 /// σ three quarters of the fitted, so that a is three quarters and ρ 27/64.
 identification::LawChoice Undecided() {

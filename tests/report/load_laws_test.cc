@@ -1,15 +1,4 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "mindahl/contact/cattaneo_mindlin.h"
 #include "mindahl/contact/hertz.h"
@@ -19,6 +8,7 @@
 #include "mindahl/report/page.h"
 #include "mindahl/report/report.h"
 #include "recovery/recovered.h"
+#include "support/prelude.h"
 
 // What a whole load series says of a contact by a law of the load: loops are made of contacts under
 // several loads, by Hertz's law or another, and what is taken away of the bodies comes back.
@@ -32,9 +22,6 @@ using identification::FitOptions;
 using identification::FitResult;
 using loop::Record;
 using models::BranchLaw;
-using testing::Generator;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr std::array kLoads = {20.0, 50.0, 110.0};  // [N], of mean 60
 constexpr double kMeanLoad = 60.0;

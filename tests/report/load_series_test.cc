@@ -1,18 +1,11 @@
 #include "mindahl/report/load_series.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <optional>
-#include <string_view>
-#include <vector>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // Fits of a load series made by hand: each error, correlation and inflation of an interval has a
 // number of its own, so that each is seen in what follows from it.
@@ -21,9 +14,6 @@ namespace {
 
 using identification::FitResult;
 using identification::ParameterEstimate;
-using testing::MadeInput;
-using testing::MadeParameter;
-using testing::MadeRecord;
 
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 

@@ -1,13 +1,8 @@
 #include "mindahl/report/loop_description.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-
 #include "mindahl/models/steady_loop.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // The steady loop of a fitted law: its energy and whether it slips, with the rig's travel taken
 // off.
@@ -21,10 +16,7 @@ using namespace identification;
 using report::DescribeLoop;
 using report::LoopDescription;
 using report::SlipRegime;
-using testing::kSigma;
 using testing::kSlipForce;
-using testing::MadeFit;
-using testing::MadeRecord;
 
 // Bisection ends at 1e-15 of the amplitude; the energy varies up to three times as fast.
 constexpr double kBisection = 1e-14;

@@ -1,12 +1,10 @@
-#include <gtest/gtest.h>
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
-#include <cmath>
-#include <limits>
 
 #include "mindahl/report/contact.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // Is the fitted contact Mindlin's? Student's t with the degrees of freedom that each error has.
 namespace mindahl::report::mapping_tests_test {
@@ -18,8 +16,6 @@ using namespace identification;
 using report::StiffnessTest;
 using report::TestAlpha;
 using report::TestStiffness;
-using testing::MadeFit;
-using testing::MadeRecord;
 
 constexpr double kRounding = 1e-13;  // of quantiles, good to some hundred ulp
 

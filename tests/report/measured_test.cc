@@ -1,23 +1,16 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <string>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // What needs no model, in the JSON and at the head of the text.
 namespace mindahl::report::measured_test {
 namespace {
 
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using testing::MadeInput;
-using ::testing::Not;
 
 /// Each fact unlike the others.
 ReportInput MeasuredInput() {

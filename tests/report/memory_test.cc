@@ -1,14 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <string_view>
-#include <utility>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "support/contract.h"
+#include "support/prelude.h"
 
 // Of which memory a record is, in the JSON and in the text.
 namespace mindahl::report::memory_test {
@@ -17,10 +13,6 @@ namespace {
 using identification::MemoryTest;
 using identification::MemoryVerdict;
 using nlohmann::json;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using testing::MadeInput;
-using ::testing::Not;
 
 MemoryTest Neither() {
   return {.verdict = MemoryVerdict::kNeither,

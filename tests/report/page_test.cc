@@ -1,28 +1,17 @@
 #include "mindahl/report/page.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "mindahl/identification/fit.h"
 #include "mindahl/models/friction_model.h"
 #include "report/made_report.h"
 #include "support/histories.h"
 #include "support/page_text.h"
+#include "support/prelude.h"
 
 namespace mindahl::report::page_test {
 namespace {
 
 using identification::AdequacyVerdict;
 using identification::Identifiability;
-using testing::FailedInput;
-using ::testing::HasSubstr;
-using testing::MadeInput;
-using testing::MadeRecord;
-using ::testing::Not;
 
 /// What the reader sees: without the rules of style.
 std::string BodyOf(const std::string& page) { return page.substr(page.find("<body>")); }

@@ -1,12 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <regex>
 #include <set>
-#include <string>
 
 #include "mindahl/identification/finding.h"
 #include "support/contract.h"
+#include "support/prelude.h"
 
 // The table of precedence of docs/identification.md beside the registry of findings, which decides.
 namespace mindahl::report::precedence_test {

@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <optional>
 
 #include "mindahl/report/units.h"
+#include "support/prelude.h"
 
 namespace mindahl::report::quantity_test {
 namespace {

@@ -1,12 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
 
-#include "mindahl/core/error.h"
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 namespace mindahl::report::residual_table_test {
 namespace {
@@ -14,9 +10,6 @@ namespace {
 using namespace loop;
 
 using report::ResidualsCsv;
-using testing::MadeInput;
-using testing::MadeRecord;
-using ::testing::StartsWith;
 
 std::string Csv(const std::vector<Record>& records) {
   return ResidualsCsv(report::MakeReport(MadeInput(records, 1e-6)));

@@ -1,19 +1,14 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
 #include <set>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 namespace mindahl::report::sentences_test {
 namespace {
@@ -22,10 +17,6 @@ using namespace models;
 using namespace identification;
 
 using report::Sentence;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 /// Every number that a finding has, each unlike the others.
 Finding Complete(FindingCode code, std::string_view kind = "") {

@@ -1,25 +1,17 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "mindahl/report/contact.h"
 #include "mindahl/report/report.h"
 #include "recovery/recovered.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 namespace mindahl::report::slip_forces_test {
 namespace {
 
 using identification::FitResult;
 using identification::ParameterStatus;
-using ::testing::HasSubstr;
-using testing::kSlipForce;
-using testing::MadeParameter;
-using ::testing::Not;
 
 constexpr double kRounding = 1e-12;
 

@@ -1,23 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <string>
-#include <utility>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
 #include "report/style.h"
+#include "support/prelude.h"
 
 namespace mindahl::report::text_test {
 namespace {
 
 using identification::Identifiability;
 using mindahl::testing::MadeInput;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 TEST(Text, BeginsWithSummaryFollowedByEvidence) {
   const std::string text = ToText(MakeReport(MadeInput()));

@@ -1,21 +1,14 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <string>
 
 #include "mindahl/report/report.h"
 #include "report/made_report.h"
+#include "support/prelude.h"
 
 // A torque against an angle: the same law, in N m and rad, and no contact behind it.
 namespace mindahl::report::torque_test {
 namespace {
-
-using ::testing::HasSubstr;
-using testing::MadeInput;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 Report TorqueReport() {
   ReportInput input = MadeInput();

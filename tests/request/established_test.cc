@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
 
 #include "mindahl/request/fit_request.h"
+#include "support/prelude.h"
 
 namespace mindahl::request::established_test {
 namespace {

@@ -1,11 +1,6 @@
 #include "mindahl/request/fit_request.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::request::fit_request_test {
 namespace {

@@ -1,22 +1,12 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/identification/fit.h"
 #include "mindahl/loop/segments.h"
 #include "mindahl/models/friction_model.h"
 #include "mindahl/report/report.h"
 #include "mindahl/request/fit_request.h"
 #include "support/histories.h"
+#include "support/prelude.h"
 
 // --trim auto: a fit of a record without what is no part of its test, and what is said of it.
 namespace mindahl::request::trim_test {
@@ -26,10 +16,6 @@ using identification::FitOptions;
 using identification::FitResult;
 using loop::Record;
 using models::BranchLaw;
-using ::testing::AllOf;
-using testing::Generator;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr std::size_t kCycle = 100;            // samples
 constexpr BranchLaw kLaw{4e7, 1.0 / 3, 40.0};  // δc = 1.5 µm

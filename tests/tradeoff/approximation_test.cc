@@ -1,21 +1,14 @@
 #include "mindahl/tradeoff/approximation.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <set>
-#include <string>
-#include <vector>
 
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::tradeoff::approximation_test {
 namespace {
 
 using namespace models;
 using namespace methods;
-
-using ::testing::ElementsAre;
 
 TEST(Approximation, IsDescribedInTheSingularAndThePlural) {
   EXPECT_EQ(Describe({"spring", ""}), "spring");

@@ -1,10 +1,9 @@
-#include <gtest/gtest.h>
 
-#include <vector>
 
 #include "../methods/responses.h"
 #include "mindahl/tradeoff/approximation.h"
 #include "mindahl/tradeoff/recommendation.h"
+#include "support/prelude.h"
 
 namespace mindahl::tradeoff::cost_model_test {
 namespace {

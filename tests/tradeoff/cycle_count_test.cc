@@ -1,10 +1,8 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <vector>
 
 #include "mindahl/models/excitation.h"
 #include "mindahl/tradeoff/recommendation.h"
+#include "support/prelude.h"
 
 namespace mindahl::tradeoff::cycle_count_test {
 namespace {

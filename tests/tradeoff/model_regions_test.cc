@@ -1,15 +1,9 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <string_view>
-#include <vector>
 
-#include "mindahl/core/error.h"
 #include "mindahl/models/branch_law.h"
 #include "mindahl/models/steady_loop.h"
 #include "mindahl/tradeoff/work_precision.h"
+#include "support/prelude.h"
 
 namespace mindahl::tradeoff::model_regions_test {
 namespace {

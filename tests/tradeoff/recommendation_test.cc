@@ -1,29 +1,15 @@
 #include "mindahl/tradeoff/recommendation.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <set>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "../methods/responses.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/friction_model.h"
+#include "support/prelude.h"
 
 namespace mindahl::tradeoff::recommendation_test {
 namespace {
 
 using namespace models;
-
-using testing::DefinedForce;
-using testing::Displacements;
-using testing::Extended;
-using testing::Largest;
-using testing::LargestDifference;
 
 constexpr BranchLaw kMindlin{
     .tangential_stiffness = 4.8e8, .shape_exponent = 1.0 / 3, .slip_force = 3};

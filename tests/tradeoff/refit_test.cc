@@ -1,23 +1,14 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string_view>
-#include <vector>
 
 #include "../methods/responses.h"
-#include "mindahl/core/error.h"
 #include "mindahl/models/steady_loop.h"
 #include "mindahl/tradeoff/recommendation.h"
+#include "support/prelude.h"
 
 namespace mindahl::tradeoff::refit_test {
 namespace {
 
 using namespace models;
-
-using testing::Displacements;
 
 constexpr BranchLaw kMindlin{
     .tangential_stiffness = 4.8e8, .shape_exponent = 1.0 / 3, .slip_force = 30};

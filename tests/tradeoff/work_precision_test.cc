@@ -1,31 +1,16 @@
 #include "mindahl/tradeoff/work_precision.h"
 
-#include <gtest/gtest.h>
-
 #include <boost/multiprecision/cpp_bin_float.hpp>
-#include <cmath>
-#include <limits>
-#include <vector>
 
 #include "../methods/responses.h"
 #include "../support/histories.h"
-#include "mindahl/core/error.h"
+#include "support/prelude.h"
 
 namespace mindahl::tradeoff::work_precision_test {
 namespace {
 
 using namespace models;
 using namespace methods;
-
-using testing::DefinedForce;
-using testing::Displacements;
-using testing::Extended;
-using testing::Generator;
-using testing::History;
-using testing::Largest;
-using testing::LargestDifference;
-using testing::RandomHistory;
-using testing::ReferenceDisplacement;
 
 using Digits100 = boost::multiprecision::cpp_bin_float_100;
 
