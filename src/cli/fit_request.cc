@@ -419,8 +419,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
             "{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value", option,
             value));
       },
-      "what is known of a parameter before the fit, with its standard uncertainty:\n"
-      "one more residual; also V+-U, V±5%");
+      "known of a parameter beforehand, in its unit [SI]; V+-U, V±5%");
   command.add_option("--confidence", options.confidence, "confidence of every interval [-]")
       ->type_name("C")
       ->capture_default_str()

@@ -1,5 +1,4 @@
 
-
 #include "identification/inference/estimates.h"
 #include "identification/problem/parameters.h"
 #include "identification/stages.h"
