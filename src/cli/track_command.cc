@@ -165,6 +165,7 @@ class TrackRun {
   void Begin(io::RecordStream& stream, const io::Samples& head);
   void ReadFile(const std::string& file, io::Samples piece, io::RecordStream& stream);
   void EndFile(campaign::Tracker& tracker);
+  void RequireJoinableWithFirst(const io::RecordFile& layout, const std::string& file);
   void SayReading() const;
   void RequireNoSignal() const;
   void Take(std::span<const CycleFit> fits);
@@ -181,6 +182,7 @@ class TrackRun {
   std::string chosen_terms_;
   campaign::Reading reading_;  // of the head
   io::JoinedTimes times_;
+  std::optional<io::RecordFile> first_layout_;  // of the files that are joined
   TrackedTest test_;
   std::optional<KeptCycles> kept_;  // until its last batch was made again
   std::optional<io::AppendedFile> output_;
@@ -212,6 +214,7 @@ void TrackRun::PoolAlpha() {
   Progress progress(console_.err, "fitting alpha, the first of two passes");
   for (const std::string& file : options_.request.files) {
     io::RecordStream stream(file, options_.request.columns, BrokenRowsOf(options_));
+    RequireJoinableWithFirst(stream.layout(), file);
     io::Samples piece;
     if (!tracker) {
       piece = campaign::ReadHead(stream);
@@ -356,6 +359,13 @@ void TrackRun::RequireNoSignal() const {
   if (signals_->noted() != 0) throw InputError("stopped by a signal");
 }
 
+/// Refuses a piece of a record that has other columns than the first.
+void TrackRun::RequireJoinableWithFirst(const io::RecordFile& layout, const std::string& file) {
+  if (!options_.request.join) return;
+  if (!first_layout_) first_layout_ = layout;
+  io::RequireJoinable(*first_layout_, options_.request.files.front(), layout, file);
+}
+
 /// Ends a cycle with its file, unless the files are joined.
 void TrackRun::EndFile(campaign::Tracker& tracker) {
   if (options_.request.join) {
@@ -394,6 +404,7 @@ void TrackRun::ReadFiles() {
   for (const std::string& file : files) {
     io::RecordStream stream(file, options_.request.columns, broken);
     for (const std::string& note : stream.layout().notes) messages_.Note(note);
+    RequireJoinableWithFirst(stream.layout(), file);
     if (tracker_ && stream.layout().is_torsional != test_.is_torsional) {
       throw InputError(fmt::format("{} holds a {} and {} a {}: track them apart", files.front(),
                                    test_.is_torsional ? "torque" : "force", file,

@@ -746,6 +746,20 @@ void JoinedTimes::Shift(std::vector<double>& times) {
   last_ = times.back();
 }
 
+void RequireJoinable(const RecordFile& first, const std::string& first_name, const RecordFile& next,
+                     const std::string& next_name) {
+  const auto require = [&](bool same, std::string_view what) {
+    if (same) return;
+    throw InputError(
+        fmt::format("--join: one of {} and {} has {} and the other has not: pieces of "
+                    "one record have the same columns",
+                    first_name, next_name, what));
+  };
+  require(next.time.has_value() == first.time.has_value(), "a time");
+  require(next.normal_load.has_value() == first.normal_load.has_value(), "a normal load");
+  require(next.is_torsional == first.is_torsional, "a torque");
+}
+
 RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string>& names) {
   RecordFile joined = std::move(records.front());
   joined.lines.clear();
@@ -753,16 +767,7 @@ RecordFile Joined(std::vector<RecordFile> records, const std::vector<std::string
   times.Shift(joined.record.time);
   for (std::size_t k = 1; k < records.size(); ++k) {
     RecordFile& next = records[k];
-    const auto require = [&](bool same, std::string_view what) {
-      if (same) return;
-      throw InputError(
-          fmt::format("--join: one of {} and {} has {} and the other has not: pieces of "
-                      "one record have the same columns",
-                      names.front(), names[k], what));
-    };
-    require(next.time.has_value() == joined.time.has_value(), "a time");
-    require(next.normal_load.has_value() == joined.normal_load.has_value(), "a normal load");
-    require(next.is_torsional == joined.is_torsional, "a torque");
+    RequireJoinable(joined, names.front(), next, names[k]);
     times.NextFile();
     times.Shift(next.record.time);
     const auto append = [](const std::vector<double>& from, std::vector<double>& to) {

@@ -74,6 +74,18 @@ TEST_F(TrackCommand, WritesARowACycle) {
 }
 
 // What fit says of the rows of one cycle.
+TEST_F(TrackCommand, RefusesToJoinPiecesOfWhichOneHasNoTime) {
+  const std::string untimed =
+      Write("untimed.csv", "displacement [m],force [N]\n0,0\n1e-6,2\n0,1\n");
+  for (const char* alpha : {"cycle", "shared"}) {
+    const Outcome outcome = RunCommand({"track", record_, untimed, "--join", "--alpha", alpha,
+                                        "--output", Path("joined.csv"), "--overwrite"});
+    EXPECT_EQ(outcome.status, cli::kBadInput);
+    EXPECT_NE(outcome.err.find("has a time and the other has not"), std::string::npos)
+        << outcome.err;
+  }
+}
+
 TEST_F(TrackCommand, SaysOfACycleWhatFitSaysOfItsRows) {
   constexpr double kSolverTolerance = 1e-2;  // standard errors
   const std::vector<std::string> rows = Lines(Whole());

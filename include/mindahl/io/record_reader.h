@@ -130,6 +130,10 @@ class JoinedTimes {
   double step_ = 0.0;
 };
 
+/// @throws InputError where one of two pieces of a record has a column that the other has not
+void RequireJoinable(const RecordFile& first, const std::string& first_name, const RecordFile& next,
+                     const std::string& next_name);
+
 /// Joins records, in their order, into one. Lines are left out; covariates are those of all.
 /// @param names  of their files, for messages
 /// @throws InputError where one has a time, a load or a torque and another has not
