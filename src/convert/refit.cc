@@ -380,6 +380,7 @@ Elements Search(const Loops& loops, Elements elements, bool last_sticks) {
 std::optional<IwanElements> InOrder(const Elements& elements, const BranchLaw& law, double largest,
                                     bool last_sticks) {
   std::vector<std::pair<double, double>> sorted;
+  sorted.reserve(static_cast<std::size_t>(elements.slip.size()));
   for (Eigen::Index j = 0; j < elements.slip.size(); ++j) {
     sorted.emplace_back(elements.slip(j), elements.stiffness(j));
   }
@@ -434,12 +435,12 @@ IwanElements RefitElements(const ModelLaw& contact, const BranchLaw& masing,
   const double of_tangents = loops.Cost(Scaled(tangents, masing, largest));
   double least = of_tangents;
   const auto try_from = [&](const std::vector<double>& corners, bool sticks) {
-    std::optional<Elements> fitted = BestOfMany(curve, corners);
-    if (!fitted) return;
-    if (elements <= kMostSearched) *fitted = Search(loops, *std::move(fitted), sticks);
-    if (sticks && fitted->Force(1) > 1) return;  // it would hold more than the contact
-    const double cost = loops.Cost(*fitted);
-    const std::optional<IwanElements> made = InOrder(*fitted, masing, largest, sticks);
+    const std::optional<Elements> start = BestOfMany(curve, corners);
+    if (!start) return;
+    const Elements fitted = elements <= kMostSearched ? Search(loops, *start, sticks) : *start;
+    if (sticks && fitted.Force(1) > 1) return;  // it would hold more than the contact
+    const double cost = loops.Cost(fitted);
+    const std::optional<IwanElements> made = InOrder(fitted, masing, largest, sticks);
     if (made && cost < least && largest_difference(*made) <= allowed) {
       least = cost;
       best = *made;

@@ -163,6 +163,7 @@ int RunProgram(std::vector<std::string> words, const std::string& messages, bool
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(),
                                    O_WRONLY | O_CREAT | O_TRUNC, 0600);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   // Ends it where its file may not grow.

@@ -29,7 +29,7 @@ KEPT = pathlib.Path(__file__).resolve().parent / "help"
 
 WIDTH = 100
 # Lines wider than that which are still to be wrapped: the numbers may only fall.
-WIDE_LINES_LEFT = {"mindahl": 13, "fit": 12, "simulate": 6, "contact": 2, "tradeoff": 3, "convert": 1,
+WIDE_LINES_LEFT = {"mindahl": 13, "fit": 11, "simulate": 6, "contact": 2, "tradeoff": 3, "convert": 1,
                    "recommend": 3, "plan": 2,
                    "track": 8, "batch": 10}  # those that it shares with fit
 

@@ -340,16 +340,16 @@ std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> sampl
 
 namespace {
 
-constexpr double kOnPlateau = 0.8;         // of the largest force: the plateau
-constexpr std::size_t kFewest = 16;        // readings of a stroke
-constexpr std::size_t kFewestStrokes = 2;  // of a direction, to share a phase
-constexpr std::size_t kMostPoints = 256;   // that a stroke is looked at by
-constexpr std::size_t kMostStrokes = 64;   // that the period is looked for in
-constexpr double kFewestPeriods = 3.0;     // on the plateau
-constexpr double kReadingsAPeriod = 4.0;   // at least
-constexpr double kFinest = 1.0 / 10;       // of the step between frequencies, at last
-constexpr double kOfFree = 0.8;            // of what a phase for each stroke explains
-constexpr double kOfAnyFree = 0.3;         // likewise of another period
+constexpr double kOnPlateau = 0.8;           // of the largest force: the plateau
+constexpr std::size_t kFewestReadings = 16;  // readings of a stroke
+constexpr std::size_t kFewestStrokes = 2;    // of a direction, to share a phase
+constexpr std::size_t kMostPoints = 256;     // that a stroke is looked at by
+constexpr std::size_t kMostStrokes = 64;     // that the period is looked for in
+constexpr double kFewestPeriods = 3.0;       // on the plateau
+constexpr double kReadingsAPeriod = 4.0;     // at least
+constexpr double kFinest = 1.0 / 10;         // of the step between frequencies, at last
+constexpr double kOfFree = 0.8;              // of what a phase for each stroke explains
+constexpr double kOfAnyFree = 0.3;           // likewise of another period
 constexpr Eigen::Index kHarmonics = 3;
 
 /// A stroke's plateau: residuals less their own line.
@@ -399,7 +399,7 @@ std::vector<Plateau> PlateausOf(std::span<const FittedSample> samples) {
     };
     while (i < samples.size() && is_same(samples[i])) ++i;
     if (i == begin) ++i;
-    if (i - begin < kFewest) continue;
+    if (i - begin < kFewestReadings) continue;
     Plateau plateau;
     plateau.rises = samples[begin].response > 0;
     plateau.begin = begin;
