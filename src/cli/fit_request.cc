@@ -411,7 +411,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   add_assignments("--bound", options.bound, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2",
                   &ParseInterval, "keep a parameter between two values");
   add_assignments(
-      "--prior", options.prior, "NAME=V±U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
+      "--prior", options.prior, "NAME=V+-U", "NAME=VALUE±U, e.g. sigma=4e7±5%",
       [](std::string_view value, std::string_view option, std::string_view) {
         const contact::UncertainValue prior = ParseUncertainValue(value, option);
         if (prior.standard_error > 0) return prior;

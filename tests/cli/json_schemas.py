@@ -342,8 +342,11 @@ def schema_paths(schema, root, path=""):
     if isinstance(schema.get("additionalProperties"), dict):
         yield from schema_paths(schema["additionalProperties"], root, f"{path}.NAME")
     if schema.get("type") in ("array", ["array", "null"]):
-        if schema.get("minItems") == schema.get("maxItems") == 2 and path.endswith("ci95"):
+        is_pair = schema.get("minItems") == schema.get("maxItems") == 2
+        if is_pair and path.endswith(("ci95", "parameters")):
             yield from (f"{path}[{place}]" for place in (0, 1))
+        elif path.endswith("boundary"):
+            pass  # a list of points
         elif schema["items"].get("type") not in ("string", "integer", "number", ["number", "null"],
                                                 ["string", "null"]):
             yield from schema_paths(schema["items"], root, f"{path}[]")
