@@ -292,7 +292,6 @@ class Selection {
   [[nodiscard]] FitOptions With(const TermCandidate& candidate, FitOptions options) const;
   std::optional<CandidateModel> FitFrom(const CandidateModel& base, FitOptions options,
                                         const std::map<std::string, double>& starts);
-  std::optional<CandidateModel> FitAnew(const CandidateModel& base, const TermTrial& trial);
   void MakeScores(const FitOptions& options, const FitResult& law,
                   std::span<const TermCandidate> candidates);
   void DivideIntoParts(const FitResult& fit);
@@ -366,25 +365,6 @@ std::optional<CandidateModel> Selection::FitFrom(const CandidateModel& base, Fit
     at_bound["slip_force"] = within->bounds.at("slip_force").upper;
     return FitFrom(model, *within, at_bound);
   }
-  model.sum_of_squares = SquaresOf(model.fit.rms);
-  return model;
-}
-
-/// Fits a law with one term from starts of its own, whatever the initial state was without it.
-std::optional<CandidateModel> Selection::FitAnew(const CandidateModel& base,
-                                                 const TermTrial& trial) {
-  CandidateModel model;
-  model.options = With(*trial.candidate, base.options);
-  FitOptions options = model.options;
-  options.preparation.force_sense = base.fit.force_sense;
-  options.preparation.held_out = held_out_;
-  try {
-    ++result_.estimates;
-    model.fit = Fitter(options).Fit(records_, Depth::kEstimate);
-  } catch (const InvalidArgument&) {
-    return std::nullopt;
-  }
-  if (!IsFitted(model.fit) || !model.fit.converged) return std::nullopt;
   model.sum_of_squares = SquaresOf(model.fit.rms);
   return model;
 }
@@ -613,13 +593,13 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
     return true;
   };
   // One term that leaves nothing but noise comes before any that only predicts best at first, the
-  // simplest before others; the want of it may have hidden the initial state.
+  // simplest before others; it gains most of what is missed already to first order.
+  constexpr double kMost = 0.5;
   std::vector<std::pair<const TermTrial*, CandidateModel>> alone;
   for (const TermTrial& trial : trials) {
     if (!is_first || fitted.size() == kMostTried || !MayFit(3)) break;
-    if (!is_wanted(trial)) continue;
+    if (!is_wanted(trial) || trial.candidate->considered.gain < kMost) continue;
     std::optional<CandidateModel> model = *fit(trial);
-    if (!model || !IsNearlyWhite(model->fit)) model = FitAnew(base, trial);
     if (model && IsNearlyWhite(model->fit)) alone.emplace_back(&trial, std::move(*model));
   }
   std::ranges::stable_sort(alone, {}, [](const auto& one) { return one.first->candidate->size(); });
@@ -691,11 +671,10 @@ bool Selection::Accept(const CandidateModel& base, const CandidateModel& model, 
   return true;
 }
 
-/// Moves to a model with fewer terms where that has the lesser AICc and misses hardly more than
-/// noise, or than the one with all of them: a term that was added early
-/// may have nothing left to do beside those added later, and a slip force of the speed with a drag
-/// may be a slip force and a force of the speed, which takes a part of the half gap: where nothing
-/// but noise is left, that is no reason against it.
+/// Moves to a model with fewer terms where that too leaves nothing but noise and has the lesser
+/// AICc: a term that was added early may have nothing left to do beside those added later, and a
+/// slip force of the speed with a drag may be a slip force and a force of the speed, which takes a
+/// part of the half gap: where nothing but noise is left, that is no reason against it.
 void Selection::Simplify(std::vector<TermCandidate>& candidates, CandidateModel& base,
                          const FitResult& judged) {
   const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
@@ -728,11 +707,8 @@ void Selection::Simplify(std::vector<TermCandidate>& candidates, CandidateModel&
     }
     if (!MayFit(2)) return false;
     std::optional<CandidateModel> model = FitFrom(from, from.options, {});
-    const double nearly = (1 + selection_.smallest_gain) * (1 + selection_.smallest_gain);
     if (!model || IsUnphysical(model->fit) || StopsAtLimit(model->fit) ||
-        (LeavesHalfGap(facts_, base.fit.law.slip_force, model->fit.law.slip_force) &&
-         !IsNearlyWhite(model->fit)) ||
-        (model->sum_of_squares > nearly * base.sum_of_squares && !IsNearlyWhite(model->fit)) ||
+        !IsNearlyWhite(model->fit) ||
         evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) >
             evidence.Aicc(base.sum_of_squares, CountFreeParameters(base.fit))) {
       return false;
@@ -752,6 +728,7 @@ void Selection::Simplify(std::vector<TermCandidate>& candidates, CandidateModel&
     base = std::move(*model);
     return true;
   };
+  if (!IsNearlyWhite(base.fit)) return;  // what is needless shows where nothing else is wrong
   if (is_added("slip_speed") && is_added("drag")) {
     for (const std::string_view simpler : {"viscous", "speed_exponent"}) {
       if (move_to({"slip_speed", "drag"}, simpler)) break;
@@ -840,8 +817,12 @@ void Selection::FitLast(const CandidateModel& base) {
                              std::ranges::any_of(base.fit.records, [](const RecordFit& record) {
                                return record.initial_state == models::InitialState::kSteady;
                              });
-  if (may_be_virgin && rms_of(base.options) < (1 - selection_.smallest_gain) * rms_of(from_here)) {
-    from_here = base.options;
+  if (may_be_virgin) {
+    FitOptions virgin = from_here;
+    virgin.initial_state = models::InitialState::kVirgin;
+    if (rms_of(virgin) < (1 - selection_.smallest_gain) * rms_of(from_here)) {
+      from_here = base.options;  // from all starts
+    }
   }
   const auto fit = [&] {
     ++result_.estimates;
