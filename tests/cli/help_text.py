@@ -68,7 +68,7 @@ OF_OTHERS = {
     "--component", "--no-index", "--no-deps", "--no-build-isolation",
     "--details", "--half", "--jobs", "--kind", "--loops", "--problems", "--repeats", "--rounds",
     "--shards", "--tests", "--write",
-    "--array", "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
+    "--add-terms", "--array", "--cores", "--profile", "--rerun-incomplete", "--snakefile", "--unlock", "--workflow",
 }
 
 
