@@ -48,7 +48,7 @@ PropagatedValue Total(const Quantity& quantity, double correlation) {
   const double by_stiffness = quantity.change[kStiffness];
   const double by_slip_force = quantity.change[kSlipForce];
   // The square of the sum, with the correlation split so that nothing is subtracted under the root.
-  // What the fit leaves open stays so: its correlation says nothing.
+  // An interval that the fit leaves open stays open: its correlation says nothing.
   const bool open = std::isinf(by_stiffness) || std::isinf(by_slip_force);
   const double fit =
       open ? std::hypot(by_stiffness, by_slip_force)

@@ -2,8 +2,9 @@
 
 #include <cstddef>
 
-// What compilers differ in: functions that are built for several instruction sets, of which one is
-// chosen at run time, and registers of several numbers. Nothing else has attributes of a compiler.
+// Compilers differ in two things that are used here: functions built for several instruction sets,
+// of which one is chosen at run time, and registers of several numbers. Only this file has
+// attributes of a compiler.
 
 // A function that is always inlined takes the instruction set of its caller.
 #define MINDAHL_INLINE_LAMBDA __attribute__((always_inline))

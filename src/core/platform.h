@@ -7,9 +7,9 @@
 
 namespace mindahl {
 
-// What the project asks of the operating system: a port writes platform.cc anew, and what compilers
-// differ in is in instruction_sets.h. Nothing else includes headers of POSIX. Functions that return
-// an error return errno's value, 0 where there is none.
+// Everything that the project asks of the operating system stands here: a port writes platform.cc
+// anew. Only that file includes headers of POSIX; instruction_sets.h has what compilers differ in.
+// Functions that return an error return errno's value, 0 where there is none.
 
 enum class Stream { kInput, kOutput, kMessages };
 

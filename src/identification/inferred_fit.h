@@ -17,9 +17,6 @@ namespace mindahl::identification {
 /// @param result  values, residuals and what the records show without a model, as assembled
 FitResult Infer(const Attempt& attempt, SolvedFit solved, FitResult result);
 
-/// Residuals of which the rms is below this are rounding errors [of the force unit].
-constexpr double kOnlyRounding = 10 * kRoundingRms;
-
 inline void Append(std::vector<Finding>& findings, std::optional<Finding> finding) {
   if (finding) findings.push_back(std::move(*finding));
 }

@@ -260,7 +260,7 @@ SolvedFit SolveFit(const Attempt& attempt) {
           rival->problem.data = best.problem.data;
           SolveAgain(*rival, options, buffers);
         }
-        // By what is left where the turning points are where the motion has them.
+        // The weights come from the residuals of the fit whose turning points are the motion's.
         if (by_record && !solved.fits_turns()) fit_with_weights(solved.turned->records->data);
       }
       std::vector<double> of_records = std::move(solved.noise.of_records);

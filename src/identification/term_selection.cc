@@ -268,7 +268,7 @@ void DropCausesOf(const ConsideredTerm& refused, std::vector<Cause>& causes) {
 void DropLesserCauses(std::vector<Cause>& causes) {
   constexpr double kMostOfIt = 0.5;
   std::erase_if(
-      causes, [&](const Cause& cause) { return cause.explains < kMostOfIt && !cause.is_measured; });
+      causes, [](const Cause& cause) { return cause.explains < kMostOfIt && !cause.is_measured; });
 }
 
 class Selection {
@@ -292,24 +292,25 @@ class Selection {
   [[nodiscard]] FitOptions With(const TermCandidate& candidate, FitOptions options) const;
   std::optional<CandidateModel> FitFrom(const CandidateModel& base, FitOptions options,
                                         const std::map<std::string, double>& starts);
-  void MakeScores(const FitOptions& options, const FitResult& law,
-                  std::span<const TermCandidate> candidates);
+  void MakeScores(const FitOptions& options, const FitResult& law);
   void DivideIntoParts(const FitResult& fit);
   void Judge(const TermScore& base, const TermScore& trial, ConsideredTerm& considered) const;
-  std::vector<TermTrial> ScoreCandidates(std::vector<TermCandidate>& candidates,
-                                         const CandidateModel& base, const FitResult& judged);
+  [[nodiscard]] Evidence EvidenceOfJudged() const;
+  TermCandidate* FindCandidate(std::string_view name);
+  std::vector<TermTrial> ScoreCandidates();
   bool IsRefused(const TermTrial& trial, std::span<const TermTrial> trials) const;
   std::vector<const TermTrial*> WithSimpler(const TermTrial& trial,
                                             std::span<const TermTrial> trials) const;
-  bool Round(std::vector<TermCandidate>& candidates, CandidateModel& base, FitResult& judged);
-  void AddMeasuredGap(std::vector<TermCandidate>& candidates, CandidateModel& base,
-                      FitResult& judged);
-  bool Accept(const CandidateModel& base, const CandidateModel& model, FitResult& judged);
-  void Simplify(std::vector<TermCandidate>& candidates, CandidateModel& base,
-                const FitResult& judged);
+  bool Round();
+  void AddMeasuredGap();
+  bool Accept(const CandidateModel& model);
+  void Add(TermCandidate& candidate, CandidateModel model, double gain);
+  bool MoveWithout(const std::vector<std::string_view>& dropped, std::string_view instead);
+  void Simplify();
   [[nodiscard]] std::optional<FitOptions> WithinMeasuredForce(const FitResult& fit,
                                                               const FitOptions& options) const;
-  void FitLast(const CandidateModel& base);
+  [[nodiscard]] bool MayBeVirgin(const FitOptions& options);
+  void FitLast();
   void KeepAlternatives(const TermTrial& added, std::span<const TermTrial> trials, double chance);
   [[nodiscard]] double SquaresOf(double rms) const { return SumOfSquares(rms, samples_); }
   [[nodiscard]] bool MayFit(std::size_t more) const {
@@ -319,6 +320,9 @@ class Selection {
   std::span<const RecordView> records_;
   const TermSelectionOptions& selection_;
   TermSelection& result_;
+  std::vector<TermCandidate> candidates_;
+  CandidateModel base_;  // with the terms that were added
+  FitResult judged_;     // the last one with intervals; of base_ or of a smaller model
   std::optional<TermScores> scores_;
   std::vector<Alternative> alternatives_;
   ScoredSamples samples_;
@@ -386,11 +390,10 @@ std::optional<FitOptions> Selection::WithinMeasuredForce(const FitResult& fit,
 
 /// Prepares the records for all candidates at once. What a lag leaves out is left out for all: else
 /// fits would be compared on other samples.
-void Selection::MakeScores(const FitOptions& options, const FitResult& law,
-                           std::span<const TermCandidate> candidates) {
+void Selection::MakeScores(const FitOptions& options, const FitResult& law) {
   std::vector<std::string> terms;
   std::vector<std::string> covariates = options.covariates;
-  for (const TermCandidate& candidate : candidates) {
+  for (const TermCandidate& candidate : candidates_) {
     terms.insert(terms.end(), candidate.terms.begin(), candidate.terms.end());
     if (!candidate.covariate.empty()) covariates.push_back(candidate.covariate);
   }
@@ -438,21 +441,32 @@ void Selection::Judge(const TermScore& base, const TermScore& trial,
   considered.p_value = t > 0 ? beyond : 1 - beyond;
 }
 
+/// Weighs fits by the independent samples that the judged one has.
+Evidence Selection::EvidenceOfJudged() const {
+  return Evidence(samples_.count, std::min(judged_.residuals.effective_samples,
+                                           static_cast<double>(samples_.count)));
+}
+
+/// Returns a null pointer where the records do not allow that candidate.
+TermCandidate* Selection::FindCandidate(std::string_view name) {
+  const auto found = std::ranges::find_if(candidates_, [&](const TermCandidate& candidate) {
+    return candidate.considered.name == name;
+  });
+  return found == candidates_.end() ? nullptr : &*found;
+}
+
 /// Scores every candidate that is left by a linear step; the best first.
-std::vector<Selection::TermTrial> Selection::ScoreCandidates(std::vector<TermCandidate>& candidates,
-                                                             const CandidateModel& base,
-                                                             const FitResult& judged) {
-  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
-                                                   static_cast<double>(samples_.count)));
-  const std::size_t free = CountFreeParameters(base.fit);
-  scores_->StepFrom(base.fit, base.options, parts_, folds_);
+std::vector<Selection::TermTrial> Selection::ScoreCandidates() {
+  const Evidence evidence = EvidenceOfJudged();
+  const std::size_t free = CountFreeParameters(base_.fit);
+  scores_->StepFrom(base_.fit, base_.options, parts_, folds_);
   const TermScore before = scores_->OfFit();
   std::vector<TermTrial> trials;
-  for (TermCandidate& candidate : candidates) {
+  for (TermCandidate& candidate : candidates_) {
     ConsideredTerm& considered = candidate.considered;
     if (considered.added) continue;
     std::erase_if(candidate.terms,
-                  [&](const std::string& term) { return HasTerm(base.options, term); });
+                  [&](const std::string& term) { return HasTerm(base_.options, term); });
     if (candidate.size() == 0) {  // another one that was added has it all
       considered.gain = 0.0;
       considered.p_value = 1.0;
@@ -460,7 +474,7 @@ std::vector<Selection::TermTrial> Selection::ScoreCandidates(std::vector<TermCan
     }
     std::optional<TermScore> score;
     try {
-      score = scores_->Of(With(candidate, base.options));
+      score = scores_->Of(With(candidate, base_.options));
     } catch (const InvalidArgument&) {
       continue;  // no lag where time does not go on
     }
@@ -548,10 +562,9 @@ void Selection::KeepAlternatives(const TermTrial& added, std::span<const TermTri
 }
 
 /// Moves to the model with the best candidate that is no chance; false where there is none.
-bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& base,
-                      FitResult& judged) {
+bool Selection::Round() {
   constexpr std::size_t kMostTried = 4;  // fits a round
-  const std::vector<TermTrial> trials = ScoreCandidates(candidates, base, judged);
+  const std::vector<TermTrial> trials = ScoreCandidates();
   const double chance =
       selection_.chance / static_cast<double>(std::max<std::size_t>(trials.size(), 1));
   // A simpler candidate is taken where a larger one would not leave that much less.
@@ -564,7 +577,7 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
     if (fitted.size() == (is_first ? 2 * kMostTried : kMostTried) || !MayFit(2)) return nullptr;
     return &fitted
                 .emplace(trial.candidate,
-                         FitFrom(base, With(*trial.candidate, base.options), trial.score.values))
+                         FitFrom(base_, With(*trial.candidate, base_.options), trial.score.values))
                 .first->second;
   };
   const auto is_wanted = [&](const TermTrial& trial) {
@@ -575,21 +588,18 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
   };
   const auto add = [&](const TermTrial& trial, CandidateModel& model) {
     ConsideredTerm& considered = trial.candidate->considered;
-    const double gain = 1 - std::sqrt(model.sum_of_squares / base.sum_of_squares);
+    const double gain = 1 - std::sqrt(model.sum_of_squares / base_.sum_of_squares);
     if (gain < selection_.smallest_gain) return false;
     if (IsUnphysical(model.fit)) {
       considered.obstacle = "unphysical";
       return false;
     }
-    if (!Accept(base, model, judged)) {
+    if (!Accept(model)) {
       considered.obstacle = "confounded";
       return false;
     }
     KeepAlternatives(trial, trials, chance);
-    considered.gain = gain;
-    considered.added = true;
-    result_.added.push_back(considered.name);
-    base = std::move(model);
+    Add(*trial.candidate, std::move(model), gain);
     return true;
   };
   // One term that leaves nothing but noise comes before any that only predicts best at first, the
@@ -612,7 +622,7 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
       if (!trial->candidate->considered.obstacle.empty()) continue;
       std::optional<CandidateModel>* const model = fit(*trial);
       if (model == nullptr) return false;
-      if (!*model || !((*model)->sum_of_squares < base.sum_of_squares)) continue;
+      if (!*model || !((*model)->sum_of_squares < base_.sum_of_squares)) continue;
       if (trial != &best && (*model)->sum_of_squares > nearly * best.sum_of_squares) continue;
       if (add(*trial, **model)) return true;
     }
@@ -622,123 +632,124 @@ bool Selection::Round(std::vector<TermCandidate>& candidates, CandidateModel& ba
 
 /// Moves to the model with a gap that was measured without one, in all records, where that gains:
 /// no linear step from a contact that is too soft for the want of a gap predicts it.
-void Selection::AddMeasuredGap(std::vector<TermCandidate>& candidates, CandidateModel& base,
-                               FitResult& judged) {
-  const auto gap = std::ranges::find_if(candidates, [](const TermCandidate& candidate) {
-    return candidate.considered.name == "backlash";
-  });
+void Selection::AddMeasuredGap() {
+  TermCandidate* const gap = FindCandidate("backlash");
   const bool is_measured = std::ranges::all_of(
-      judged.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); });
-  if (gap == candidates.end() || !is_measured) return;
-  CandidateModel from = base;
+      judged_.records, [](const RecordFit& record) { return record.facts.backlash.has_value(); });
+  if (gap == nullptr || !is_measured) return;
+  CandidateModel from = base_;
   from.fit.parameters.clear();  // from starts of its own
-  std::optional<CandidateModel> model = FitFrom(from, With(*gap, base.options), {});
-  if (!model || !(model->sum_of_squares < base.sum_of_squares)) return;
-  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
-                                                   static_cast<double>(samples_.count)));
-  const double ratio = evidence.LikelihoodRatio(base.sum_of_squares, model->sum_of_squares);
-  const double gain = 1 - std::sqrt(model->sum_of_squares / base.sum_of_squares);
-  if (gain < selection_.smallest_gain || !(PValueOfChiSquared(ratio, 1.0) < selection_.chance) ||
-      IsUnphysical(model->fit) || !Accept(base, *model, judged)) {
+  std::optional<CandidateModel> model = FitFrom(from, With(*gap, base_.options), {});
+  if (!model || !(model->sum_of_squares < base_.sum_of_squares)) return;
+  const double ratio =
+      EvidenceOfJudged().LikelihoodRatio(base_.sum_of_squares, model->sum_of_squares);
+  const double p_value = PValueOfChiSquared(ratio, 1.0);
+  const double gain = 1 - std::sqrt(model->sum_of_squares / base_.sum_of_squares);
+  if (gain < selection_.smallest_gain || !(p_value < selection_.chance) ||
+      IsUnphysical(model->fit) || !Accept(*model)) {
     return;
   }
-  gap->considered.gain = gain;
-  gap->considered.p_value = PValueOfChiSquared(ratio, 1.0);
-  gap->considered.added = true;
-  result_.added.push_back(gap->considered.name);
-  base = std::move(*model);
+  gap->considered.p_value = p_value;
+  Add(*gap, std::move(*model), gain);
 }
 
 /// True if a larger model keeps the slip force of the smaller one. Of a loop that slides over most
 /// of its stroke the half gap is enough to see that, and the estimates are; otherwise, or where the
 /// residuals are nearly white, the larger model is judged, and replaces the one that was.
-bool Selection::Accept(const CandidateModel& base, const CandidateModel& model, FitResult& judged) {
+bool Selection::Accept(const CandidateModel& model) {
   const FitResult& fit = model.fit;
-  if (LeavesHalfGap(facts_, base.fit.law.slip_force, fit.law.slip_force) && !IsNearlyWhite(fit)) {
+  const bool is_nearly_white = IsNearlyWhite(fit);
+  if (LeavesHalfGap(facts_, base_.fit.law.slip_force, fit.law.slip_force) && !is_nearly_white) {
     return false;
   }
-  if (StopsAtLimit(fit) && !StopsAtLimit(base.fit)) return false;
-  if (SlidesOverMostOfStroke(facts_, model.options.thresholds) && !IsNearlyWhite(fit)) return true;
+  if (StopsAtLimit(fit) && !StopsAtLimit(base_.fit)) return false;
+  if (SlidesOverMostOfStroke(facts_, model.options.thresholds) && !is_nearly_white) return true;
   ++result_.estimates;
   Fitter fitter(ContinuedFrom(fit, model.options));
   const FitResult& now = fitter.Fit(records_, Depth::kIntervals);
   // At a limit of the search no parameter would be known.
   const bool is_limited = now.FindFinding("search_limit") != nullptr;
   if (!IsFitted(now) || IsUnphysical(now)) return false;
-  if (is_limited && judged.FindFinding("search_limit") == nullptr) return false;
-  if (OpensSlipForce(judged, now, model.options.thresholds.widest_ratio)) return false;
-  judged = now;
+  if (is_limited && judged_.FindFinding("search_limit") == nullptr) return false;
+  if (OpensSlipForce(judged_, now, model.options.thresholds.widest_ratio)) return false;
+  judged_ = now;
   return true;
 }
 
-/// Moves to a model with fewer terms where that too leaves nothing but noise and has the lesser
-/// AICc: a term that was added early may have nothing left to do beside those added later, and a
-/// slip force of the speed with a drag may be a slip force and a force of the speed, which takes a
-/// part of the half gap: where nothing but noise is left, that is no reason against it.
-void Selection::Simplify(std::vector<TermCandidate>& candidates, CandidateModel& base,
-                         const FitResult& judged) {
-  const Evidence evidence(samples_.count, std::min(judged.residuals.effective_samples,
-                                                   static_cast<double>(samples_.count)));
-  const auto find = [&](std::string_view name) {
-    return std::ranges::find_if(candidates, [&](const TermCandidate& candidate) {
-      return candidate.considered.name == name;
-    });
-  };
+/// Moves to the model with a candidate.
+/// @param gain  reduction of the rms [-]
+void Selection::Add(TermCandidate& candidate, CandidateModel model, double gain) {
+  candidate.considered.gain = gain;
+  candidate.considered.added = true;
+  result_.added.push_back(candidate.considered.name);
+  base_ = std::move(model);
+}
+
+/// Moves to the model without some terms, and with one in their place unless that is empty, where
+/// it leaves nothing but noise and has no larger AICc.
+/// @returns false where the present model stays
+bool Selection::MoveWithout(const std::vector<std::string_view>& dropped,
+                            std::string_view instead) {
+  CandidateModel from = base_;
+  for (const std::string_view name : dropped) {
+    for (const std::string& term : FindCandidate(name)->terms) {
+      std::erase(from.options.terms, term);
+      std::erase_if(from.fit.parameters, [&](const ParameterEstimate& estimate) {
+        return TermNameOf(estimate.name) == term;
+      });
+    }
+  }
+  TermCandidate* const simpler = FindCandidate(instead);
+  if (!instead.empty()) {
+    if (simpler == nullptr || simpler->considered.added) return false;
+    from.options = With(*simpler, from.options);
+    from.fit.parameters.clear();  // from starts of its own
+  }
+  if (!MayFit(2)) return false;
+  std::optional<CandidateModel> model = FitFrom(from, from.options, {});
+  if (!model || IsUnphysical(model->fit) || StopsAtLimit(model->fit) ||
+      !IsNearlyWhite(model->fit)) {
+    return false;
+  }
+  const Evidence evidence = EvidenceOfJudged();
+  if (evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) >
+      evidence.Aicc(base_.sum_of_squares, CountFreeParameters(base_.fit))) {
+    return false;
+  }
+  for (const std::string_view name : dropped) {
+    FindCandidate(name)->considered.added = false;
+    std::erase(result_.added, std::string(name));
+  }
+  alternatives_.clear();  // to terms that are not there any more
+  if (simpler == nullptr) {
+    base_ = std::move(*model);
+  } else {
+    simpler->considered.obstacle = "";
+    const double gain = 1 - std::sqrt(model->sum_of_squares / SquaresOf(result_.fit.rms));
+    Add(*simpler, std::move(*model), gain);
+  }
+  return true;
+}
+
+/// Drops the terms that are needless where nothing but noise is left: one that was added early may
+/// have nothing left to do beside those added later, and a slip force of the speed with a drag may
+/// be a slip force and a force of the speed, which takes a part of the half gap: where nothing but
+/// noise is left, that is no reason against it.
+void Selection::Simplify() {
+  if (!IsNearlyWhite(base_.fit)) return;  // what is needless shows where nothing else is wrong
   const auto is_added = [&](std::string_view name) {
-    const auto candidate = find(name);
-    return candidate != candidates.end() && candidate->considered.added;
+    const TermCandidate* const candidate = FindCandidate(name);
+    return candidate != nullptr && candidate->considered.added;
   };
-  /// Tries the model without some terms, and with one in their place unless that is empty.
-  const auto move_to = [&](const std::vector<std::string_view>& dropped, std::string_view instead) {
-    CandidateModel from = base;
-    for (const std::string_view name : dropped) {
-      for (const std::string& term : find(name)->terms) {
-        std::erase(from.options.terms, term);
-        std::erase_if(from.fit.parameters, [&](const ParameterEstimate& estimate) {
-          return TermNameOf(estimate.name) == term;
-        });
-      }
-    }
-    if (!instead.empty()) {
-      const auto candidate = find(instead);
-      if (candidate == candidates.end() || candidate->considered.added) return false;
-      from.options = With(*candidate, from.options);
-      from.fit.parameters.clear();  // from starts of its own
-    }
-    if (!MayFit(2)) return false;
-    std::optional<CandidateModel> model = FitFrom(from, from.options, {});
-    if (!model || IsUnphysical(model->fit) || StopsAtLimit(model->fit) ||
-        !IsNearlyWhite(model->fit) ||
-        evidence.Aicc(model->sum_of_squares, CountFreeParameters(model->fit)) >
-            evidence.Aicc(base.sum_of_squares, CountFreeParameters(base.fit))) {
-      return false;
-    }
-    for (const std::string_view name : dropped) {
-      find(name)->considered.added = false;
-      std::erase(result_.added, std::string(name));
-    }
-    alternatives_.clear();  // to terms that are not there any more
-    if (!instead.empty()) {
-      ConsideredTerm& considered = find(instead)->considered;
-      considered.added = true;
-      considered.obstacle = "";
-      considered.gain = 1 - std::sqrt(model->sum_of_squares / SquaresOf(result_.fit.rms));
-      result_.added.emplace_back(instead);
-    }
-    base = std::move(*model);
-    return true;
-  };
-  if (!IsNearlyWhite(base.fit)) return;  // what is needless shows where nothing else is wrong
   if (is_added("slip_speed") && is_added("drag")) {
     for (const std::string_view simpler : {"viscous", "speed_exponent"}) {
-      if (move_to({"slip_speed", "drag"}, simpler)) break;
+      if (MoveWithout({"slip_speed", "drag"}, simpler)) break;
     }
   }
   if (result_.added.size() < 2) return;
   for (const std::string& name : std::vector<std::string>(result_.added)) {
     const bool is_needed = name == "slip_speed" && is_added("drag");
-    const auto candidate = find(name);
-    if (!is_needed && candidate->covariate.empty()) move_to({candidate->considered.name}, "");
+    if (!is_needed && FindCandidate(name)->covariate.empty()) MoveWithout({name}, "");
   }
 }
 
@@ -752,44 +763,42 @@ void Selection::Run(const FitOptions& options) {
                             (selection_.only_for_use && adequacy.use == Use::kQuantitative);
   if (!IsFitted(result_.fit) || is_described || options.response() != loop::Channel::kForce) return;
 
-  std::vector<TermCandidate> candidates = ListTermCandidates(records_, options, result_.fit);
-  MakeScores(options, result_.fit, candidates);
+  candidates_ = ListTermCandidates(records_, options, result_.fit);
+  MakeScores(options, result_.fit);
   facts_ = result_.fit.WidestRecord().facts;
   load_ratio_ = result_.fit.WidestRecord().load_ratio;
   samples_ = CountedSamples(result_.fit, records_);
-  CandidateModel base;
-  base.fit = result_.fit;
-  std::optional<CandidateModel> start = FitFrom(base, options, {});
+  base_.fit = result_.fit;
+  std::optional<CandidateModel> start = FitFrom(base_, options, {});
   if (!start) return;
-  base = std::move(*start);
-  DivideIntoParts(base.fit);
+  base_ = std::move(*start);
+  DivideIntoParts(base_.fit);
 
-  FitResult judged = result_.fit;
-  AddMeasuredGap(candidates, base, judged);
-  while (judged.adequacy.verdict != AdequacyVerdict::kAdequate &&
-         result_.added.size() < selection_.most_terms && Round(candidates, base, judged)) {
+  judged_ = result_.fit;
+  AddMeasuredGap();
+  while (judged_.adequacy.verdict != AdequacyVerdict::kAdequate &&
+         result_.added.size() < selection_.most_terms && Round()) {
   }
   if (!result_.added.empty()) {
-    Simplify(candidates, base, judged);
+    Simplify();
     FitResult law = std::move(result_.fit);
-    FitLast(base);
+    FitLast();
     const bool is_of_no_use = selection_.only_for_use && result_.fit.adequacy.use == Use::kNone;
     if (!IsFitted(result_.fit) || is_of_no_use) {
       result_.fit = std::move(law);
       result_.added.clear();
-      for (TermCandidate& candidate : candidates) candidate.considered.added = false;
+      for (TermCandidate& candidate : candidates_) candidate.considered.added = false;
     } else {
-      result_.options.terms = base.options.terms;
-      result_.options.covariates = base.options.covariates;
+      result_.options.terms = base_.options.terms;
+      result_.options.covariates = base_.options.covariates;
     }
   }
-  for (const TermCandidate& candidate : candidates) {
+  for (const TermCandidate& candidate : candidates_) {
     const ConsideredTerm& considered = candidate.considered;
     if (!considered.obstacle.empty()) DropCausesOf(considered, result_.fit.adequacy.causes);
+    result_.considered.push_back(considered);
   }
   if (!result_.added.empty()) DropLesserCauses(result_.fit.adequacy.causes);
-  for (const TermCandidate& candidate : candidates)
-    result_.considered.push_back(candidate.considered);
   std::ranges::stable_sort(result_.considered, std::greater(), &ConsideredTerm::gain);
   const auto place = [&](const ConsideredTerm& term) {
     return std::ranges::find(result_.added, term.name) - result_.added.begin();
@@ -797,33 +806,36 @@ void Selection::Run(const FitOptions& options) {
   std::ranges::stable_sort(result_.considered, {}, place);
 }
 
+/// True if an initial state that was found steady may be virgin: what was held out, and the want of
+/// terms, may have hidden it.
+/// @param options  with starts where the chosen model is
+bool Selection::MayBeVirgin(const FitOptions& options) {
+  const bool is_open = !options.initial_state && options.initial_states.empty() &&
+                       std::ranges::any_of(base_.fit.records, [](const RecordFit& record) {
+                         return record.initial_state == models::InitialState::kSteady;
+                       });
+  if (!is_open) return false;
+  const auto rms_of = [&](const FitOptions& tried) {
+    ++result_.estimates;
+    const FitResult estimate = Fitter(tried).Fit(records_, Depth::kEstimate);
+    return IsFitted(estimate) && estimate.converged ? estimate.rms
+                                                    : std::numeric_limits<double>::infinity();
+  };
+  FitOptions virgin = options;
+  virgin.initial_state = models::InitialState::kVirgin;
+  return rms_of(virgin) < (1 - selection_.smallest_gain) * rms_of(options);
+}
+
 /// Fits the chosen model at full depth from where it is. A slip force that was kept within the
 /// measured force is let go where the model is adequate.
-void Selection::FitLast(const CandidateModel& base) {
-  FitOptions from_here = base.options;
-  for (const ParameterEstimate& parameter : base.fit.parameters) {
+void Selection::FitLast() {
+  FitOptions from_here = base_.options;
+  for (const ParameterEstimate& parameter : base_.fit.parameters) {
     if (parameter.status != ParameterStatus::kFixed) {
       from_here.start[parameter.name] = parameter.value;
     }
   }
-  // What was held out, and the want of terms, may have hidden the initial state.
-  const auto rms_of = [&](const FitOptions& options) {
-    ++result_.estimates;
-    const FitResult estimate = Fitter(options).Fit(records_, Depth::kEstimate);
-    return IsFitted(estimate) && estimate.converged ? estimate.rms
-                                                    : std::numeric_limits<double>::infinity();
-  };
-  const bool may_be_virgin = !from_here.initial_state && from_here.initial_states.empty() &&
-                             std::ranges::any_of(base.fit.records, [](const RecordFit& record) {
-                               return record.initial_state == models::InitialState::kSteady;
-                             });
-  if (may_be_virgin) {
-    FitOptions virgin = from_here;
-    virgin.initial_state = models::InitialState::kVirgin;
-    if (rms_of(virgin) < (1 - selection_.smallest_gain) * rms_of(from_here)) {
-      from_here = base.options;  // from all starts
-    }
-  }
+  if (MayBeVirgin(from_here)) from_here = base_.options;  // from all starts
   const auto fit = [&] {
     ++result_.estimates;
     Fitter last(from_here);
@@ -845,7 +857,7 @@ void Selection::FitLast(const CandidateModel& base) {
            (is_settled && alternative.sum_of_squares > 2 * SquaresOf(result_.fit.rms));
   });
   if (IsFitted(result_.fit)) {
-    IncludeAlternatives(alternatives_, base.options.thresholds, result_.fit);
+    IncludeAlternatives(alternatives_, base_.options.thresholds, result_.fit);
   }
 }
 
@@ -853,32 +865,31 @@ void Selection::FitLast(const CandidateModel& base) {
 /// @returns false where one of them cannot be fitted
 bool Selection::RunNamed(FitOptions options, std::span<const std::string> names) {
   result_.options = options;
-  std::vector<TermCandidate> candidates;
   for (const std::string& name : names) {
-    TermCandidate& candidate = candidates.emplace_back();
+    TermCandidate& candidate = candidates_.emplace_back();
     candidate.considered.name = name;
     for (const std::string_view term : FindTermGroup(name)->terms) {
       if (std::erase(options.terms, std::string(term)) > 0) candidate.terms.emplace_back(term);
     }
   }
   ++result_.estimates;
-  CandidateModel base{.options = options, .fit = Fitter(options).Fit(records_, Depth::kErrors)};
-  if (!IsFitted(base.fit) || !base.fit.converged) return false;
-  MakeScores(options, base.fit, candidates);
+  base_ = {.options = options, .fit = Fitter(options).Fit(records_, Depth::kErrors)};
+  if (!IsFitted(base_.fit) || !base_.fit.converged) return false;
+  MakeScores(options, base_.fit);
   held_out_ = options.preparation.held_out;
-  facts_ = base.fit.WidestRecord().facts;
-  load_ratio_ = base.fit.WidestRecord().load_ratio;
-  samples_ = CountedSamples(base.fit, records_);
-  for (const TermCandidate& candidate : candidates) {
-    scores_->StepFrom(base.fit, base.options, {}, 0);
-    const std::optional<TermScore> score = scores_->Of(With(candidate, base.options));
+  facts_ = base_.fit.WidestRecord().facts;
+  load_ratio_ = base_.fit.WidestRecord().load_ratio;
+  samples_ = CountedSamples(base_.fit, records_);
+  for (const TermCandidate& candidate : candidates_) {
+    scores_->StepFrom(base_.fit, base_.options, {}, 0);
+    const std::optional<TermScore> score = scores_->Of(With(candidate, base_.options));
     if (!score) return false;
     std::optional<CandidateModel> model =
-        FitFrom(base, With(candidate, base.options), score->values);
+        FitFrom(base_, With(candidate, base_.options), score->values);
     if (!model) return false;
-    base = std::move(*model);
+    base_ = std::move(*model);
   }
-  FitLast(base);
+  FitLast();
   return IsFitted(result_.fit);
 }
 

@@ -73,6 +73,21 @@ Evaluator PrepareIwan(const FrictionModel&, const BranchLaw& law, const Resoluti
   };
 }
 
+template <StepMethod make>
+Evaluator PrepareSteps(const FrictionModel& model, const BranchLaw& law,
+                       const Resolution& resolution) {
+  return make(model, law, resolution, nullptr);
+}
+
+/// Counts on the way: steps depend on where the drive slips, and on the error that is found.
+template <StepMethod make>
+void CountSteps(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
+                const Drive& drive, OperationCount& count) {
+  CountPath(model, drive, count);
+  std::vector<double> force(drive.displacement.size());
+  make(model, law, resolution, &count)(drive, force);
+}
+
 constexpr std::array kMethods{
     Method{.name = "exact", .title = "closed form", .prepare = PrepareExact, .count = CountExact},
     Method{.name = "exact-float",
@@ -83,33 +98,33 @@ constexpr std::array kMethods{
            .title = "explicit Euler",
            .steps = "substeps a sample",
            .order = 1,
-           .prepare = PrepareEuler,
-           .count = CountEuler},
+           .prepare = PrepareSteps<MakeEuler>,
+           .count = CountSteps<MakeEuler>},
     Method{.name = "rk4",
            .title = "Runge-Kutta of order 4",
            .steps = "substeps a sample",
            .order = 4,
-           .prepare = PrepareRk4,
-           .count = CountRk4},
+           .prepare = PrepareSteps<MakeRk4>,
+           .count = CountSteps<MakeRk4>},
     Method{.name = "dopri5",
            .title = "Dormand-Prince 5(4), adaptive",
            .steps = "substeps a sample at least",
            .adaptive = true,
            .order = 5,
-           .prepare = PrepareDopri5,
-           .count = CountDopri5},
+           .prepare = PrepareSteps<MakeDopri5>,
+           .count = CountSteps<MakeDopri5>},
     Method{.name = "backward-euler",
            .title = "implicit Euler",
            .steps = "substeps a sample",
            .order = 1,
-           .prepare = PrepareBackwardEuler,
-           .count = CountBackwardEuler},
+           .prepare = PrepareSteps<MakeBackwardEuler>,
+           .count = CountSteps<MakeBackwardEuler>},
     Method{.name = "exponential",
            .title = "exponential Rosenbrock-Euler",
            .steps = "substeps a sample",
            .order = 2,
-           .prepare = PrepareExponential,
-           .count = CountExponential},
+           .prepare = PrepareSteps<MakeExponential>,
+           .count = CountSteps<MakeExponential>},
     Method{.name = "iwan",
            .title = "Iwan, equal slip forces",
            .steps = "elements",

@@ -212,7 +212,7 @@ double SolveBackwardStep(const Rate& rate, double remaining, double h) {
   return in_rate ? remaining - h * x : x;
 }
 
-// Each makes an evaluator that counts, or one that does not.
+}  // namespace
 
 Evaluator MakeEuler(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
                     OperationCount* count) {
@@ -276,64 +276,6 @@ Evaluator MakeDopri5(const FrictionModel& model, const BranchLaw& law, const Res
     return remaining;
   };
   return Follow(model, law, follow);
-}
-
-using Maker = Evaluator (*)(const FrictionModel&, const BranchLaw&, const Resolution&,
-                            OperationCount*);
-
-/// Steps depend on where the drive slips, and on the error that is found: counted on the way.
-void CountOnTheWay(Maker make, const FrictionModel& model, const BranchLaw& law,
-                   const Resolution& resolution, const Drive& drive, OperationCount& count) {
-  CountPath(model, drive, count);
-  std::vector<double> force(drive.displacement.size());
-  make(model, law, resolution, &count)(drive, force);
-}
-
-}  // namespace
-
-Evaluator PrepareEuler(const FrictionModel& model, const BranchLaw& law,
-                       const Resolution& resolution) {
-  return MakeEuler(model, law, resolution, nullptr);
-}
-void CountEuler(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
-                const Drive& drive, OperationCount& count) {
-  CountOnTheWay(MakeEuler, model, law, resolution, drive, count);
-}
-
-Evaluator PrepareRk4(const FrictionModel& model, const BranchLaw& law,
-                     const Resolution& resolution) {
-  return MakeRk4(model, law, resolution, nullptr);
-}
-void CountRk4(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
-              const Drive& drive, OperationCount& count) {
-  CountOnTheWay(MakeRk4, model, law, resolution, drive, count);
-}
-
-Evaluator PrepareDopri5(const FrictionModel& model, const BranchLaw& law,
-                        const Resolution& resolution) {
-  return MakeDopri5(model, law, resolution, nullptr);
-}
-void CountDopri5(const FrictionModel& model, const BranchLaw& law, const Resolution& resolution,
-                 const Drive& drive, OperationCount& count) {
-  CountOnTheWay(MakeDopri5, model, law, resolution, drive, count);
-}
-
-Evaluator PrepareBackwardEuler(const FrictionModel& model, const BranchLaw& law,
-                               const Resolution& resolution) {
-  return MakeBackwardEuler(model, law, resolution, nullptr);
-}
-void CountBackwardEuler(const FrictionModel& model, const BranchLaw& law,
-                        const Resolution& resolution, const Drive& drive, OperationCount& count) {
-  CountOnTheWay(MakeBackwardEuler, model, law, resolution, drive, count);
-}
-
-Evaluator PrepareExponential(const FrictionModel& model, const BranchLaw& law,
-                             const Resolution& resolution) {
-  return MakeExponential(model, law, resolution, nullptr);
-}
-void CountExponential(const FrictionModel& model, const BranchLaw& law,
-                      const Resolution& resolution, const Drive& drive, OperationCount& count) {
-  CountOnTheWay(MakeExponential, model, law, resolution, drive, count);
 }
 
 }  // namespace mindahl::methods

@@ -33,26 +33,20 @@ void CountTable(const models::FrictionModel& model, const models::BranchLaw& law
 // and a step of T is the same step of u. A branch that is left and taken up again goes on from
 // where it was left: that is return-point memory.
 
-Evaluator PrepareEuler(const models::FrictionModel& model, const models::BranchLaw& law,
-                       const Resolution& resolution);
-Evaluator PrepareRk4(const models::FrictionModel& model, const models::BranchLaw& law,
-                     const Resolution& resolution);
-Evaluator PrepareDopri5(const models::FrictionModel& model, const models::BranchLaw& law,
-                        const Resolution& resolution);
-Evaluator PrepareBackwardEuler(const models::FrictionModel& model, const models::BranchLaw& law,
-                               const Resolution& resolution);
-Evaluator PrepareExponential(const models::FrictionModel& model, const models::BranchLaw& law,
-                             const Resolution& resolution);
+/// Makes an evaluator of a method in steps, which counts what it does where that is asked for.
+/// @param count  null where nothing is to be counted
+using StepMethod = Evaluator (*)(const models::FrictionModel& model, const models::BranchLaw& law,
+                                 const Resolution& resolution, OperationCount* count);
 
-void CountEuler(const models::FrictionModel& model, const models::BranchLaw& law,
-                const Resolution& resolution, const Drive& drive, OperationCount& count);
-void CountRk4(const models::FrictionModel& model, const models::BranchLaw& law,
-              const Resolution& resolution, const Drive& drive, OperationCount& count);
-void CountDopri5(const models::FrictionModel& model, const models::BranchLaw& law,
-                 const Resolution& resolution, const Drive& drive, OperationCount& count);
-void CountBackwardEuler(const models::FrictionModel& model, const models::BranchLaw& law,
-                        const Resolution& resolution, const Drive& drive, OperationCount& count);
-void CountExponential(const models::FrictionModel& model, const models::BranchLaw& law,
-                      const Resolution& resolution, const Drive& drive, OperationCount& count);
+Evaluator MakeEuler(const models::FrictionModel& model, const models::BranchLaw& law,
+                    const Resolution& resolution, OperationCount* count);
+Evaluator MakeRk4(const models::FrictionModel& model, const models::BranchLaw& law,
+                  const Resolution& resolution, OperationCount* count);
+Evaluator MakeDopri5(const models::FrictionModel& model, const models::BranchLaw& law,
+                     const Resolution& resolution, OperationCount* count);
+Evaluator MakeBackwardEuler(const models::FrictionModel& model, const models::BranchLaw& law,
+                            const Resolution& resolution, OperationCount* count);
+Evaluator MakeExponential(const models::FrictionModel& model, const models::BranchLaw& law,
+                          const Resolution& resolution, OperationCount* count);
 
 }  // namespace mindahl::methods

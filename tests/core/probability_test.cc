@@ -41,7 +41,7 @@ TEST(Probability, ChiSquaredOfTwoDegreesIsExponential) {
 }
 
 TEST(Probability, QuantilesAreTwoSided) {
-  // Of one degree of freedom t is tan(π·c/2).
+  // With one degree of freedom t is tan(π·c/2).
   EXPECT_NEAR(StudentQuantile(1, 0.5), 1, kRounding);
   EXPECT_NEAR(StudentQuantile(1, 0.9), std::tan(0.45 * std::numbers::pi), 1e-10);
   EXPECT_NEAR(std::erf(NormalQuantile(0.95) / std::numbers::sqrt2), 0.95, kRounding);

@@ -142,7 +142,7 @@ TEST(TestAdequacy, CountsEveryColumnOfATermInItsAicc) {
 }
 
 TEST(CausesOf, ForceReadingThatGainsOrLosesMoreThanAllDoesNotSaturate) {
-  // Of what is beyond nine tenths of the peak a sensor can lose a part or all of it.
+  // A sensor loses a part or all of the force beyond nine tenths of the peak, and no more.
   const auto is_named = [](double lost, double size_p_value) {
     DepartureFit fit;
     while (Departures()[fit.departure].code != "force_saturates") ++fit.departure;

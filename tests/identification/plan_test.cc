@@ -225,7 +225,7 @@ TEST(Plan, OnlyVirginLoopDistinguishesMasingFromDahl) {
 }
 
 TEST(Plan, CorrelatedNoiseDistinguishesTheLawsByFewerSamples) {
-  // Of noise correlated by 0.5 Σρ² over all lags is (1 + 0.5²)/(1 − 0.5²) = 5/3.
+  // Noise correlated by 0.5 has, over all lags, Σρ² = (1 + 0.5²)/(1 − 0.5²) = 5/3.
   Expectation correlated = Quiet();
   correlated.autocorrelation = 0.5;
   constexpr double kLeftOut = 1e-8;  // of lags beyond which a correlation is below 1e-9

@@ -14,7 +14,7 @@
 #include "mindahl/identification/fit.h"
 #include "recovery/recovered.h"
 
-// What is known of parameters before a fit, regions of two of them together, and the log-likelihood
+// These tests concern priors on parameters, joint regions of two of them, and the log-likelihood
 // that a sampler takes.
 namespace mindahl::identification::prior_test {
 namespace {

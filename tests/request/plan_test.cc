@@ -10,7 +10,7 @@
 
 #include "support/histories.h"
 
-// What a plan expects of the loops.
+// These tests concern the loops that a plan expects.
 namespace mindahl::request::plan_test {
 namespace {
 

@@ -9,7 +9,7 @@
 
 #include "io/temporary_directory.h"
 
-// What --sweep takes from the request.
+// These tests concern what --sweep takes from the request.
 namespace mindahl::request::sweep_test {
 namespace {
 

@@ -184,7 +184,7 @@ TEST(Recommend, RefusesOptionsOutOfRange) {
 }
 
 TEST(Recommend, OfEquallyPreciseOnesWithinTheCostTheCheapestIsChosen) {
-  // Of a contact that stays where it is no energy is lost and no error of it is known.
+  // A contact that stays where it is loses no energy, and the error of its energy is unknown.
   const Recommendation rest =
       RecommendFor({0, 0, 0, 0}, {.criterion = Criterion::kEnergy, .largest_cost = 1e9});
   ASSERT_TRUE(rest.choice);

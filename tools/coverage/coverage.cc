@@ -574,7 +574,7 @@ double PriorTruth(const Scenario& scenario) {
   return scenario.prior == "sigma" ? law.tangential_stiffness : law.slip_force;
 }
 
-/// Of a positive parameter the logarithm is normal, of α the value.
+/// Takes the logarithm of a positive parameter as normal, and α itself.
 identification::Prior PriorAt(const Scenario& scenario, double value) {
   const double of = scenario.prior == "alpha" ? PriorTruth(scenario) : value;
   return {value, scenario.prior_uncertainty * of};

@@ -136,7 +136,7 @@ struct TrackedQuantity {
   std::optional<double> (*of)(const CycleFit&) = nullptr;
   std::optional<double> (*error)(const CycleFit&) = nullptr;  ///< in proportion to its standard one
   bool is_drawn = false;
-  /// Whether that is the standard error of the value, without a factor.
+  /// True if `error` returns the standard error itself, without a factor.
   bool has_standard_error = false;
 };
 

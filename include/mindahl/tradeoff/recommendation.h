@@ -14,7 +14,7 @@ namespace mindahl::tradeoff {
 /// Refits the models of ModelLadder that are not the contact's own law: with the σ and Tc that suit
 /// a drive best instead of the contact's, and Dahl's law with α = 1 besides, in the same order:
 ///   min Σ (T_model(σ, Tc) − T)²   over the samples from `first` on
-/// What a user gets who fits the simpler model to the contact's loop rather than to its parameters:
+/// A user gets this who fits the simpler model to the contact's loop rather than to its parameters:
 /// on a steady loop of one amplitude Dahl's law then errs by rounding alone (docs/theory.md §6).
 /// Each minimum is looked for within a hundred times the contact's own σ/Tc to either side.
 /// @param law        of the contact

@@ -81,7 +81,7 @@ std::vector<IrregularityFit> FindIrregularities(const Problem& problem,
   for (const double value : residual) squares += value * value;
   // Rounding errors come in steps of their own.
   const double rms = std::sqrt(squares / static_cast<double>(problem.data->counted));
-  if (rms < 10 * kRoundingRms) return found;
+  if (rms < kOnlyRounding) return found;
   const std::vector<FittedSample> samples = SamplesOf(problem, theta, residual, response);
   const Evidence evidence(noise);
   const auto add = [&](std::size_t row, std::optional<IrregularityFit> fit) {
@@ -341,7 +341,7 @@ std::optional<IrregularityFit> FindStickSlip(std::span<const FittedSample> sampl
 namespace {
 
 constexpr double kOnPlateau = 0.8;           // of the largest force: the plateau
-constexpr std::size_t kFewestReadings = 16;  // readings of a stroke
+constexpr std::size_t kFewestReadings = 16;  // of a stroke
 constexpr std::size_t kFewestStrokes = 2;    // of a direction, to share a phase
 constexpr std::size_t kMostPoints = 256;     // that a stroke is looked at by
 constexpr std::size_t kMostStrokes = 64;     // that the period is looked for in

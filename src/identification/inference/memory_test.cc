@@ -416,9 +416,9 @@ class MemoryTrial {
     Answer answer;
     if (!test.can_tell()) return answer;
     const ScaledRecords& data = *law_.problem->data;
-    // Rounding errors are what they like: a law that leaves no more has the record.
+    // A law that leaves nothing but rounding errors describes the record, whatever their form.
     const bool only_rounding =
-        law_.residual.norm() < 10 * kRoundingRms * std::sqrt(static_cast<double>(data.counted));
+        law_.residual.norm() < kOnlyRounding * std::sqrt(static_cast<double>(data.counted));
     if (!only_rounding) answer.p_value = test.p_value();
     for (const std::string_view code : columns_.compared) {
       const std::vector<Eigen::Index> places = PlacesOf(code);

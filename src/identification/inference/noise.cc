@@ -364,8 +364,7 @@ double ChanceOfOneNoise(const Problem& problem, std::span<const double> residual
         of.degrees_of_freedom * std::log(std::max(of.variance, kRoundingRms * kRoundingRms));
     reciprocals += 1 / of.degrees_of_freedom;
   }
-  constexpr double kRounding = 10 * kRoundingRms;
-  if (count < 2 || pooled < degrees * kRounding * kRounding) return 1.0;
+  if (count < 2 || pooled < degrees * kOnlyRounding * kOnlyRounding) return 1.0;
   const double statistic = degrees * std::log(pooled / degrees) - logarithms;
   const double correction = 1 + (reciprocals - 1 / degrees) / (3 * (count - 1));
   return PValueOfChiSquared(statistic / correction, count - 1);

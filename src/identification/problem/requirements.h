@@ -6,7 +6,7 @@
 #include "mindahl/identification/fit_options.h"
 #include "mindahl/loop/preparation.h"
 
-/// What options and records must satisfy to be fitted. Each throws InvalidArgument, or
+/// Checks what options and records must satisfy to be fitted. Each throws InvalidArgument, or
 /// TooFewSamples, naming the parameter, its value and the rule.
 namespace mindahl::identification {
 
