@@ -19,11 +19,12 @@ cmake --build "$build" --target mindahl
 headers=$build/libcxx/usr/lib/llvm-19/include/c++/v1
 if [[ ! -d $headers ]]; then
   mkdir -p "$build/libcxx"
-  (cd "$build/libcxx" && apt-get download libc++-19-dev && dpkg -x libc++-19-dev_*.deb .)
+  (cd "$build/libcxx" && apt-get download libc++-19-dev libfast-float-dev &&
+    for package in *.deb; do dpkg -x "$package" .; done)
 fi
 
 # Of each compilation the command, without its output. std::jthread is experimental in this libc++.
 jq -r '.[].command' "$build/compile_commands.json" |
-  sed -E "s| -o [^ ]+ -c | -fsyntax-only -nostdinc++ -isystem $headers -fexperimental-library -c |
+  sed -E "s| -o [^ ]+ -c | -fsyntax-only -nostdinc++ -isystem $headers -isystem $build/libcxx/usr/include -fexperimental-library -c |
           s|^ccache ||" |
   xargs -P "$(nproc)" -d '\n' -n 1 bash -c 'echo "${0##* }" && eval "$0" || exit 255'

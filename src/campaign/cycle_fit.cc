@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/from_chars.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/fit_result.h"
 #include "mindahl/models/steady_loop.h"
@@ -211,7 +212,7 @@ std::vector<std::string_view> CellsOf(std::string_view line) {
 template <typename Value>
 Value CellValue(std::string_view cell) {
   Value value{};
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const auto [end, error] = FromChars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size()) {
     throw InputError(fmt::format("'{}' is not a number", cell));
   }

@@ -16,6 +16,7 @@
 #include "cli/contact_options.h"
 #include "cli/options.h"
 #include "cli/output.h"
+#include "core/from_chars.h"
 #include "mindahl/core/error.h"
 #include "mindahl/identification/term_selection.h"
 #include "mindahl/identification/terms.h"
@@ -39,7 +40,7 @@ CLI::Validator OneOfWords(std::span<const std::string_view> words) {
 double ParseNumber(std::string_view text, std::string_view option, std::string_view form) {
   double value = 0.0;
   const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, error] = FromChars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size()) {
     throw InputError(fmt::format("{}: '{}' is not a number: write {}", option, text, form));
   }

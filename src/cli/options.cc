@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <system_error>
 #include <utility>
 
+#include "core/from_chars.h"
 #include "core/nearest_name.h"
 #include "mindahl/core/error.h"
 
@@ -38,7 +38,7 @@ double ParseTolerance(const std::string& text) {
   const bool percent = text.ends_with('%');
   const char* end = text.data() + text.size() - (percent ? 1 : 0);
   double number = 0.0;
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  const auto [rest, error] = FromChars(text.data(), end, number);
   if (error != std::errc() || rest != end || !(number > 0) || !std::isfinite(number)) {
     throw InputError(
         fmt::format("--tolerance '{}' is invalid: must be a number > 0, as 0.01 or 1%", text));

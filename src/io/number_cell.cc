@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/from_chars.h"
 #include "io/csv_tokenizer.h"
 
 namespace mindahl::io {
@@ -43,7 +44,7 @@ NumberCell ReadWithPoint(std::string_view unsigned_text, bool negative) {
   const char* const begin = unsigned_text.data();
   const char* const end = begin + unsigned_text.size();
   double magnitude = 0.0;
-  const auto [stop, error] = std::from_chars(begin, end, magnitude);
+  const auto [stop, error] = FromChars(begin, end, magnitude);
   if (stop != end) return cell;
   if (error == std::errc::result_out_of_range) {
     // from_chars does not say on which side; only a negative exponent can make a number too small.
@@ -421,7 +422,7 @@ bool NumberRowReader::ReadPlain(std::string_view line, std::size_t number,
     if (may_be_padded) at = SkipBlanks(at, end);
     if (!BeginsAsNumber(at, end)) return false;
     double value = 0.0;
-    const auto [stop, error] = std::from_chars(at, end, value);
+    const auto [stop, error] = FromChars(at, end, value);
     if (error != std::errc()) return false;
     if (comma_may_be_mark && !has_point) {
       has_point = std::memchr(at, '.', static_cast<std::size_t>(stop - at)) != nullptr;
