@@ -38,8 +38,8 @@ std::string_view WhyNotSettled(Settling settling) {
     case Settling::kFewCycles:
       return "there are too few cycles of one amplitude to see a running-in";
     case Settling::kUnsettled:
-      return "half gap or energy of a cycle do not settle, so that no cycle is left out for it: "
-             "see how they change, and choose with --cycles";
+      return "the half gap or the energy does not settle, so no running-in is left out: look at "
+             "how they change, and choose cycles with --cycles";
     case Settling::kSettled:
       break;
   }
@@ -65,7 +65,7 @@ Warning NoteOf(const Report& report, std::size_t r) {
   if (parts.empty()) {
     return {"nothing_trimmed",
             fmt::format("--trim auto leaves nothing out of {}: {}", report.files[r],
-                        why.empty() ? "it neither rests nor ramps, and its cycles agree" : why)};
+                        why.empty() ? "it has no rest and no ramp, and its cycles agree" : why)};
   }
   std::string text =
       fmt::format("--trim auto leaves out of {}: {}", report.files[r], fmt::join(parts, ", "));
@@ -78,8 +78,8 @@ Warning NoteOf(const Report& report, std::size_t r) {
   if (trim.begins_later()) {
     const bool is_steady = report.fit.initial_state == models::InitialState::kSteady;
     text += fmt::format(
-        "; what is left is fitted as of a {}",
-        is_steady ? "steady contact, unless --initial-state says another" : "virgin contact");
+        "; the rest is fitted as a {}",
+        is_steady ? "steady contact, unless --initial-state says otherwise" : "virgin contact");
   }
   if (!why.empty()) text += fmt::format("; {}", why);
   return {"trimmed", text};
