@@ -113,8 +113,7 @@ const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
   static const std::vector<Field<Item>> fields = {
       {"source", "",
        "why ci95 reaches as far: parabola, profile, initial_state, other_minimum, omitted_terms, "
-       "plateau, "
-       "small_alpha, discrepancy or carried_force",
+       "plateau, small_alpha, discrepancy or carried_force",
        [](const Item& item) { return Text(Name(item.source)); }},
       {"ci95[0]", "of the parameter", "lower end of the contribution",
        [](const Item& item) { return Number(item.lower); }, why},

@@ -98,8 +98,7 @@ std::string WhyNoMemory(const Report& report) {
   if (report.fit.depth < identification::Depth::kThorough) return "the fit was not asked for it";
   return "branches are not compared before the motion turns, where sigma or slip_force is held or "
          "bounded, under loads that vary or differ, with a lag or an asymmetry, and in a fit of "
-         "the "
-         "displacement";
+         "the displacement";
 }
 
 template <typename Get>

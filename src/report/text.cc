@@ -487,8 +487,7 @@ std::string ResidualText(const Report& report) {
   }
   std::string text = fmt::format(
       "residuals{}: rms {}{}, largest {}, R² {:.6f}, Durbin-Watson {:.2f}, {:.0f} effective "
-      "samples "
-      "of {}",
+      "samples of {}",
       is_of_force ? "" : " of the displacement", Quantity(residuals.rms, units.response, 4), share,
       Quantity(residuals.max_abs, units.response, 4), residuals.r_squared, residuals.durbin_watson,
       residuals.effective_samples, samples);

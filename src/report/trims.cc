@@ -72,8 +72,7 @@ Warning NoteOf(const Report& report, std::size_t r) {
   if (trim.has_first_loading()) {
     text +=
         "; the first loading is among them, which distinguishes Masing's law from Dahl's own and a "
-        "virgin "
-        "contact from a steady one";
+        "virgin contact from a steady one";
   }
   if (trim.begins_later()) {
     const bool is_steady = report.fit.initial_state == models::InitialState::kSteady;
