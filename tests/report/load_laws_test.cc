@@ -369,10 +369,10 @@ Report ReportOf(const Radius& radius, double shape_exponent, const KnownContact&
 TEST(LoadLaws, AreInTextPageAndJson) {
   const Report report = ReportOf(RadiusOfBall, 1.0 / 3, Bodies());
   const std::string text = ToText(report);
-  EXPECT_THAT(text, HasSubstr("smooth sphere, Hertz (1/3) held over all loads"));
+  EXPECT_THAT(text, HasSubstr("smooth sphere, Hertz (1/3) assumed at all loads"));
   EXPECT_THAT(text, HasSubstr("of the two radii"));
   EXPECT_THAT(text, Not(HasSubstr("Hertz's law is rejected")));
-  EXPECT_THAT(ToPage(report, {}), HasSubstr("held over all loads"));
+  EXPECT_THAT(ToPage(report, {}), HasSubstr("assumed at all loads"));
   EXPECT_THAT(ToJson(report), HasSubstr("\"equivalent_radius\""));
 }
 
