@@ -99,8 +99,7 @@ class CommandConfig : public CLI::ConfigTOML {
       if (first != command.get_name()) continue;
       if (section != first || command.get_option_no_throw("--" + item.key) == nullptr) {
         throw InputError(fmt::format(
-            "{}: '{}.{}' is no option of {}{} keys are those of {} --help without the "
-            "dashes",
+            "{}: '{}.{}' is no option of {}{} keys are those of {} --help without the dashes",
             where, section, item.key, first, DidYouMean(item.key, KeyNames(command)), first));
       }
       if (item.values.empty()) continue;  // an array of nothing asks for nothing

@@ -162,22 +162,22 @@ void AddBatchCommand(CLI::App& app, Console& console) {
       ->group(group);
   command
       ->add_option("--json", options->json_path,
-                   "what fit says of each as JSON; - for standard output alone")
+                   "the answer of fit for each file as JSON; - for standard output alone")
       ->type_name("PATH")
       ->group(group);
   command
       ->add_option("--report", options->report_directory,
-                   "directory for a page of HTML a file, and index.html with all of\n"
-                   "them; made where it is not there")
+                   "directory for a page of HTML per file and index.html with all of\n"
+                   "them; created if absent")
       ->type_name("DIR")
       ->group(group);
   command
       ->add_option("--threads", options->threads,
-                   "that fit; the results do not depend on it; default one a core")
+                   "number of worker threads (default: one per core); they do not change\n"
+                   "the results")
       ->check(WholeNumber(1, 1024))
       ->group(group);
-  command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
-      ->group(group);
+  command->add_flag("--overwrite", options->overwrite, "replace an existing table")->group(group);
   AddStrict(*command, options->strict, "a file fails too", group);
   command->callback([options, command, &console] {
     options->request.files = FilesOf(options->request.files, options->list);

@@ -113,14 +113,15 @@ void AddContactOptions(CLI::App& command, ContactOptions& options, NormalLoads l
         .add_option_function<std::string>(
             "--normal-load",
             [&options](const std::string& text) { ReadNormalLoads(text, options); },
-            "normal load N [N], one for all files or one a file: 25,50,100; as all below exact, "
-            "or with one standard uncertainty: 50±0.5, 50+-0.5, 50+/-0.5, 50±1%")
+            "normal load N [N], one for all files or one a file: 25,50,100; like\n"
+            "all below exact, or with a standard uncertainty: 50±0.5, 50+-0.5,\n"
+            "50+/-0.5, 50±1%")
         ->type_name("N[+-U],...")
         ->group(kGroup);
   } else {
     AddKnown(command, "--normal-load", options.known.normal_load,
-             "normal load N [N]; as all below exact, or with one standard uncertainty: 50±0.5, "
-             "50+-0.5, 50+/-0.5, 50±1%",
+             "normal load N [N]; like all below exact, or with a standard\n"
+             "uncertainty: 50±0.5, 50+-0.5, 50+/-0.5, 50±1%",
              "N");
   }
   AddBodyOptions(command, options.known.body_1, 1);

@@ -49,8 +49,8 @@ void AddConvertCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<ConvertCommandOptions>();
   CLI::App* command =
       app.add_subcommand("convert",
-                         "A contact's steady loop by another law or another program: parameters,\n"
-                         "the error that is left, and the amplitudes at which it is small.");
+                         "Converts a contact's steady loop to another law or program: parameters,\n"
+                         "the remaining error, and the amplitudes at which it is small.");
   AddExamples(
       *command, app,
       {"mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl",
@@ -72,13 +72,13 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->group(contact);
   command
       ->add_option("--from", options->asked.from,
-                   "law that they are of: of fit --model mindlin-dahl, or --model dahl")
+                   "law of these parameters: of fit --model mindlin-dahl or --model dahl")
       ->capture_default_str()
       ->check(OneOf({"masing", "dahl"}))
       ->group(contact);
   command
       ->add_option("--amplitude", options->asked.options.amplitude,
-                   "X of the steady loop [m], the contact's, without a rig's share")
+                   "amplitude X of the contact's steady loop [m], without the rig's travel")
       ->required()
       ->type_name("M")
       ->group(contact);
@@ -90,32 +90,35 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       ->check(OneOf(names))
       ->group(result);
   AddOptional(*command, "--least-amplitude", options->asked.least_amplitude,
-              "from here [m] what cannot be exact is fitted; default the amplitude", "M")
+              "from this amplitude [m] on a target that is not exact is fitted;\n"
+              "default --amplitude",
+              "M")
       ->group(result);
   AddOptional(*command, "--largest-amplitude", options->asked.largest_amplitude,
-              "to here [m]; likewise", "M")
+              "up to this amplitude [m] it is fitted; default --amplitude", "M")
       ->group(result);
   command
       ->add_option("--tolerance", options->tolerance,
-                   "of force and energy, which are within it where said: 0.01 or 1%")
+                   "largest error of force and energy at the amplitudes given as good:\n0.01 or 1%")
       ->capture_default_str()
       ->type_name("E")
       ->group(result);
-  command->add_option("--elements", options->asked.options.elements, "of --to iwan")
+  command
+      ->add_option("--elements", options->asked.options.elements, "number of elements of --to iwan")
       ->capture_default_str()
       ->check(WholeNumber(1, kMostElements))
       ->group(result);
   command
       ->add_option("--beta", options->asked.options.beta,
-                   "of --to bouc-wen in T/Tc, where beta + gamma = 1; in (0, 1]")
+                   "beta of --to bouc-wen for T/Tc, in (0, 1]; gamma is 1 - beta")
       ->capture_default_str()
       ->type_name("BETA")
       ->group(result);
   AddOptional(*command, "--normal-load", options->asked.normal.normal_load,
-              "of --to lammps, liggghts and yade [N]: friction coefficient is Tc/N", "N")
+              "normal load [N] for --to lammps, liggghts and yade: friction\ncoefficient Tc/N", "N")
       ->group(result);
   AddOptional(*command, "--contact-radius", options->asked.normal.contact_radius,
-              "of --to lammps [m]: for a stiffness that follows the radius", "M")
+              "contact radius [m] for --to lammps: the stiffness follows it", "M")
       ->group(result);
   command
       ->add_option("--viscous", options->asked.normal.viscous,

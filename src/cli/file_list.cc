@@ -52,9 +52,8 @@ void ReadList(std::istream& stream, std::vector<std::string>& files) {
 void AddFilesFrom(CLI::App& command, FileList& options) {
   command
       .add_option("--files-from", options.list,
-                  "takes the files that LIST names too, one a line, after those that are\n"
-                  "named here; lines that are empty or begin with # are left out, - is\n"
-                  "standard input")
+                  "read further file names from LIST, one a line; lines that are empty or\n"
+                  "begin with # are skipped; - is standard input")
       ->type_name("LIST")
       ->group(kFilesGroup);
 }
@@ -62,8 +61,8 @@ void AddFilesFrom(CLI::App& command, FileList& options) {
 void AddShard(CLI::App& command, FileList& options) {
   command
       .add_option("--shard", options.shard,
-                  "takes the K-th of N parts of the files, in their order: the tables of\n"
-                  "all parts, one after the other, are that of all files")
+                  "process only the K-th of N parts of the files: the tables of all\n"
+                  "parts, one after the other, are the table of all files")
       ->type_name("K/N")
       ->group(kFilesGroup);
 }

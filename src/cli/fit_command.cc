@@ -163,21 +163,20 @@ void AddFitCommand(CLI::App& app, Console& console) {
   const std::string sweeps = "Amplitude sweeps";
   command
       ->add_option("--sweep", options->sweep,
-                   "the file holds a stiffness or compliance over the amplitude of a force\n"
-                   "or a displacement, as lock-in rigs report: secant, of the loop from end\n"
-                   "to end, or tangent, of a small oscillation at a force that was reached")
+                   "the file has stiffness or compliance against the amplitude of force or\n"
+                   "displacement, as lock-in rigs report: secant, of the loop from end to\n"
+                   "end, or tangent, of a small oscillation about a force that was reached")
       ->check(OneOf({"secant", "tangent"}))
       ->group(sweeps);
   command
       ->add_option("--response", options->response.column,
-                   "column of the stiffness or compliance; default a recognised name. The\n"
-                   "amplitude's is --displacement or --force")
+                   "column of the stiffness or compliance; default a recognised name;\n"
+                   "--displacement or --force names the column of the amplitude")
       ->type_name("COL")
       ->group(sweeps);
   command
       ->add_option("--response-unit", options->response.unit,
-                   "a force over a length, N/um, or the other way round; default the\n"
-                   "header's, else N/m or m/N")
+                   "unit of the response, as N/um or um/N; default the header's, else N/m\nor m/N")
       ->type_name("UNIT")
       ->group(sweeps);
   AddOptional(*command, "--response-noise", options->response_noise,
@@ -194,8 +193,8 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->group(group);
   command
       ->add_option("--backbone", options->backbone_path,
-                   "the force over the displacement of first loading, of no law's\n"
-                   "shape, with its confidence band and the law, as CSV")
+                   "force against displacement of first loading, without assuming a law,\n"
+                   "with its confidence band and the fitted law, as CSV")
       ->type_name("PATH")
       ->group(group);
   command->add_option("--plot", options->plot_path, "loop and residuals as svg or png")
@@ -203,14 +202,13 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->group(group);
   command
       ->add_option("--report", options->report_path,
-                   "everything as one page of HTML with its figures, to read,\n"
-                   "send and print; it loads nothing")
+                   "everything with its figures on one self-contained page of HTML")
       ->type_name("PATH")
       ->group(group);
   command
       ->add_flag("--regions", options->request.regions,
-                 "joint confidence regions of sigma and alpha and of slip_force and\n"
-                 "alpha, in the JSON and on the page; --report has them too")
+                 "compute joint confidence regions of sigma and alpha and of slip_force\n"
+                 "and alpha, for the JSON; --report implies it")
       ->group(group);
   AddStrict(*command, options->strict, "exit status 3", group);
   command->callback([options, command, &console] { RunFit(*options, *command, console); });

@@ -140,15 +140,14 @@ CLI::Option* AddRange(CLI::App& command, const std::string& name, std::optional<
 void AddLimitOptions(CLI::App& command, FitRequest& options) {
   const std::string group(kColumnGroup);
   command
-      .add_option("--max-rows", options.max_rows,
-                  "refuse files of more rows than that, all together")
+      .add_option("--max-rows", options.max_rows, "refuse files with more rows than this in total")
       ->capture_default_str()
       ->check(WholeNumber(1, 1'000'000'000'000))
       ->group(group);
   command
       .add_option("--max-memory", options.max_memory,
-                  "refuse files of which a fit needs more memory [B], as 4GB or 500MB;\n"
-                  "default what the machine has, or the process may have")
+                  "refuse files whose fit needs more memory [B], as 4GB or 500MB;\n"
+                  "default: the machine's memory, or the limit of the process")
       ->check(WholeNumber(1, 1'000'000'000'000'000'000))
       ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
       ->type_name("SIZE")
@@ -161,31 +160,32 @@ void AddWindowOptions(CLI::App& command, FitRequest& options) {
            "fit only samples from LO to HI [s]", &ParseInterval)
       ->group(group);
   AddRange(command, "--load-window", options.load_window, "LO:HI in newtons",
-           "fit only samples under a normal load from LO to HI [N]; the others still make "
-           "history",
+           "fit only samples under a normal load from LO to HI [N];\n"
+           "the others still count as loading history",
            &ParseInterval)
       ->group(group);
   const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
   AddRange(command, "--cycles", options.cycles, counted,
            "fit only samples of the cycles LO to HI, counted from 1;\n"
-           "the others still make history",
+           "the others still count as loading history",
            &ParseCountRange)
       ->group(group);
   AddRange(command, "--samples", options.samples, counted,
            "fit only the samples LO to HI of each record, counted from 1;\n"
-           "the others still make history",
+           "the others still count as loading history",
            &ParseCountRange)
       ->group(group);
   command
       .add_option("--skip-cycles", options.skip_cycles,
-                  "leave out so many cycles at the start; they still make history")
+                  "number of cycles to leave out at the start;\n"
+                  "they still count as loading history")
       ->capture_default_str()
       ->check(WholeNumber(0, 1'000'000'000))
       ->group(group);
   command
       .add_option("--trim", options.trim,
-                  "auto leaves out, and says, what at the ends is not the test:\n"
-                  "rests, ramps of load and amplitude, cycles of running in")
+                  "auto leaves out what at the ends of a record is not the test, with a\n"
+                  "note: rests, ramps of load and amplitude, cycles of running in")
       ->capture_default_str()
       ->check(OneOfWords(request::kTrims))
       ->group(group);
@@ -246,7 +246,8 @@ std::string DescribeParameters() {
     list += fmt::format("{}{} [{}]", list.empty() ? "" : ", ", term.name, term.unit);
   }
   return fmt::format(
-      "hold a parameter: {}, {}; with several files the latter are numbered, force_offset_2",
+      "hold a parameter at a value: {}; of each record: {} (with several files numbered, "
+      "force_offset_2)",
       contact, record);
 }
 
@@ -255,9 +256,8 @@ std::string DescribeParameters() {
 void AddJoin(CLI::App& command, FitRequest& options) {
   command
       .add_flag("--join", options.join,
-                "the files are pieces of one record, in their order, as of a logger\n"
-                "that begins a file with every stroke: the contact remembers from one\n"
-                "to the next, and a clock that begins anew goes on")
+                "join the files, in their order, into one record, as of a logger that\n"
+                "begins a file every stroke; a clock that starts anew is continued")
       ->group("Files");
 }
 
@@ -270,9 +270,10 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
     command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
   };
   column("--displacement", columns.displacement,
-         "column by header name or 1-based number; default a recognised name,\n"
-         "else column 1");
-  column("--force", columns.force, "likewise, else column 2");
+         "displacement column by header name or 1-based number; default a\n"
+         "recognised name, else column 1");
+  column("--force", columns.force,
+         "force column, likewise; default a recognised name, else column 2");
   column("--time", columns.time, "time column; optional");
   column("--normal-load-column", columns.normal_load, "normal load column; optional");
   unit("--displacement-unit", columns.displacement,
@@ -282,7 +283,8 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
        "N, mN, uN, kN, MN, lbf, kgf, gf, daN, kip; of a torque 'N m', 'mN m',\n"
        "'uN m', 'kN m', 'N mm', 'lbf in', 'lbf ft'; else the header's or N");
   unit("--time-unit", columns.time, "s, ms, us, min; default the header's, else s");
-  unit("--normal-load-unit", columns.normal_load, "as --force-unit of a force");
+  unit("--normal-load-unit", columns.normal_load,
+       "unit of the normal load, a force of --force-unit");
   const auto calibration = [&](const std::string& name, io::ColumnChoice& choice,
                                const std::string& description) {
     AddOptional(command, name + "-gain", choice.gain,
@@ -302,8 +304,8 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   calibration("--normal-load", columns.normal_load, "normal load");
   command
       .add_option("--encoding", columns.encoding,
-                  "of the files, by the names of iconv [latin1, sjis, utf-16le];\n"
-                  "default UTF-8, or found by their first bytes")
+                  "encoding of the files, as iconv names it [latin1, sjis, utf-16le];\n"
+                  "default UTF-8, or found from their first bytes")
       ->type_name("NAME")
       ->group(group);
 }
@@ -349,23 +351,22 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       ->group(group);
   command
       .add_option("--initial-state", options.initial_state,
-                  "does the record start from an unloaded contact; auto fits both and keeps the "
-                  "smaller AICc")
+                  "virgin: the record starts from an unloaded contact; steady: from a\n"
+                  "cycled one; auto fits both and keeps the smaller AICc")
       ->capture_default_str()
       ->check(OneOfWords(request::kInitialStates))
       ->group(group);
   command
-      .add_option(
-          "--force-sign", options.force_sign,
-          "have force and displacement the same sign in the file; auto decides from the sign of "
-          "the loop's energy")
+      .add_option("--force-sign", options.force_sign,
+                  "sign of the force in the file relative to the displacement; auto\n"
+                  "decides by the sign of the loop's energy")
       ->capture_default_str()
       ->check(OneOfWords(request::kForceSigns))
       ->group(group);
   command
       .add_option("--noise-in", options.noise_in,
-                  "the channel that is fitted, and whose noise the residuals are: the\n"
-                  "displacement where a force is imposed, which is taken as exact")
+                  "channel that has the noise and is fitted; the other one is taken as\n"
+                  "exact: give displacement where the machine imposes the force")
       ->capture_default_str()
       ->check(OneOfWords(request::kNoiseIn))
       ->group(group);
@@ -376,11 +377,11 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   AddTermOptions(command, options, group);
   command
       .add_option("--terms", options.term_choice,
-                  "auto adds the terms that the record requires, one at a time by\n"
-                  "cycles held out of the fit; NAME,NAME,... fits these:\n" +
+                  "auto adds the terms that the record requires, one at a time, as\n"
+                  "judged by held-out cycles; NAME,NAME,... fits these:\n" +
                       InLines(TermGroupNames(), 4) +
-                      "\nnot given: as auto, of one record that the law follows to no better\n"
-                      "than 5 % and without options for terms, else none; of track none")
+                      "\ndefault: auto for a single record that the law alone misses by more\n"
+                      "than 5 %, without options for terms; else none; in track none")
       ->type_name("auto|none|NAME,...")
       ->group(group);
   command
@@ -408,7 +409,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
   constexpr const char* kValue = "NAME=VALUE, e.g. alpha=0.3333";
   add_assignments("--fix", options.fix, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
   add_assignments("--start", options.start, "NAME=VALUE", kValue, &ParseNumber,
-                  "start from a value instead of the data's");
+                  "start the search from a value instead of the data's");
   add_assignments("--bound", options.bound, "NAME=LO:HI", "NAME=LO:HI, e.g. alpha=0:2",
                   &ParseInterval, "keep a parameter between two values");
   add_assignments(
@@ -420,7 +421,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
             "{}: '{}' has no standard uncertainty: write VALUE±U, or --fix an exact value", option,
             value));
       },
-      "known of a parameter beforehand, in its unit [SI]; V+-U, V±5%");
+      "prior value and standard uncertainty of a parameter, in its unit [SI];\nV+-U, V±5%");
   command.add_option("--confidence", options.confidence, "confidence of every interval [-]")
       ->type_name("C")
       ->capture_default_str()
@@ -435,18 +436,19 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
       ->group(group);
   command
       .add_option("--loss", options.loss,
-                  "what large residuals count; the scale is the data's: huber and cauchy less, "
-                  "tukey in the end nothing")
+                  "weight of residuals that are large against their scatter: huber and\n"
+                  "cauchy reduce it, tukey reduces it to zero")
       ->capture_default_str()
       ->check(OneOfWords(request::kLosses))
       ->group(group);
   command
       .add_option("--starts", options.starts,
-                  "starting points refined: the best looks, beyond four drawn at random")
+                  "number of starting points that are refined: the four most promising,\n"
+                  "the others drawn at random")
       ->capture_default_str()
       ->check(WholeNumber(1, 1000))
       ->group(group);
-  command.add_option("--seed", options.seed, "of starting points drawn at random")
+  command.add_option("--seed", options.seed, "seed of the starting points drawn at random")
       ->capture_default_str()
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
       ->group(group);

@@ -104,9 +104,9 @@ void AddPlanCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<PlanOptions>();
   CLI::App* command =
       app.add_subcommand("plan",
-                         "What should be measured: the standard errors that a loop of\n"
-                         "each amplitude would give, and the least that reaches a wanted\n"
-                         "precision. Exit status 3 when none does.");
+                         "Plans a measurement: the standard errors that a loop of each amplitude\n"
+                         "would give, and the smallest amplitude that reaches a wanted precision.\n"
+                         "Exit status 3 when none does.");
   AddExamples(
       *command, app,
       {"mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --want alpha=0.01,slip_force=1%",
@@ -122,7 +122,7 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       ->group(expected);
   AddColumnOptions(*command, options->columns);
   AddOptional(*command, "--rig-stiffness", options->plan.rig_stiffness,
-              "of the rig in series [N/m]; known, but for --with rig_stiffness", "K")
+              "stiffness of the rig in series [N/m]; known unless --with fits it", "K")
       ->group(expected);
   AddOptional(*command, "--force-noise", options->plan.force_noise,
               "standard deviation of the force noise [N]", "S")
@@ -134,21 +134,21 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       ->group(expected);
   command
       ->add_option("--autocorrelation", options->plan.autocorrelation,
-                   "of the force noise between samples, in [0, 1) [-]; default 0")
+                   "autocorrelation of the force noise between samples [-], in [0, 1);\ndefault 0")
       ->type_name("RHO")
       ->group(expected);
   AddOptional(*command, "--load-exponent", options->plan.load_exponent,
-              "p of sigma ~ N^p between these loads [-]; default 1/3, Hertz's", "P")
+              "exponent p of sigma ~ N^p between the loads [-]; default 1/3, Hertz's", "P")
       ->group(expected);
   const std::string loop = "The loop";
   command
       ->add_option("--amplitude", options->plan.amplitudes,
-                   "amplitude X [m], repeatable; default 13 about slip")
+                   "amplitude X [m], repeatable; default 13 around the onset of slip")
       ->type_name("X")
       ->group(loop);
   command
       ->add_option("--load-ratio", options->plan.load_ratios,
-                   "loads over this contact's own [-], a loop at each: 0.5,1,2")
+                   "loads relative to this contact's own [-], one loop at each: 0.5,1,2")
       ->type_name("R")
       ->delimiter(',')
       ->group(loop);
@@ -163,14 +163,14 @@ void AddPlanCommand(CLI::App& app, Console& console) {
       ->group(loop);
   command
       ->add_option("--initial-state", options->initial_state,
-                   "virgin: with the first loading; steady: begun later")
+                   "virgin: the loop includes the first loading; steady: it does not")
       ->capture_default_str()
       ->check(OneOf({"virgin", "steady", "both"}))
       ->group(loop);
   const std::string fit = "The fit";
   command
       ->add_option("--with", options->plan.with,
-                   "terms that are fitted too: rig_stiffness, plateau_slope …")
+                   "further terms that are fitted: rig_stiffness, plateau_slope …")
       ->type_name("TERM")
       ->delimiter(',')
       ->group(fit);

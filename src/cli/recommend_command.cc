@@ -42,7 +42,7 @@ void RunForRecord(const RecommendCommandOptions& options, const CLI::App& comman
     const bool is_of_record = name == "--record" || option->get_group() == kColumnGroup;
     if (option->count() == 0 || is_of_record || name == "--json") continue;
     throw InputError(fmt::format(
-        "--record excludes {}: contact, motion and tolerance are those of the record", name));
+        "--record excludes {}: the record determines contact, motion and tolerance", name));
   }
   std::vector<std::string> inputs = console.inputs;
   inputs.push_back(options.record);
@@ -75,16 +75,15 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<RecommendCommandOptions>();
   CLI::App* command = app.add_subcommand(
       "recommend",
-      "The cheapest model and method that meet a tolerance along a given displacement: each is\n"
-      "run and compared with the exact Masing response of the contact (Mindlin's for alpha = "
-      "1/3).");
+      "Finds the cheapest model and method that meet a tolerance along a given displacement: each\n"
+      "is run and compared with the contact's exact Masing response (Mindlin's for alpha = 1/3).");
   AddExamples(
       *command, app,
       {"mindahl recommend --sigma 4e7 --slip-force 40 --lambda 1.2 --cycles 3 --tolerance 1%",
        "mindahl recommend --record loop.csv"});
   AddLawOptions(*command, options->asked.law);
   AddDriveOptions(*command, options->asked.drive);
-  command->add_option("--seed", options->asked.drive.seed, "of the random waveform")
+  command->add_option("--seed", options->asked.drive.seed, "seed of the random waveform")
       ->capture_default_str()
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
       ->group("Excitation");
@@ -96,7 +95,7 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
       ->type_name("E")
       ->group(asked);
   AddOptional(*command, "--cost", options->asked.asked.largest_cost,
-              "the other way round: the most precise that costs no more [ns/sample]", "NS")
+              "instead find the most precise one that costs no more [ns/sample]", "NS")
       ->group(asked);
   command
       ->add_option("--criterion", options->criterion,
@@ -114,8 +113,8 @@ void AddRecommendCommand(CLI::App& app, Console& console) {
       ->type_name("PATH");
   command
       ->add_option("--record", options->record,
-                   "measured record: the cheapest law that it does not tell from the best,\n"
-                   "each fitted to it; instead of all of the above")
+                   "fit all laws to this record, and find the cheapest that it does not\n"
+                   "distinguish from the best; instead of all options above")
       ->type_name("FILE")
       ->group("What is asked");
   AddColumnOptions(*command, options->columns);

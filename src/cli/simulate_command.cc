@@ -90,7 +90,7 @@ void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
     command.add_option(name, value, help)->type_name(unit)->group(group);
   };
   add("--viscous", forces.viscous, "C of a viscous force C·dδ/dt [N s/m]", "C");
-  add("--speed-exponent", forces.speed_exponent, "of C·sgn(v)|v|^M in its place, v in m/s [-]",
+  add("--speed-exponent", forces.speed_exponent, "exponent of C·sgn(v)|v|^M instead, v in m/s [-]",
       "M");
   add("--inertia", forces.inertia, "mass of a force M·d²δ/dt² [kg]", "M");
   add("--slip-slope", forces.slip_slope,
@@ -100,13 +100,15 @@ void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
       "K of forces times 1 + K·τ, τ the time from −1 at the record's\nbeginning to 1 at its end "
       "[-]",
       "K");
-  add("--plateau-slope", forces.plateau_slope, "of a force slope·δ [N/m]", "K");
-  add("--plateau-curvature", forces.plateau_curvature, "of a force curvature·δ² [N/m²]", "K");
+  add("--plateau-slope", forces.plateau_slope, "slope of a force slope·δ [N/m]", "K");
+  add("--plateau-curvature", forces.plateau_curvature, "curvature of a force curvature·δ² [N/m²]",
+      "K");
   add("--ripple", forces.ripple, "period of a force over the position [m]", "PERIOD");
-  add("--ripple-amplitude", forces.ripple_amplitude, "its amplitude [N]", "A");
-  add("--ripple-phase-up", forces.ripple_phase_up, "its phase where the displacement grows [rad]",
+  add("--ripple-amplitude", forces.ripple_amplitude, "amplitude of that force [N]", "A");
+  add("--ripple-phase-up", forces.ripple_phase_up, "phase where the displacement grows [rad]",
       "PHI");
-  add("--ripple-phase-down", forces.ripple_phase_down, "where it falls [rad]", "PHI");
+  add("--ripple-phase-down", forces.ripple_phase_down, "phase where the displacement falls [rad]",
+      "PHI");
 }
 
 /// Adds the forces to those of the contact along a motion. Velocities and accelerations are central
@@ -201,19 +203,18 @@ Approximation ResolveMethod(const SimulateOptions& options) {
   const Method& method = *methods::FindMethod(options.method);
   if (options.steps && method.steps.empty()) {
     throw InputError(fmt::format(
-        "--steps {} says nothing to --method {}, which makes none: choose another method",
+        "--steps {} has no effect with --method {}, which takes no steps: choose another method",
         *options.steps, method.name));
   }
   if (options.tolerance && !method.adaptive) {
     throw InputError(
-        fmt::format("--tolerance {} says nothing to --method {}: it belongs to --method dopri5",
+        fmt::format("--tolerance {} has no effect with --method {}: it belongs to --method dopri5",
                     *options.tolerance, method.name));
   }
   const bool is_limit = models::FindLimitLaw(options.model) != nullptr;
   if (is_limit && method.name != "exact") {
-    throw InputError(
-        fmt::format("--method {} does not serve --model {}: it has no branches to follow",
-                    method.name, options.model));
+    throw InputError(fmt::format("--method {} cannot compute --model {}, which has no branches",
+                                 method.name, options.model));
   }
   Approximation approximation{options.model, is_limit ? "" : options.method, {}};
   approximation.resolution.steps = options.steps.value_or(method.default_steps);
@@ -233,8 +234,8 @@ double ReferenceLoad(const SimulateOptions& options) {
   const std::optional<double> load = options.law.contact.known.normal_load;
   if (load) return *load;
   throw InputError(
-      "--normal-load missing: with --normal-load-column it is the load at which sigma and the "
-      "slip force are those given");
+      "--normal-load missing: with --normal-load-column it is the load for which sigma and the "
+      "slip force are given");
 }
 
 LawOptions AtReference(const SimulateOptions& options) {
@@ -263,7 +264,7 @@ models::LoadDependentLaw ResolveLoadedLaw(const SimulateOptions& options) {
   if (model == nullptr || model->memory != models::Memory::kReturnPoint ||
       options.method != "exact") {
     throw InputError(
-        fmt::format("--normal-load-column does not serve --model {} --method {}: use --model "
+        fmt::format("--normal-load-column cannot be used with --model {} --method {}: use --model "
                     "mindlin, mindlin-dahl, jenkins or dahl and --method exact",
                     options.model, options.method));
   }
@@ -281,7 +282,7 @@ ImposedMotion FollowForce(const SimulateOptions& options, std::vector<double>& f
   const FrictionModel* model = models::FindFrictionModel(options.model);
   if (model == nullptr || model->scaled_by_peak || options.method != "exact") {
     throw InputError(
-        fmt::format("--force-path does not serve --model {} --method {}: use --model mindlin, "
+        fmt::format("--force-path cannot be used with --model {} --method {}: use --model mindlin, "
                     "mindlin-dahl, jenkins or dahl and --method exact",
                     options.model, options.method));
   }
@@ -322,13 +323,13 @@ void RequireExactLaw(const SimulateOptions& options, std::string_view option, bo
                       (!needs_memory || model->memory == models::Memory::kReturnPoint || is_joint);
   if (!serves || options.method != "exact") {
     throw InputError(fmt::format(
-        "{} does not serve --model {} --method {}: use --model mindlin, mindlin-dahl, jenkins or "
-        "dahl and --method exact",
+        "{} cannot be used with --model {} --method {}: use --model mindlin, mindlin-dahl, jenkins "
+        "or dahl and --method exact",
         option, options.model, options.method));
   }
   if (!options.drive.force_path.empty() || (!options.drive.load_column.empty() && !is_joint)) {
     throw InputError(
-        fmt::format("{} does not serve {}: leave one of the two out", option,
+        fmt::format("{} cannot be used with {}: leave one of the two out", option,
                     options.drive.force_path.empty() ? "--normal-load-column" : "--force-path"));
   }
 }
@@ -344,7 +345,7 @@ void RequireAsymmetryAndGap(const SimulateOptions& options) {
   RequireNonNegative("--backlash [m]", options.backlash);
   RequireExactLaw(options, "--backlash", /*needs_memory=*/false);
   if (options.asymmetry != 0) {
-    throw InputError("--asymmetry does not serve --backlash: leave one of the two out");
+    throw InputError("--asymmetry cannot be used with --backlash: leave one of the two out");
   }
 }
 
@@ -392,7 +393,7 @@ void RunSimulate(const SimulateOptions& options, Console& console) {
 
   if (!options.drive.force_path.empty() && options.forces != AddedForces{}) {
     throw InputError(
-        "--force-path imposes the whole force: leave out --viscous and whatever else adds to it");
+        "--force-path imposes the whole force: leave out --viscous and other additional forces");
   }
   AddForces(options.forces, motion.time, motion.displacement, force);
   WarnOfDoubts(options.law.contact, "simulate", console);
@@ -416,8 +417,9 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = app.add_subcommand(
       "simulate",
-      "Tangential force of a model along an imposed displacement, or the displacement under an\n"
-      "imposed force (--force-path), exact for any history.\n"
+      "Computes the tangential force of a model along an imposed displacement, or the "
+      "displacement\n"
+      "under an imposed force (--force-path), exactly for any history.\n"
       "The contact is unloaded at displacement zero; a first row that is not zero is the first\n"
       "loading step. Writes time [s], displacement [m], force [N].");
   AddExamples(*command, app,
@@ -430,8 +432,8 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   AddLawOptions(*command, options->law);
   command
       ->add_option("--asymmetry", options->asymmetry,
-                   "slip forces Tc(1 + A) where the motion is in the direction of positive\n"
-                   "displacement and Tc(1 - A) where it is not [-]")
+                   "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\n"
+                   "it falls [-]")
       ->type_name("A")
       ->capture_default_str();
   command
@@ -451,7 +453,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   command->add_option("--noise-displacement", options->displacement_noise, "standard deviation [m]")
       ->type_name("M")
       ->group(noise);
-  command->add_option("--seed", options->drive.seed, "of the noise and of the random waveform")
+  command->add_option("--seed", options->drive.seed, "seed of the noise and of the random waveform")
       ->capture_default_str()
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
       ->group(noise);
@@ -468,7 +470,7 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
       ->check(WholeNumber(1, 1'000'000'000))
       ->group(method);
   AddOptional(*command, "--tolerance", options->tolerance,
-              "of dopri5: largest local error of T/Tc a step [-], default 1e-6", "E")
+              "largest local error of T/Tc in a step of dopri5 [-], default 1e-6", "E")
       ->group(method);
   command->add_option("-o,--output", options->output, "CSV file; default standard output")
       ->type_name("FILE");

@@ -691,9 +691,7 @@ void SeparateRuns::Go() {
        {std::pair{"--plot", options_.plot_path}, std::pair{"--report", options_.report_path}}) {
     if (path.empty()) continue;
     throw InputError(
-        fmt::format("{} shows one test, and --separate makes many: track that one "
-                    "alone",
-                    option));
+        fmt::format("{} shows one test, and --separate makes many: track that one alone", option));
   }
   for (const std::string& file : options_.request.files) {
     if (file != "-" && file.find_first_of("\r\n") == std::string::npos) continue;
@@ -751,25 +749,24 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TrackCommandOptions>();
   CLI::App* command =
       app.add_subcommand("track",
-                         "Fits every cycle of a long record as it is read, in memory that its\n"
-                         "length does not change: one row a cycle, and what changed over the\n"
-                         "test. A run that was ended goes on with --resume. Exit status 3 when\n"
-                         "no fit converged.");
+                         "Fits every cycle of a long record while reading it, in constant memory:\n"
+                         "one row a cycle, and the changes over the test. --resume continues a\n"
+                         "run that was ended. Exit status 3 when no fit converged.");
   AddExamples(*command, app,
               {"mindahl track day1.csv --output cycles.csv",
                "mindahl track day1.csv day2.csv --output all_cycles.csv --normal-load 50 --json "
                "track.json"});
   command
       ->add_option("files", options->request.files,
-                   "CSV records of one test, in order; a cycle ends with its file. With\n"
-                   "--separate each is a test of its own")
+                   "CSV records of one test, in order; no cycle extends over two files.\n"
+                   "With --separate each file is a test of its own")
       ->type_name("FILE");
   AddFilesFrom(*command, options->list);
   command
       ->add_flag("--separate", options->separate,
-                 "each file is a test of its own: one table of all, with columns for the\n"
-                 "test, the version, the SHA-256 of the file and why a test failed, which\n"
-                 "does not stop the others; implied by --shard")
+                 "each file is a test of its own: one table of all, with columns for\n"
+                 "test, version, SHA-256 of the file and fault; a test that fails does\n"
+                 "not stop the others; implied by --shard")
       ->group("Files");
   AddShard(*command, options->list);
   AddJoin(*command, options->request);
@@ -779,31 +776,34 @@ void AddTrackCommand(CLI::App& app, Console& console) {
   AddOptional(*command, "--normal-load", options->normal_load,
               "normal load N [N] of all cycles; default the column's mean over each", "N")
       ->group(cycles);
-  command->add_option("--average", options->average, "fit so many cycles in a row together")
+  command
+      ->add_option("--average", options->average,
+                   "number of consecutive cycles that are fitted together")
       ->capture_default_str()
       ->check(WholeNumber(1, 1'000'000))
       ->group(cycles);
-  command->add_option("--every", options->every, "fit one cycle of so many")
+  command->add_option("--every", options->every, "fit only one cycle of this many")
       ->capture_default_str()
       ->check(WholeNumber(1, 1'000'000'000))
       ->group(cycles);
   command
       ->add_option("--alpha", options->alpha,
-                   "cycle: each has its own; shared: all have one, the mean by errors of a\n"
-                   "first pass, and a second one fits sigma and Tc")
+                   "cycle: each cycle has its own; shared: all have the weighted mean of a\n"
+                   "first pass, and a second pass fits sigma and Tc")
       ->capture_default_str()
       ->check(CLI::IsMember({std::string(kOwnAlpha), std::string(kSharedAlpha)}))
       ->group(cycles);
   command
       ->add_option("--broken-rows", options->broken_rows,
-                   "a row without a number in a column that is needed ends the run, or is\n"
-                   "skipped and counted")
+                   "refuse: a row without a number in a needed column ends the run; skip:\n"
+                   "it is skipped and counted")
       ->capture_default_str()
       ->check(OneOf({"refuse", "skip"}))
       ->group(cycles);
   command
       ->add_option("--threads", options->threads,
-                   "that fit; the table does not depend on it; default one a core")
+                   "number of worker threads (default: one per core); they do not change\n"
+                   "the table")
       ->check(WholeNumber(1, 1024))
       ->group(cycles);
   const std::string group = "Results";
@@ -816,20 +816,19 @@ void AddTrackCommand(CLI::App& app, Console& console) {
       ->group(group);
   command
       ->add_option("--plot", options->plot_path,
-                   "evolution over the cycles with what changed, as svg or png")
+                   "evolution over the cycles with its changes, as svg or png")
       ->type_name("PATH")
       ->group(group);
   command
       ->add_option("--report", options->report_path,
-                   "all of it as one page of HTML with its figures; it loads nothing")
+                   "everything with its figures on one self-contained page of HTML")
       ->type_name("PATH")
       ->group(group);
   command
       ->add_flag("--resume", options->resume,
-                 "go on with the table that is there: the same files and options")
+                 "continue an existing table, with the same files and options")
       ->group(group);
-  command->add_flag("--overwrite", options->overwrite, "write over a table that is there")
-      ->group(group);
+  command->add_flag("--overwrite", options->overwrite, "replace an existing table")->group(group);
   command->callback([options, command, &console] {
     options->request.files = FilesOf(options->request.files, options->list);
     RunTrack(*options, *command, console);

@@ -70,11 +70,10 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
   const auto options = std::make_shared<TradeoffOptions>();
   CLI::App* command = app.add_subcommand(
       "tradeoff",
-      "Error against cost of every method and model along five excitations, the cost by counted\n"
-      "operations and as measured in this run,\n"
-      "and the amplitudes at which each model is good enough. The contact is that of Peyret et "
-      "al.\n"
-      "(2017) unless another is given.");
+      "Compares error and cost of every method and model along five excitations, the cost by\n"
+      "counted operations and as measured in this run, and lists the amplitudes at which each "
+      "model\n"
+      "is good enough. The default contact is that of Peyret et al. (2017).");
   AddExamples(*command, app,
               {"mindahl tradeoff --excitation micro",
                "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "
@@ -105,7 +104,7 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
       ->group(output);
   command
       ->add_option("--regions-csv", options->regions_csv,
-                   "amplitudes at which models serve, as CSV")
+                   "amplitudes at which each model is good enough, as CSV")
       ->type_name("PATH")
       ->group(output);
   command->add_option("--plot", options->plot, "work-precision diagrams, svg or png")

@@ -57,7 +57,7 @@ void AddValidateCommand(CLI::App& app, Console& console) {
   command->add_option("--cases", options->validation.cases, "contacts to draw")
       ->capture_default_str()
       ->check(WholeNumber(1, kMostCases));
-  command->add_option("--seed", options->validation.seed, "of the random numbers")
+  command->add_option("--seed", options->validation.seed, "seed of the random numbers")
       ->capture_default_str()
       ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
   command->add_option("--json", options->json_path, "report as JSON; - for standard output")

@@ -178,7 +178,7 @@ Evaluator Prepare(const Method& method, const FrictionModel& model, const Branch
   }
   if (method.masing_only && model.memory != models::Memory::kReturnPoint) {
     throw InvalidArgument(fmt::format(
-        "method {} does not serve model {}: its elements remember every reversal, the model does "
+        "method {} cannot compute model {}: its elements remember every reversal, the model does "
         "not",
         method.name, model.name));
   }

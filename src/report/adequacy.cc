@@ -33,72 +33,73 @@ struct CauseRow {
 };
 
 constexpr const char* kLookAtTheLoad =
-    "look whether the normal load varies with the position; where it is recorded, name its column "
+    "check whether the normal load varies with the position; if it is recorded, name its column "
     "with --normal-load-column";
 
 constexpr std::array<CauseRow, 27> kCauses = {{
     {"channel_lag", "a force that is read {} after the displacement",
      "a displacement that is read {} after the force",
      "compare the delays and filters of the two channels"},
-    {"viscous_force", "a viscous force of {} in addition to the contact's", nullptr,
+    {"viscous_force", "an additional viscous force of {}", nullptr,
      "record the time, and give --viscous fit"},
-    {"plateau_slope", "a force in addition to the contact's that grows by {} with the displacement",
-     nullptr, "give --plateau-slope"},
+    {"plateau_slope", "an additional force that grows by {} with the displacement", nullptr,
+     "give --plateau-slope"},
     {"force_drift", "a force that drifts by {}", nullptr, "give --drift"},
     {"normal_load", "a force that follows the measured load, which varies, to {}", nullptr,
      "keep to one load with --load-window"},
     {.code = "shape_of_law",
-     .looks = "branches of another shape than the law's",
+     .looks = "branches shaped differently from the law's",
      .negative = nullptr,
      .remedy = "compare the laws with --model auto",
      .remedy_of_displacement = "fit another law, --model mindlin-dahl or dahl, and compare"},
-    {"guide_friction",
-     "a friction of {} in addition to the contact's that turns at once with the motion",
-     "a friction whose jump at each turn is {} too small",
+    {"guide_friction", "an additional friction of {} that reverses at once with the motion",
+     "a friction whose jump at each reversal is {} too small",
      "look for a guide or a seal that rubs, and measure it without the contact"},
     {"rig_in_series", "a rig in series that deflects by {}",
-     "a rig in series that deflects by {} less than was taken off", "give --rig-stiffness fit",
+     "a rig in series that deflects by {} less than was subtracted", "give --rig-stiffness fit",
      std::numeric_limits<double>::infinity(),
-     "measure the rig's stiffness and take its part off the displacement"},
+     "measure the rig's stiffness and subtract its deflection from the displacement"},
     {"backlash", "a backlash of {} after each reversal", "an overtravel of {} after each reversal",
      "look for play between the contact and the displacement sensor"},
-    {"displacement_sensor", "a displacement that is not read linearly", nullptr,
+    {"displacement_sensor", "a nonlinear displacement sensor", nullptr,
      "calibrate the displacement sensor over the whole stroke"},
     {"inertia", "a mass of {} between the contact and the force sensor", nullptr,
-     "move more slowly, or take the inertia off the force"},
-    {"unequal_directions", "a friction that differs by {} from the mean in either direction",
-     "a friction that differs by {} from the mean in either direction",
-     "look whether the load changes with the direction of the motion", 1.0, nullptr,
-     "a friction that is not the same in both directions"},
+     "move more slowly, or subtract the inertia from the force"},
+    {"unequal_directions", "a friction that differs by {} from the mean in each direction",
+     "a friction that differs by {} from the mean in each direction",
+     "check whether the load changes with the direction of motion", 1.0, nullptr,
+     "a friction that differs between the two directions"},
     {"running_in", "a friction that grows by {} over the record",
      "a friction that falls by {} over the record",
      "leave the first cycles out with --skip-cycles, or fit parts of the record"},
-    {"force_saturates", "a force reading that loses {} of what is beyond nine tenths of its peak",
-     "a force reading that gains {} of what is beyond nine tenths of its peak",
-     "look at the ranges of the force sensor and its amplifier", 1.0, nullptr,
-     "a force that is not read linearly near its peak"},
+    {"force_saturates",
+     "a force reading that loses {} of its excess over nine tenths of its peak, "
+     "as of an overloaded sensor",
+     "a force reading that gains {} of its excess over nine tenths of its peak",
+     "check the ranges of the force sensor and its amplifier", 1.0, nullptr,
+     "a force reading that is nonlinear near its peak"},
     {"slip_position", "a slip force that grows by {} from the middle of the stroke to its end",
      "a slip force that falls by {} from the middle of the stroke to its end", kLookAtTheLoad,
      std::numeric_limits<double>::infinity(), nullptr,
      "a slip force that depends on the position, differently in each direction"},
     {"slip_position_quadratic",
-     "a slip force that grows by {} from the middle of the stroke to its end, and bends",
-     "a slip force that falls by {} from the middle of the stroke to its end, and bends",
+     "a slip force that grows by {}, nonlinearly, from the middle of the stroke to its end",
+     "a slip force that falls by {}, nonlinearly, from the middle of the stroke to its end",
      kLookAtTheLoad, std::numeric_limits<double>::infinity(), nullptr,
      "a slip force that depends on the position, differently in each direction"},
-    {"speed_power", "a force that depends on the speed by a power", nullptr,
+    {"speed_power", "a force that depends on a power of the speed", nullptr,
      "record the time, and compare tests at several speeds"},
     {"force_of_position", "a force that depends on the position", nullptr,
-     "look for a spring, a cable or a tilt parallel to the contact, and measure it without it"},
+     "look for a spring, a cable or a tilt parallel to the contact, and measure it without the "
+     "contact"},
     {"covariate", "a force in proportion to another column of the file, {}", nullptr,
      "name the column with --covariate"},
     {"smoothing", "a force that is averaged over a window in time with a standard deviation of {}",
      "a displacement that is averaged over a window in time with a standard deviation of {}",
      "compare the filters of the two channels"},
     {"held_displacement",
-     "a displacement that repeats itself while the contact moves on, so that {} of the path "
-     "between "
-     "two readings is missing",
+     "a displacement reading that repeats while the contact moves, so that {} of the travel "
+     "between two readings is missing",
      nullptr, "record the displacement as often as the force, or leave the repeats out"},
     {"amplitude_dependence", "a friction that grows by {} from the narrowest stroke to the widest",
      "a friction that falls by {} from the narrowest stroke to the widest",
@@ -107,14 +108,14 @@ constexpr std::array<CauseRow, 27> kCauses = {{
     {"clock_drift", "a force whose clock falls behind by {} over the record",
      "a force whose clock gains {} over the record",
      "sample both channels by one clock, or fit parts of the record"},
-    {"heavy_tails", "readings, {} of all, that are far off their neighbours", nullptr,
+    {"heavy_tails", "readings far off their neighbours, {} of all", nullptr,
      "look for disturbances of the channel"},
     {"position_ripple",
-     "a ripple with a period of {} along the displacement, in one phase in all strokes of a "
-     "direction, as a drive screw or a gear makes",
-     nullptr, "look at the drive; the ripple averages out of slip_force"},
+     "a ripple with a period of {} along the displacement and the same phase in all strokes of a "
+     "direction, as from a drive screw or a gear",
+     nullptr, "check the drive; the ripple averages out of slip_force"},
     {"stick_slip", "stick-slip, drops of {} that recur while the contact slides", nullptr,
-     "stiffen the rig or change the speed; slip_force is that of the mean between the drops"},
+     "stiffen the rig or change the speed; slip_force is the mean between the drops"},
 }};
 
 const CauseRow& RowOf(const Cause& cause) {
@@ -157,8 +158,8 @@ std::string WhatIncludesIt(const identification::FitResult& fit) {
     if (estimate.identifiability != identification::Identifiability::kEffective) continue;
     names.push_back(estimate.name);
   }
-  if (names.empty()) return "no parameter is to be used";
-  return fmt::format("the interval{} of {} include{} it", names.size() > 1 ? "s" : "",
+  if (names.empty()) return "no parameter is usable";
+  return fmt::format("the interval{} of {} include{} this", names.size() > 1 ? "s" : "",
                      fmt::join(names, ", "), names.size() > 1 ? "" : "s");
 }
 
@@ -168,7 +169,7 @@ bool IsJudged(const Report& report) { return !report.failed() && report.fit.adeq
 
 std::string WhyNoOption(const Cause& cause) {
   const bool is_of_speed = cause.code == "viscous_force" || cause.code == "speed_power";
-  return is_of_speed ? "needs a column of the time" : "no option takes it into account yet";
+  return is_of_speed ? "needs a time column" : "no option takes it into account yet";
 }
 
 void AdaptCauses(const Units& units, std::vector<Cause>& causes) {
@@ -196,7 +197,7 @@ std::string Sentence(const Cause& cause, loop::Channel response) {
   const CauseRow& row = RowOf(cause);
   const bool is_other =
       response == loop::Channel::kDisplacement && row.remedy_of_displacement != nullptr;
-  const std::string why = cause.is_measured ? "over which the force stands still in every stroke"
+  const std::string why = cause.is_measured ? "over which the force stays constant in every stroke"
                                             : fmt::format("which explains {:.0f} % of the misfit",
                                                           100 * cause.explains);
   return fmt::format("{}, {}: {}", Looks(cause), why,
@@ -231,8 +232,7 @@ std::string MisfitSentence(const Report& report) {
   }
   const double repeats = report.fit.WidestRecord().structure.repeatable_share;
   if (repeats > 0) {
-    sentence +=
-        fmt::format(", {:.0f} % of its variance in the same way in every stroke", 100 * repeats);
+    sentence += fmt::format(", {:.0f} % of its variance alike in every stroke", 100 * repeats);
   }
   return sentence;
 }
@@ -242,8 +242,8 @@ std::string VerdictSentence(const Report& report) {
   const Adequacy& adequacy = report.fit.adequacy;
   if (const auto* unseen = report.fit.FindFinding("loop_not_seen"); unseen != nullptr) {
     return fmt::format(
-        "inadequate: no loop is seen in the force, of whose variance the model explains {:.2g} %; "
-        "its parameters mean nothing for this record",
+        "inadequate: the force shows no loop, since the model explains only {:.2g} % of its "
+        "variance; the parameters mean nothing for this record",
         std::max(0.0, 100 * unseen->Number("r_squared").value_or(0.0)));
   }
   if (adequacy.verdict == AdequacyVerdict::kAdequate) {
@@ -251,7 +251,7 @@ std::string VerdictSentence(const Report& report) {
                        Quantity(report.fit.residuals.rms, report.units.response, 3),
                        ChanceText(adequacy.p_value, 2));
   }
-  return fmt::format("{}, {}: {}, which noise alone does not make ({}); {}", Name(adequacy.verdict),
+  return fmt::format("{}, {}: {}, more than noise alone explains ({}); {}", Name(adequacy.verdict),
                      adequacy.use == identification::Use::kNone ? "of no use for the law's shape"
                                                                 : Name(adequacy.use),
                      MisfitSentence(report), ChanceText(adequacy.p_value, 2),
@@ -268,7 +268,7 @@ std::string SameModelAgain(const Report& report) {
   const bool have_names = std::ranges::all_of(added, [](const std::string& name) {
     return identification::FindTermGroup(name) != nullptr;
   });
-  return fmt::format("nothing explains half of what is left{}",
+  return fmt::format("no known cause explains half of the remaining misfit{}",
                      have_names ? fmt::format("; to fit other records of this contact by the same "
                                               "model, give --terms {}",
                                               fmt::join(added, ","))

@@ -17,8 +17,7 @@ const std::vector<Field<PropagatedValue>>& PropagatedFields() {
   using Item = PropagatedValue;
   static const std::vector<Field<Item>> fields = {
       {"value", "of the quantity", "estimate", [](const Item& item) { return Number(item.value); }},
-      {"standard_error", "of the quantity",
-       "standard error of the fit and of what is known besides it",
+      {"standard_error", "of the quantity", "standard error from the fit and from the given inputs",
        [](const Item& item) { return Number(item.standard_error); },
        [](const Item&) {
          return std::string("the record leaves open the parameter that it rests on");
@@ -84,12 +83,11 @@ std::vector<Field<Report>> RowsOf(const std::string& sense, const char* label,
 }  // namespace
 
 void AddSlipForceFields(FieldTable& table) {
-  table.Add(
-      RowsOf("positive",
-             "Tc(1 + A), where the motion is in the direction of positive displacement; absent, "
-             "as is slip_forces.negative, unless the fit has an asymmetry",
-             &SlipForces::positive));
-  table.Add(RowsOf("negative", "Tc(1 − A), where it is not", &SlipForces::negative));
+  table.Add(RowsOf("positive",
+                   "Tc(1 + A), where the displacement grows; absent, as is slip_forces.negative, "
+                   "unless the fit has an asymmetry",
+                   &SlipForces::positive));
+  table.Add(RowsOf("negative", "Tc(1 − A), where the displacement falls", &SlipForces::negative));
 }
 
 using contact::UncertainValue;
@@ -106,7 +104,7 @@ const std::vector<Field<identification::BranchShape>>& BranchFields() {
   static const std::vector<Field<Item>> fields = {
       {"branch", "", "virgin, unloading or reloading",
        [](const Item& item) { return Text(item.branch); }},
-      {"samples", "", "samples on these branches",
+      {"samples", "", "number of samples on these branches",
        [](const Item& item) { return Count(item.samples); }},
       {"alpha", "-", "α of these branches alone, the rest shared",
        [](const Item& item) { return Number(item.shape_exponent); }, why},
@@ -187,9 +185,9 @@ Field<Report> Likelihood(const char* path, const char* unit, const char* label,
 
 std::string WhyNoRatio(const Report& report) {
   return report.stiffness.empty()
-             ? "needs a contact radius known besides the fit: the elastic constants and radii of "
-               "both bodies with the load, or a contact radius with the compliance or the elastic "
-               "constants"
+             ? "needs a contact radius known apart from the fit: the elastic constants and "
+               "radii of both bodies with the load, or a contact radius with the compliance or "
+               "the elastic constants"
              : "the record leaves sigma open";
 }
 
@@ -206,12 +204,12 @@ void AddMappingFields(FieldTable& table) {
        [](const Report& report) { return Number(report.alpha.minus_third); }, WhyAlphaNotTested},
       {"mapping.z", "-", "(α − 1/3)/SE",
        [](const Report& report) { return Number(report.alpha.z); }, WhyAlphaNotTested},
-      {"mapping.p_value", "-", "two-sided, of z",
+      {"mapping.p_value", "-", "two-sided p-value of z",
        [](const Report& report) { return Number(report.alpha.p_value); }, WhyAlphaNotTested},
       Likelihood("mapping.likelihood_ratio", "-",
                  "α = 1/3 against the fitted α, twice its logarithm",
                  &MindlinTest::likelihood_ratio),
-      Likelihood("mapping.likelihood_ratio_p_value", "-", "of the likelihood ratio",
+      Likelihood("mapping.likelihood_ratio_p_value", "-", "p-value of the likelihood ratio",
                  &MindlinTest::p_value),
       {"mapping.tenable_with_rig_stiffness", "N/m", "rig with which α = 1/3 fits as well",
        [](const Report& report) {
@@ -225,10 +223,11 @@ void AddMappingFields(FieldTable& table) {
        WhyNoRatio},
       {"mapping.sigma_over_hertz_mindlin_standard_error", "-", "standard error of σ/(8a/G*)",
        ratio(&UncertainValue::standard_error), WhyNoRatio},
-      {"mapping.stiffness_tests", "", "σ/(8a/G*) against 1, one a known radius", StiffnessTests},
+      {"mapping.stiffness_tests", "", "σ/(8a/G*) against 1, one entry per known radius",
+       StiffnessTests},
   });
   table.Describe("mapping.alpha_by_branch[].", BranchFields());
-  table.items.push_back({"mapping.stiffness_tests[].radius", "", "hertz, or given: whence a"});
+  table.items.push_back({"mapping.stiffness_tests[].radius", "", "source of a: hertz or given"});
   table.Describe("mapping.stiffness_tests[].", PropagatedFields());
   table.Describe("mapping.stiffness_tests[].", StiffnessFields());
 }
@@ -257,8 +256,8 @@ const std::vector<Field<ContactUnderLoad>>& ContactFieldsUnderLoad() {
                       [member](const Item& item) { return Number((item.*member).standard_error); },
                       WhySeriesOpen});
     };
-    of_series("sigma", "N/m", "σ at this load, of the whole series", &Item::stiffness);
-    of_series("slip_force", "N", "Tc at this load, of the whole series", &Item::slip_force);
+    of_series("sigma", "N/m", "σ at this load, from the whole series", &Item::stiffness);
+    of_series("slip_force", "N", "Tc at this load, from the whole series", &Item::slip_force);
     const auto alone = [&](const std::string& name, const char* unit, const char* label,
                            ParameterEstimate identification::RecordAlone::*member) {
       rows.push_back({"alone." + name + ".value", unit, label,
@@ -303,21 +302,21 @@ const std::vector<Field<LoadHypothesis>>& HypothesisFields() {
   static const std::vector<Field<Item>> fields = {
       {"name", "", "sphere, elements, cone, flat_punch or rough",
        [](const Item& item) { return Text(item.name); }},
-      {"exponent", "-", "that it has; of elements in parallel the fitted α",
+      {"exponent", "-", "exponent that the theory predicts; for elements in parallel the fitted α",
        [](const Item& item) { return Number(item.exponent); }},
-      {"difference", "-", "p less that", [](const Item& item) { return Number(item.difference); },
-       WhyHypothesisNotTested},
+      {"difference", "-", "p minus that exponent",
+       [](const Item& item) { return Number(item.difference); }, WhyHypothesisNotTested},
       {"z", "-", "difference over its standard error",
        [](const Item& item) { return Number(item.z); }, WhyHypothesisNotTested},
-      {"p_value", "-", "two-sided, of z", [](const Item& item) { return Number(item.p_value); },
-       WhyHypothesisNotTested},
+      {"p_value", "-", "two-sided p-value of z",
+       [](const Item& item) { return Number(item.p_value); }, WhyHypothesisNotTested},
   };
   return fields;
 }
 
 std::string WhyNoInterval(const QuantityUnderLaw& item) {
   return item.value.standard_error > 0 ? "the series leaves it open"
-                                       : "all that it follows from is held";
+                                       : "all parameters that it follows from are fixed";
 }
 
 /// Returns the fields of a quantity in addition to those of every quantity of the contact.
@@ -335,7 +334,8 @@ const std::vector<Field<QuantityUnderLaw>>& QuantityFields() {
          return is_closed ? Number(item.interval95->upper) : Missing();
        },
        WhyNoInterval},
-      {"predicted", "of the quantity", "what the bodies say; absent where they are not known",
+      {"predicted", "of the quantity",
+       "value predicted from the bodies; absent where they are not known",
        [](const Item& item) { return item.predicted ? Number(item.predicted) : Value{}; }},
   };
   return fields;
@@ -355,10 +355,11 @@ const std::vector<Field<LoadLaw>>& LoadLawFields() {
   using Item = LoadLaw;
   const auto why_exact = [](const Item&) { return std::string("sigma was held"); };
   static const std::vector<Field<Item>> fields = {
-      {"name", "", "of the hypothesis", [](const Item& item) { return Text(item.name); }},
-      {"exponent", "-", "p that is held; of elements in parallel the p = α nearest to both",
+      {"name", "", "name of the hypothesis", [](const Item& item) { return Text(item.name); }},
+      {"exponent", "-",
+       "exponent p of the hypothesis; for elements in parallel the p = α nearest to both",
        [](const Item& item) { return Number(item.exponent); }},
-      {"sigma.value", "N/m", "σ at the reference load, with p held",
+      {"sigma.value", "N/m", "σ at the reference load, with that p",
        [](const Item& item) { return Number(item.stiffness.value); }},
       {"sigma.standard_error", "N/m", "standard error",
        [](const Item& item) { return Number(item.stiffness.standard_error); }},
@@ -372,7 +373,8 @@ const std::vector<Field<LoadLaw>>& LoadLawFields() {
          return item.stiffness95 ? Number(item.stiffness95->upper) : Missing();
        },
        why_exact},
-      {"quantities", "", "what follows of the contact, by name; may be empty", QuantityValues},
+      {"quantities", "", "quantities of the contact that follow, by name; may be empty",
+       QuantityValues},
   };
   return fields;
 }
@@ -382,8 +384,8 @@ const std::vector<Field<LoadLaw>>& LoadLawFields() {
 void AddLoadSeriesFields(FieldTable& table) {
   table.Add({
       {"load_series.reference_load", "N",
-       "N₀, mean of the records' loads: σ and Tc of parameters are those under it; load_series is "
-       "absent where the records have one load",
+       "N₀, mean of the records' loads, at which σ and Tc of parameters are given; load_series "
+       "is absent where the records have one load",
        [](const Report& report) {
          return report.load_series ? Number(report.fit.normal_load) : Value{};
        }},
@@ -392,12 +394,12 @@ void AddLoadSeriesFields(FieldTable& table) {
          return report.load_series ? List(ContactFieldsUnderLoad(), report.load_series->contacts)
                                    : Value{};
        }},
-      {"load_series.hypotheses", "", "p of σ ∝ N^p against theories",
+      {"load_series.hypotheses", "", "p of σ ∝ N^p compared with theories",
        [](const Report& report) {
          return report.load_series ? List(HypothesisFields(), report.load_series->hypotheses)
                                    : Value{};
        }},
-      {"load_series.laws", "", "the hypotheses that are tenable, each held over all loads",
+      {"load_series.laws", "", "the tenable hypotheses, each assumed at all loads",
        [](const Report& report) {
          return report.load_series ? List(LoadLawFields(), report.load_series->laws) : Value{};
        }},
@@ -435,7 +437,7 @@ const std::vector<Field<contact::HertzPrediction>>& HertzFields() {
       rows.push_back(
           {name, unit, label, [member](const Item& item) { return Number((item.*member).value); }});
       rows.push_back(
-          {name + "_standard_error", unit, "standard error, of inputs alone",
+          {name + "_standard_error", unit, "standard error, from the inputs alone",
            [member](const Item& item) { return Number((item.*member).standard_error); }});
     };
     const auto propagated = [&](const char* path, const char* unit, const char* label,
@@ -447,7 +449,7 @@ const std::vector<Field<contact::HertzPrediction>>& HertzFields() {
     of_inputs("sigma", "N/m", "8a/G*", &Item::tangential_stiffness);
     propagated("gross_slip_displacement", "m", "3·Tc·G*/(16a) with the measured Tc",
                &Item::gross_slip_displacement);
-    of_inputs("equivalent_radius", "m", "of the two radii", &Item::equivalent_radius);
+    of_inputs("equivalent_radius", "m", "from the two radii", &Item::equivalent_radius);
     of_inputs("maximum_pressure", "Pa", "p₀ of Hertz", &Item::maximum_pressure);
     propagated("measured_over_predicted.contact_radius", "-", "measured over predicted",
                &Item::sigma_over_hertz_mindlin);
@@ -500,7 +502,7 @@ void AddContactFields(FieldTable& table) {
          [&field](const Report& report) { return Propagated(field.get(report), field.unit); },
          field.why_null});
     if (field.key != "compliance") continue;
-    rows.push_back({"contact.compliance_definition", "", "which G* is meant",
+    rows.push_back({"contact.compliance_definition", "", "definition of G*",
                     [](const Report&) { return Text("G* = (2-nu1)/G1 + (2-nu2)/G2"); }});
     rows.push_back({"contact.compliance_unit", "", "unit of compliance",
                     [](const Report&) { return Text("1/Pa"); }});

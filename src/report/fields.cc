@@ -71,10 +71,10 @@ const std::vector<Field<LoadPieceItem>>& LoadPieceFields() {
        [](const Item& item) { return Text(item.file); }},
       {"normal_load", "N", "median of the load",
        [](const Item& item) { return Number(item.piece.normal_load); }},
-      {"first_line", "", "of the file, counted from 1",
+      {"first_line", "", "first line of the piece in the file, counted from 1",
        [](const Item& item) { return Count(item.piece.first_line); }},
       {"last_line", "", "likewise", [](const Item& item) { return Count(item.piece.last_line); }},
-      {"samples", "", "of the piece, those that do not count too",
+      {"samples", "", "samples of the piece, including those that do not count",
        [](const Item& item) { return Count(item.samples); }},
   };
   return fields;
@@ -90,25 +90,25 @@ std::size_t BetweenLoads(const Report& report) {
 
 void AddInputFields(FieldTable& table) {
   table.Add({
-      {"schema", "", "name and version of this form",
+      {"schema", "", "name and version of the schema",
        [](const Report&) { return Text("mindahl.fit/1"); }},
       {"version", "", "version of mindahl", [](const Report&) { return Text(Version()); }},
       {"input.files", "",
-       "names of the files, as they were given; with its lines where a record is a piece of one",
+       "names of the files, as given; with line numbers where a record is a piece of a file",
        [](const Report& report) {
          Value::Array files;
          for (const std::string& file : report.files) files.push_back(Text(file));
          return Value{std::move(files)};
        }},
-      {"input.samples", "", "samples read, those that do not count too",
+      {"input.samples", "", "samples read, including those that do not count",
        [](const Report& report) {
          std::size_t samples = BetweenLoads(report);
          for (const io::RecordFile& input : report.records) samples += input.record.size();
          return Count(samples);
        }},
       {"input.load_pieces", "",
-       "of files whose load goes in steps, or ramps under --trim auto, what was fitted as a record "
-       "of its own; absent where there is none",
+       "pieces that were fitted as records of their own, of files whose load changes in steps, "
+       "or ramps with --trim auto; absent where there are none",
        [](const Report& report) {
          const std::vector<LoadPieceItem> pieces = LoadPieces(report);
          return pieces.empty() ? Value{} : List(LoadPieceFields(), pieces);
@@ -120,8 +120,8 @@ void AddInputFields(FieldTable& table) {
          return LoadPieces(report).empty() ? Value{} : Count(BetweenLoads(report));
        }},
       {"input.trimmed", "",
-       "what --trim auto leaves out of the samples under the load that is fitted; may be empty, "
-       "absent where it was not asked for",
+       "samples that --trim auto leaves out under the fitted load; may be empty, absent without "
+       "--trim auto",
        [](const Report& report) {
          return report.trims.empty() ? Value{} : List(TrimmedFields(), TrimmedItems(report));
        }},
@@ -143,11 +143,11 @@ void AddInputFields(FieldTable& table) {
          for (const RecordFit& record : report.fit.records) left_out += record.left_out;
          return Count(left_out);
        }},
-      {"input.reversal_gate", kOfExcitation, "one a file: excursions up to it are noise",
+      {"input.reversal_gate", kOfExcitation, "one per file: excursions up to it are noise",
        OneARecord([](const RecordFit& record) { return record.gate.gate; })},
-      {"input.displacement_noise", "m", "one a file: standard deviation, given or estimated",
+      {"input.displacement_noise", "m", "one per file: standard deviation, given or estimated",
        OneARecord([](const RecordFit& record) { return record.displacement_noise; })},
-      {"input.initial_state", "", "one a file: virgin or steady",
+      {"input.initial_state", "", "one per file: virgin or steady",
        [](const Report& report) {
          Value::Array array;
          for (const RecordFit& record : report.fit.records) {
@@ -156,22 +156,21 @@ void AddInputFields(FieldTable& table) {
          return Value{std::move(array)};
        }},
       {"input.response_noise", kOfResponse,
-       "one a file: standard deviation of the noise of what is fitted, given or estimated",
+       "one per file: standard deviation of the noise of the fitted channel, given or estimated",
        OneARecord([](const RecordFit& record) { return record.response_noise; })},
-      {"input.force_sign", "",
-       "same or opposite: the sign of the force for that of the displacement",
+      {"input.force_sign", "", "same or opposite: sign of the force relative to the displacement",
        [](const Report& report) { return Text(report.fit.force_sense > 0 ? "same" : "opposite"); }},
       {"input.glitches.spikes", "", "samples left out that are far off their neighbours",
        Sum([](const RecordFit& record) { return record.glitches.spikes; })},
       {"input.glitches.dropouts", "", "samples left out that read 0 in both channels",
        Sum([](const RecordFit& record) { return record.glitches.dropouts; })},
-      {"input.glitches.held", "", "samples left out that repeat a value, which then jumps",
+      {"input.glitches.held", "", "samples left out that repeat a value before it jumps",
        Sum([](const RecordFit& record) { return record.glitches.held; })},
       {"reversals.count", "", "turning points of the motion in the widest record",
        [](const Report& report) { return Count(report.fit.WidestRecord().reversals.size()); }},
       {"reversals.gate", kOfExcitation, "excursions up to it are noise",
        OfGate([](const ReversalGate& gate) { return Number(gate.gate); })},
-      {"reversals.certain", "", "whether no other gate has as good a claim",
+      {"reversals.certain", "", "true if no other gate is as plausible",
        OfGate([](const ReversalGate& gate) { return Flag(gate.certain); })},
       {"reversals.other_count", "", "turning points under the other gate; absent where certain",
        OfGate([](const ReversalGate& gate) {
@@ -254,8 +253,8 @@ std::vector<FieldDescription> DescribeFields() {
   descriptions.push_back({"nulls[].path", "", "where the null is"});
   descriptions.push_back({"nulls[].why", "", "why it is one"});
   for (const char* list : {"warnings", "notes"}) {
-    descriptions.push_back({std::string(list) + "[].code", "", "stable, for scripts"});
-    descriptions.push_back({std::string(list) + "[].message", "", "for people"});
+    descriptions.push_back({std::string(list) + "[].code", "", "stable name, for scripts"});
+    descriptions.push_back({std::string(list) + "[].message", "", "sentence, for people"});
   }
   return descriptions;
 }

@@ -41,7 +41,7 @@ void AddLoopFields(FieldTable& table) {
        },
        [](const Report&) { return std::string("the record closes no cycle"); }},
       {"loop.energy_per_cycle_model", "J",
-       "W of the fitted law at the amplitude, the rig's travel taken off",
+       "W of the fitted law at the amplitude, without the rig's deflection",
        OfLoop([](const LoopDescription& loop) { return Number(loop.model_energy); })},
       {"loop.energy_ratio", "-", "W/(4XT*), the model's W where none was measured",
        OfLoop([](const LoopDescription& loop) { return Number(loop.energy_ratio); }),
@@ -53,11 +53,11 @@ void AddLoopFields(FieldTable& table) {
        }),
        [](const Report&) { return std::string(kWhyNoRegime); }},
       {"loop.gross_slip_displacement", "m",
-       "amplitude of the contact from which it slips: δc of the fitted law, 2^−α·δc of Dahl's own",
+       "amplitude above which the whole contact slips: δc of the fitted law, 2^−α·δc of Dahl's own",
        OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_displacement); }),
        WhyNoSlip},
       {"loop.gross_slip_energy_ratio", "-",
-       "W/(4XT*) of the fitted law where it begins to slip, the rig's travel in X",
+       "W/(4XT*) of the fitted law where gross slip begins, X including the rig's deflection",
        OfLoop([](const LoopDescription& loop) { return Number(loop.gross_slip_energy_ratio); }),
        WhyNoSlip},
       {"loop.stick_radius_ratio", "-", "c/a of a Mindlin contact",
@@ -80,15 +80,15 @@ namespace {
 const std::vector<Field<BackbonePoint>>& PointFields() {
   using Item = BackbonePoint;
   static const std::vector<Field<Item>> fields = {
-      {"displacement", "m", "of first loading",
+      {"displacement", "m", "displacement of first loading",
        [](const Item& item) { return Number(item.displacement); }},
-      {"force", "N", "there, without a law",
+      {"force", "N", "force at that displacement, without a law",
        [](const Item& item) { return Number(item.force.value); }},
       {"ci95[0]", "N", "lower end of its band",
        [](const Item& item) { return Number(item.force.lower95); }},
       {"ci95[1]", "N", "upper end of its band",
        [](const Item& item) { return Number(item.force.upper95); }},
-      {"law", "N", "of the fitted law", [](const Item& item) { return Number(item.law); }},
+      {"law", "N", "force of the fitted law", [](const Item& item) { return Number(item.law); }},
   };
   return fields;
 }
@@ -116,15 +116,15 @@ void AddBand(FieldTable& table, const std::string& path, const char* label,
 void AddBackboneFields(FieldTable& table) {
   AddBand(table, "backbone.first_stiffness", "secant over the first hundredth of the displacement",
           &BackboneEstimate::first_stiffness);
-  AddBand(table, "backbone.elastic", "of what does not slip within the record",
+  AddBand(table, "backbone.elastic", "stiffness of the part that does not slip within the record",
           &BackboneEstimate::elastic);
   table.Add({
       BackboneRow("backbone.reaches_plateau", "",
                   "false: slip_force is the law's extrapolation beyond the record",
                   [](const BackboneEstimate& item) { return Flag(item.reaches_plateau); }),
-      BackboneRow("backbone.rms", "N", "root mean square of what the backbone leaves",
+      BackboneRow("backbone.rms", "N", "root mean square residual of the backbone",
                   [](const BackboneEstimate& item) { return Number(item.rms); }),
-      BackboneRow("backbone.points", "", "from 0 to the largest displacement",
+      BackboneRow("backbone.points", "", "points from 0 to the largest displacement",
                   [](const BackboneEstimate& item) { return List(PointFields(), item.points); }),
   });
   table.Describe("backbone.points[].", PointFields());
@@ -155,7 +155,7 @@ constexpr const char* kNoMiddle = "the strokes have too few samples in their mid
 const std::vector<Field<CycleFacts>>& CycleFields() {
   using Item = CycleFacts;
   static const std::vector<Field<Item>> fields = {
-      {"start", "", "number of the sample at which it starts, from 0",
+      {"start", "", "number of the cycle's first sample, from 0",
        [](const Item& item) { return Count(item.start); }},
       {"amplitude", "m", "X: a quarter of the travel of its two strokes",
        [](const Item& item) { return Number(item.amplitude); }},
@@ -183,9 +183,9 @@ void AddTrend(std::vector<Field<LoopFacts>>& fields, const std::string& of, cons
     fields.push_back(Fact(("trend." + of + "." + name).c_str(), row_unit, label, get,
                           "needs three steady cycles"));
   };
-  row("slope", unit, "of a straight line over the steady cycles, a cycle", &Trend::slope);
-  row("standard_error", unit, "of the slope", &Trend::standard_error);
-  row("p_value", "-", "of no slope, two-sided", &Trend::p_value);
+  row("slope", unit, "slope of a straight line over the steady cycles, per cycle", &Trend::slope);
+  row("standard_error", unit, "standard error of the slope", &Trend::standard_error);
+  row("p_value", "-", "two-sided p-value of a zero slope", &Trend::p_value);
 }
 
 const std::vector<Field<LoopFacts>>& MeasuredFields() {
@@ -196,7 +196,8 @@ const std::vector<Field<LoopFacts>>& MeasuredFields() {
             "half_gap.value", "N", "half the force between the strokes in their middle",
             [](const Item& item) { return Number(item.half_gap); }, kNoMiddle),
         Fact(
-            "half_gap.standard_deviation", "N", "of half_gap, between steady cycles",
+            "half_gap.standard_deviation", "N",
+            "standard deviation of half_gap between steady cycles",
             [](const Item& item) { return Number(item.half_gap_standard_deviation); },
             "needs two steady cycles"),
         Fact(
@@ -204,38 +205,39 @@ const std::vector<Field<LoopFacts>>& MeasuredFields() {
             [](const Item& item) { return Number(item.sliding_amplitude); }, kNoMiddle),
         Fact(
             "sliding_fraction", "-",
-            "of the strokes' travel, after the force came to nine tenths of half_gap",
+            "fraction of the strokes' travel after the force reached nine tenths of half_gap",
             [](const Item& item) { return Number(item.sliding_fraction); }, kNoMiddle),
         Fact(
-            "backlash", "m", "travel after each reversal over which the force stands still",
+            "backlash", "m", "travel after each reversal over which the force stays constant",
             [](const Item& item) {
               return item.backlash ? Number(item.backlash->width) : Missing();
             },
             "the force does not stand still after the reversals, or not over the same travel"),
         Fact(
-            "slope_after_reversal", "N/m", "over the first tenth of the strokes, their median",
+            "slope_after_reversal", "N/m", "slope over the first tenth of the strokes, median",
             [](const Item& item) { return Number(item.slope_after_reversal); },
             "the strokes have too few samples"),
         Fact(
-            "plateau_slope", "N/m", "over the last third of the strokes, their median",
+            "plateau_slope", "N/m", "slope over the last third of the strokes, median",
             [](const Item& item) { return Number(item.plateau_slope); },
             "the strokes have too few samples"),
         Fact(
             "asymmetry", "-",
-            "standard deviation of the falling strokes from the turned rising ones, over T*",
+            "standard deviation between the falling strokes and the rising ones turned over, "
+            "over T*",
             [](const Item& item) { return Number(item.asymmetry); },
             "the strokes have too few samples"),
         Fact("energy_per_cycle", "J", "W, mean over the steady cycles",
              [](const Item& item) { return Number(item.energy_per_cycle); }),
         Fact("energy_ratio", "-", "W/(4XT*) of their means",
              [](const Item& item) { return Number(item.energy_ratio); }),
-        Fact("path_ratio", "-", "way between the samples over that of the strokes",
+        Fact("path_ratio", "-", "length of the path through the samples over that of the strokes",
              [](const Item& item) { return Number(item.path_ratio); }),
         Fact(
             "energy_friction_coefficient", "-", "W/(4·N·sliding_amplitude), N the mean load",
             [](const Item& item) { return Number(item.energy_friction_coefficient); },
             "needs a column of the normal load, and a sliding amplitude"),
-        {"closed", "", "whether the record closes a cycle; without one the rest is null",
+        {"closed", "", "true if the record closes a cycle; otherwise the rest is null",
          [](const Item& item) { return Flag(item.closed); }},
         {"cycles", "", "every closed cycle",
          [](const Item& item) { return List(CycleFields(), item.cycles); }},
@@ -251,7 +253,7 @@ const std::vector<Field<LoopFacts>>& MeasuredFields() {
 
 void AddMeasuredFields(FieldTable& table) {
   table.Add({
-      {"measured", "", "what the widest record says without a model, of its widest steady cycles",
+      {"measured", "", "measured without a model, on the widest steady cycles of the widest record",
        [](const Report& report) {
          return Value{Render(MeasuredFields(), report.fit.WidestRecord().facts)};
        }},

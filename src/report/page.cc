@@ -78,7 +78,7 @@ std::string VerdictSection(const Report& report) {
   for (std::size_t i = 1; i < adequacy.causes.size(); ++i) {
     others.push_back(Sentence(adequacy.causes[i], report.fit.response));
   }
-  if (!others.empty()) html += Paragraph("It may be as well:") + SentenceList(others);
+  if (!others.empty()) html += Paragraph("It may also be:") + SentenceList(others);
   return html;
 }
 
@@ -86,7 +86,7 @@ std::string VerdictSection(const Report& report) {
 
 std::string ParameterSection(const Report& report) {
   const std::string heading = ConfidenceWords(report.fit) + " interval";
-  Table table("fitted and given, with one standard error and the " + heading,
+  Table table("fitted and given parameters, with one standard error and the " + heading,
               {"parameter", "value", "unit", heading, "verdict"});
   for (const ParameterEstimate& estimate : report.fit.parameters) {
     const Shown shown = WhatIsShown(estimate);
@@ -112,7 +112,7 @@ std::string ParameterSection(const Report& report) {
   std::string about = fmt::format("{}; initial state {}", fit.model->title,
                                   fit.has_mixed_states() ? "mixed" : Name(fit.initial_state));
   if (fit.normal_load && fit.is_load_series()) {
-    about += fmt::format("; sigma and slip_force are those at the mean of the loads, {}",
+    about += fmt::format("; sigma and slip_force are given at the mean load, {}",
                          Quantity(*fit.normal_load, "N"));
   }
   const std::string wide = WideIntervalStatement(fit, report.units);
@@ -134,7 +134,7 @@ struct NextCommand {
 constexpr std::array kNextCommands = {
     NextCommand{"systematic_residual", "--model auto", "Compares the laws on this record:"},
     NextCommand{"no_model_fits", "--model auto", "Compares the laws on this record:"},
-    NextCommand{"shape_or_rig", "--rig-stiffness fit", "Asks whether the rig is compliant:"},
+    NextCommand{"shape_or_rig", "--rig-stiffness fit", "Tests whether the rig is compliant:"},
 };
 
 /// Lists the commands to run next, each after its purpose.
@@ -155,8 +155,7 @@ std::string NextSection(const Report& report, const Provenance& provenance) {
   if (IsJudged(report) && fit.adequacy.verdict != AdequacyVerdict::kAdequate) {
     for (const identification::Cause& cause : fit.adequacy.causes) {
       if (cause.option.empty()) continue;
-      add(fmt::format("Takes into account what explains {:.0f} % of the misfit:",
-                      100 * cause.explains),
+      add(fmt::format("Adds a term that explains {:.0f} % of the misfit:", 100 * cause.explains),
           cause.option);
     }
   }
@@ -227,13 +226,13 @@ void AddFields(const Report& report, std::string_view prefix, Table& table,
 
 std::string MeasuredSection(const Report& report) {
   std::string html = Heading("What the record says without a model");
-  Table table("of the widest steady cycles", {"fact", "value", "what it is"});
+  Table table("mean of the widest steady cycles", {"fact", "value", "what it is"});
   AddFields(report, "loop.amplitude", table);
   AddFields(report, "loop.peak_force", table);
   AddFields(report, "measured.", table, {"measured.closed"});
   html += table.Html();
   if (!report.fit.WidestRecord().facts.closed) {
-    html += Paragraph("The record closes no cycle, so that it has no facts of one.");
+    html += Paragraph("The record closes no cycle, so nothing was measured on one.");
   }
   html += SentenceList(TrendStatements(report.fit.WidestRecord().facts));
   const std::string memory = MemoryStatement(report);
@@ -264,14 +263,13 @@ std::string FigureSection(const Report& report) {
   std::string figures =
       Figure(ResidualAlongStroke(report, units, LoopColours::kByCycle), "residual-stroke",
              "Residual along the stroke",
-             "A band without shape is noise; a shape that all cycles share is what the model has "
-             "not.") +
+             "A band without shape is noise; a shape that all cycles share is missing from the "
+             "model.") +
       Figure(ResidualInTime(report, units), "residual-time", "Residual in time",
-             "A slope is drift; a band that widens or narrows is a contact that changes.") +
+             "A slope is drift; a band that widens or narrows shows a contact that changes.") +
       Figure(ResidualDistribution(report, units), "residual-distribution",
              "Distribution of the residuals",
-             "Bars beyond the curve on either side are readings that are far off: look for "
-             "disturbances.");
+             "Bars outside the curve are readings far off: look for disturbances.");
   if (const auto panel = ResidualAutocorrelation(report)) {
     figures +=
         Figure(*panel, "residual-autocorrelation", "Autocorrelation of the residuals",
@@ -289,8 +287,9 @@ std::string FigureSection(const Report& report) {
 std::string LikelihoodSection(const Report& report) {
   std::string figures;
   constexpr const char* kText =
-      "The noise alone leaves both parameters in here; intervals may reach further, for what the "
-      "model misses. A long slanted region is a combination that the record determines better.";
+      "The noise allows both parameters in this region; intervals may reach further, to include "
+      "what the model misses. A long slanted region shows a combination that the record determines "
+      "better.";
   if (const auto panel = RegionPanel(report, "sigma")) {
     figures += Figure(*panel, "region-sigma", "Stiffness and exponent together", kText);
   }
@@ -299,8 +298,9 @@ std::string LikelihoodSection(const Report& report) {
   }
   if (const auto panel = SlipForceLikelihood(report)) {
     figures += Figure(*panel, "likelihood", "Likelihood of the slip force",
-                      "Where the curve stays below the line, the record does not distinguish "
-                      "those slip forces from the best: a side that never rises is open.");
+                      "The record does not distinguish slip forces whose curve is below the line "
+                      "from the best one; on a side where the curve never rises the interval is "
+                      "open.");
   }
   return figures.empty() ? "" : Heading("Likelihood") + Grid(figures);
 }
@@ -317,10 +317,10 @@ std::string LoopSection(const Report& report) {
   const LoopDescription& loop = *report.loop;
   std::vector<std::string> sentences = {
       SlipStatement(loop, report.units),
-      fmt::format("energy per cycle of the model {}", Quantity(loop.model_energy, "J"))};
+      fmt::format("model energy per cycle {}", Quantity(loop.model_energy, "J"))};
   if (loop.gross_slip_energy_ratio) {
     sentences.back() +=
-        fmt::format(", gross slip from an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);
+        fmt::format(", gross slip above an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);
   }
   const std::string law = LawStatement(report);
   if (!law.empty()) sentences.push_back("law: " + law);
@@ -348,8 +348,8 @@ std::string ContactSection(const Report& report) {
   html += Paragraph(
       "By the Mindlin-Dahl mapping σ = 8a/G*, Tc = μN, with G* = (2−ν₁)/G₁ + (2−ν₂)/G₂ [1/Pa], a "
       "compliance: many texts write G* for its inverse.");
-  Table table("what the fit and what is known of the contact give together",
-              {"quantity", "value", "from", "what its error is made of"});
+  Table table("the contact, from the fit and the known inputs",
+              {"quantity", "value", "from", "contributions to its error"});
   for (const ContactField& field : ContactFields()) {
     const std::optional<PropagatedValue> value = field.get(report);
     if (!value) continue;
@@ -374,8 +374,8 @@ std::string ContactSection(const Report& report) {
 
   html += SubHeading("Is it Mindlin's contact?");
   html += Paragraph(
-      "Cattaneo and Mindlin's smooth spheres have α = 1/3 and σ = 8a/G*: each is a hypothesis that "
-      "the record may reject, at a chance of 5 % to do so wrongly.");
+      "Cattaneo and Mindlin's smooth spheres have α = 1/3 and σ = 8a/G*: each is a hypothesis, "
+      "tested at the 5 % level.");
   std::vector<std::string> tests;
   if (IsShown(report.fit, "alpha")) tests = ExponentStatements(report);
   for (const StiffnessTest& test : report.stiffness) {
@@ -384,7 +384,7 @@ std::string ContactSection(const Report& report) {
   }
   if (tests.empty()) {
     tests.emplace_back(
-        "not tested: alpha is held or not identified, and no radius is known besides the fit");
+        "not tested: alpha is fixed or not identified, and no radius is known apart from the fit");
   }
   return html + SentenceList(tests);
 }
@@ -443,8 +443,8 @@ std::string LoadSection(const Report& report) {
          contact.contact_radius ? known(*contact.contact_radius, "sigma", "m") : Number(kNone),
          Number(contact.hertz_radius ? Quantity(*contact.hertz_radius, "m") : std::string(kNone))});
   }
-  Table hypotheses("exponent of the load against theories",
-                   {"theory", "p − its exponent", "standard errors", "p-value", ""});
+  Table hypotheses("exponent of the load compared with theories",
+                   {"theory", "p − predicted exponent", "standard errors", "p-value", ""});
   for (const LoadHypothesis& hypothesis : series.hypotheses) {
     if (!hypothesis.p_value) continue;
     const bool is_rejected = *hypothesis.p_value < kSignificance;
@@ -458,9 +458,9 @@ std::string LoadSection(const Report& report) {
   }
   std::string laws;
   for (const LoadLaw& law : LawsToShow(series)) {
-    Table table_of_law("what follows of the contact",
+    Table table_of_law("the contact under this law",
                        {"quantity", "value", ConfidenceWords(report.fit) + " interval", "from",
-                        "of the bodies", "what its error is made of"});
+                        "from the bodies", "contributions to its error"});
     for (const QuantityUnderLaw& quantity : law.quantities) {
       table_of_law.Row(quantity.label,
                        {ValueCell(quantity.value, quantity.unit), Number(IntervalWords(quantity)),
@@ -477,7 +477,8 @@ std::string LoadSection(const Report& report) {
   const std::vector<io::PlotPanel> panels = LoadPanels(report, PrefixedUnits(report));
   for (std::size_t k = 0; k < panels.size(); ++k) {
     figures += Figure(panels[k], kIds.at(k), k == 0 ? "Stiffness and load" : "Slip force and load",
-                      "Intervals are of each file by itself, with the shape of the whole series.");
+                      "Each interval is of one file alone, fitted with the shape exponent of the "
+                      "whole series.");
   }
   return Heading("Under several loads") + table.Html() + hypotheses.Html() + laws + Grid(figures);
 }
@@ -487,11 +488,11 @@ std::string BackboneSection(const Report& report) {
   if (!panel) return "";
   return Heading("First loading without a law") +
          Grid(Figure(*panel, "backbone", "Force of first loading",
-                     "Where the law leaves the band, the contact has another shape."));
+                     "Where the law leaves the band, the contact differs from it."));
 }
 
 std::string RecordSection(const Report& report) {
-  Table table("how the record was read", {"field", "value", "what it is"});
+  Table table("the record as read", {"field", "value", "what it is"});
   AddFields(report, "input.", table);
   AddFields(report, "reversals.", table);
   return Heading("The record") + table.Html();
@@ -517,8 +518,7 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
             MeasuredSection(report) + FigureSection(report);
     if (IsInadequate(report)) {
       body += Heading("The contact") +
-              Paragraph(
-                  "No loop of the model, and no contact: the model does not describe this record.");
+              Paragraph("No contact is given: the model does not describe this record.");
     } else {
       body += LikelihoodSection(report) + LoopSection(report);
       body += report.is_torsional()

@@ -117,15 +117,15 @@ std::string VerdictBlock(std::string_view css_class, std::string_view word,
 }
 
 std::string ReproduceSection(const Provenance& provenance) {
-  std::string html = Heading("To make this again");
+  std::string html = Heading("How to reproduce this page");
   if (!provenance.command.empty()) html += CommandBlock(provenance.command);
   html += Paragraph(fmt::format("mindahl {}", Version()));
-  Table inputs("what was read", {"file", "SHA-256 of its bytes"});
+  Table inputs("files read", {"file", "SHA-256 of its bytes"});
   for (const InputFile& input : provenance.inputs) {
-    inputs.Row(input.name, {Words(input.sha256.value_or("no regular file, read once"))});
+    inputs.Row(input.name, {Words(input.sha256.value_or("not a regular file, read once"))});
   }
   html += inputs.Html();
-  Table options("options, those of a configuration file too", {"option", "value"});
+  Table options("options, including those of a configuration file", {"option", "value"});
   for (const auto& [name, value] : provenance.options) options.Row(name, {Words(value)});
   return html + options.Html();
 }

@@ -398,7 +398,7 @@ PlotPanel ResidualDistribution(const Report& report, const PanelUnits& units) {
   for (std::size_t k = 0; k < bins; ++k) {
     bars.x.push_back(from + (static_cast<double>(k) + 0.5) * width);
   }
-  if (beyond > 0) bars.label += fmt::format(", {} of them further out", beyond);
+  if (beyond > 0) bars.label += fmt::format(", {} more beyond the axis", beyond);
   PlotSeries curve{"normal distribution of the same standard deviation", {}, {}, PlotStyle::kLine};
   constexpr int kSteps = 120;
   for (int i = 0; i <= kSteps; ++i) {
@@ -471,17 +471,17 @@ std::optional<PlotPanel> SlipForceLikelihood(const Report& report) {
     if (is_near) shown.push_back(points[k]);
   }
   const ScaledUnit unit = UnitFor(report.units.force, report.fit.law.slip_force);
-  PlotSeries curve{"each point fitted again with Tc held", {}, {}, PlotStyle::kLineAndPoints};
+  PlotSeries curve{"refitted with Tc fixed at each point", {}, {}, PlotStyle::kLineAndPoints};
   curve.shade = kDataShade;
   for (const identification::ProfilePoint& point : shown) {
     curve.x.push_back(point.law.slip_force / unit.factor);
     curve.y.push_back(std::min(point.statistic, ceiling));
   }
-  PlotSeries critical{"above it outside the interval",
+  PlotSeries critical{"critical value: outside the interval above it",
                       {curve.x.front(), curve.x.back()},
                       {profile->critical, profile->critical},
                       PlotStyle::kLine};
-  PlotPanel panel{.x_label = fmt::format("slip force Tc, held [{}]", unit.name),
+  PlotPanel panel{.x_label = fmt::format("slip force Tc, fixed [{}]", unit.name),
                   .y_label = "F against the best fit",
                   .series = {std::move(curve), std::move(critical)}};
   panel.log_x = true;
@@ -538,7 +538,7 @@ std::vector<PlotPanel> LoadPanels(const Report& report, const PanelUnits& units)
 
 std::optional<PlotPanel> BackbonePanel(const Report& report, const PanelUnits& units) {
   if (!report.backbone || report.backbone->points.empty()) return std::nullopt;
-  PlotSeries band{"without a law, " + ConfidenceWords(report.fit), {}, {}, PlotStyle::kBand};
+  PlotSeries band{"free of any law, " + ConfidenceWords(report.fit), {}, {}, PlotStyle::kBand};
   band.shade = kDataShade;
   PlotSeries law{"the fitted law", {}, {}, PlotStyle::kLine};
   for (const identification::BackbonePoint& point : report.backbone->points) {
@@ -563,7 +563,7 @@ namespace {
 /// Returns a parameter by its sign: no number of what is not known.
 std::string ParameterText(const char* sign, const ParameterEstimate& estimate) {
   if (estimate.status == ParameterStatus::kFixed) {
-    return fmt::format("{} = {}, held", sign, Quantity(estimate.value, estimate.unit));
+    return fmt::format("{} = {}, fixed", sign, Quantity(estimate.value, estimate.unit));
   }
   if (estimate.is_known()) {
     return fmt::format("{} = {}", sign,

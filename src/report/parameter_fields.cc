@@ -43,7 +43,7 @@ const std::vector<Field<StartReport>>& StartFields() {
     append(StartLawFields("reached", "where it ended", &Item::reached));
     append({{"final_rms", "N", "root mean square residual where it ended",
              [](const Item& item) { return Number(item.final_rms); }, why},
-            {"converged", "", "whether the solver converged from here",
+            {"converged", "", "true if the solver converged from this start",
              [](const Item& item) { return Flag(item.converged); }}});
     return rows;
   }();
@@ -54,7 +54,7 @@ const std::vector<Field<StartReport>>& StartFields() {
 
 void AddSolverFields(FieldTable& table) {
   table.Add({
-      {"solver.converged", "", "whether it converged",
+      {"solver.converged", "", "true if the solver converged",
        [](const Report& report) { return Flag(report.fit.converged); }},
       {"solver.iterations", "", "number of iterations",
        [](const Report& report) { return Integer(report.fit.solver.iterations); }},
@@ -112,9 +112,8 @@ const std::vector<Field<identification::IntervalPart>>& IntervalFields() {
   const auto why = [](const Item&) { return std::string("open there"); };
   static const std::vector<Field<Item>> fields = {
       {"source", "",
-       "why ci95 reaches as far: parabola, profile, initial_state, other_minimum, omitted_terms, "
-       "plateau, "
-       "small_alpha, discrepancy or carried_force",
+       "origin of this part of ci95: parabola, profile, initial_state, other_minimum, "
+       "omitted_terms, plateau, small_alpha, discrepancy or carried_force",
        [](const Item& item) { return Text(Name(item.source)); }},
       {"ci95[0]", "of the parameter", "lower end of the contribution",
        [](const Item& item) { return Number(item.lower); }, why},
@@ -138,18 +137,18 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
        [](const Item& item) { return Number(item.estimate.lower95); }, WhyIntervalOpen},
       {"ci95[1]", "of the parameter", "upper end of the interval",
        [](const Item& item) { return Number(item.estimate.upper95); }, WhyIntervalOpen},
-      {"ci95_parts", "", "contributions to ci95, their union",
+      {"ci95_parts", "", "contributions whose union is ci95",
        [](const Item& item) { return List(IntervalFields(), item.estimate.interval); }},
       {"prior.value", "of the parameter", "centre of its prior; absent without one",
        [](const Item& item) {
          return item.estimate.prior ? Number(item.estimate.prior->value) : Value{};
        }},
-      {"prior.standard_uncertainty", "of the parameter", "of the prior",
+      {"prior.standard_uncertainty", "of the parameter", "standard uncertainty of the prior",
        [](const Item& item) {
          return item.estimate.prior ? Number(item.estimate.prior->standard_uncertainty) : Value{};
        }},
       {"without_priors.value", "of the parameter",
-       "estimate of a fit without the priors of all parameters; absent where there is none",
+       "estimate of a fit without any prior; absent without priors",
        [](const Item& item) {
          const auto& without = item.estimate.without_priors;
          return without ? Number(without->value) : Value{};
@@ -160,7 +159,8 @@ const std::vector<Field<ReportedParameter>>& ParameterFields() {
          return without ? Number(without->standard_error) : Value{};
        },
        [](const Item&) { return std::string("held, or not determined without the priors"); }},
-      {"without_priors.moved", "-", "value less this one, over this standard error",
+      {"without_priors.moved", "-",
+       "value minus the estimate without priors, over its standard error",
        [](const Item& item) {
          return item.estimate.without_priors ? Number(item.estimate.MovedByPriors()) : Value{};
        },
@@ -181,7 +181,7 @@ const std::vector<Field<identification::ConfidenceRegion>>& RegionFields() {
        [](const Item& item) { return Text(item.parameters[0]); }},
       {"parameters[1]", "", "name of the second",
        [](const Item& item) { return Text(item.parameters[1]); }},
-      {"closed", "", "the boundary was reached in every direction, or alpha = 0 before it",
+      {"closed", "", "true if the boundary was reached in every direction, or alpha = 0 before it",
        [](const Item& item) { return Flag(item.closed); }},
       {"boundary", "of the parameters", "points [first, second], once around the estimate",
        [](const Item& item) {
@@ -254,9 +254,9 @@ void AddParameterFields(FieldTable& table) {
        [](const Report& report) {
          return Text(report.fit.has_mixed_states() ? "mixed" : Name(report.fit.initial_state));
        }},
-      {"confidence", "-", "of every interval",
+      {"confidence", "-", "confidence of every interval",
        [](const Report& report) { return Number(report.fit.confidence); }},
-      {"parameters", "", "one member a parameter, by name", Parameters},
+      {"parameters", "", "one member per parameter, by name", Parameters},
       {"correlation", "-", "correlation of the errors of free parameters, by their names",
        Correlations},
       {"regions", "",

@@ -14,15 +14,15 @@ namespace {
 const std::vector<Field<Cause>>& CauseFields() {
   using Item = Cause;
   static const std::vector<Field<Item>> fields = {
-      {"code", "", "stable, for scripts", [](const Item& item) { return Text(item.code); }},
+      {"code", "", "stable name, for scripts", [](const Item& item) { return Text(item.code); }},
       {"try", "", "option of the command line that takes it into account",
        [](const Item& item) { return item.option.empty() ? Missing() : Text(item.option); },
        WhyNoOption},
-      {"delta_aicc", "-", "of the fit with it less that without: negative where it helps",
+      {"delta_aicc", "-", "AICc of the fit with it minus that without: negative where it helps",
        [](const Item& item) { return Number(item.delta_aicc); }},
-      {"explains", "-", "fraction of the residuals' variance",
+      {"explains", "-", "fraction of the residuals' variance that it explains",
        [](const Item& item) { return Number(item.explains); }},
-      {"size", "of the cause", "how large it is; of several numbers the first",
+      {"size", "of the cause", "size of the cause; of several numbers the first",
        [](const Item& item) { return item.unit.empty() ? Missing() : Number(item.size); },
        [](const Item&) {
          return std::string("it is of several numbers, none of which says much");
@@ -30,7 +30,8 @@ const std::vector<Field<Cause>>& CauseFields() {
       {"unit", "", "unit of the size",
        [](const Item& item) { return item.unit.empty() ? Missing() : Text(item.unit); },
        [](const Item&) { return std::string("it has no size"); }},
-      {"moves", "-", "sigma, alpha or slip_force with it, in halves of their intervals: the most",
+      {"moves", "-",
+       "largest change of sigma, alpha or slip_force with it, in half widths of their intervals",
        [](const Item& item) { return Number(item.moves); }},
   };
   return fields;
@@ -66,10 +67,10 @@ void AddAdequacyFields(FieldTable& table) {
        }},
       AdequacyRow("adequacy.use", "", "quantitative, indicative or none: what the fit is good for",
                   [](const Adequacy& adequacy) { return Text(Name(adequacy.use)); }),
-      AdequacyRow("adequacy.p_value", "-", "that noise alone looks like that",
+      AdequacyRow("adequacy.p_value", "-", "probability that noise alone looks like that",
                   [](const Adequacy& adequacy) { return Number(adequacy.p_value); }),
       AdequacyRow("adequacy.causes", "",
-                  "what the residuals look like, the best first; may be empty",
+                  "causes that the residuals look like, the best first; may be empty",
                   [](const Adequacy& adequacy) { return List(CauseFields(), adequacy.causes); }),
   });
   table.Describe("adequacy.causes[].", CauseFields());
@@ -83,12 +84,13 @@ namespace {
 const std::vector<Field<MemoryComparison>>& ComparisonFields() {
   using Item = MemoryComparison;
   static const std::vector<Field<Item>> fields = {
-      {"code", "", "stable, for scripts", [](const Item& item) { return Text(item.code); }},
-      {"p_value", "-", "that noise alone makes it of a contact of Masing's memory",
+      {"code", "", "stable name, for scripts", [](const Item& item) { return Text(item.code); }},
+      {"p_value", "-",
+       "probability that noise alone makes this difference in a contact with Masing's memory rule",
        [](const Item& item) { return Number(item.p_value); }},
-      {"dahl_p_value", "-", "likewise of Dahl's",
+      {"dahl_p_value", "-", "likewise with Dahl's memory rule",
        [](const Item& item) { return Number(item.dahl_p_value); }},
-      {"size", "N", "rms of what is beyond Masing's memory and beyond noise",
+      {"size", "N", "rms difference beyond Masing's memory rule and beyond noise",
        [](const Item& item) { return Number(item.size); }},
   };
   return fields;
@@ -98,8 +100,7 @@ std::string WhyNoMemory(const Report& report) {
   if (report.fit.depth < identification::Depth::kThorough) return "the fit was not asked for it";
   return "branches are not compared before the motion turns, where sigma or slip_force is held or "
          "bounded, under loads that vary or differ, with a lag or an asymmetry, and in a fit of "
-         "the "
-         "displacement";
+         "the displacement";
 }
 
 template <typename Get>
@@ -117,11 +118,11 @@ void AddMemoryFields(FieldTable& table) {
   table.Add({
       MemoryRow("memory.verdict", "", "masing, dahl, neither or undecided",
                 [](const MemoryTest& memory) { return Text(Name(memory.verdict)); }),
-      MemoryRow("memory.p_value", "-", "of Masing's memory, by all comparisons",
+      MemoryRow("memory.p_value", "-", "p-value of Masing's memory rule, by all comparisons",
                 [](const MemoryTest& memory) { return Number(memory.p_value); }),
-      MemoryRow("memory.dahl_p_value", "-", "of Dahl's",
+      MemoryRow("memory.dahl_p_value", "-", "p-value of Dahl's memory rule, by all comparisons",
                 [](const MemoryTest& memory) { return Number(memory.dahl_p_value); }),
-      {"memory.tests", "", "comparisons that the record has; may be empty",
+      {"memory.tests", "", "comparisons that the record allows; may be empty",
        [](const Report& report) {
          return report.fit.memory ? List(ComparisonFields(), report.fit.memory->comparisons)
                                   : Value{Value::Array{}};
@@ -151,9 +152,10 @@ const std::vector<Field<StrokeBin>>& BinFields() {
   static const std::vector<Field<StrokeBin>> fields = {
       {"position", "-", "middle of the part, as a fraction of the travel between reversals",
        [](const StrokeBin& bin) { return Number(bin.position); }},
-      {"mean", kOfResponse, "mean residual there",
+      {"mean", kOfResponse, "mean residual in that part",
        [](const StrokeBin& bin) { return Number(bin.mean); }},
-      {"standard_error", kOfResponse, "of the mean, from the scatter between strokes",
+      {"standard_error", kOfResponse,
+       "standard error of the mean, from the scatter between strokes",
        [](const StrokeBin& bin) { return Number(bin.standard_error); }},
   };
   return fields;
@@ -164,7 +166,7 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
   static const std::vector<Field<Item>> fields = {
       {"direction", "", "up or down",
        [](const Item& item) { return Text(item.direction > 0 ? "up" : "down"); }},
-      {"strokes", "", "strokes that count, those at least three quarters as long as the longest",
+      {"strokes", "", "strokes that count: those at least three quarters as long as the longest",
        [](const Item& item) { return Count(item.strokes); }},
       {"mean", kOfResponse, "mean residual", [](const Item& item) { return Number(item.mean); }},
       {"rms", kOfResponse, "root mean square of the residual",
@@ -201,22 +203,22 @@ void AddResidualFields(FieldTable& table) {
       Residual("r_squared", "-", "fraction of the fitted channel's variance that the fit explains",
                &ResidualStatistics::r_squared),
       Residual("durbin_watson", "-",
-               "2 where residuals are white, near 0 where they are autocorrelated",
+               "Durbin-Watson statistic: 2 for white residuals, near 0 for autocorrelated ones",
                &ResidualStatistics::durbin_watson),
-      Residual("effective_samples", "-", "samples less what their autocorrelation takes away",
+      Residual("effective_samples", "-", "number of independent samples with the same information",
                &ResidualStatistics::effective_samples),
       Residual("degrees_of_freedom", "-", "degrees of freedom of errors and tests",
                &ResidualStatistics::degrees_of_freedom),
-      {"residuals.channel", "", "the one that is fitted, whose unit residuals have",
+      {"residuals.channel", "", "the fitted channel, in whose unit the residuals are",
        [](const Report& report) { return Text(Name(report.fit.response)); }},
       {"residuals.force_noise", "N",
        "standard deviation of the force, given or estimated; 0 where it is imposed",
        [](const Report& report) {
          return report.failed() ? Missing() : Number(report.fit.force_noise);
        }},
-      {"residuals.outliers", "", "samples that the loss gives less than half their weight",
+      {"residuals.outliers", "", "samples with less than half weight under the loss",
        [](const Report& report) { return Count(report.fit.outliers); }},
-      {"residual_structure", "", "the repeatable residual, one entry a file",
+      {"residual_structure", "", "the repeatable residual, one entry per file",
        [](const Report& report) { return List(StructureFields(), report.fit.records); }},
   });
   table.Describe("residual_structure[].", StructureFields());

@@ -21,17 +21,17 @@ Value OrAbsent(const std::optional<PropagatedValue>& quantity) {
 const std::vector<Field<Alternative>>& AlternativeFields() {
   using Item = Alternative;
   static const std::vector<Field<Item>> fields = {
-      {"law", "", "its name, as --model takes it",
+      {"law", "", "name of the law, as --model takes it",
        [](const Item& item) { return Text(item.choice.alternative->name); }},
-      {"sigma", "N/m", "σ by that law",
+      {"sigma", "N/m", "σ under that law",
        [](const Item& item) { return Number(item.choice.law.tangential_stiffness); }},
-      {"alpha", "-", "α by that law",
+      {"alpha", "-", "α under that law",
        [](const Item& item) { return Number(item.choice.law.shape_exponent); }},
-      {"slip_force", "N", "Tc by that law",
+      {"slip_force", "N", "Tc under that law",
        [](const Item& item) { return Number(item.choice.law.slip_force); }},
-      {"contact_radius", "m", "a = σG*/8 by that law; absent where G* is not known",
+      {"contact_radius", "m", "a = σG*/8 under that law; absent where G* is not known",
        [](const Item& item) { return OrAbsent(item.contact.contact_radius); }},
-      {"equivalent_radius", "m", "ρ by that law; absent where it is not identified",
+      {"equivalent_radius", "m", "ρ under that law; absent where it is not identified",
        [](const Item& item) { return OrAbsent(item.contact.equivalent_radius); }},
   };
   return fields;
@@ -82,19 +82,20 @@ Value Alternatives(const Report& report) {
 void AddLawFields(FieldTable& table) {
   table.Add({
       LawRow(
-          "law.decided", "", "whether the record distinguishes Masing's law from Dahl's own",
+          "law.decided", "", "true if the record distinguishes Masing's law from Dahl's own",
           [](const LawChoice& choice) { return Flag(choice.decided); }, WhyNoChoice),
       LawRow(
-          "law.preferred", "", "the law that it is of, as --model takes it",
+          "law.preferred", "", "the law that the record follows, as --model takes it",
           [](const LawChoice& choice) {
             return choice.preferred != nullptr ? Text(choice.preferred->name) : Missing();
           },
           WhyNotPreferred),
       LawRow(
-          "law.delta_aicc", "-", "of the other law less the fitted one",
+          "law.delta_aicc", "-", "AICc of the other law minus that of the fitted one",
           [](const LawChoice& choice) { return Number(choice.delta_aicc); }, WhyNoDifference),
       LawRow(
-          "law.likelihood_ratio", "-", "of the fitted law against the other, twice its logarithm",
+          "law.likelihood_ratio", "-",
+          "likelihood ratio of the fitted law to the other, as twice its logarithm",
           [](const LawChoice& choice) { return Number(choice.likelihood_ratio); }, WhyNoDifference),
       {"law.alternatives", "", "the other law; empty where the two are not compared", Alternatives},
   });
@@ -116,7 +117,7 @@ const std::vector<Field<ModelScore>>& ScoreFields() {
   using Item = ModelScore;
   static const std::vector<Field<Item>> fields = {
       {"model", "", "name of the model", [](const Item& item) { return Text(item.model->name); }},
-      {"rig", "", "with a fitted spring in series",
+      {"rig", "", "true if a spring in series is fitted too",
        [](const Item& item) { return Flag(item.rig); }},
       {"free_parameters", "", "number of free parameters",
        [](const Item& item) { return Count(item.free_parameters); }},
@@ -124,21 +125,21 @@ const std::vector<Field<ModelScore>>& ScoreFields() {
        [](const Item& item) { return Number(item.rms); }, WhyNoScore},
       {"aicc", "-", "AICc on effective samples", [](const Item& item) { return Number(item.aicc); },
        WhyNoScore},
-      {"delta_aicc", "-", "AICc above the least",
+      {"delta_aicc", "-", "AICc above the smallest",
        [](const Item& item) { return Number(item.delta_aicc); }, WhyNoScore},
-      {"akaike_weight", "-", "exp(−ΔAICc/2) over its sum",
+      {"akaike_weight", "-", "exp(−ΔAICc/2) over the sum for all models",
        [](const Item& item) { return Number(item.akaike_weight); }, WhyNoScore},
-      {"held_out_rms", "N", "error of predicting cycles held out",
+      {"held_out_rms", "N", "rms error of predicting held-out cycles",
        [](const Item& item) { return Number(item.held_out_rms); }, WhyNothingHeldOut},
       {"held_out_standard_error", "N", "standard error of held_out_rms",
        [](const Item& item) { return Number(item.held_out_standard_error); }, WhyNothingHeldOut},
-      {"converged", "", "whether the fit converged",
+      {"converged", "", "true if the fit converged",
        [](const Item& item) { return Flag(item.converged); }},
-      {"at_bound", "", "a free parameter ran to a bound",
+      {"at_bound", "", "true if a free parameter is at a bound",
        [](const Item& item) { return Flag(item.at_bound); }},
-      {"redundant", "", "the same as a simpler model",
+      {"redundant", "", "true if a simpler model is the same",
        [](const Item& item) { return Flag(item.redundant); }},
-      {"remark", "", "what else is to be known; may be empty",
+      {"remark", "", "further comment; may be empty",
        [](const Item& item) { return Text(item.remark); }},
   };
   return fields;
@@ -147,7 +148,7 @@ const std::vector<Field<ModelScore>>& ScoreFields() {
 const std::vector<Field<identification::ModelSelection>>& SelectionFields() {
   using Item = identification::ModelSelection;
   static const std::vector<Field<Item>> fields = {
-      {"chosen", "", "the reported one: its place in models",
+      {"chosen", "", "index in models of the reported one",
        [](const Item& item) { return Count(item.chosen); }},
       {"indistinguishable", "",
        "models that the record does not distinguish from it, simplest first",
@@ -161,8 +162,9 @@ const std::vector<Field<identification::ModelSelection>>& SelectionFields() {
        [](const Item&) { return std::string("no model has a fit to the record"); }},
       {"held_out_cycles", "", "cycles held out, each predicted once",
        [](const Item& item) { return Count(item.held_out_cycles); }},
-      {"verdict", "", "the choice in words", [](const Item& item) { return Text(item.verdict); }},
-      {"models", "", "every model without, then with a rig",
+      {"verdict", "", "reason for the choice, in words",
+       [](const Item& item) { return Text(item.verdict); }},
+      {"models", "", "all models, first without, then with a rig",
        [](const Item& item) { return List(ScoreFields(), item.scores); }},
   };
   return fields;
@@ -171,18 +173,19 @@ const std::vector<Field<identification::ModelSelection>>& SelectionFields() {
 const std::vector<Field<identification::ConsideredTerm>>& ConsideredTermFields() {
   using Item = identification::ConsideredTerm;
   static const std::vector<Field<Item>> fields = {
-      {"name", "", "of the term", [](const Item& item) { return Text(item.name); }},
+      {"name", "", "name of the term", [](const Item& item) { return Text(item.name); }},
       {"gain", "-",
-       "fraction by which the rms error of prediction falls with it to first order; of one that is "
-       "added, by which the rms of the fit fell",
+       "fraction by which the term lowers the rms error of prediction, to first order; for an "
+       "added term, by which it lowered the rms of the fit",
        [](const Item& item) { return Number(item.gain); }},
       {"p", "-", "probability that the gain is chance",
        [](const Item& item) { return Number(item.p_value); }},
-      {"predicted", "", "whether the gain is of held-out parts, else of the fitted samples",
+      {"predicted", "", "true if the gain is of held-out parts, false if of the fitted samples",
        [](const Item& item) { return Flag(item.is_predicted); }},
-      {"added", "", "whether the fit has it", [](const Item& item) { return Flag(item.added); }},
+      {"added", "", "true if the term was added",
+       [](const Item& item) { return Flag(item.added); }},
       {"obstacle", "",
-       "why it is not added though it gains: confounded, rate_dependent, unphysical; may be empty",
+       "why a term that gains was not added: confounded, rate_dependent, unphysical; may be empty",
        [](const Item& item) { return Text(item.obstacle); }},
   };
   return fields;
@@ -194,7 +197,7 @@ const std::vector<Field<identification::TermSelection>>& TermSelectionFields() {
       {"mode", "", "auto", [](const Item&) { return Text("auto"); }},
       {"considered", "", "every candidate, those added first",
        [](const Item& item) { return List(ConsideredTermFields(), item.considered); }},
-      {"added", "", "names of the terms that the fit has, in their order",
+      {"added", "", "names of the added terms, in their order",
        [](const Item& item) {
          Value::Array names;
          for (const std::string& name : item.added) names.push_back(Text(name));
@@ -214,11 +217,11 @@ const std::vector<Field<identification::TermSelection>>& TermSelectionFields() {
 
 void AddSelectionFields(FieldTable& table) {
   table.Add({
-      {"model_selection", "", "how the model was chosen; absent unless it was",
+      {"model_selection", "", "comparison of models; absent without --model auto",
        [](const Report& report) {
          return report.selection ? Value{Render(SelectionFields(), *report.selection)} : Value{};
        }},
-      {"terms", "", "how terms were chosen; absent unless they were",
+      {"terms", "", "selection of terms; absent where none was made",
        [](const Report& report) {
          return report.terms ? Value{Render(TermSelectionFields(), *report.terms)} : Value{};
        }},

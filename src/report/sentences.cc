@@ -43,8 +43,8 @@ std::string WhichRecord(const Finding& finding) {
 
 std::string ReversalsUncertain(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "{}the reversals are not certain: {:.0f} where excursions up to {} are noise, which is "
-      "taken, and {:.0f} where those up to {} are; look at the plot and give --reversal-gate",
+      "{}the number of reversals is not certain: {:.0f} if excursions up to {} are noise (as "
+      "assumed here), {:.0f} if those up to {} are; look at the plot and give --reversal-gate",
       WhichRecord(finding), Needed(finding, "count"),
       Quantity(Needed(finding, "gate"), units.excitation, 3), Needed(finding, "other_count"),
       Quantity(Needed(finding, "other_gate"), units.excitation, 3));
@@ -63,25 +63,24 @@ std::string GlitchesLeftOut(const Finding& finding, const FitResult&, const Unit
   for (const auto& [name, number] : finding.numbers) {
     if (name == "row") rows.push_back(fmt::format("{:.0f}", number));
   }
-  return fmt::format("{}left out as faults of the measurement: {}, {} row{} {} of those read",
-                     WhichRecord(finding), fmt::join(kinds, ", "),
+  return fmt::format("{}measurement faults left out: {}, {} data row{} {}", WhichRecord(finding),
+                     fmt::join(kinds, ", "),
                      static_cast<double>(rows.size()) < total ? "first in" : "in",
                      rows.size() == 1 ? "" : "s", fmt::join(rows, ", "));
 }
 
 std::string PathTooLong(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "{}the path length between the samples is {:.3g} times that of the strokes: there are "
-      "reversals that "
-      "were taken for noise, or noise that the contact is taken to follow; record the displacement "
-      "with less noise, or give --reversal-gate or --displacement-noise",
+      "{}the path through the samples is {:.3g} times as long as the strokes: either reversals "
+      "were taken for noise, or noise was taken for motion; record the displacement with less "
+      "noise, or give --reversal-gate or --displacement-noise",
       WhichRecord(finding), Needed(finding, "path_ratio"));
 }
 
 std::string NoClosedCycle(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "{}no cycle is closed, so that nothing was measured without a model; record at least one and "
-      "a half cycles",
+      "{}no cycle is closed, so nothing was measured without a model; record at least one and a "
+      "half cycles",
       WhichRecord(finding));
 }
 
@@ -89,16 +88,16 @@ std::string NoClosedCycle(const Finding& finding, const FitResult&, const Units&
 
 std::string TurningPoints(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "the motion turns between samples, up to {} beyond the outermost: the turning points were "
-      "fitted too; sample more densely",
+      "the motion turns between samples, up to {} beyond the outermost sample: the turning points "
+      "were fitted too; sample more densely",
       Quantity(Needed(finding, "overshoot"), units.displacement, 3));
 }
 
 std::string ShapeOrRig(const Finding& finding, const FitResult&, const Units& units) {
   return fmt::format(
-      "alpha: a rig of {} in series and Mindlin's alpha = 1/3 fit as well as alpha = {:.3g} on a "
-      "rigid rig: they are indistinguishable in this record, and sigma is that of contact and rig "
-      "together; measure the rig's stiffness and give --rig-stiffness",
+      "alpha: Mindlin's alpha = 1/3 with a rig of {} in series fits as well as alpha = {:.3g} with "
+      "a rigid rig: the record does not distinguish them, and sigma is the stiffness of contact "
+      "and rig together; measure the rig's stiffness and give --rig-stiffness",
       Quantity(Needed(finding, "rig_stiffness"), units.stiffness, 4), Needed(finding, "alpha"));
 }
 
@@ -111,10 +110,9 @@ std::string SlipForceBoundedBelow(const Finding& finding, const FitResult& fit,
                                   const Units& units) {
   if (Slides(fit)) {
     return fmt::format(
-        "slip_force: the loop slides, but its force goes on changing there (T* = {}), which the "
-        "law takes for the travel to slip: any larger slip force fits as well; the measured half "
-        "gap "
-        "stands",
+        "slip_force: the contact slides, but its force keeps changing meanwhile (T* = {}), as if "
+        "slip were not reached: any larger slip force fits as well; the measured half gap remains "
+        "valid",
         Quantity(Needed(finding, "peak_force"), units.force, 4));
   }
   return fmt::format(
@@ -134,9 +132,8 @@ bool SeesSlip(const FitResult& fit) {
 std::string TooWide(const char* parameter, const Finding& finding, const FitResult& fit,
                     std::string_view unit) {
   return fmt::format(
-      "{}: the {} interval {} … {} is too wide to call it known; record {} (mindahl plan "
-      "--record "
-      "says which)",
+      "{}: the {} interval {} … {} is too wide for a usable value; record {} (mindahl plan "
+      "--record says which)",
       parameter, ConfidenceWords(fit), Quantity(Needed(finding, "lower"), unit, 3),
       Quantity(Needed(finding, "upper"), unit, 3),
       SeesSlip(fit) ? "more samples, or less noise"
@@ -147,12 +144,11 @@ std::string AlphaNotIdentifiable(const Finding& finding, const FitResult& fit, c
   if (finding.kind == "wide") return TooWide("alpha", finding, fit, "-");
   if (finding.kind != "with_slip_force") ThrowKind(finding);
   if (Slides(fit)) {
-    return "alpha: known only together with slip_force, though the loop slides: the force goes on "
-           "changing there; fix one of them";
+    return "alpha: the record determines only its combination with slip_force, since the force "
+           "keeps changing while the contact slides; fix one of them";
   }
-  return "alpha: known only together with slip_force (the ratio alpha/slip_force enters the loop); "
-         "raise the amplitude until the force levels off (mindahl plan --record says how far), or "
-         "fix one of them";
+  return "alpha: the record determines only the ratio alpha/slip_force; raise the amplitude until "
+         "the force levels off (mindahl plan --record says how far), or fix one of them";
 }
 
 std::string SigmaNotIdentifiable(const Finding& finding, const FitResult& fit, const Units& units) {
@@ -187,11 +183,9 @@ std::string UndeterminedCombination(const Finding& finding, const FitResult& fit
 
 std::string AsymmetryNotIdentifiable(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "{}: {:.2g} % of slip_force never slips, and keeps a force that no record of a cycled "
-      "contact "
-      "determines; raise the amplitude until the contact slips as a whole, or record from the "
-      "unloaded "
-      "contact on",
+      "{}: the loop stays {:.2g} % of slip_force below slip, and a part of the contact that never "
+      "slips may bear any constant force; raise the amplitude until the whole contact slips, or "
+      "begin the record with an unloaded contact",
       fmt::join(finding.parameters, ", "), 100 * Needed(finding, "never_slips"));
 }
 
@@ -199,18 +193,17 @@ std::string SearchLimit(const Finding& finding, const FitResult& fit, const Unit
   const std::string& name = finding.parameters.front();
   const identification::ParameterEstimate* estimate = fit.Find(name);
   return fmt::format(
-      "{}: the search stopped at {}, the end of what is searched, so that the best value lies "
-      "beyond it and no parameter of this fit is that of the contact; give --bound {}=LO:HI, or "
-      "take it off the record",
+      "{}: the search stopped at its limit, {}: the best value lies beyond it, and no parameter of "
+      "this fit describes the contact; give --bound {}=LO:HI, or remove its effect from the record",
       fmt::join(finding.parameters, ", "),
       Quantity(Needed(finding, "bound"), estimate == nullptr ? "-" : estimate->unit, 4), name);
 }
 
 std::string FewPlaces(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "sigma, alpha: all {:.0f} samples lie in {:.0f} places of the loop, the same in every cycle; "
-      "what lies between, the turning points too, is not seen. Sample out of step with the motion, "
-      "or more often",
+      "sigma, alpha: all {:.0f} samples lie in {:.0f} places of the loop, the same in every cycle, "
+      "so the loop between them, with its turning points, is not seen. Sample out of step with the "
+      "motion, or more often",
       Needed(finding, "samples"), Needed(finding, "places"));
 }
 
@@ -220,10 +213,9 @@ std::string LoopNotSeen(const Finding& finding, const FitResult&, const Units&) 
                                 ? fmt::format("{:.2g} % of the force's variance", 100 * r_squared)
                                 : std::string("nothing of the force");
   return fmt::format(
-      "sigma, alpha, slip_force: the loop explains {}; the record shows something else. Look at "
-      "the "
-      "plot: are displacement and force the right columns, and not swapped? A shorter part of the "
-      "record, or less noise, may show a loop",
+      "sigma, alpha, slip_force: the fitted loop explains {}: the record shows something else. "
+      "Look at the plot: are displacement and force the right columns, and not swapped? A shorter "
+      "part of the record, or less noise, may show a loop",
       share);
 }
 
@@ -232,7 +224,7 @@ std::string ModelInadequate(const Finding& finding, const FitResult& fit, const 
       fit.parameters, &identification::ParameterEstimate::includes_discrepancy);
   return fmt::format(
       "{} does not describe this record: {} not to be used; what was measured without a model "
-      "stands",
+      "remains valid",
       fit.model->name,
       is_all ? std::string("its parameters are")
              : fmt::format("{} {}", fmt::join(finding.parameters, ", "),
@@ -242,43 +234,43 @@ std::string ModelInadequate(const Finding& finding, const FitResult& fit, const 
 std::string SlipForceExtrapolated(const Finding& finding, const FitResult& fit, const Units&) {
   if (Slides(fit)) {
     return fmt::format(
-        "slip_force: the asymptote of a law with alpha = {:.3g}, of which the loop reaches {:.0f} "
-        "%, though it slides: no force was measured near it; the measured half gap stands",
+        "slip_force: it is the asymptote of a law with alpha = {:.3g}, and the measured force "
+        "reaches only {:.0f} % of it although the contact slides; the measured half gap remains "
+        "valid",
         Needed(finding, "alpha"), 100 * Needed(finding, "share"));
   }
   return fmt::format(
-      "slip_force: the asymptote of a law with alpha = {:.3g}, of which the loop reaches {:.0f} %: "
-      "no force was measured near it; raise the amplitude until the force levels off",
+      "slip_force: it is the asymptote of a law with alpha = {:.3g}, and the measured force "
+      "reaches only {:.0f} % of it; raise the amplitude until the force levels off",
       Needed(finding, "alpha"), 100 * Needed(finding, "share"));
 }
 
 std::string UnknownPast(const Finding& finding, const FitResult&, const Units&) {
   if (finding.kind == "one_stroke") {
-    return "sigma, alpha, slip_force: the record is one stroke, and one stroke fits as well "
-           "wherever "
-           "the contact was unloaded: the curve is drawn as if at its first sample. Give "
-           "--initial-state virgin if it was at rest there, or record a whole cycle";
+    return "sigma, alpha, slip_force: the record is one stroke, which fits equally well wherever "
+           "the contact was unloaded (drawn here: at the first sample). Give --initial-state "
+           "virgin if the contact was unloaded there, or record a whole cycle";
   }
   if (finding.kind != "cut") ThrowKind(finding);
-  return "alpha, slip_force: the record closes no cycle and does not start where the contact is "
-         "unloaded: how far it had been pushed before is not known; record a whole cycle, or give "
-         "--initial-state virgin if it was at rest";
+  return "alpha, slip_force: the record closes no cycle and does not start from an unloaded "
+         "contact: its earlier loading is not known; record a whole cycle, or give --initial-state "
+         "virgin if the contact was unloaded at the start";
 }
 
 std::string InitialStateUndecided(const Finding& finding, const FitResult& fit, const Units&) {
   const bool virgin = fit.initial_state == models::InitialState::kVirgin;
   return fmt::format(
-      "{}: the record does not determine whether the contact was unloaded before it or in a steady "
-      "loop, and the two differ: the values are of {}, the intervals cover both; give "
-      "--initial-state, or record more cycles",
+      "{}: the record does not determine whether it starts from an unloaded contact or within a "
+      "steady loop: the values assume {}, the intervals cover both; give --initial-state, or "
+      "record more cycles",
       fmt::join(finding.parameters, ", "), virgin ? "an unloaded contact" : "a steady loop");
 }
 
 std::string SeveralMinima(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "{}: the sum of squares has another minimum that the noise does not exclude, where "
-      "they lie elsewhere: the intervals cover both; record more samples about where slip begins, "
-      "or a larger amplitude",
+      "{}: the sum of squares has a second minimum, with other values, that the noise does not "
+      "exclude: the intervals cover both; record more samples near the onset of slip, or a larger "
+      "amplitude",
       fmt::join(finding.parameters, ", "));
 }
 
@@ -307,12 +299,11 @@ std::string LawUndecided(const Finding& finding, const FitResult& fit, const Uni
   const std::string known = KnownOf(finding, fit, units);
   return fmt::format(
       "sigma, slip_force: the record does not distinguish {} from {} ({}){}; start from an "
-      "unloaded "
-      "contact, or record a second amplitude",
+      "unloaded contact, or record a second amplitude",
       NameOfLaw(fit.model->name), NameOfLaw(finding.kind),
       delta_aicc ? fmt::format("ΔAICc = {:.3g}", *delta_aicc)
-                 : std::string("on a steady loop of one amplitude they are one curve"),
-      known.empty() ? "" : fmt::format(", by which {}", known));
+                 : std::string("they give the same steady loop at any one amplitude"),
+      known.empty() ? "" : fmt::format("; the latter gives {}", known));
 }
 
 std::string OtherLawFitsBetter(const Finding& finding, const FitResult& fit, const Units& units) {
@@ -329,10 +320,9 @@ std::string MemoryContradictsLaw(const Finding& finding, const FitResult&, const
   const char* const better = fits_masing ? "Masing's law" : "Dahl's own law";
   const char* const other = fits_masing ? "Dahl's" : "Masing's";
   return fmt::format(
-      "{} fits this record better (ΔAICc = {:.3g}), but its branches, compared with each other, "
-      "are "
-      "of {} memory (p = {:.2g}, of the other {:.2g}): the shape of neither law is the record's; "
-      "believe neither's sigma, and look at the plot",
+      "{} fits this record better (ΔAICc = {:.3g}), but the branches, compared with each other, "
+      "follow {} memory rule (p = {:.2g}, the other p = {:.2g}): neither law has the shape of the "
+      "record; use sigma of neither, and look at the plot",
       better, Needed(finding, "delta_aicc"), other,
       Needed(finding, fits_masing ? "dahl_p_value" : "p_value"),
       Needed(finding, fits_masing ? "p_value" : "dahl_p_value"));
@@ -347,16 +337,16 @@ struct MisfitKind {
 };
 
 constexpr std::array<MisfitKind, 5> kMisfitKinds = {{
-    {"same_on_return", "the same on the way back: a force that depends on the position",
-     "the same on the way back: a spring in series that is not linear"},
+    {"same_on_return", "the same on the return stroke: a force that depends on the position",
+     "the same on the return stroke: a nonlinear spring in series"},
     {"mirrored_early",
-     "mirrored on the way back, after each reversal: backlash, or a stiffness that is not the "
-     "contact's"},
+     "just after each reversal, with opposite sign on the return stroke: backlash, or a stiffness "
+     "that is not the contact's"},
     {"one_sided_early",
-     "after the reversal, unlike on the way back: backlash on one side, or a drive that is not "
-     "symmetric"},
-    {"mirrored", "mirrored on the way back: the shape of the loop is another one"},
-    {"asymmetric", "unlike in the two directions: friction that is not symmetric"},
+     "just after the reversal, different on the return stroke: backlash on one side, or an "
+     "asymmetric drive"},
+    {"mirrored", "with opposite sign on the return stroke: the loop has another shape"},
+    {"asymmetric", "different on the return stroke: asymmetric friction"},
 }};
 
 std::string WhereItRepeats(const Finding& finding, const FitResult& fit, const Units& units) {
@@ -364,8 +354,8 @@ std::string WhereItRepeats(const Finding& finding, const FitResult& fit, const U
   for (const MisfitKind& kind : kMisfitKinds) {
     if (kind.kind != finding.kind) continue;
     return fmt::format(
-        "{:.0f} % of the residuals' variance is repeatable: it comes back in every stroke, up to "
-        "{} {:.0f} % of the way {}; {}",
+        "{:.0f} % of the residuals' variance repeats in every stroke, up to {} at {:.0f} % of the "
+        "{} stroke, {}",
         100 * Needed(finding, "repeatable_share"),
         Quantity(std::abs(Needed(finding, "largest")), units.response, 3),
         100 * Needed(finding, "position"), Needed(finding, "direction") > 0 ? "up" : "down",
@@ -375,15 +365,14 @@ std::string WhereItRepeats(const Finding& finding, const FitResult& fit, const U
 }
 
 std::string NoModelFits(const Finding& finding, const FitResult& fit, const Units& units) {
-  return fmt::format("no parameters of {} follow this record (rms {:.3g} % of the {}): {}",
-                     fit.model->name, 100 * Needed(finding, "misfit"), Name(fit.response),
+  return fmt::format("{} cannot follow this record (rms {:.3g} % of the {}): {}", fit.model->name,
+                     100 * Needed(finding, "misfit"), Name(fit.response),
                      WhereItRepeats(finding, fit, units));
 }
 
 std::string SystematicResidual(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
-      "{} leaves a repeatable residual (rms {:.3g} % of the {}): {}. Intervals are widened for "
-      "it{}",
+      "{} leaves a repeatable residual (rms {:.3g} % of the {}): {}. The intervals include it{}",
       fit.model->name, 100 * Needed(finding, "misfit"), Name(fit.response),
       WhereItRepeats(finding, fit, units),
       fit.response == loop::Channel::kForce ? "; compare with --model auto" : "");
@@ -391,18 +380,17 @@ std::string SystematicResidual(const Finding& finding, const FitResult& fit, con
 
 std::string SlowResiduals(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "the residual drifts slowly, over {:.2g} strokes, which noise does not: something that "
-      "changes "
-      "in time or from cycle to cycle is not in the model; plot it against time, or fit parts of "
+      "the residual drifts slowly, over {:.2g} strokes, as noise would not: the model lacks a "
+      "change with time or from cycle to cycle; plot the residual against time, or fit parts of "
       "the record with --cycles",
       Needed(finding, "strokes"));
 }
 
 std::string EnergyContradiction(const Finding& finding, const FitResult& fit, const Units& units) {
   return fmt::format(
-      "the steady cycles lose {} each and {} as fitted {} at their amplitude of {}: the two are "
-      "not the same contact; look at the plot for reversals, glitches or a force that the model "
-      "does not have",
+      "the steady cycles dissipate {} each, but {} as fitted dissipates {} at their amplitude of "
+      "{}: the fit does not describe them; look at the plot for missed reversals, glitches or a "
+      "force that the model lacks",
       Quantity(Needed(finding, "measured"), "J", 4), fit.model->name,
       Quantity(Needed(finding, "model"), "J", 4),
       Quantity(Needed(finding, "amplitude"), units.displacement, 4));
@@ -412,17 +400,17 @@ std::string EnergyContradiction(const Finding& finding, const FitResult& fit, co
 
 std::string LoadFollowed(const Finding& finding, const FitResult& fit, const Units&) {
   const bool is_joint = fit.model->memory == models::Memory::kNone;
-  return fmt::format(
-      "{}the normal load varies by ±{:.3g} %: the law follows it, {}", WhichRecord(finding),
-      100 * Needed(finding, "variation"),
-      is_joint ? "the force in proportion, and σ and Tc are those under its mean magnitude"
-               : "Tc = μN and σ ∝ N^α within the record, and σ and Tc are those under its mean");
+  return fmt::format("{}the normal load varies by ±{:.3g} %: the law follows it, with {}",
+                     WhichRecord(finding), 100 * Needed(finding, "variation"),
+                     is_joint
+                         ? "the force in proportion to it; σ and Tc are given at its mean magnitude"
+                         : "Tc = μN and σ ∝ N^α within the record; σ and Tc are given at its mean");
 }
 
 std::string LoadNotFollowed(const Finding& finding, const FitResult& fit, const Units&) {
   const bool is_rigid = std::isinf(fit.rig.stiffness);
   return fmt::format(
-      "{}the normal load varies by ±{:.3g} %, of which {} has no account: the fit takes it for "
+      "{}the normal load varies by ±{:.3g} %, which {} does not model: the fit takes the load as "
       "constant; keep to one load with --load-window, or use --model mindlin-dahl without {}",
       WhichRecord(finding), 100 * Needed(finding, "variation"),
       is_rigid ? std::string(fit.model->name) : fmt::format("{} behind a rig", fit.model->name),
@@ -432,43 +420,42 @@ std::string LoadNotFollowed(const Finding& finding, const FitResult& fit, const 
 std::string RigNotTried(const Finding& finding, const FitResult&, const Units&) {
   const bool is_forced = finding.kind == "imposed_force";
   return fmt::format(
-      "alpha = {:.3g} may be that of Mindlin's contact, 1/3, in a compliant rig, which cannot "
-      "be tried {}: sigma and alpha are those of contact and rig together; {}",
+      "alpha = {:.3g} may be Mindlin's 1/3 changed by a compliant rig, which cannot be tested {}: "
+      "sigma and alpha describe contact and rig together; {}",
       Needed(finding, "alpha"),
       is_forced ? "in a fit of the displacement" : "under a load that varies",
-      is_forced ? "measure the rig's stiffness and take its part off the displacement"
+      is_forced ? "measure the rig's stiffness and subtract its deflection from the displacement"
                 : "keep to one load with --load-window, or measure the rig's stiffness");
 }
 
 std::string PriorContradicted(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "the prior of {} lies {:.2g} standard deviations from what the record says without it: the "
-      "fit is between the two, and neither; check the prior and its unit, and the model",
+      "the prior of {} lies {:.2g} standard deviations from the estimate without it: the fit lies "
+      "between the two and agrees with neither; check the prior and its unit, and the model",
       fmt::join(finding.parameters, ", "), Needed(finding, "distance"));
 }
 
 std::string NoiseInDisplacement(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
       "the displacement is the noisier channel, {:.2g} % of X against {:.2g} % of T*, and the "
-      "contact stays below slip: the displacement can be fitted in place of the force, with "
-      "--noise-in displacement, as where the force is imposed",
+      "contact stays below slip: if the machine imposes the force, fit the displacement instead, "
+      "with --noise-in displacement",
       100 * Needed(finding, "of_displacement"), 100 * Needed(finding, "of_force"));
 }
 
 std::string DisplacementNoiseEstimated(const Finding& finding, const FitResult&,
                                        const Units& units) {
   return fmt::format(
-      "the residuals are as a noise of {} of the displacement's readings makes them, large where "
-      "the loop is steep, and it is taken into account; --displacement-noise gives another one, "
-      "and 0 takes the "
-      "readings as exact",
+      "the residuals are large where the loop is steep, as noise of {} in the displacement makes "
+      "them, and the fit takes this noise into account; --displacement-noise sets another value, 0 "
+      "for exact readings",
       Quantity(Needed(finding, "deviation"), units.displacement, 2));
 }
 
 std::string AlphaLimitedByLoad(const Finding& finding, const FitResult&, const Units&) {
   return fmt::format(
-      "alpha would be {:.3g} or more, which the law of a varying load cannot be: slip is complete "
-      "at a finite displacement there; keep to one load with --load-window",
+      "alpha would be {:.3g} or more, beyond the limit of the law for a varying load, whose slip "
+      "is complete at a finite displacement; keep to one load with --load-window",
       Needed(finding, "bound"));
 }
 

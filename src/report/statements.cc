@@ -48,7 +48,7 @@ constexpr std::array<ComparisonWords, 6> kComparisons = {{
     {"directions", "up and down strokes"},
     {"amplitudes", "amplitudes"},
     {"slope_at_reversal", "slopes after reversals"},
-    {"return_point", "way on after inner loops"},
+    {"return_point", "branches before and after inner loops"},
     {"other_law", "this law and the other one"},
 }};
 
@@ -134,8 +134,7 @@ std::string SlipStatement(const LoopDescription& loop, const Units& units) {
   }
   if (!loop.regime) return "slip regime not determined: slip_force is not identifiable";
   if (loop.gross_slip_displacement) {
-    return fmt::format("{}, the contact slips as a whole from an amplitude of {}",
-                       Name(*loop.regime),
+    return fmt::format("{}, the whole contact slips above an amplitude of {}", Name(*loop.regime),
                        Quantity(*loop.gross_slip_displacement, units.displacement, 5));
   }
   if (!loop.knows_slip) {
@@ -162,7 +161,7 @@ std::string PriorStatement(const FitResult& fit) {
     }
   }
   if (priors.empty()) return "";
-  return fmt::format("prior: {}; it moves, in standard errors without it, {}",
+  return fmt::format("prior: {}; it moves {} (in standard errors of the fit without it)",
                      fmt::join(priors, ", "), fmt::join(moved, ", "));
 }
 
@@ -185,7 +184,7 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   };
   std::vector<std::string> covered;
   if (any_set_by(IntervalSource::kOmittedTerms)) {
-    covered.emplace_back("what the omitted terms could change");
+    covered.emplace_back("the effect of omitted terms");
   }
   if (any_set_by(IntervalSource::kPlateau)) {
     const identification::RecordFit& record = fit.WidestRecord();
@@ -197,8 +196,8 @@ std::string WideIntervalStatement(const FitResult& fit, const Units& units) {
   std::vector<std::string> names;
   names.reserve(wide.size());
   for (const ParameterEstimate* estimate : wide) names.push_back(estimate->name);
-  return fmt::format("intervals of {} are widened, to cover {}", fmt::join(names, ", "),
-                     fmt::join(covered, ", and "));
+  return fmt::format("the intervals of {} are extended to include {}", fmt::join(names, ", "),
+                     fmt::join(covered, " and "));
 }
 
 std::string SlipForcesStatement(const Report& report) {
@@ -251,7 +250,7 @@ std::string LawStatement(const Report& report) {
   }
   const bool knows_slip_force = report.fit.Find("slip_force")->is_known();
   std::string text = fmt::format(
-      "sigma{} of {}; by {}, which {}, {} {}", knows_slip_force ? " and slip_force are" : " is",
+      "sigma{} for {}; for {}, which {}, {} {}", knows_slip_force ? " and slip_force are" : " is",
       name(*report.fit.model), name(*choice.alternative),
       choice.decided ? fmt::format("fits better (ΔAICc = {:.3g}, --model {})",
                                    choice.delta_aicc.value_or(0.0), choice.alternative->name)
@@ -357,8 +356,8 @@ std::vector<std::string> StiffnessStatements(const StiffnessTest& test) {
                   QuantityWithError(test.ratio.value, test.ratio.standard_error, "-"))};
   if (test.z) {
     statements.push_back(
-        fmt::format("with the a {}: {:g} % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: {}",
-                    test.radius == "hertz" ? "of Hertz" : "given", 100 * test.confidence,
+        fmt::format("with {} a: {:g} % {:.5g} … {:.5g}, {:.2f} standard errors from 1, {}: {}",
+                    test.radius == "hertz" ? "Hertz's" : "the given", 100 * test.confidence,
                     test.interval95->lower, test.interval95->upper, *test.z,
                     ChanceText(*test.p_value), TestVerdict(*test.p_value)));
   }
@@ -370,12 +369,12 @@ std::vector<std::string> LoadLawStatements(const Report& report) {
   const FitResult& fit = report.fit;
   std::vector<std::string> statements;
   if (!fit.Find("sigma")->is_known() || !fit.Find("load_exponent")->is_known()) {
-    return {"no law of the load is held over the series: sigma or load_exponent is open"};
+    return {"no load law is assumed for the series: sigma or load_exponent is not identifiable"};
   }
   const std::vector<LoadLaw>& laws = report.load_series->laws;
   if (DeniesHertz(fit)) {
     statements.emplace_back(
-        "not Hertz's law, so that no radius, compliance or modulus of a sphere follows");
+        "Hertz's law is rejected: no radius, compliance or modulus of a sphere follows");
   }
   const bool is_tested = std::ranges::any_of(
       report.load_series->hypotheses,
@@ -384,10 +383,11 @@ std::vector<std::string> LoadLawStatements(const Report& report) {
     const ParameterEstimate& exponent = *fit.Find("load_exponent");
     statements.push_back(
         exponent.status == ParameterStatus::kFixed
-            ? fmt::format("load_exponent is held at {:.4g}, which is no theory's", exponent.value)
+            ? fmt::format("load_exponent is fixed at {:.4g}, which no theory predicts",
+                          exponent.value)
         : is_tested ? std::string("none of these theories is tenable")
-                    : std::string("load_exponent has no error by which a theory "
-                                  "could be tested: no law is held"));
+                    : std::string("load_exponent has no standard error to test a theory with: no "
+                                  "load law is assumed"));
   }
   for (const LoadLaw& law : LawsToShow(*report.load_series)) {
     if (!law.unidentified.empty()) {
@@ -406,7 +406,7 @@ std::vector<LoadLaw> LawsToShow(const LoadSeries& series) {
 }
 
 std::string LawHeading(const LoadLaw& law) {
-  return fmt::format("{} held over all loads: σ = {} at the mean load",
+  return fmt::format("{} assumed at all loads: σ = {} at the mean load",
                      law.name == "elements" ? fmt::format("p = α = {:.4g}", law.exponent)
                                             : WordsOfHypothesis(law.name),
                      QuantityWithError(law.stiffness.value, law.stiffness.standard_error, "N/m"));
@@ -437,8 +437,8 @@ std::string WordsOfHypothesis(std::string_view name) {
 
 void RequireFitted(const Report& report, std::string_view what) {
   if (!report.failed()) return;
-  throw InvalidArgument(fmt::format("there is nothing to make {} of: the fit failed: {}", what,
-                                    report.fit.solver.message));
+  throw InvalidArgument(
+      fmt::format("{} cannot be made: the fit failed: {}", what, report.fit.solver.message));
 }
 
 }  // namespace mindahl::report

@@ -44,11 +44,11 @@ std::string MissingText(const Report& report) {
     text += Wrapped("not identified: friction coefficient " + *why, 16);
   }
   if (!report.fit.Find("sigma")->is_known()) {
-    return text + Wrapped("not identified: all that follows from sigma", 16);
+    return text + Wrapped("not identified: everything that follows from sigma", 16);
   }
   if (inputs.empty()) {
     if (report.contact.hertz) return text;
-    return text + Wrapped("to be compared with Hertz it takes the radii of both bodies", 2);
+    return text + Wrapped("the comparison with Hertz needs the radii of both bodies", 2);
   }
   std::vector<std::string> more;
   for (const ContactField& field : ContactFields()) {
@@ -77,7 +77,7 @@ std::string LoadLawText(const Report& report) {
                           ValueAndError(quantity.value, quantity.unit), ConfidenceWords(report.fit),
                           IntervalWords(quantity), quantity.formula);
       if (quantity.predicted) {
-        text += fmt::format("    {:<21} {}\n", "  of the two radii",
+        text += fmt::format("    {:<21} {}\n", "  from the two radii",
                             Quantity(*quantity.predicted, quantity.unit));
       }
       const std::string shares = VarianceStatement(quantity.value);
@@ -181,7 +181,7 @@ std::string MappingText(const Report& report) {
     }
     text += SharesText(test.ratio);
   }
-  return text.empty() ? "  not tested: alpha is held, and no radius is known besides the fit\n"
+  return text.empty() ? "  not tested: alpha is fixed, and no radius is known apart from the fit\n"
                       : text;
 }
 
@@ -264,7 +264,7 @@ ParameterTables TabulateParameters(const FitResult& fit, const Style& style) {
   }
   if (!held.empty()) {
     tables.rest += (rows <= kFew ? "\n" : "") +
-                   Wrapped(fmt::format("held, not fitted: {}", fmt::join(held, ", ")), 2);
+                   Wrapped(fmt::format("fixed, not fitted: {}", fmt::join(held, ", ")), 2);
   }
   return tables;
 }
@@ -303,14 +303,14 @@ std::string SelectionText(const identification::ModelSelection& selection, const
 /// Returns which terms were added and what each gained, in one line.
 std::string TermsText(const identification::TermSelection& terms) {
   if (terms.added.empty())
-    return terms.considered.empty() ? "" : "terms: none of those tried helps";
+    return terms.considered.empty() ? "" : "terms: none of those tried improves the fit";
   std::vector<std::string> added;
   for (const identification::ConsideredTerm& term : terms.considered) {
     if (!term.added) continue;
     added.push_back(
         fmt::format("{} (-{:.0f} %, p = {:.1g})", term.name, 100 * term.gain, term.p_value));
   }
-  return fmt::format("terms added: {}; rms error of {}", fmt::join(added, ", "),
+  return fmt::format("terms added: {} (change of the rms error of {})", fmt::join(added, ", "),
                      terms.held_out_parts > 0
                          ? fmt::format("{} held-out parts", terms.held_out_parts)
                          : "the fit");
@@ -352,7 +352,7 @@ std::string MeasuredText(const Report& report) {
         fmt::format("it slides over {:.0f} % of the stroke", 100 * *facts.sliding_fraction));
   }
   if (facts.backlash) {
-    parts.push_back(fmt::format("the force stands still for {} after each reversal",
+    parts.push_back(fmt::format("the force stays constant over {} after each reversal",
                                 Quantity(facts.backlash->width, units.displacement, 3)));
   }
   add("sliding amplitude", facts.sliding_amplitude, units.displacement);
@@ -487,31 +487,30 @@ std::string ResidualText(const Report& report) {
   }
   std::string text = fmt::format(
       "residuals{}: rms {}{}, largest {}, R² {:.6f}, Durbin-Watson {:.2f}, {:.0f} effective "
-      "samples "
-      "of {}",
+      "samples of {}",
       is_of_force ? "" : " of the displacement", Quantity(residuals.rms, units.response, 4), share,
       Quantity(residuals.max_abs, units.response, 4), residuals.r_squared, residuals.durbin_watson,
       residuals.effective_samples, samples);
   if (repeatable > 0) {
-    text += fmt::format("; {:.0f} % of their variance is repeatable, the same in every stroke",
-                        100 * repeatable);
+    text += fmt::format("; {:.0f} % of their variance repeats in every stroke", 100 * repeatable);
   }
   if (const double noise = fit.WidestRecord().displacement_noise; noise > 0 && is_of_force) {
-    text += fmt::format("; noise of the displacement {}, weighed in",
+    text += fmt::format("; displacement noise {} taken into account",
                         Quantity(noise, units.displacement, 3));
   }
-  if (fit.outliers > 0) text += fmt::format("; {} outliers count less than half", fit.outliers);
+  if (fit.outliers > 0)
+    text += fmt::format("; {} outliers have less than half weight", fit.outliers);
   return Wrapped(text, 11);
 }
 
 std::string LoopText(const Report& report) {
   const LoopDescription& loop = *report.loop;
   std::string text =
-      fmt::format("slip: {}; energy {} a cycle of the model{}", SlipStatement(loop, report.units),
+      fmt::format("slip: {}; model energy {} a cycle{}", SlipStatement(loop, report.units),
                   Quantity(loop.model_energy, "J", 5), OfAmplitude(report));
   if (loop.gross_slip_energy_ratio) {
     text +=
-        fmt::format(", gross slip from an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);
+        fmt::format(", gross slip above an energy ratio of {:.4g}", *loop.gross_slip_energy_ratio);
   }
   return Wrapped(text, 6);
 }

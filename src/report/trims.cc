@@ -38,8 +38,8 @@ std::string_view WhyNotSettled(Settling settling) {
     case Settling::kFewCycles:
       return "there are too few cycles of one amplitude to see a running-in";
     case Settling::kUnsettled:
-      return "half gap or energy of a cycle do not settle, so that no cycle is left out for it: "
-             "see how they change, and choose with --cycles";
+      return "the half gap or the energy does not settle, so no running-in is left out: look at "
+             "how they change, and choose cycles with --cycles";
     case Settling::kSettled:
       break;
   }
@@ -65,21 +65,20 @@ Warning NoteOf(const Report& report, std::size_t r) {
   if (parts.empty()) {
     return {"nothing_trimmed",
             fmt::format("--trim auto leaves nothing out of {}: {}", report.files[r],
-                        why.empty() ? "it neither rests nor ramps, and its cycles agree" : why)};
+                        why.empty() ? "it has no rest and no ramp, and its cycles agree" : why)};
   }
   std::string text =
       fmt::format("--trim auto leaves out of {}: {}", report.files[r], fmt::join(parts, ", "));
   if (trim.has_first_loading()) {
     text +=
         "; the first loading is among them, which distinguishes Masing's law from Dahl's own and a "
-        "virgin "
-        "contact from a steady one";
+        "virgin contact from a steady one";
   }
   if (trim.begins_later()) {
     const bool is_steady = report.fit.initial_state == models::InitialState::kSteady;
     text += fmt::format(
-        "; what is left is fitted as of a {}",
-        is_steady ? "steady contact, unless --initial-state says another" : "virgin contact");
+        "; the rest is fitted as a {}",
+        is_steady ? "steady contact, unless --initial-state says otherwise" : "virgin contact");
   }
   if (!why.empty()) text += fmt::format("; {}", why);
   return {"trimmed", text};
@@ -114,14 +113,15 @@ const std::vector<Field<TrimmedItem>>& TrimmedFields() {
       {"file", "", "name of the record", [](const Item& item) { return Text(item.file); }},
       {"reason", "", "rest, ramp of the amplitude, or running_in",
        [](const Item& item) { return Text(loop::NameOf(item.part.reason)); }},
-      {"first_line", "", "of the file, counted from 1",
+      {"first_line", "", "first line of the part in the file, counted from 1",
        [](const Item& item) { return Count(item.first_line); }},
       {"last_line", "", "likewise", [](const Item& item) { return Count(item.last_line); }},
-      {"samples", "", "that do not count",
+      {"samples", "", "samples that do not count",
        [](const Item& item) { return Count(item.part.samples()); }},
-      {"cycles", "", "closed ones among them",
+      {"cycles", "", "closed cycles among them",
        [](const Item& item) { return Count(item.part.cycles); }},
-      {"first_loading", "", "whether what comes before the first turning point is left out by it",
+      {"first_loading", "",
+       "true if the first loading, before the first turning point, is left out",
        [](const Item& item) { return Flag(item.part.has_first_loading); }},
   };
   return fields;

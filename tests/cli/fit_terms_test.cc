@@ -423,7 +423,7 @@ TEST_F(FitTerms, RecordThatNoModelFollowsIsCalledThatOnBothStreams) {
   EXPECT_EQ(Fit(loop, {"--terms", "none"})["adequacy"]["use"], "none");
   const Outcome outcome = RunCommand({"fit", Write(loop), "--terms", "none"});
   EXPECT_THAT(outcome.err, HasSubstr("leaves a repeatable residual"));
-  EXPECT_THAT(outcome.out, HasSubstr("no parameter is to be used"));
+  EXPECT_THAT(outcome.out, HasSubstr("no parameter is usable"));
 }
 
 TEST_F(FitTerms, ModelAutoComparesAllWithAndWithoutARig) {

@@ -96,14 +96,14 @@ TEST(SimulateMethod, RefusesOptionsWithoutEffectNamingTheRemedy) {
                    "--method dopri5"},
            Refusal{{"--method", "rk4", "--steps", "0", "--amplitude", "1"}, "from 1 to"},
            Refusal{{"--method", "iwan", "--model", "dahl", "--amplitude", "1"},
-                   "does not serve model dahl"},
+                   "cannot compute model dahl"},
            Refusal{{"--method", "rk4", "--model", "spring", "--amplitude", "1"},
-                   "does not serve --model spring"},
+                   "cannot compute --model spring"},
            Refusal{{"--method", "leapfrog", "--amplitude", "1"}, "leapfrog"},
            Refusal{{"--path", path, "--normal-load-column", "load"}, "--normal-load missing"},
            Refusal{{"--path", path, "--normal-load-column", "load", "--normal-load", "1", "--model",
                     "simplified-dahl"},
-                   "does not serve --model simplified-dahl"},
+                   "cannot be used with --model simplified-dahl"},
        }) {
     Words words = {"simulate", "--sigma", "1", "--slip-force", "1"};
     words.insert(words.end(), refusal.words.begin(), refusal.words.end());

@@ -82,7 +82,7 @@ TEST(CauseSentence, HasALineInTheContractForEveryCode) {
 TEST(CauseSentence, OfAReadingThatLosesMoreThanThereIsSaysAll) {
   const Cause saturates{
       .code = "force_saturates", .explains = 0.7, .size = 4.09, .unit = "-", .option = ""};
-  EXPECT_THAT(Sentence(saturates), HasSubstr("loses all of what is beyond"));
+  EXPECT_THAT(Sentence(saturates), HasSubstr("loses all of its excess"));
 }
 
 TEST(CauseSentence, HasSizeUnitFractionAndRemedy) {
@@ -93,8 +93,8 @@ TEST(CauseSentence, HasSizeUnitFractionAndRemedy) {
   early.size = -0.0025;
   EXPECT_THAT(Sentence(early), StartsWith("a displacement that is read 2.5 ms after the force"));
   EXPECT_EQ(Sentence(Viscous()),
-            "a viscous force of -12 N s/m in addition to the contact's, which explains 93 % of the "
-            "misfit: give --viscous fit");
+            "an additional viscous force of -12 N s/m, which explains 93 % of the misfit: give "
+            "--viscous fit");
   for (const std::string_view code : CauseCodes()) {
     const Cause cause = MadeCause(code, 0.125, "-");
     EXPECT_FALSE(Sentence(cause).empty());
@@ -119,13 +119,13 @@ TEST(AdaptedCauses, AreInTheUnitsOfATorque) {
 TEST(CauseSentence, OfAForceOfTheSpeedWithoutAnOptionAsksForATime) {
   Cause untimed = Viscous();
   untimed.option = "";
-  EXPECT_EQ(WhyNoOption(untimed), "needs a column of the time");
+  EXPECT_EQ(WhyNoOption(untimed), "needs a time column");
   EXPECT_THAT(Sentence(untimed), HasSubstr("record the time"));
 }
 
 TEST(AdequacyText, OfAnInadequateModelHasNothingOfItsCurve) {
   const std::string text = ToText(ReportWith(AdequacyVerdict::kInadequate, {}));
-  for (const char* of_the_curve : {"J of the model", "energy ratio of", "σ = 8a/G*", "Mindlin's"}) {
+  for (const char* of_the_curve : {"model energy", "energy ratio of", "σ = 8a/G*", "Mindlin's"}) {
     EXPECT_THAT(text, Not(HasSubstr(of_the_curve)));
   }
   EXPECT_THAT(ToText(ReportWith(AdequacyVerdict::kDoubtful, {})), HasSubstr("energy ratio of"));
@@ -157,9 +157,8 @@ TEST(AdequacyText, IsTheFirstLineOfTheReportWithTheMisfitOverTheHalfGap) {
     return VerdictSentence(MakeReport(Missing(given, {Lag()})));
   };
   constexpr const char* kMisfit =
-      "mindlin-dahl misses the force by 1.6 N rms (8 % of the half gap), 30 % of its variance in "
-      "the same way in every stroke, which noise alone does not make (p = 1e-09); no parameter is "
-      "to be used";
+      "mindlin-dahl misses the force by 1.6 N rms (8 % of the half gap), 30 % of its variance "
+      "alike in every stroke, more than noise alone explains (p = 1e-09); no parameter is usable";
   EXPECT_EQ(verdict(AdequacyVerdict::kAdequate),
             "adequate: the residuals, 2 N rms, look like noise (p = 1e-09)");
   EXPECT_EQ(verdict(AdequacyVerdict::kDoubtful), "doubtful, indicative: " + std::string(kMisfit));
@@ -172,7 +171,7 @@ TEST(AdequacyText, IsTheFirstLineOfTheReportWithTheMisfitOverTheHalfGap) {
 TEST(AdequacyText, HasTheFirstCauseAsTheNextStepAndTheOthersBelow) {
   const std::string text =
       ToText(MakeReport(Missing(AdequacyVerdict::kDoubtful, {Viscous(), Lag()})));
-  EXPECT_THAT(text, HasSubstr("\nnext: it looks like a viscous force of -12 N s/m"));
+  EXPECT_THAT(text, HasSubstr("\nnext: it looks like an additional viscous force of -12 N s/m"));
   EXPECT_LT(text.find("\nparameter"), text.find("\nor like a force that is read 2.5 ms after"));
   EXPECT_THAT(ToText(MakeReport(Missing(AdequacyVerdict::kDoubtful, {}))),
               Not(HasSubstr("it looks like")));
@@ -191,7 +190,7 @@ TEST(AdequacyText, OfAFitThatIsNotUsableHasTenLinesAndNoDashes) {
   const std::string text = ToText(MakeReport(std::move(input)));
   EXPECT_LE(std::ranges::count(text, '\n'), 10);
   for (const char* needed :
-       {"inadequate, ", "\nnext: it looks like a viscous force", "--viscous fit",
+       {"inadequate, ", "\nnext: it looks like an additional viscous force", "--viscous fit",
         "\nmeasured: ", "half gap", "it slides over 97 %", "\nreversals: "}) {
     EXPECT_THAT(text, HasSubstr(needed));
   }

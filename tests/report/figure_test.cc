@@ -140,7 +140,7 @@ TEST(Figure, TitlesNameFileAndVerdictAndNoUnknownValue) {
   input.fit.parameters[2].lower95 = 12.5;
   EXPECT_EQ(ToPlot(report::MakeReport(input)).title, "loop_1.csv: inadequate");
   EXPECT_EQ(ToPlot(report::MakeReport(input)).subtitle,
-            "mindlin-dahl: σ not known, α = 0.33333, held, Tc > 12.5 N");
+            "mindlin-dahl: σ not known, α = 0.33333, fixed, Tc > 12.5 N");
 }
 
 TEST(Figure, OfAFitThatFailedIsRefused) {

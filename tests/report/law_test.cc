@@ -62,7 +62,7 @@ TEST(Law, ReportsContactUnderTheAlternativeLaw) {
   EXPECT_DOUBLE_EQ(other["equivalent_radius"].get<double>(),
                    0.75 * 0.75 * 0.75 * contact["equivalent_radius"]["value"].get<double>());
   const std::string text = ToText(report);
-  EXPECT_THAT(text, AllOf(HasSubstr("law:  sigma and slip_force are of Masing's law"),
+  EXPECT_THAT(text, AllOf(HasSubstr("law:  sigma and slip_force are for Masing's law"),
                           HasSubstr("distinguish from it"), HasSubstr("30 N/µm"), HasSubstr("50 N"),
                           HasSubstr("contact radius"), HasSubstr("equivalent")));
 }

@@ -57,7 +57,7 @@ TEST(Page, SaysItsSectionsInTheOrderInWhichTheyAreRead) {
         "<h2>What the record says without a model</h2>", "<h2>Loop and residuals</h2>",
         "<h2>Loop of the model</h2>", "<h2>The contact</h2>",
         "<h3>Is it Mindlin&#39;s contact?</h3>", "<h2>The record</h2>",
-        "<h2>To make this again</h2>"}) {
+        "<h2>How to reproduce this page</h2>"}) {
     const std::size_t at = page.find(heading);
     ASSERT_NE(at, std::string::npos) << heading;
     EXPECT_GT(at, last) << heading;
@@ -168,7 +168,7 @@ TEST(Page, SaysWhatItTakesToMakeItAgain) {
   const std::string page = PageOf(MadeInput(), provenance);
   EXPECT_THAT(page, HasSubstr("<pre><code>mindahl fit loop.csv --model mindlin</code></pre>"));
   EXPECT_THAT(page, HasSubstr(std::string(64, 'a')));
-  EXPECT_THAT(page, HasSubstr("no regular file"));
+  EXPECT_THAT(page, HasSubstr("not a regular file"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">--model</th>"));
 }
 

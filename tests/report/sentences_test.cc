@@ -95,9 +95,9 @@ TEST(Sentence, OfACombinationAsksForNoLargerAmplitudeWhereTheStiffnessIsNotSeen)
 TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
   const std::vector<Form> forms = {
       {"turning_points_between_samples", "", {"125 nm"}},
-      {"shape_or_rig", "", {"45 N/mm", "0.0625", "indistinguishable"}},
+      {"shape_or_rig", "", {"45 N/mm", "0.0625", "does not distinguish"}},
       {"slip_force_bounded_below", "", {"12.5 N", "1.75 µm"}},
-      {"alpha_not_identifiable", "with_slip_force", {"only together with slip_force"}},
+      {"alpha_not_identifiable", "with_slip_force", {"only the ratio alpha/slip_force"}},
       {"alpha_not_identifiable", "wide", {"alpha: ", "0.5 … 21"}},
       {"sigma_not_identifiable", "wide", {"sigma: ", "0.5 N/m … 21 N/m"}},
       {"slip_force_not_identifiable", "wide", {"slip_force: ", "500 mN … 21 N"}},
@@ -106,9 +106,13 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"undetermined_combination", "", {"combination of alpha, force_offset"}},
       {"reversals_uncertain",
        "",
-       {"record 2: ", "19 where excursions up to 850 µm", "148 where those up to 2.5 µm",
+       {"record 2: ", "19 if excursions up to 850 µm", "148 if those up to 2.5 µm",
         "--reversal-gate"}},
-      {"glitches_left_out", "", {"record 2: ", "3 spikes, 1 held values", "first in rows 17, 240"}},
+      {"glitches_left_out",
+       "",
+       {"record 2: ", "3 spikes, 1 held values",
+        "first in data rows 17, "
+        "240"}},
       {"path_too_long", "", {"record 2: ", "1.75 times"}},
       {"no_closed_cycle", "", {"record 2: no cycle is closed"}},
       {"energy_contradiction", "", {"15 mJ", "32.5 mJ", "1.75 µm", "jenkins"}},
@@ -116,16 +120,16 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
       {"slip_force_extrapolated", "", {"slip_force: ", "alpha = 0.0625", "36 %"}},
       {"search_limit",
        "",
-       {"alpha, force_offset: the search stopped at 0.99", "--bound alpha=LO:HI"}},
+       {"alpha, force_offset: the search stopped at its limit, 0.99", "--bound alpha=LO:HI"}},
       {"few_places", "", {"sigma, alpha: ", "144 samples", "9 places"}},
       {"asymmetry_not_identifiable",
        "",
-       {"alpha, force_offset: 12 % of slip_force", "slips as a whole"}},
+       {"alpha, force_offset: 12 % of slip_force", "the whole contact slips"}},
       {"loop_not_seen", "", {"sigma, alpha, slip_force: ", "6.2 % of the force's variance"}},
       {"unknown_past", "cut", {"alpha, slip_force: ", "--initial-state virgin"}},
       {"unknown_past", "one_stroke", {"sigma, alpha, slip_force: ", "--initial-state virgin"}},
       {"initial_state_undecided", "", {"alpha, force_offset: ", "--initial-state"}},
-      {"several_minima", "", {"alpha, force_offset: ", "another minimum"}},
+      {"several_minima", "", {"alpha, force_offset: ", "a second minimum"}},
       {"slow_residuals", "", {"strokes", "--cycles"}},
       {"law_undecided",
        "dahl",
@@ -136,11 +140,11 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
         "--model dahl"}},
       {"memory_contradicts_law",
        "masing",
-       {"Masing's law", "ΔAICc = -31.5", "of Dahl's memory", "0.25", "0.0035"}},
-      {"memory_contradicts_law", "dahl", {"Dahl's own law", "of Masing's memory"}},
+       {"Masing's law", "ΔAICc = -31.5", "Dahl's memory rule", "0.25", "0.0035"}},
+      {"memory_contradicts_law", "dahl", {"Dahl's own law", "Masing's memory rule"}},
       {"rig_not_tried", "", {"alpha = 0.0625", "--load-window"}},
       {"prior_contradicted", "", {"4.5 standard deviations", "check the prior"}},
-      {"rig_not_tried", "imposed_force", {"alpha = 0.0625", "take its part off"}},
+      {"rig_not_tried", "imposed_force", {"alpha = 0.0625", "subtract its deflection"}},
       {"noise_in_displacement", "", {"4.5 % of X", "0.5 % of T*", "--noise-in displacement"}},
       {"displacement_noise_estimated", "", {"2.4 nm", "--displacement-noise"}},
       {"load_followed", "", {"record 2: ", "±5.5 %", "the law follows it"}},
@@ -164,9 +168,7 @@ TEST(Sentence, HasTheNumbersAndNamesOfItsFinding) {
 TEST(Sentence, OfAGlitchSaysItsRowAndOfOneRecordNotWhich) {
   const Finding one{.code = "glitches_left_out",
                     .numbers = {{"spikes", 0}, {"dropouts", 1}, {"held", 0}, {"row", 8}}};
-  EXPECT_EQ(Say(one),
-            "left out as faults of the measurement: 1 dropouts, in row 8 of "
-            "those read");
+  EXPECT_EQ(Say(one), "measurement faults left out: 1 dropouts, in data row 8");
 }
 
 TEST(Sentence, OfAMisfitSaysWhereItIsAndOfWhatKind) {
@@ -176,16 +178,16 @@ TEST(Sentence, OfAMisfitSaysWhereItIsAndOfWhatKind) {
     const std::string poor = Say(Complete("systematic_residual", kind));
     EXPECT_THAT(poor, AllOf(StartsWith("jenkins leaves a repeatable residual"),
                             HasSubstr("rms 4 % of the force"), HasSubstr("83 %"),
-                            HasSubstr("2.5 N 24 % of the way down; ")));
+                            HasSubstr("up to 2.5 N at 24 % of the down stroke, ")));
     const std::string failing = Say(Complete("no_model_fits", kind));
-    EXPECT_THAT(failing, StartsWith("no parameters of jenkins follow this record"));
-    const std::string ending = poor.substr(poor.find("way down; "));
+    EXPECT_THAT(failing, StartsWith("jenkins cannot follow this record"));
+    const std::string ending = poor.substr(poor.find("down stroke, "));
     EXPECT_TRUE(endings.insert(ending).second) << kind;
   }
   Finding up = Complete("systematic_residual", "mirrored");
   std::ranges::replace(up.numbers, std::pair<std::string_view, double>("direction", -1.0),
                        std::pair<std::string_view, double>("direction", 1.0));
-  EXPECT_THAT(Say(up), HasSubstr("of the way up; "));
+  EXPECT_THAT(Say(up), HasSubstr("of the up stroke, "));
 }
 
 TEST(Sentence, OfOneParameterIsInTheSingular) {

@@ -126,7 +126,7 @@ TEST(Text, HasNoContactIfStiffnessIsOpen) {
     EXPECT_THAT(open, Not(HasSubstr(of_sigma)));
   }
   EXPECT_THAT(open, HasSubstr("\nfriction coefficient"));
-  EXPECT_THAT(open, HasSubstr("not identified: all that follows from sigma"));
+  EXPECT_THAT(open, HasSubstr("not identified: everything that follows from sigma"));
 }
 
 TEST(Text, SaysInOneLineWhatWouldTellMoreOfTheContact) {
@@ -155,14 +155,12 @@ TEST(Text, SaysWhyAnIntervalIsFarWiderThanItsErrorMakesIt) {
     input.fit.records[0].facts.half_gap = half_gap;
     return ToText(MakeReport(std::move(input)));
   };
-  EXPECT_THAT(
-      text_of(50, false),
-      HasSubstr("intervals of slip_force are widened, to cover what the omitted terms could "
-                "change\n"));
-  EXPECT_THAT(
-      text_of(50, true),
-      HasSubstr("what the omitted terms could change, and the measured\n  half gap, 800 mN\n"));
-  EXPECT_THAT(text_of(2, false), Not(HasSubstr("are widened")));
+  EXPECT_THAT(text_of(50, false),
+              HasSubstr("the intervals of slip_force are extended to include the effect of omitted "
+                        "terms\n"));
+  EXPECT_THAT(text_of(50, true), HasSubstr("the effect of omitted terms and\n"
+                                           "  the measured half gap, 800 mN\n"));
+  EXPECT_THAT(text_of(2, false), Not(HasSubstr("are extended")));
 }
 
 TEST(Text, OfAnOpenShapeHasNoSlipOfMindlins) {
@@ -180,8 +178,8 @@ TEST(Text, ReportsMissingLoopFirst) {
                          .parameters = {"sigma", "alpha", "slip_force"},
                          .numbers = {{"r_squared", 0.031}}}};
   EXPECT_THAT(ToText(MakeReport(std::move(input))),
-              StartsWith("inadequate: no loop is seen in the force, of whose variance the model "
-                         "explains 3.1 %;"));
+              StartsWith("inadequate: the force shows no loop, since the model explains only 3.1 % "
+                         "of its variance;"));
 }
 
 TEST(Text, HasNoChanceThatIsZero) {

@@ -161,7 +161,7 @@ TEST(TrimmedFit, SaysThatNothingIsLeftOutAndWhy) {
   for (std::size_t i = 0; i < drifting.size(); ++i) {
     drifting.force[i] *= 1 + 2e-4 * static_cast<double>(i);
   }
-  EXPECT_THAT(NoteOf(ReportOf(drifting), "nothing_trimmed"), HasSubstr("do not settle"));
+  EXPECT_THAT(NoteOf(ReportOf(drifting), "nothing_trimmed"), HasSubstr("does not settle"));
 }
 
 TEST(TrimmedFit, IsUnderTheLoadThatARampEndsWith) {

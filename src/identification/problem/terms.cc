@@ -87,7 +87,7 @@ constexpr std::array kTerms = {
          .scale = Force},
     Term{.name = "rig_stiffness",
          .unit = "N/m",
-         .meaning = "of a spring in series, δ = x + T/k",
+         .meaning = "k of a spring in series, δ = x + T/k",
          .positive = true,
          .lowest = kLowestStiffness,
          .highest = kHighestStiffness,
@@ -97,35 +97,33 @@ constexpr std::array kTerms = {
          .help = "stiffness of the rig in series with the contact [N/m], or fit;\n"
                  "K+-U or K+-3%: fitted about K with standard uncertainty U;\ndefault rigid"},
     Term{.name = "load_exponent",
-         .meaning = "p of σ ∝ N^p, of records whose loads differ",
+         .meaning = "p of σ ∝ N^p, for records whose loads differ",
          .presence = Presence::kLoadSeries,
          .lowest = -kLargestLoadExponent,
          .highest = kLargestLoadExponent},
     Term{.name = "asymmetry",
-         .meaning = "A of slip forces Tc(1 + A) where the motion is in the direction of positive "
-                    "displacement and Tc(1 − A) where it is not",
+         .meaning = "A of slip forces Tc(1 + A) where the displacement grows and Tc(1 − A) where "
+                    "it falls",
          .lowest = -kLargestAsymmetry,
          .highest = kLargestAsymmetry,
          .option = "--asymmetry",
          .argument = "A|fit",
-         .help = "slip forces slip_force·(1 ± A) in the direction of positive and of\n"
-                 "negative displacement, A [-], or fit; identified by a virgin branch,\n"
-                 "else it needs --fix force_offset=N"},
-    Term{
-        .name = "plateau_slope",
-        .unit = "N/m",
-        .meaning = "of a force in addition to the contact's, slope·δ",
-        .entry = Entry::kLinear,
-        .lowest = -kWidest,
-        .highest = kWidest,
-        .scale = Stiffness,
-        .column = Regressor::kDisplacement,
-        .option = "--plateau-slope",
-        .help = "fit a force that grows with the displacement in addition to\nthe contact's [N/m]"},
+         .help = "slip forces Tc(1 + A) where the displacement grows and Tc(1 - A) where\n"
+                 "it falls, A [-], or fit; needs a virgin branch or --fix force_offset=N"},
+    Term{.name = "plateau_slope",
+         .unit = "N/m",
+         .meaning = "slope of an additional force slope·δ",
+         .entry = Entry::kLinear,
+         .lowest = -kWidest,
+         .highest = kWidest,
+         .scale = Stiffness,
+         .column = Regressor::kDisplacement,
+         .option = "--plateau-slope",
+         .help = "fit an additional force that grows with the displacement [N/m]"},
     Term{
         .name = "viscous",
         .unit = "N s/m",
-        .meaning = "C of a force C·dδ/dt in addition to the contact's",
+        .meaning = "C of an additional force C·dδ/dt",
         .entry = Entry::kLinear,
         .lowest = -kWidest,
         .highest = kWidest,
@@ -148,11 +146,11 @@ constexpr std::array kTerms = {
          .shapes = "viscous",
          .option = "--speed-exponent",
          .argument = "M|fit",
-         .help = "force of speed C·sgn(v)|v|^M in place of C·v, M [-] from 0.2 to 1, or\n"
-                 "fit; C is that of --viscous, fitted unless it is given"},
+         .help = "viscous force C·sgn(v)|v|^M instead of C·v, M [-] from 0.2 to 1, or\n"
+                 "fit; C from --viscous, else fitted"},
     Term{.name = "inertia",
          .unit = "kg",
-         .meaning = "M of a force M·d²δ/dt² in addition to the contact's",
+         .meaning = "M of an additional force M·d²δ/dt²",
          .entry = Entry::kLinear,
          .lowest = -kWidest,
          .highest = kWidest,
@@ -210,10 +208,10 @@ constexpr std::array kTerms = {
          .option = "--slip-trend",
          .argument = "K|fit",
          .help = "slip force Tc(1 + K·τ) that changes with time, τ from −1 at the\n"
-                 "record's beginning to 1 at its end, K [-], or fit"},
+                 "beginning of the record to 1 at its end, K [-], or fit"},
     Term{.name = "drag_fraction",
-         .meaning = "d of a force Tc((1 − d)·t + d(v/v₀)^m) of which the part d goes along the "
-                    "motion and has no memory, t the contact's over Tc, v₀ as of slip_speed",
+         .meaning = "d of a force Tc((1 − d)·t + d(v/v₀)^m) whose part d acts along the motion and "
+                    "has no memory, t the contact's force over Tc, v₀ as for slip_speed",
          .lowest = 0.0,
          .highest = 1.0,
          .needs_time = true,
@@ -229,8 +227,8 @@ constexpr std::array kTerms = {
     Term{
         .name = "plateau_curvature",
         .unit = "N/m²",
-        .meaning = "of a force in addition to the contact's, in proportion to δ² from the middle "
-                   "of the stroke",
+        .meaning = "factor of an additional force in proportion to δ², δ from the middle of the "
+                   "stroke",
         .entry = Entry::kLinear,
         .lowest = -kWidest,
         .highest = kWidest,
@@ -260,16 +258,16 @@ constexpr std::array kTerms = {
                    Regressor::kRippleSineDown),
     Term{.name = "lag",
          .unit = "s",
-         .meaning = "by which the contact's force is read after the displacement; in samples where "
-                    "the record has no time",
+         .meaning = "delay of the contact's force after the displacement; in samples where the "
+                    "record has no time",
          .lowest = -kLongestLag,
          .highest = kLongestLag,
          .scale = [](const TermUnits& units) { return units.cycle; },
          .unit_by_sample = "samples",
          .option = "--lag",
          .argument = "S|fit",
-         .help = "the force is read S [s] after the displacement, before it where\n"
-                 "negative, or fit; samples where there is no time"},
+         .help = "delay S [s] of the force after the displacement, negative if before\n"
+                 "it, or fit; in samples where there is no time column"},
     Term{
         .name = "backlash",
         .unit = "m",
@@ -279,12 +277,10 @@ constexpr std::array kTerms = {
         .scale = Length,
         .option = "--backlash",
         .argument = "G|fit",
-        .help = "width of a gap before the contact that is crossed at zero\n"
-                "force, G [m], or fit"},
+        .help = "width G [m] of a gap that is crossed at zero force after each\nreversal, or fit"},
     Term{.name = "covariate",
          .unit = "N/unit",
-         .meaning = "C of a force C·column in addition to the contact's, one for each column that "
-                    "is named: "
+         .meaning = "C of an additional force C·column, one for each named column: "
                     "`covariate_COLUMN`",
          .entry = Entry::kLinear,
          .lowest = -kWidest,
@@ -297,11 +293,11 @@ constexpr std::array kTerms = {
          .of_column = true,
          .option = "--covariate",
          .argument = "COL[=C|fit]",
-         .help = "a force C·column in addition to the contact's, C [N/unit];\n"
-                 "default fit; columns by header name or 1-based number; repeatable"},
+         .help = "additional force C·column, C [N/unit]; default fit; columns by header\n"
+                 "name or 1-based number; repeatable"},
     Term{.name = "force_offset",
          .unit = "N",
-         .meaning = "added to the model's force; with a drift, at the record's middle",
+         .meaning = "force added to the model's; with a drift, its value at the record's middle",
          .scope = Scope::kRecord,
          .entry = Entry::kLinear,
          .presence = Presence::kOffsets,
@@ -313,8 +309,8 @@ constexpr std::array kTerms = {
          .column = Regressor::kOne},
     Term{.name = "displacement_offset",
          .unit = "m",
-         .meaning = "where a virgin contact is unloaded; for a steady loop its centre, taken from "
-                    "the data",
+         .meaning = "position at which a virgin contact is unloaded; for a steady loop its centre, "
+                    "taken from the data",
          .scope = Scope::kRecord,
          .presence = Presence::kOffsets,
          .lowest = -kWidest,
@@ -323,7 +319,7 @@ constexpr std::array kTerms = {
          .reference = [](const TermUnits& units) { return units.displacement_reference; }},
     Term{.name = "force_drift",
          .unit = "N/s",
-         .meaning = "linear in time; N a sample where the record has no time",
+         .meaning = "rate of a force linear in time; in N a sample where the record has no time",
          .scope = Scope::kRecord,
          .entry = Entry::kLinear,
          .presence = Presence::kReported,
@@ -335,8 +331,8 @@ constexpr std::array kTerms = {
          .help = "fit a force drift linear in time [N/s]"},
     Term{.name = "displacement_drift",
          .unit = "m/s",
-         .meaning = "linear in time, of a displacement that is fitted; m a sample where the record "
-                    "has no time",
+         .meaning = "rate of a displacement linear in time, where the displacement is fitted; in m "
+                    "a sample where the record has no time",
          .scope = Scope::kRecord,
          .entry = Entry::kLinear,
          .presence = Presence::kNever,
