@@ -37,7 +37,7 @@ constexpr std::array kFlags = {
     CycleFlag{"alpha_open", "the cycle does not determine alpha"},
     CycleFlag{"slip_force_open", "the cycle does not determine Tc"},
     CycleFlag{"not_closed", "the cycle does not end where it began, to 5 % of its width"},
-    CycleFlag{"no_loop", "the cycle has no facts: it dissipates nothing"},
+    CycleFlag{"no_loop", "the cycle is no loop: it dissipates nothing"},
     CycleFlag{"glitches", "spikes, dropouts or held values were left out"},
 };
 

@@ -173,8 +173,8 @@ Reading ChooseReading(const loop::RecordView& head, FitOptions& fit) {
 std::optional<std::string> DoubtAbout(const Reading& reading, std::string_view source) {
   if (reading.gate.certain) return std::nullopt;
   return fmt::format(
-      "{}: the reversals are uncertain: of its first {} samples {} by a gate of {:.3g} m, {} by "
-      "{:.3g} m: set --reversal-gate",
+      "{}: the number of reversals is not certain: in the first {} samples {} with a gate of "
+      "{:.3g} m, {} with {:.3g} m: set --reversal-gate",
       source, reading.samples, reading.gate.count, reading.gate.gate, reading.gate.other_count,
       reading.gate.other_gate);
 }
@@ -183,8 +183,10 @@ void RequireCycles(std::size_t cycles, std::size_t together, const Reading& read
                    std::string_view source) {
   if (cycles > 0) return;
   if (reading.gate.count > 2) {
-    throw InputError(fmt::format("--average {}: {} turn only {} times, two a cycle: average fewer",
-                                 together, source, reading.gate.count));
+    throw InputError(
+        fmt::format("--average {}: {} has only {} reversals, two a cycle: average "
+                    "fewer",
+                    together, source, reading.gate.count));
   }
   throw InputError(fmt::format(
       "{}: no whole cycle: the displacement turns {} times by more than {:.3g} m: choose another "

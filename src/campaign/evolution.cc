@@ -90,7 +90,7 @@ io::Plot EvolutionPlot(std::span<const Evolution> evolutions, const std::string&
   plot.subtitle = subtitle;
   plot.panels = EvolutionPanels(evolutions);
   if (plot.panels.empty()) {
-    throw InvalidArgument("there is no time history to draw: no quantity is known of two cycles");
+    throw InvalidArgument("there is no time history to draw: no quantity is known for two cycles");
   }
   for (std::size_t k = 0; k + 1 < plot.panels.size(); ++k) plot.panels[k].x_label.clear();
   plot.height = kPanelHeight * static_cast<int>(plot.panels.size() + 1);
@@ -137,7 +137,7 @@ std::string ChanceText(double p_value) {
 }
 
 std::string TextOf(const Change& change) {
-  const std::string_view what = change.kind == ChangeKind::kTransition ? "a step" : "another rate";
+  const std::string_view what = change.kind == ChangeKind::kTransition ? "a step" : "a new rate";
   return fmt::format("at cycle {} ({} to {}) {}, {:.5g} to {:.5g}, {}", change.cycle,
                      change.lower95, change.upper95, what, change.before, change.after,
                      ChanceText(change.p_value));

@@ -115,18 +115,17 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
   } else if (test.changes.empty()) {
     body += report::VerdictBlock("good", "steady", std::string(kNothingChanged));
   } else {
-    body += report::VerdictBlock("poor", "changed", "these are beyond chance");
+    body += report::VerdictBlock("poor", "changed", "these changes are beyond chance");
     body += SentenceList(test.changes);
   }
   body += Heading("Over the test");
   body +=
       Paragraph(fmt::format("{} cycles of {} samples, {} fits; {} dissipated in all{}; {} samples "
-                            "at the ends are part of "
-                            "no whole cycle.",
+                            "at the ends belong to no whole cycle.",
                             test.cycles, test.samples, test.fits, Quantity(test.dissipated, "J"),
                             InWords(test.energy_counts), test.unused_samples));
   if (test.shared_alpha) body += Paragraph(SharedAlphaInWords(*test.shared_alpha) + ".");
-  Table courses("by the segments of each time history", {"quantity", "at first", "at last"});
+  Table courses("ends of the segments of each time history", {"quantity", "at first", "at last"});
   for (const Evolution& evolution : test.evolutions) {
     const auto& stretches = evolution.description.stretches;
     if (stretches.empty()) continue;
@@ -154,9 +153,8 @@ std::string ToPage(const TestSummary& test, const report::Provenance& provenance
     flags.Row(flag.name, {Number(std::to_string(flag.cycles)), Words(flag.meaning)});
   }
   body += flags.empty() ? Paragraph("No cycle has a flag.") : flags.Html();
-  body += Paragraph(
-      "Errors are of the noise of each cycle as if the model were adequate: mindahl fit on some "
-      "cycles says whether it is.");
+  body +=
+      Paragraph("Errors assume that the model is adequate: check some cycles with mindahl fit.");
   body += report::ReproduceSection(provenance) + "</main>\n";
   return io::HtmlPage(title, body);
 }
@@ -169,8 +167,9 @@ std::string BatchIndexPage(std::span<const FileResult> files,
   const std::string title = fmt::format("{} of {} files fitted", done, files.size());
   std::string body = Header(title) + Heading("Files");
   body +=
-      "<div class=\"table\"><table><caption>each file a fit of its own; only what it identifies "
-      "has a number</caption>\n<thead><tr>";
+      "<div class=\"table\"><table><caption>one fit a file; only identified quantities have a "
+      "number</caption>\n"
+      "<thead><tr>";
   for (const char* column :
        {"", "file", "verdict", "sigma", "alpha", "slip_force", "why not done"}) {
     body += fmt::format("<th scope=\"col\">{}</th>", *column == '\0' ? "number" : column);
@@ -193,7 +192,7 @@ std::string BatchIndexPage(std::span<const FileResult> files,
   }
   body += "</tbody></table></div>\n";
 
-  Table scatter("of files that are done, where the quantity is known",
+  Table scatter("over the fitted files in which the quantity is known",
                 {"quantity", "files", "mean", "scatter between files", "stated error", ""});
   for (const RepeatedQuantity& quantity : repeated) {
     const Repeats& repeats = quantity.repeats;
@@ -214,8 +213,8 @@ std::string BatchIndexPage(std::span<const FileResult> files,
     if (const auto panel = QuantityPanel(files, parameter)) {
       figures += io::HtmlFigure(*panel, {.id = fmt::format("files-{}", parameter),
                                          .title = std::string(parameter),
-                                         .description = "Of each file that identifies it, by its "
-                                                        "number in the table."});
+                                         .description = "One point for each file that identifies "
+                                                        "it, by its number in the table."});
     }
   }
   if (!figures.empty()) {

@@ -78,9 +78,10 @@ void DissipatedEnergy::Add(const CycleFit& fit) {
 std::string InWords(const EnergyCounts& counts) {
   std::vector<std::string> parts;
   if (counts.replaced > 0) {
-    parts.push_back(fmt::format("{} that do not close by those before them", counts.replaced));
+    parts.push_back(
+        fmt::format("{} unclosed cycles by the mean of those before them", counts.replaced));
   }
-  if (counts.left_out > 0) parts.push_back(fmt::format("{} by nothing", counts.left_out));
+  if (counts.left_out > 0) parts.push_back(fmt::format("{} as zero", counts.left_out));
   return parts.empty() ? "" : fmt::format(", counting {}", fmt::join(parts, " and "));
 }
 
@@ -113,19 +114,18 @@ void PoolAlpha(const CycleFit& fit, PooledValue& alpha) {
 void RequireSharedAlpha(const PooledValue& alpha) {
   if (alpha.count() > 0) return;
   throw InputError(
-      "--alpha shared: no cycle determines alpha: --fix alpha=VALUE holds it at one that is "
-      "known");
+      "--alpha shared: no cycle determines alpha: give a known value, --fix alpha=VALUE");
 }
 
 std::string SharedAlphaInWords(const PooledValue& alpha) {
   return fmt::format(
-      "alpha {:.6g} ± {:.2g} shared, of {} cycles that scatter by {:.2g} beyond their errors, {}",
+      "shared alpha {:.6g} ± {:.2g}, from {} cycles that scatter by {:.2g} beyond their errors, {}",
       alpha.mean(), alpha.standard_error(), alpha.count(), alpha.scatter(),
       report::ChanceText(alpha.p_value(), 1));
 }
 
 std::string Repeats::InWords() const {
-  if (!p_value) return "no error is stated";
+  if (!p_value) return "without stated errors";
   return exceed_errors() ? fmt::format("more than the errors, p {:.1g}", *p_value)
                          : fmt::format("as the errors say, p {:.2g}", *p_value);
 }

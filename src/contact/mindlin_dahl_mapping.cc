@@ -108,7 +108,7 @@ HertzPrediction Predict(const Quantity& stiffness, const Quantity& slip_force,
 
 /// Names the missing inputs from which the contact radius would follow with the loop.
 std::string RadiusInputs(const KnownContact& known) {
-  return fmt::format("the tangential compliance (or what gives it: {})",
+  return fmt::format("the tangential compliance (or, to derive it: {})",
                      fmt::join(MissingElasticConstants(known), ", "));
 }
 
@@ -340,8 +340,8 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
   std::vector<std::string> doubts;
   if (known.tangential_compliance && known.tangential_compliance->value > kLargestCompliance) {
     doubts.push_back(fmt::format(
-        "compliance G* = {:.4g} 1/Pa is that of no solid (above {:g}): many texts write G* for its "
-        "inverse, a modulus; give {:.4g} if it is that",
+        "compliance G* = {:.4g} 1/Pa is above that of any solid ({:g}): many texts write G* for "
+        "its inverse, a modulus; give {:.4g} if so",
         known.tangential_compliance->value, kLargestCompliance,
         1 / known.tangential_compliance->value));
   }
@@ -367,14 +367,14 @@ std::vector<std::string> DoubtsAbout(const KnownContact& known,
   for (const std::optional<double>& contact_radius : {given, fitted_radius, HertzRadius(known)}) {
     if (!contact_radius || !(*contact_radius > kLargestRadiusShare * radius)) continue;
     doubts.push_back(fmt::format(
-        "contact radius a = {:.4g} m is more than a third of the radius {:.4g} m of a body, where "
-        "Hertz's theory ends: look at load, radii, moduli and their units",
+        "contact radius a = {:.4g} m is more than a third of the radius {:.4g} m of a body, beyond "
+        "Hertz's theory: check load, radii, moduli and their units",
         *contact_radius, radius));
     break;
   }
   if (friction_coefficient && *friction_coefficient > kLargestFriction) {
     doubts.push_back(
-        fmt::format("friction coefficient mu = {:.4g} is above {:g}: look at the normal load, the "
+        fmt::format("friction coefficient mu = {:.4g} is above {:g}: check the normal load, the "
                     "force and their units",
                     *friction_coefficient, kLargestFriction));
   }

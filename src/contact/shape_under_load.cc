@@ -116,8 +116,8 @@ void IdentifyModulus(const Question& question, const Quantity& equivalent_radius
                          question.stiffness.value, other->value);
   if (!modulus) {
     shape.unidentified = fmt::format(
-        "no Young's modulus of body {} makes a contact so stiff: it is stiffer than against a "
-        "rigid one",
+        "no Young's modulus of body {} makes the contact this stiff: it is stiffer than with a "
+        "rigid body",
         body);
     return;
   }
@@ -237,7 +237,7 @@ ShapeUnderLoad FlatPunch(const Question& question) {
     punch.contact_radius = Total(ContactRadiusOf(question.stiffness, Compliance(question.known)));
   } else {
     punch.unidentified = fmt::format(
-        "the radius of the punch needs the tangential compliance (or what gives it: {})",
+        "the radius of the punch needs the tangential compliance (or, to derive it: {})",
         fmt::join(MissingElasticConstants(question.known), ", "));
   }
   return punch;
@@ -264,7 +264,7 @@ ShapeUnderLoad IdentifyShape(ContactShape shape, const UncertainValue& stiffness
   RequireFitted("tangential stiffness", "N/m", stiffness);
   RequireKnown(known);
   if (!known.normal_load) {
-    throw InvalidArgument("a shape under a load is identified by its normal load: must be known");
+    throw InvalidArgument("a shape under load needs the normal load: must be known");
   }
   const Question question{.known = known,
                           .stiffness = Independent(stiffness, kStiffness),

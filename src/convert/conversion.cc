@@ -237,7 +237,7 @@ std::vector<Parameter> ParametersOfJoint(const models::BranchLaw& law, Target ta
     return {
         {"frictionloss", law.slip_force, "N", "mean force of a stroke"},
         damping,
-        {"creep", 1 - kLargestImpedance, "-", "speed under a force T that it holds, over T h/M"}};
+        {"creep", 1 - kLargestImpedance, "-", "creep speed under a constant force T, over T h/M"}};
   }
   return {{"friction", law.slip_force, "N", "mean force of a stroke"}, damping};
 }
@@ -273,27 +273,27 @@ void Validate(const NormalContact& contact, Target target) {
   if (contact.normal_load) RequirePositive("--normal-load [N]", *contact.normal_load);
   if (contact.contact_radius) RequirePositive("--contact-radius [m]", *contact.contact_radius);
   if (contact.normal_load && !IsDiscreteElementCode(target)) {
-    throw InputError("--normal-load is of --to lammps, liggghts and yade alone");
+    throw InputError("--normal-load has no effect unless --to is lammps, liggghts or yade");
   }
   if (contact.contact_radius && target != Target::kLammps) {
-    throw InputError("--contact-radius is of --to lammps alone");
+    throw InputError("--contact-radius has no effect unless --to is lammps");
   }
   if (!(contact.viscous >= 0 && contact.viscous < std::numeric_limits<double>::infinity())) {
     ThrowInvalid("--viscous [N s/m]", contact.viscous, "must be finite and >= 0");
   }
   if (contact.viscous > 0 && target != Target::kLuGre && !IsJoint(target)) {
     throw InputError(
-        "--viscous is of --to lugre, mujoco, mujoco-joint, urdf and sdf alone: give it there");
+        "--viscous has no effect unless --to is lugre, mujoco, mujoco-joint, urdf or sdf");
   }
 }
 
 std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
                                     const NormalContact& contact) {
   if (const auto* law = std::get_if<BoucWenLaw>(&conversion.law)) {
-    return {{"k", law->stiffness, "N/m", "stiffness, of force = k z"},
+    return {{"k", law->stiffness, "N/m", "stiffness k of force = k z"},
             {"A", 1.0, "-", "dz/dx at z = 0"},
             {"n", law->exponent, "-", "exponent"},
-            {"beta", PerTravel(*law, law->beta), "1/m^n", "of |z|^n sgn(z dx)"},
+            {"beta", PerTravel(*law, law->beta), "1/m^n", "factor of |z|^n sgn(z dx)"},
             {"gamma", PerTravel(*law, 1 - law->beta), "1/m^n", "of |z|^n"},
             {"slip_force", law->slip_force, "N", "k (beta + gamma)^(-1/n)"}};
   }
@@ -320,12 +320,12 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
     std::vector<Parameter> parameters = {
         {target == Target::kYade ? "ks" : "kt", law.tangential_stiffness, "N/m",
          target == Target::kLammps     ? "of tangential linear_history"
-         : target == Target::kLiggghts ? "of hooke/stiffness, tangential history"
+         : target == Target::kLiggghts ? "kt of hooke/stiffness, tangential history"
                                        : "of FrictPhys"},
         {"slip_force", law.slip_force, "N", "Coulomb's limit"}};
     if (contact.contact_radius) {
       parameters.push_back({"kt_mindlin", law.tangential_stiffness / *contact.contact_radius, "Pa",
-                            "of tangential mindlin, whose stiffness is kt a"});
+                            "kt of tangential mindlin, whose stiffness is kt a"});
     }
     if (contact.normal_load) {
       const double friction = law.slip_force / *contact.normal_load;
@@ -337,7 +337,7 @@ std::vector<Parameter> ParametersOf(const Conversion& conversion, Target target,
     return parameters;
   }
   return {{"sigma", law.tangential_stiffness, "N/m",
-           target == Target::kDahl ? "dT/dx at T = 0" : "at the start of a branch"},
+           target == Target::kDahl ? "dT/dx at T = 0" : "stiffness at the start of a branch"},
           {"alpha", law.shape_exponent, "-", "shape exponent"},
           {"slip_force", law.slip_force, "N", "slip force"}};
 }

@@ -395,8 +395,8 @@ BackboneEstimate EstimateBackbone(std::span<const loop::RecordView> records,
                                   const FitOptions& options, const FitResult& fit) {
   if (!HasBackbone(fit)) {
     throw InvalidArgument(
-        "the backbone is that of a law of Masing's memory, fitted to forces of records under one "
-        "load, without a lag or an asymmetry");
+        "the backbone needs a Masing law, fitted to the force of records under one load, without a "
+        "lag or an asymmetry");
   }
   std::pmr::monotonic_buffer_resource memory;
   const loop::PreparedRecords prepared = loop::Prepare(records, options.preparation, &memory);

@@ -194,7 +194,7 @@ LogLikelihood::LogLikelihood(std::span<const loop::RecordView> records, const Fi
       continue;
     }
     throw InvalidArgument(
-        "a log-likelihood is of samples of equal weight: fit without a robust loss, without noise "
+        "a log-likelihood needs samples of equal weight: fit without a robust loss, without noise "
         "of the displacement and without turning points between samples");
   }
   state_ = std::make_unique<State>(records, options, fit);

@@ -351,7 +351,7 @@ void FindRedundant(std::vector<ModelScore>& scores, std::span<const FitResult> f
     if (!score.converged) continue;
     if (score.rig && gains_nothing_on(score, score.model->name, false)) {
       score.redundant = true;
-      AddRemark(score, "rig not needed: the fit is the same without");
+      AddRemark(score, "rig not needed: the fit is the same without it");
     }
     if (score.at_bound && !score.model->shape_exponent &&
         fits[i].law.shape_exponent < thresholds.jenkins_shape &&
@@ -378,7 +378,7 @@ std::string VerdictOn(const ModelSelection& selection, const Thresholds& thresho
   const std::vector<ModelScore>& scores = selection.scores;
   const ModelScore& chosen = scores[selection.chosen];
   if (ranking.empty()) {
-    return fmt::format("No model converged; {} comes nearest.", Label(chosen));
+    return fmt::format("No model converged; {} fits best.", Label(chosen));
   }
   std::string verdict;
   if (selection.indistinguishable.size() > 1) {
@@ -389,7 +389,8 @@ std::string VerdictOn(const ModelSelection& selection, const Thresholds& thresho
         "The records do not distinguish {}: ΔAICc below {:g}{}. The simplest, {}, is reported.",
         fmt::join(names, ", "), thresholds.indistinguishable,
         selection.held_out_cycles > 0
-            ? fmt::format(", and {} cycles held out are predicted alike to a standard error",
+            ? fmt::format(", and {} cycles held out are predicted equally well within a standard "
+                          "error",
                           selection.held_out_cycles)
             : "",
         Label(chosen));
@@ -415,7 +416,7 @@ std::string VerdictOn(const ModelSelection& selection, const Thresholds& thresho
     if (!score.converged || !score.at_bound || score.redundant) continue;
     if (chosen.aicc - score.aicc < thresholds.indistinguishable) continue;
     verdict += fmt::format(
-        " {} comes nearer by ΔAICc = {:.3g}, but with a parameter at its bound: none of the models "
+        " {} fits better by ΔAICc = {:.3g}, but with a parameter at its bound: none of the models "
         "has the shape of the loop.",
         Label(score), chosen.aicc - score.aicc);
     break;

@@ -286,8 +286,8 @@ class HeaderFinder {
           row.kinds, [](NumberCell::Kind kind) { return kind != NumberCell::Kind::kNumber; }) -
       row.kinds.begin());
   throw InputError(fmt::format(
-      "{}:{}:{}: '{}' is not a number, nor has any other of the first {} rows numbers: "
-      "expected columns of numbers under an optional header",
+      "{}:{}:{}: '{}' is not a number, and none of the first {} rows has numbers: expected columns "
+      "of numbers under an optional header",
       file, row.cells.line, cell + 1, ForMessage(row.cells[cell]), reading.rows.size()));
 }
 

@@ -28,8 +28,7 @@ namespace {
 void RequireWithin(const ReadLimits& limits, std::uintmax_t rows, std::uintmax_t bytes,
                    const std::string& name) {
   constexpr std::string_view kRemedy =
-      "fit a part of the file or one row of several, or each cycle on its own with mindahl track; "
-      "or allow more";
+      "fit a part of the file, every n-th row, or each cycle with mindahl track; or allow more";
   if (rows > limits.rows) {
     throw InputError(fmt::format("{}: has more than the {} rows that --max-rows leaves for it: {}",
                                  name, limits.rows, kRemedy));
@@ -262,9 +261,8 @@ void CsvTable::RequireNoThousands(std::size_t column) const {
   const char separator = without[mark];
   without.erase(mark, 1);
   throw InputError(
-      fmt::format("{}:{}:{}: '{}' has a '{}' that separates thousands, since numbers without one "
-                  "in this column "
-                  "are whole and it would jump back to 1 where it passes 999: write {}",
+      fmt::format("{}:{}:{}: '{}' has a '{}' that separates thousands, since other numbers of this "
+                  "column are whole and it would jump back to 1 after 999: write {}",
                   file_, lines_[*found], column + 1, texts[*found], separator, without));
 }
 

@@ -100,7 +100,7 @@ void TextInput::Open() {
   // iconv_open() answers with (iconv_t)-1.
   if (decoder == reinterpret_cast<iconv_t>(-1)) {  // NOLINT(performance-no-int-to-ptr)
     throw InputError(
-        fmt::format("--encoding {}: {} cannot be read so: {}: give a name that iconv --list has, "
+        fmt::format("--encoding {}: {} cannot be read this way: {}: give a name of iconv --list, "
                     "as latin1, sjis or utf-16",
                     encoding_, name_, std::strerror(errno)));
   }
@@ -122,8 +122,8 @@ std::size_t TextInput::Read(char* to, std::size_t size) {
     Open();
     if (decoder_ == nullptr) return count;
     if (!encoding_.starts_with("UTF-16")) {
-      note_ = fmt::format("{}: is not UTF-8 and was read as {}: --encoding says another", name_,
-                          encoding_ == "CP932" ? "Shift-JIS" : "Latin-1 (Windows-1252)");
+      note_ = fmt::format("{}: is not UTF-8 and was read as {}: --encoding sets another encoding",
+                          name_, encoding_ == "CP932" ? "Shift-JIS" : "Latin-1 (Windows-1252)");
     }
     raw_.assign(to, count);
     at_end_ = count < size;
@@ -160,7 +160,7 @@ void TextInput::Decode() {
     if (result != static_cast<std::size_t>(-1) || errno == E2BIG) continue;
     if (errno == EINVAL && !at_end_) break;  // a character that goes on in the next block
     throw InputError(
-        fmt::format("{}: byte {} is no text in {}: say in what the file is written with --encoding",
+        fmt::format("{}: byte {} is not valid in {}: give the encoding of the file with --encoding",
                     name_, bytes_ - left + 1, encoding_));
   }
   raw_.erase(0, raw_.size() - left);
@@ -228,8 +228,8 @@ std::optional<std::string> Sha256OfFile(const std::filesystem::path& path) {
   works = works && EVP_DigestFinal_ex(context.get(), digest.data(), &size) == 1;
   if (!works) {
     throw InputError(
-        fmt::format("cannot read '{}': libcrypto gives no SHA-256 of it, for want of "
-                    "memory or by its configuration",
+        fmt::format("cannot read '{}': libcrypto cannot compute its SHA-256, for lack of memory or "
+                    "by configuration",
                     path.string()));
   }
   std::string text;

@@ -459,8 +459,8 @@ NumberRowReader::Row NumberRowReader::ReadAny(std::string_view line, std::size_t
     if (column == clock_ && column < row_.size()) {
       const std::optional<double> time = times_.Read(row_[column]);
       if (!time) {
-        return Break(column, fmt::format("'{}' is not a time of day as the rows above have: write "
-                                         "it like 14:05:06.789, or remove the row",
+        return Break(column, fmt::format("'{}' is not a time of day as in the rows above: write it "
+                                         "like 14:05:06.789, or remove the row",
                                          ForMessage(row_[column])));
       }
       values[k] = *time;

@@ -372,9 +372,8 @@ class ColumnFinder {
 /// States that a column in a unit of pressure cannot have a role.
 std::string PressureText(std::string_view column, std::string_view unit, const Role& role) {
   return fmt::format(
-      "{} is a pressure, in {}, and no {}: choose another column; a pressure times the area that "
-      "it "
-      "acts on is a force in addition to the contact's, which --covariate takes",
+      "{} is a pressure, in {}, and no {}: choose another column; pressure times area is an "
+      "additional force, for which there is --covariate",
       column, unit, role.name);
 }
 
@@ -399,7 +398,7 @@ class ColumnReader {
     }
     const std::string stated = finder_.HeaderUnit(column, role.unit_option);
     if (stated.empty()) {
-      notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} states another",
+      notes_.push_back(fmt::format("{}: {} {} names no unit: taken as {}; {} sets another",
                                    table_.file(), role.name, finder_.Label(column), role.si_unit,
                                    role.unit_option));
       return {.symbol = std::string(role.si_unit)};
@@ -434,8 +433,8 @@ class ColumnReader {
     const bool is_force = ForceUnit(force_unit).has_value();
     if ((is_angle && is_force) || (is_torque && is_length)) {
       throw InputError(fmt::format(
-          "{}: {} in {} and {} in {} do not go together: a torque goes with an angle, a force with "
-          "a length; choose other columns, or units with --displacement-unit and --force-unit",
+          "{}: {} in {} and {} in {} do not match: a torque needs an angle, a force a length; "
+          "choose other columns, or units with --displacement-unit and --force-unit",
           table_.file(), finder_.Label(displacement),
           displacement_unit.empty() ? "rad" : displacement_unit, finder_.Label(force), force_unit));
     }
@@ -751,8 +750,8 @@ void RequireJoinable(const RecordFile& first, const std::string& first_name, con
   const auto require = [&](bool same, std::string_view what) {
     if (same) return;
     throw InputError(
-        fmt::format("--join: one of {} and {} has {} and the other has not: pieces of "
-                    "one record have the same columns",
+        fmt::format("--join: one of {} and {} has {} and the other does not: pieces of one record "
+                    "must have the same columns",
                     first_name, next_name, what));
   };
   require(next.time.has_value() == first.time.has_value(), "a time");
@@ -869,7 +868,7 @@ RecordFile RecordOfRows(const CsvTable& table, const RecordColumns& columns) {
   if (table.MayHaveCommasForThousands(assigned.displacement) &&
       table.MayHaveCommasForThousands(assigned.force)) {
     file.notes.push_back(fmt::format(
-        "{}: every {} and {} is written like 1,234: the comma is taken for a decimal mark, as in "
+        "{}: every {} and {} is written like 1,234: the comma is taken as a decimal mark, as in "
         "1.234; leave it out where it separates thousands",
         table.file(), kDisplacement.name, kForce.name));
   }

@@ -119,7 +119,7 @@ void LeaveOutBeyondRanges(PreparedRecord& prepared, std::size_t number,
   const auto require = [&](const CountRange& range, std::string_view what, std::size_t has,
                            const std::string& of_which = "") {
     if (range.first <= has) return;
-    throw InvalidArgument(fmt::format("{} {}:{} hold nothing of record {}: it has {} {}{}", what,
+    throw InvalidArgument(fmt::format("{} {}:{} contain nothing of record {}: it has {} {}{}", what,
                                       range.first, range.last, number + 1, has,
                                       has == 1 ? what.substr(0, what.size() - 1) : what, of_which));
   };

@@ -155,8 +155,8 @@ BranchLaw ResolveLaw(const LawRequest& request) {
   const bool by_contact = IsAnythingGiven(request.contact);
   if (by_parameters && by_contact) {
     throw InputError(
-        "--sigma and --slip-force exclude --friction, --normal-load and whatever else describes a "
-        "contact: give one of the two");
+        "--sigma and --slip-force exclude --friction, --normal-load and other options that "
+        "describe a contact: give one of the two");
   }
   BranchLaw law;
   if (by_contact) {

@@ -91,7 +91,7 @@ void RequireLoops(const FitRequest& request, const std::vector<RecordFile>& inpu
   constexpr std::size_t kLeast = 3;  // as many as the law has parameters
   if (samples < kLeast && request.fix.empty()) {
     throw InputError(fmt::format(
-        "{}: {} samples are too few: a fit needs more than it has free parameters; record more",
+        "{}: {} samples are too few: a fit needs more samples than free parameters; record more",
         PlaceOf(request.files.back(), inputs.back(), inputs.back().force,
                 inputs.back().record.size() - 1),
         samples));
@@ -113,8 +113,8 @@ void RequireGateWithinTheMotion(const FitRequest& request, const std::vector<Rec
   const bool is_torsional = inputs.front().is_torsional;
   const char* unit = is_forced ? (is_torsional ? "N m" : "N") : (is_torsional ? "rad" : "m");
   throw InputError(fmt::format(
-      "--reversal-gate {}: the whole {} is {:.4g} {} wide, so that it would have no turning "
-      "point: give the gate in {}, below that",
+      "--reversal-gate {}: the {} ranges over {:.4g} {} only, so it would have no turning point: "
+      "give a smaller gate, in {}",
       *request.reversal_gate, is_forced ? "force" : "motion", widest, unit, unit));
 }
 
@@ -309,7 +309,7 @@ std::string ChooseTermsOfCycles(const FitRequest& request, const loop::RecordVie
       identification::SelectTerms(std::span(&head, 1), of_head);
   options.terms = selection.options.terms;
   if (selection.added.empty()) return "terms: the first cycles require none";
-  return fmt::format("terms that the first cycles require, of all cycles: {}",
+  return fmt::format("terms fitted to all cycles, as the first cycles require: {}",
                      fmt::join(selection.added, ", "));
 }
 
@@ -364,9 +364,9 @@ std::vector<RecordFile> ReadRecords(const FitRequest& request, const Tell& note)
 void AddBackbone(const FitRequest& request, report::Report& report) {
   if (!identification::HasBackbone(report.fit)) {
     throw InputError(
-        "--backbone is of a contact of Masing's memory under one load, by its forces: leave out "
-        "--model dahl, --lag, --asymmetry and --noise-in displacement, and fit records of other "
-        "loads apart");
+        "--backbone needs a Masing law under one load and a fit of the force: leave out --model "
+        "dahl, --lag, --asymmetry and --noise-in displacement, and fit records under other loads "
+        "apart");
   }
   std::vector<loop::RecordView> records;
   records.reserve(report.records.size());
@@ -411,8 +411,8 @@ report::Report FitRecords(const FitRequest& request, std::vector<RecordFile> inp
   RequireColumns(request, inputs);
   if (inputs.front().is_torsional && IsAnythingGiven(request.contact)) {
     throw InputError(
-        "--normal-load and whatever else describes a contact say nothing of a torque against an "
-        "angle: leave them out");
+        "--normal-load and other options that describe a contact do not apply to a torque against "
+        "an angle: leave them out");
   }
   RequireLoops(request, inputs);
   RequireGateWithinTheMotion(request, inputs);

@@ -134,7 +134,7 @@ void RequireOptionsOfDisplacement(const FitRequest& request) {
     throw InputError(
         fmt::format("{} cannot be combined with --noise-in displacement: {}", option, why));
   };
-  constexpr std::string_view kBeside = "it is of a force that is fitted; leave one of the two out";
+  constexpr std::string_view kBeside = "it needs a fit of the force; leave one of the two out";
   for (const auto& [name, asked] : request.terms) {
     if (name != kDriftOfForce) refuse(identification::FindTerm(name)->option, kBeside);
   }
@@ -223,7 +223,7 @@ void RequireTrimAlone(const FitRequest& request) {
   if (request.samples) refuse("--samples", kBoth);
   if (request.skip_cycles > 0) refuse("--skip-cycles", kBoth);
   if (request.noise_in == "displacement") {
-    refuse("--noise-in displacement", "cycles are compared under a displacement that is imposed");
+    refuse("--noise-in displacement", "trimming compares cycles of an imposed displacement");
   }
 }
 
@@ -351,16 +351,16 @@ FitOptions MakeCycleFitOptions(const FitRequest& request) {
         "--cycles and name it here");
   }
   if (!request.covariates.empty()) {
-    throw InputError("--covariate is not read by track: fit a part of the record with fit");
+    throw InputError("--covariate is not available in track: fit a part of the record with fit");
   }
   if (request.noise_in == "displacement") {
     throw InputError(
-        "--noise-in displacement is not read by track: fit a part of the record with fit");
+        "--noise-in displacement is not available in track: fit a part of the record with fit");
   }
   if (request.terms.contains("asymmetry")) {
     throw InputError(
-        "--asymmetry is not read by track: where the contact slips as a whole, force_offset of a "
-        "cycle is (Tc+ - Tc-)/2 plus the sensor's own; fit a part of the record with fit");
+        "--asymmetry is not available in track: where the contact slips as a whole, force_offset "
+        "of a cycle is (Tc+ - Tc-)/2 plus the sensor's own; fit a part of the record with fit");
   }
   return MakeFitOptions(request);
 }

@@ -47,8 +47,8 @@ ImposedMotion MotionFromWaveform(const DriveRequest& request, const models::Bran
     const double gross_slip = GrossSlipDisplacement(law);
     if (!std::isfinite(gross_slip)) {
       throw InputError(fmt::format(
-          "--lambda needs a finite gross-slip displacement, which alpha = {} >= 1 has not: give "
-          "--amplitude",
+          "--lambda needs a finite gross-slip displacement, which does not exist for alpha = {} >= "
+          "1: give --amplitude",
           law.shape_exponent));
     }
     excitation.amplitude = *request.lambda * gross_slip;

@@ -78,16 +78,16 @@ void ExpectFromRecord(const PlanRequest& request, Expectation& expected, const T
     return fit.adequacy.verdict == identification::AdequacyVerdict::kInadequate;
   };
   if (!is_inadequate() && !IsIdentified(fit, "alpha")) {
-    say("alpha is not identified: taken to be 1/3, Mindlin's; --alpha takes another");
+    say("alpha is not identified: Mindlin's 1/3 is assumed; --alpha sets another value");
     fit_options.fixed["alpha"] = kMindlin;
     fit = identification::Fit({&record, 1}, fit_options);
   }
   if (!fit.converged) {
-    throw InputError(fmt::format("--record: {}: the fit does not converge: mindahl fit says more",
+    throw InputError(fmt::format("--record: {}: the fit does not converge: see mindahl fit",
                                  request.record_name));
   }
   if (is_inadequate()) {
-    say("the model does not describe this record; what follows is of a contact that it does");
+    say("the model does not describe this record: the plan holds for a contact that it describes");
   } else {
     for (const std::string_view name : {"sigma", "slip_force"}) {
       if (IsIdentified(fit, name)) continue;
@@ -104,7 +104,9 @@ Expectation ExpectationOf(const PlanRequest& request, const Tell& warn) {
   Expectation expected;
   if (request.record) {
     if (IsAnythingGiven(request.law)) {
-      throw InputError("--record excludes --sigma, --slip-force and whatever describes a contact");
+      throw InputError(
+          "--record excludes --sigma, --slip-force and other options that describe a "
+          "contact");
     }
     ExpectFromRecord(request, expected, warn);
   } else {
@@ -120,13 +122,13 @@ Expectation ExpectationOf(const PlanRequest& request, const Tell& warn) {
   expected.autocorrelation = request.autocorrelation;
   if (request.load_exponent) {
     if (request.load_ratios.empty()) {
-      throw InputError("--load-exponent needs --load-ratio: of one load it says nothing");
+      throw InputError("--load-exponent needs --load-ratio: it has no effect with one load");
     }
     expected.load_exponent = *request.load_exponent;
   }
   const bool fits_rig = std::ranges::find(request.with, "rig_stiffness") != request.with.end();
   if (fits_rig && std::isinf(expected.rig.stiffness)) {
-    throw InputError("--with rig_stiffness needs --rig-stiffness: what it is expected to be [N/m]");
+    throw InputError("--with rig_stiffness needs --rig-stiffness, its expected value [N/m]");
   }
   return expected;
 }
@@ -297,9 +299,9 @@ std::string ToText(const Plan& plan) {
     text += '\n';
   }
   text += fmt::format(
-      "  -: larger than the value, nothing is known of it; law: is this loop expected to tell "
-      "Mindlin's\n  rules from Dahl's (2 ln likelihood ratio above {:g})? Slip begins at {:.4g} "
-      "m{}.\n",
+      "  -: error larger than the value; law: is this loop expected to distinguish Mindlin's "
+      "memory\n"
+      "  rules from Dahl's (2 ln likelihood ratio above {:g})? Slip begins at {:.4g} m{}.\n",
       identification::Thresholds().rival_past, slip,
       request.load_ratios.empty() ? "" : " at that load");
   if (wanted.empty()) return text;
@@ -307,7 +309,7 @@ std::string ToText(const Plan& plan) {
   for (const PlannedLoops& column : columns) {
     if (column.reached) {
       const double amplitude = column.reached->protocol.amplitude;
-      text += fmt::format("  {}: X >= {:.3g} m, {:.3g} of the displacement at slip\n",
+      text += fmt::format("  {}: X >= {:.3g} m, {:.3g} times the displacement at slip\n",
                           column.initial_state, amplitude, amplitude / slip);
     } else if (column.fewest.amplitude > 0) {
       text += fmt::format(

@@ -108,11 +108,11 @@ std::string LibraryCall(const Approximation& approximation, const BranchLaw& con
 
 /// Returns the verdict on the scene in one line.
 std::string RecommendationVerdict(const Recommendation& recommendation) {
-  if (!recommendation.choice) return "nothing meets what is asked";
+  if (!recommendation.choice) return "nothing meets the request";
   const std::size_t choice = *recommendation.choice;
   const Approximation& approximation = recommendation.candidates[choice].point.approximation;
   if (choice == recommendation.exact) {
-    return fmt::format("{}: nothing cheaper will do", tradeoff::Describe(approximation));
+    return fmt::format("{}: nothing cheaper meets the request", tradeoff::Describe(approximation));
   }
   if (const models::LimitLaw* limit = models::FindLimitLaw(approximation.model)) {
     return fmt::format("{}: {}", approximation.model, limit->title);
@@ -140,13 +140,11 @@ std::string RecordVerdict(const RecordRecommendation& priced) {
   const LawScore& choice = priced.laws.scores[priced.choice];
   const LawScore& best = priced.laws.scores[priced.laws.best];
   if (priced.choice == priced.laws.best) {
-    return fmt::format("{}: the best, and nothing cheaper will do", LawName(choice));
+    return fmt::format("{}: the best, and nothing cheaper is as good", LawName(choice));
   }
   return fmt::format(
-      "{}: the record does not distinguish it from {}, the best (dAICc = {:.2g}); what it lacks is "
-      "{:.2g} "
-      "N "
-      "rms, {}, beside noise of {:.2g} N",
+      "{}: the record does not distinguish it from {}, the best (dAICc = {:.2g}); it differs from "
+      "it by {:.2g} N rms, {}, against noise of {:.2g} N",
       LawName(choice), LawName(best), choice.delta_aicc, choice.misfit,
       InPercent(choice.misfit, priced.laws), best.rms);
 }
@@ -283,7 +281,7 @@ std::string ToText(const MotionRecommendation& made) {
                           exact.point.cost / choice.point.cost, exact.point.approximation.model);
     }
     if (choice.point.approximation.law) {
-      text += fmt::format("   with {}, which suit this excitation and belong to no other\n",
+      text += fmt::format("   with {}, fitted to this excitation and valid for no other\n",
                           RefittedParameters(choice.point.approximation));
     }
     const auto& energy = choice.point.precision.energy;
@@ -350,8 +348,8 @@ RecordRecommendation RecommendForRecord(const std::string& name, const loop::Rec
   priced.choice = tradeoff::CheapestOf(priced.cost, is_not_told_apart).value_or(priced.laws.best);
   if (!priced.laws.describes_record) {
     warn(fmt::format(
-        "{}: none of these laws describes the record: what they differ by is set against their "
-        "misfit, not against noise; mindahl fit says more",
+        "{}: none of these laws describes the record: their differences are compared with their "
+        "misfit, not with noise; see mindahl fit",
         name));
   }
   return priced;
@@ -360,9 +358,9 @@ RecordRecommendation RecommendForRecord(const std::string& name, const loop::Rec
 std::string ToText(const RecordRecommendation& priced) {
   std::string text;
   const SimplerLaws& laws = priced.laws;
-  text += fmt::format(
-      "{}: {} samples that say as much as {:.0f} independent ones; peak force {:.5g} N\n",
-      priced.record, laws.samples, laws.effective_samples, laws.peak_force);
+  text +=
+      fmt::format("{}: {} samples, equivalent to {:.0f} independent ones; peak force {:.5g} N\n",
+                  priced.record, laws.samples, laws.effective_samples, laws.peak_force);
   text += fmt::format(
       "asked: the cheapest law that the record does not distinguish from the best (dAICc below "
       "{:g})\n\n",

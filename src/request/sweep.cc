@@ -48,10 +48,8 @@ FittedSweep FitSweep(const FitRequest& request, const std::string& file, io::Swe
   RequireOneOf("--sweep", kind, kKinds);
   const std::string& model = request.model;
   if (model != "mindlin-dahl" && model != "mindlin" && model != "jenkins") {
-    throw InputError(
-        fmt::format("--model {}: a sweep is of a Masing law: mindlin-dahl, mindlin or "
-                    "jenkins",
-                    model));
+    throw InputError(fmt::format(
+        "--model {}: a sweep needs a Masing law: mindlin-dahl, mindlin or jenkins", model));
   }
   FittedSweep fitted{.file = file, .sweep = std::move(sweep), .asked = {}, .fit = {}};
   for (const std::string& text : fitted.sweep.notes) note(text);
@@ -73,7 +71,7 @@ FittedSweep FitSweepFile(const FitRequest& request, const std::string& kind,
                          const io::ColumnChoice& response, std::optional<double> response_noise,
                          const Tell& note) {
   if (request.files.size() != 1) {
-    throw InputError("--sweep: is of one file: fit each by itself");
+    throw InputError("--sweep: takes one file: fit each by itself");
   }
   const std::string& file = request.files.front();
   return FitSweep(request, file, io::ReadSweep(file, request.columns, response), kind,
@@ -135,7 +133,7 @@ std::string ToText(const FittedSweep& fitted) {
   if (fitted.is_doubtful()) {
     text += fmt::format(
         "  doubtful: neighbouring residuals are correlated (p = {:.2g}), so the law misses the "
-        "course of the sweep and the intervals are too narrow\n",
+        "shape of the sweep and the intervals are too narrow\n",
         fit.correlation_p_value);
   }
   if (!fit.converged) text += fmt::format("  not converged: {}\n", fit.message);

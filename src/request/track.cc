@@ -143,9 +143,9 @@ std::string ToText(const TrackedTest& test, const std::vector<CourseDescription>
   std::string text =
       fmt::format("{} cycles of {} samples, {} fits{}{}\n", test.cycles, test.samples, test.fits,
                   test.output.empty() ? "" : " in ", test.output);
-  if (test.resumed > 0) text += fmt::format("{} of them were there already\n", test.resumed);
+  if (test.resumed > 0) text += fmt::format("{} of them existed already\n", test.resumed);
   if (test.unused_samples > 0) {
-    text += fmt::format("{} samples at the ends are part of no whole cycle\n", test.unused_samples);
+    text += fmt::format("{} samples at the ends belong to no whole cycle\n", test.unused_samples);
   }
   text += fmt::format("{:.6g} J dissipated in all{}\n", test.energy.total(),
                       campaign::InWords(test.energy.counts()));
@@ -256,7 +256,7 @@ std::string SeparateTests::ToJson() const {
 std::string SeparateTests::ToText() const {
   std::string text = fmt::format("{} test{}, {} fit{} in {}\n", tests_, tests_ == 1 ? "" : "s",
                                  fits_, fits_ == 1 ? "" : "s", output_);
-  if (kept_ > 0) text += fmt::format("{} of them were there already\n", kept_);
+  if (kept_ > 0) text += fmt::format("{} of them existed already\n", kept_);
   text += fmt::format("{:.6g} J dissipated in all\n", energy_);
   if (flagged_ > 0) {
     text += fmt::format("{} {} a flag\n", flagged_, flagged_ == 1 ? "cycle has" : "cycles have");

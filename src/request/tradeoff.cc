@@ -186,7 +186,7 @@ Tradeoff MakeTradeoff(const TradeoffRequest& request, const Tell& warn, const Te
   for (const std::string& doubt : DoubtsAbout(request.law.contact)) warn(doubt);
   if (progress) progress("timing every method");
   study.excitations = MeasureScenes(request, study.law);
-  if (progress) progress("looking where each model serves");
+  if (progress) progress("searching where each model is good enough");
   if (study.law.shape_exponent < 1) {
     study.regions = tradeoff::FindModelRegions(study.law, study.studied);
   }

@@ -39,7 +39,7 @@ TEST(TestPage, ReportsSharedAlphaAndSourceOfEnergies) {
   test.shared_alpha = alpha;
   test.energy_counts = {.measured = 95, .replaced = 3, .left_out = 2};
   const std::string page = ToPage(test);
-  EXPECT_THAT(page, HasSubstr("alpha 0.35 ± 0.05 shared, of 2 cycles"));
+  EXPECT_THAT(page, HasSubstr("shared alpha 0.35 ± 0.05, from 2 cycles"));
   EXPECT_THAT(page,
               HasSubstr("counting 3 that do not close by those before them and 2 by nothing"));
 }

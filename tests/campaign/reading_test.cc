@@ -40,7 +40,9 @@ TEST(Reading, KeepsAGateThatIsGiven) {
 TEST(Reading, ReportsUncertainChoices) {
   Reading reading;
   reading.gate.certain = false;
-  EXPECT_NE(DoubtAbout(reading, "loop.csv")->find("loop.csv: the reversals are uncertain"),
+  EXPECT_NE(DoubtAbout(reading, "loop.csv")
+                ->find("loop.csv: the number of reversals is not "
+                       "certain"),
             std::string::npos);
 }
 
@@ -56,7 +58,7 @@ TEST(Reading, AsksForFewerCyclesToAverageOnlyWhereThereAreSome) {
     }
     return "";
   };
-  EXPECT_EQ(message(4), "--average 5: loop turn only 4 times, two a cycle: average fewer");
+  EXPECT_EQ(message(4), "--average 5: loop has only 4 reversals, two a cycle: average fewer");
   EXPECT_NE(message(1).find("loop: no whole cycle"), std::string::npos);
 }
 

@@ -32,7 +32,7 @@ TEST(Repeats, WithoutStatedErrorsHaveTheirScatterOnly) {
   EXPECT_FALSE(repeats->stated_error);
   EXPECT_FALSE(repeats->p_value);
   EXPECT_FALSE(repeats->exceed_errors());
-  EXPECT_EQ(repeats->InWords(), "no error is stated");
+  EXPECT_EQ(repeats->InWords(), "without stated errors");
 }
 
 TEST(Repeats, AreTwoAtLeast) {

@@ -26,7 +26,7 @@ TEST(SharedAlpha, PoolsCyclesThatIdentifyAlpha) {
   EXPECT_EQ(alpha.count(), 2U);
   EXPECT_DOUBLE_EQ(alpha.mean(), 0.35);
   EXPECT_NO_THROW(RequireSharedAlpha(alpha));
-  EXPECT_THAT(SharedAlphaInWords(alpha), HasSubstr("alpha 0.35 ± 0.05 shared, of 2 cycles"));
+  EXPECT_THAT(SharedAlphaInWords(alpha), HasSubstr("shared alpha 0.35 ± 0.05, from 2 cycles"));
 }
 
 std::string Refusal(const identification::FitOptions& fit, const std::vector<std::string>& files) {

@@ -410,7 +410,7 @@ TEST(FitCommand, BackboneIsRefusedOfALawWithoutOne) {
   const Outcome outcome =
       RunCommand({"fit", SampleRecord(), "--model", "dahl", "--backbone", path});
   EXPECT_EQ(outcome.status, cli::kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("--backbone is of a contact of Masing's memory"));
+  EXPECT_THAT(outcome.err, HasSubstr("--backbone needs a Masing law"));
 }
 
 TEST(FitCommand, StrictExitsWithThreeWhereAParameterIsNotIdentifiable) {

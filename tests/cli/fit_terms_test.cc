@@ -559,8 +559,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"AsymmetryOfACycledContact",
                {"--asymmetry", "fit", "--initial-state", "steady"},
                "asymmetry cannot be distinguished from force_offset: the contact had slipped "
-               "before what is "
-               "fitted"},
+               "before the fitted samples"},
         Misuse{"CovariateWithoutAValue",
                {"--covariate", "normal="},
                "--covariate: 'normal=' is incomplete: write COL[=C|fit], e.g. pressure=50"},
@@ -575,7 +574,7 @@ INSTANTIATE_TEST_SUITE_P(
                "no column is called 'pressure' (for the covariate): the columns are"},
         Misuse{"CyclesBeyondTheRecord",
                {"--cycles", "40:50"},
-               "cycles 40:50 hold nothing of record 1: it has"},
+               "cycles 40:50 contain nothing of record 1: it has"},
         Misuse{"CyclesFromNone",
                {"--cycles", "0:2"},
                "--cycles: '0' is not a whole number from 1 on: write LO:HI, counted from 1, e.g. "
@@ -585,7 +584,7 @@ INSTANTIATE_TEST_SUITE_P(
                "--samples: '5:4' is empty: the first number must not be the larger"},
         Misuse{"SamplesBeyondTheRecord",
                {"--samples", "100000:200000"},
-               "samples 100000:200000 hold nothing of record 1: it has"},
+               "samples 100000:200000 contain nothing of record 1: it has"},
         Misuse{"NegativeDisplacementNoise",
                {"--displacement-noise", "-1e-9"},
                "--displacement-noise [m] = -1e-09 is invalid: must be finite and >= 0"},

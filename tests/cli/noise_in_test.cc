@@ -129,7 +129,7 @@ TEST_F(NoiseIn, DisplacementIsNotReadByTrack) {
   const Outcome outcome = RunCommand({"track", Loop(0.0), "--noise-in", "displacement", "--output",
                                       (directory_.path() / "cycles.csv").string()});
   EXPECT_EQ(outcome.status, kBadInput);
-  EXPECT_THAT(outcome.err, HasSubstr("--noise-in displacement is not read by track"));
+  EXPECT_THAT(outcome.err, HasSubstr("--noise-in displacement is not available in track"));
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST(PlanCommand, ARecordThatDoesNotTellAlphaIsPlannedForWithMindlins) {
   const Outcome outcome =
       RunCommand({"plan", "--record", file, "--want", "slip_force=5%", "--json", "-"});
   EXPECT_EQ(outcome.status, kDone) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("alpha is not identified: taken to be 1/3"));
+  EXPECT_THAT(outcome.err, HasSubstr("alpha is not identified: Mindlin's 1/3 is assumed"));
   const json plan = outcome.Json();
   // From second order alone, Tc = ασ²/(curvature): the noise leaves some per cent.
   EXPECT_NEAR(plan["expected"]["slip_force"].get<double>(), 40.0, 0.2 * 40.0);

@@ -81,7 +81,7 @@ TEST_F(TrackCommand, RefusesToJoinPiecesOfWhichOneHasNoTime) {
     const Outcome outcome = RunCommand({"track", record_, untimed, "--join", "--alpha", alpha,
                                         "--output", Path("joined.csv"), "--overwrite"});
     EXPECT_EQ(outcome.status, cli::kBadInput);
-    EXPECT_NE(outcome.err.find("has a time and the other has not"), std::string::npos)
+    EXPECT_NE(outcome.err.find("has a time and the other does not"), std::string::npos)
         << outcome.err;
   }
 }
@@ -513,7 +513,7 @@ TEST_F(TrackCommand, RefusesWhatItCannotDo) {
   for (const Case& refused :
        {Case{{record_, "--model", "auto"}, "--model auto"},
         Case{{record_, "--covariate", "1"}, "--covariate"},
-        Case{{record_, "--asymmetry", "fit"}, "--asymmetry is not read by track"},
+        Case{{record_, "--asymmetry", "fit"}, "--asymmetry is not available in track"},
         Case{{record_, "--normal-load", "-3"}, "--normal-load"},
         Case{{record_, "--resume", "--overwrite"}, "contradict"},
         Case{{record_, "--threads", "0"}, "--threads"}, Case{{one_stroke}, "no whole cycle"},

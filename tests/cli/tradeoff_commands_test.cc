@@ -260,7 +260,7 @@ TEST(Recommend, CommandOfARefittedModelHasItsParameters) {
   // Jenkins at the contact's own σ and Tc errs by a third, refitted by a tenth.
   const Outcome outcome = RecommendOn({"--lambda", "0.8", "--cycles", "3", "--tolerance", "11%"});
   EXPECT_THAT(outcome.out, HasSubstr("-> jenkins by exact, refitted"));
-  EXPECT_THAT(outcome.out, HasSubstr("which suit this excitation and belong to no other"));
+  EXPECT_THAT(outcome.out, HasSubstr("fitted to this excitation and valid for no other"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("--sigma 480000000")));
 }
 
@@ -331,7 +331,7 @@ TEST(Recommend, CostIsTheLimitTheOtherWayRound) {
 TEST(Recommend, ExitsWithThreeWhenNothingIsCheapEnough) {
   const Outcome outcome = RecommendOn({"--lambda", "0.8", "--cost", "1e-6"});
   EXPECT_EQ(outcome.status, cli::kNotEstablished);
-  EXPECT_THAT(outcome.out, HasSubstr("nothing meets what is asked"));
+  EXPECT_THAT(outcome.out, HasSubstr("nothing meets the request"));
 }
 
 TEST(Recommend, RefusesAToleranceThatIsNone) {

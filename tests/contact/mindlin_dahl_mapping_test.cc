@@ -252,7 +252,7 @@ TEST(IdentifyContact, FindsTheComplianceFromAGivenRadius) {
       (std::vector<std::string>{
           "equivalent radius needs " + materials,
           "comparison of the stiffness with the given contact radius needs the tangential "
-          "compliance (or what gives it: " +
+          "compliance (or, to derive it: " +
               materials + ")",
           "Hertz prediction of the stiffness needs " + materials + ", the radii of both bodies"}));
 }
@@ -289,7 +289,7 @@ TEST(IdentifyContact, NamesMissingInputsIfNothingIsKnown) {
                contact.tangential_compliance || contact.equivalent_radius ||
                contact.maximum_pressure || contact.sigma_over_mindlin || contact.hertz);
   const std::string materials = "E and ν of both bodies";
-  const std::string compliance = "the tangential compliance (or what gives it: " + materials + ")";
+  const std::string compliance = "the tangential compliance (or, to derive it: " + materials + ")";
   EXPECT_EQ(contact.unidentified,
             (std::vector<std::string>{
                 "friction coefficient needs the normal load", "contact radius needs " + compliance,
@@ -307,8 +307,8 @@ TEST(IdentifyContact, NamesTheOneInputThatIsMissing) {
   ASSERT_FALSE(contact.unidentified.empty());
   EXPECT_EQ(
       contact.unidentified.front(),
-      "contact radius needs the tangential compliance (or what gives it: the Poisson ratio of "
-      "body 2)");
+      "contact radius needs the tangential compliance (or, to derive it: the Poisson ratio of body "
+      "2)");
   EXPECT_EQ(contact.unidentified.back(),
             "Hertz prediction of the stiffness needs the Poisson ratio of body 2");
 }

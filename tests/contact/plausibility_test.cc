@@ -42,7 +42,7 @@ TEST(Doubts, AreOfAModulusStifferThanAnySolid) {
 
 TEST(Doubts, AreOfAComplianceThatIsAModulus) {
   const KnownContact known{.contact_radius = 2e-4, .tangential_compliance = 2.5e10};
-  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("give 4e-11 if it is that")));
+  EXPECT_THAT(DoubtsAbout(known, 0.3), ElementsAre(HasSubstr("give 4e-11 if so")));
 }
 
 TEST(Doubts, AreOfAContactAsLargeAsItsBody) {

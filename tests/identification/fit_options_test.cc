@@ -118,11 +118,11 @@ TEST(FitOptions, EachRecordThatCannotBeFittedIsRefusedWithTheReason) {
   FitOptions cycles;
   cycles.preparation.cycles = {1, 1};
   EXPECT_THAT(RefusalOf({zigzag}, cycles),
-              HasSubstr("are left out: 4 in other cycles than are asked for: record more"));
+              HasSubstr("are left out: 4 outside the requested cycles: record more"));
   FitOptions samples;
   samples.preparation.samples = {2, 4};
   EXPECT_THAT(RefusalOf({zigzag}, samples),
-              HasSubstr("are left out: 3 other samples than are asked for: record more"));
+              HasSubstr("are left out: 3 outside the requested samples: record more"));
   FitOptions lagging;
   lagging.terms = {"lag"};
   EXPECT_THAT(RefusalOf({zigzag}, lagging),

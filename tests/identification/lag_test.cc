@@ -273,10 +273,10 @@ TEST(Lag, IsRefusedWhereItCannotBeCounted) {
   const Record timed = LateRecord(LawOf(1.0 / 3), TimesOf(2.25), 0.0);
   Record without = timed;
   without.time.clear();
-  EXPECT_THAT(RefusalOf({timed, without}, WithLag()), HasSubstr("or in none a time"));
+  EXPECT_THAT(RefusalOf({timed, without}, WithLag()), HasSubstr("or records without a time"));
   Record stopped = timed;
   std::ranges::fill(stopped.time, 3.0);
-  EXPECT_THAT(RefusalOf({stopped}, WithLag()), HasSubstr("a time that goes on"));
+  EXPECT_THAT(RefusalOf({stopped}, WithLag()), HasSubstr("a time that increases"));
   FitOptions longer;
   longer.fixed["lag"] = 10.0;
   EXPECT_THAT(RefusalOf({timed}, longer), HasSubstr("nothing is left of record 1"));

@@ -141,8 +141,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"OnlyBlankLinesAndComments", "\n  \n# x\n\t\n",
               "loop.csv: holds no data, only blank or '#' lines"},
         Fault{"Prose", "Dear Sir,\nyours, truly\n",
-              "loop.csv:2:1: 'yours' is not a number, nor has any other of the first 2 rows "
-              "numbers: expected columns of numbers under an optional header"},
+              "loop.csv:2:1: 'yours' is not a number, and none of the first 2 rows has numbers: "
+              "expected columns of numbers under an optional header"},
         Fault{"Utf16", std::string("\xFF\xFEx\0,\0", 6),
               "loop.csv:1: is not text, it holds a zero byte: export it as CSV"},
         Fault{"Binary", std::string("x,F\n1,2\n\0\1", 10),
@@ -230,14 +230,13 @@ INSTANTIATE_TEST_SUITE_P(
               "loop.csv:2: the file ends after its header, with no row of numbers below it: export "
               "the data too"},
         Fault{"OnlyMissingValues", "x,F\nnan,n/a\n#N/A,nan\n",
-              "loop.csv:2:1: 'nan' is not a number, nor has any other of the first 3 rows numbers: "
+              "loop.csv:2:1: 'nan' is not a number, and none of the first 3 rows has numbers: "
               "expected columns of numbers under an optional header"},
-        Fault{
-            "OnlyErrorValues", "#N/A,#DIV/0!\n#VALUE!,#N/A\n",
-            "loop.csv:1:1: '#N/A' is not a number, nor has any other of the first 2 rows numbers: "
-            "expected columns of numbers under an optional header"},
+        Fault{"OnlyErrorValues", "#N/A,#DIV/0!\n#VALUE!,#N/A\n",
+              "loop.csv:1:1: '#N/A' is not a number, and none of the first 2 rows has numbers: "
+              "expected columns of numbers under an optional header"},
         Fault{"OnlyWords", "x;F\na;b\nc;d\n",
-              "loop.csv:3:1: 'c' is not a number, nor has any other of the first 3 rows numbers: "
+              "loop.csv:3:1: 'c' is not a number, and none of the first 3 rows has numbers: "
               "expected columns of numbers under an optional header"},
         Fault{"ColumnOfText", "x,F\n1,a\n2,b\n",
               "loop.csv:2:2: 'a' is not a number: write it like -1.5e-3, or remove the row"},

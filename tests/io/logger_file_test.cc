@@ -132,7 +132,7 @@ TEST_F(LoggerFile, IsReadInTheEncodingThatIsGiven) {
   columns.encoding = "ASCII";
   const std::filesystem::path path = directory_.Write("log.txt", "x [µm],F [N]\n1,2\n");
   EXPECT_THAT(MessageOf([&] { ReadRecord(path, columns); }),
-              HasSubstr("byte 4 is no text in ASCII: say in what the file is written"));
+              HasSubstr("byte 4 is not valid in ASCII: give the encoding of the file"));
   columns.encoding = "no-such";
   EXPECT_THAT(MessageOf([&] { ReadRecord(path, columns); }), HasSubstr("--encoding no-such"));
 }

@@ -47,7 +47,7 @@ Strings Notes(const std::string& text, const RecordColumns& columns = {}) {
 
 TEST(Notes, SayThatACommaIsTakenForADecimalMarkWhereItMayAsWellSeparateThousands) {
   constexpr const char* kSaid =
-      "loop.csv: every displacement and force is written like 1,234: the comma is taken for a "
+      "loop.csv: every displacement and force is written like 1,234: the comma is taken as a "
       "decimal mark, as in 1.234; leave it out where it separates thousands";
   for (const std::string delimiter : {"\t", ";"}) {
     const auto text = [&](const std::string& first, const std::string& second) {
@@ -278,22 +278,19 @@ INSTANTIATE_TEST_SUITE_P(
             "--force-unit"},
         Fault{"PressureInHeader", "x [m],p [bar]\n1,2\n", Choose({}, {"p", ""}),
               "loop.csv:1:2: 'p [bar]' (column 2) is a pressure, in bar, and no force: choose "
-              "another column; a pressure times the area that it acts on is a force in addition to "
-              "the "
-              "contact's, which --covariate takes"},
+              "another column; pressure times area is an additional force, for which there is "
+              "--covariate"},
         Fault{"PressureAsAChosenUnit", "x [m],F\n1,2\n", Choose({}, {"", "MPa"}),
               "loop.csv: 'F' (column 2) is a pressure, in MPa, and no force: choose another "
-              "column; a pressure times the area that it acts on is a force in addition to the "
-              "contact's, "
-              "which --covariate takes"},
+              "column; pressure times area is an additional force, for which there is --covariate"},
         Fault{"TorqueAgainstALength", "\nt,x [m],Torque [Nm]\n1,2,3\n", Choose({}),
-              "loop.csv: 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in Nm do not go "
-              "together: a torque goes with an angle, a force with a length; choose other columns, "
-              "or units with --displacement-unit and --force-unit"},
+              "loop.csv: 'x [m]' (column 2) in m and 'Torque [Nm]' (column 3) in Nm do not match: "
+              "a torque needs an angle, a force a length; choose other columns, or units with "
+              "--displacement-unit and --force-unit"},
         Fault{"ForceAgainstAnAngle", "angle,F\n1,2\n", Choose({}, {"", "kN"}),
-              "loop.csv: 'angle' (column 1) in rad and 'F' (column 2) in kN do not go together: a "
-              "torque goes with an angle, a force with a length; choose other columns, or units "
-              "with --displacement-unit and --force-unit"},
+              "loop.csv: 'angle' (column 1) in rad and 'F' (column 2) in kN do not match: a torque "
+              "needs an angle, a force a length; choose other columns, or units with "
+              "--displacement-unit and --force-unit"},
         Fault{"TimeWithoutAName", "# clock\n0,0,0\n1,1,5\n2,0,-5\n3,-1,0\n", Choose({}),
               "loop.csv:2:1: column 1 only grows while column 2 goes to and fro, as a time does: "
               "name the column of the displacement with --displacement and that of the force with "

@@ -59,9 +59,9 @@ TEST(Thousands, OfALoopBeyondThemAreRefusedWithPlaceAndRemedy) {
       std::ranges::find_if(force, [](int value) { return std::abs(value) >= 1000; }) -
       force.begin());
   EXPECT_EQ(Fault(Table(force, ',', '.')),
-            fmt::format("loop.csv:{}:2: '{}' has a '.' that separates thousands, since numbers "
-                        "without one in this column are whole and it would jump back to 1 where it "
-                        "passes 999: write {}",
+            fmt::format("loop.csv:{}:2: '{}' has a '.' that separates thousands, since other "
+                        "numbers of this column are whole and it would jump back to 1 after 999: "
+                        "write {}",
                         first + 2, Grouped(force[first], '.'), force[first]));
 }
 

@@ -137,7 +137,7 @@ def test_a_sweep_names_what_is_wrong(tmp_path):
     _, forces, stiffness = sweep_file(tmp_path, "force amplitude [N],stiffness [N/um]")
     with pytest.raises(ValueError, match="response and one of force and displacement"):
         mindahl.sweep(force=forces)
-    with pytest.raises(mindahl.InputError, match="is of a Masing law"):
+    with pytest.raises(mindahl.InputError, match="needs a Masing law"):
         mindahl.sweep(force=forces, response=stiffness, model="dahl")
     with pytest.raises(mindahl.InputError, match="both"):
         mindahl.sweep(force=forces, response=stiffness, kind="both")

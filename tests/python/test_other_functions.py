@@ -242,7 +242,7 @@ def test_the_virgin_force_of_mindlin_is_the_closed_form():
      "to: 'brass' is unknown: must be one of"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=-1, to="dahl"), "invalid"),
     (lambda: mindahl.convert(sigma=1, slip_force=1, amplitude=1, to="dahl", normal_load=3),
-     "normal_load is of to lammps, liggghts and yade alone"),
+     "normal_load has no effect unless to is lammps, liggghts or yade"),
 ])
 def test_what_breaks_a_rule_is_refused(call, message):
     with pytest.raises(ValueError, match=message) as refused:

@@ -18,7 +18,7 @@ TEST(SeparateTests, CountTheFitsThatWereThereApart) {
   SeparateTests tests("table.csv", /*has_document=*/false);
   tests.Add("a.csv", "", TestOf(3), /*was_there=*/true);
   tests.Add("b.csv", "", TestOf(4), /*was_there=*/false);
-  EXPECT_THAT(tests.ToText(), HasSubstr("2 tests, 7 fits in table.csv\n3 of them were there"));
+  EXPECT_THAT(tests.ToText(), HasSubstr("2 tests, 7 fits in table.csv\n3 of them existed"));
 }
 
 TEST(TrackedTest, CountsACycleOnceThatHasTwoFlags) {

@@ -92,7 +92,9 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
   for (const loop::PreparedRecord& record : records.records) {
     const std::span<const double> time = record.record.time;
     if (time.empty() == first.record.time.empty() && (time.empty() || GoesOn(time))) continue;
-    throw InvalidArgument("lag needs a time that goes on in every record, or in none a time");
+    throw InvalidArgument(
+        "lag needs a time that increases in every record, or records without a "
+        "time");
   }
   const Lags lags = LagsOf(options, first);
   for (std::size_t r = 0; r < records.records.size(); ++r) {
@@ -108,9 +110,8 @@ void LeaveOutBeyondLags(const FitOptions& options, loop::PreparedRecords& record
     record.left_out = static_cast<std::size_t>(std::ranges::count(record.counts, 0));
     if (record.left_out < record.size()) continue;
     throw InvalidArgument(
-        fmt::format("nothing is left of record {}: under lags of {:.6g} to {:.6g} every sample "
-                    "that counts lies "
-                    "beyond one of its ends: give smaller ones, --bound lag=LO:HI",
+        fmt::format("nothing is left of record {}: with lags of {:.6g} to {:.6g} every sample that "
+                    "counts is moved beyond one of its ends: give smaller ones, --bound lag=LO:HI",
                     r + 1, lags.least, lags.most));
   }
 }

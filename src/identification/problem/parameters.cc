@@ -361,8 +361,8 @@ void Parameters::KeepShapeBelowOne(const FitOptions& options) {
   const double lowest = shape.fixed ? shape.theta : shape.lower;
   if (shape.fixed ? lowest > kHighestShapeUnderLoad : lowest >= kHighestShapeUnderLoad) {
     ThrowInvalid("alpha [-]", lowest,
-                 fmt::format("must be below {} where the normal load varies: its law slips at a "
-                             "finite displacement; keep to one load with a load window",
+                 fmt::format("must be below {} where the normal load varies: the law then slips at "
+                             "a finite displacement; keep to one load with a load window",
                              kHighestShapeUnderLoad));
   }
   const auto start = options.start.find("alpha");
@@ -467,7 +467,7 @@ void Parameters::ApplyOptions(const FitOptions& options, double prior_noise) {
     if (term == nullptr ||
         (term->presence != Presence::kOnDemand && term->presence != Presence::kReported) ||
         term->of_column) {
-      throw InvalidArgument(fmt::format("'{}' is no term that can be asked for", name));
+      throw InvalidArgument(fmt::format("'{}' is not a term that can be added", name));
     }
   }
   for (const auto& [name, interval] : options.bounds) {

@@ -55,8 +55,8 @@ std::string WhatIsLeftOut(const loop::PreparedRecords& prepared, const FitOption
   std::vector<std::string> masks;
   if (options.load_window) masks.emplace_back("outside the load window");
   if (options.skip_cycles > 0) masks.emplace_back("in the cycles that are skipped");
-  if (options.cycles) masks.emplace_back("in other cycles than are asked for");
-  if (options.samples) masks.emplace_back("other samples than are asked for");
+  if (options.cycles) masks.emplace_back("outside the requested cycles");
+  if (options.samples) masks.emplace_back("outside the requested samples");
   if (!options.held_out.empty()) masks.emplace_back("held out");
   if (HasTerm(fit, "lag")) masks.emplace_back("beyond the motion that a lag needs");
   if (!masks.empty() && left_out > glitches) {
@@ -112,7 +112,7 @@ void RequireOptions(const FitOptions& options) {
   if (options.model->memory == models::Memory::kNone && HasTerm(options, "asymmetry") &&
       HasTerm(options, "rig_stiffness")) {
     throw InvalidArgument(fmt::format(
-        "asymmetry and rig_stiffness of {}: the rig is compliant to the force, which is not the "
+        "asymmetry and rig_stiffness of {}: the rig deflects with the force, which is not the "
         "state that the law integrates; leave one out, or use --model mindlin-dahl, mindlin or "
         "jenkins",
         options.model->name));
@@ -136,8 +136,8 @@ void RequireOneLoad(const ScaledRecords& data) {
       data.records, [](const ScaledRecord& record) { return !record.load_change.empty(); });
   if (!data.is_load_series && !data.load_varies && !varies) return;
   throw InvalidArgument(
-      "the normal load differs or varies, of which a fit of the displacement has no account: fit "
-      "the records of one load, or fit the force");
+      "the normal load differs or varies, which a fit of the displacement does not model: fit the "
+      "records of one load, or fit the force");
 }
 
 void RequireNoise(const FitOptions& options, const ScaledRecords& data) {
@@ -163,10 +163,9 @@ void RequireEnoughSamples(const Problem& problem, const loop::PreparedRecords& p
 void RequireToldAsymmetry(const Problem& problem) {
   if (!problem.parameters.asymmetry_is_confounded()) return;
   throw InvalidArgument(
-      "asymmetry cannot be distinguished from force_offset: the contact had slipped before what is "
-      "fitted, "
-      "and both are a force that is always there; give the force's zero where it is known, --fix "
-      "force_offset=0, or fit a record from the unloaded contact on, its first loading left in, "
+      "asymmetry cannot be distinguished from force_offset: the contact had slipped before the "
+      "fitted samples, so both are a constant force; give the force's zero if it is known, --fix "
+      "force_offset=0, or fit a record that includes the first loading of the unloaded contact, "
       "with --initial-state virgin");
 }
 
