@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <string_view>
-#include <variant>
 
 #include "io/html.h"
 #include "mindahl/report/units.h"
@@ -194,21 +192,11 @@ std::string WarningSection(const Report& report, const Provenance& provenance) {
 
 // --- what needs no model
 
-/// Returns a value as people read it; empty for what is missing.
+/// Returns a value as people read it.
 std::string TextOf(const DescribedValue& item) {
-  struct Writer {
-    std::string_view unit;
-    std::string operator()(double number) const { return Quantity(number, unit); }
-    std::string operator()(std::uint64_t number) const { return std::to_string(number); }
-    std::string operator()(std::int64_t number) const { return std::to_string(number); }
-    std::string operator()(bool flag) const { return flag ? "yes" : "no"; }
-    std::string operator()(const std::string& text) const { return text; }
-    std::string operator()(const Value::Absent&) const { return ""; }
-    std::string operator()(const Value::Null&) const { return ""; }
-    std::string operator()(const Value::Array&) const { return ""; }
-    std::string operator()(const Value::Object&) const { return ""; }
-  };
-  return std::visit(Writer{item.field.unit}, item.value.content);
+  if (item.value.is_number_float()) return Quantity(item.value.get<double>(), item.field.unit);
+  if (item.value.is_boolean()) return item.value.get<bool>() ? "yes" : "no";
+  return item.value.is_string() ? item.value.get<std::string>() : item.value.dump();
 }
 
 /// Adds the rows of the report's fields of one subject, named as the JSON names them.

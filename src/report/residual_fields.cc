@@ -14,24 +14,21 @@ namespace {
 const std::vector<Field<Cause>>& CauseFields() {
   using Item = Cause;
   static const std::vector<Field<Item>> fields = {
-      {"code", "", "stable, for scripts", [](const Item& item) { return Text(item.code); }},
+      {"code", "", "stable, for scripts", &Item::code},
       {"try", "", "option of the command line that takes it into account",
-       [](const Item& item) { return item.option.empty() ? Missing() : Text(item.option); },
+       [](const Item& item) { return item.option.empty() ? Missing() : ToValue(item.option); },
        WhyNoOption},
       {"delta_aicc", "-", "of the fit with it less that without: negative where it helps",
-       [](const Item& item) { return Number(item.delta_aicc); }},
-      {"explains", "-", "fraction of the residuals' variance",
-       [](const Item& item) { return Number(item.explains); }},
+       &Item::delta_aicc},
+      {"explains", "-", "fraction of the residuals' variance", &Item::explains},
       {"size", "of the cause", "how large it is; of several numbers the first",
-       [](const Item& item) { return item.unit.empty() ? Missing() : Number(item.size); },
-       [](const Item&) {
-         return std::string("it is of several numbers, none of which says much");
-       }},
+       [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.size); },
+       "it is of several numbers, none of which says much"},
       {"unit", "", "unit of the size",
-       [](const Item& item) { return item.unit.empty() ? Missing() : Text(item.unit); },
-       [](const Item&) { return std::string("it has no size"); }},
+       [](const Item& item) { return item.unit.empty() ? Missing() : ToValue(item.unit); },
+       "it has no size"},
       {"moves", "-", "sigma, alpha or slip_force with it, in halves of their intervals: the most",
-       [](const Item& item) { return Number(item.moves); }},
+       &Item::moves},
   };
   return fields;
 }
@@ -41,33 +38,31 @@ template <typename Get>
 Field<Report> AdequacyRow(const char* path, const char* unit, const char* label, Get get) {
   return {path, unit, label,
           [get](const Report& report) {
-            return IsJudged(report) ? get(report.fit.adequacy) : Missing();
+            return IsJudged(report) ? At(get)(report.fit.adequacy) : Missing();
           },
-          [](const Report&) { return std::string(kWhyNotJudged); }};
+          kWhyNotJudged};
 }
 
 }  // namespace
 
 void AddAdequacyFields(FieldTable& table) {
   table.Add({
-      AdequacyRow("adequacy.verdict", "", "adequate, doubtful or inadequate",
-                  [](const Adequacy& adequacy) { return Text(Name(adequacy.verdict)); }),
+      AdequacyRow("adequacy.verdict", "", "adequate, doubtful or inadequate", &Adequacy::verdict),
       AdequacyRow("adequacy.misfit_over_noise", "-",
                   "rms of what the model misses over that of the noise",
-                  [](const Adequacy& adequacy) { return Number(adequacy.misfit_over_noise); }),
+                  &Adequacy::misfit_over_noise),
       {"adequacy.misfit_over_half_gap", "-",
        "rms of what the model misses over the half gap measured without a model",
        [](const Report& report) {
-         return IsJudged(report) ? Number(report.fit.adequacy.misfit_over_half_gap) : Missing();
+         return IsJudged(report) ? ToValue(report.fit.adequacy.misfit_over_half_gap) : Missing();
        },
        [](const Report& report) {
          return IsJudged(report) ? std::string("no half gap was measured")
                                  : std::string(kWhyNotJudged);
        }},
       AdequacyRow("adequacy.use", "", "quantitative, indicative or none: what the fit is good for",
-                  [](const Adequacy& adequacy) { return Text(Name(adequacy.use)); }),
-      AdequacyRow("adequacy.p_value", "-", "that noise alone looks like that",
-                  [](const Adequacy& adequacy) { return Number(adequacy.p_value); }),
+                  &Adequacy::use),
+      AdequacyRow("adequacy.p_value", "-", "that noise alone looks like that", &Adequacy::p_value),
       AdequacyRow("adequacy.causes", "",
                   "what the residuals look like, the best first; may be empty",
                   [](const Adequacy& adequacy) { return List(CauseFields(), adequacy.causes); }),
@@ -83,13 +78,10 @@ namespace {
 const std::vector<Field<MemoryComparison>>& ComparisonFields() {
   using Item = MemoryComparison;
   static const std::vector<Field<Item>> fields = {
-      {"code", "", "stable, for scripts", [](const Item& item) { return Text(item.code); }},
-      {"p_value", "-", "that noise alone makes it of a contact of Masing's memory",
-       [](const Item& item) { return Number(item.p_value); }},
-      {"dahl_p_value", "-", "likewise of Dahl's",
-       [](const Item& item) { return Number(item.dahl_p_value); }},
-      {"size", "N", "rms of what is beyond Masing's memory and beyond noise",
-       [](const Item& item) { return Number(item.size); }},
+      {"code", "", "stable, for scripts", &Item::code},
+      {"p_value", "-", "that noise alone makes it of a contact of Masing's memory", &Item::p_value},
+      {"dahl_p_value", "-", "likewise of Dahl's", &Item::dahl_p_value},
+      {"size", "N", "rms of what is beyond Masing's memory and beyond noise", &Item::size},
   };
   return fields;
 }
@@ -102,29 +94,22 @@ std::string WhyNoMemory(const Report& report) {
          "displacement";
 }
 
-template <typename Get>
-Field<Report> MemoryRow(const char* path, const char* unit, const char* label, Get get) {
-  return {path, unit, label,
-          [get](const Report& report) {
-            return report.fit.memory ? get(*report.fit.memory) : Missing();
-          },
-          WhyNoMemory};
-}
-
 }  // namespace
 
 void AddMemoryFields(FieldTable& table) {
+  const auto of_memory = [](auto member) {
+    return At(&Report::fit, &identification::FitResult::memory, member);
+  };
   table.Add({
-      MemoryRow("memory.verdict", "", "masing, dahl, neither or undecided",
-                [](const MemoryTest& memory) { return Text(Name(memory.verdict)); }),
-      MemoryRow("memory.p_value", "-", "of Masing's memory, by all comparisons",
-                [](const MemoryTest& memory) { return Number(memory.p_value); }),
-      MemoryRow("memory.dahl_p_value", "-", "of Dahl's",
-                [](const MemoryTest& memory) { return Number(memory.dahl_p_value); }),
+      {"memory.verdict", "", "masing, dahl, neither or undecided", of_memory(&MemoryTest::verdict),
+       WhyNoMemory},
+      {"memory.p_value", "-", "of Masing's memory, by all comparisons",
+       of_memory(&MemoryTest::p_value), WhyNoMemory},
+      {"memory.dahl_p_value", "-", "of Dahl's", of_memory(&MemoryTest::dahl_p_value), WhyNoMemory},
       {"memory.tests", "", "comparisons that the record has; may be empty",
        [](const Report& report) {
          return report.fit.memory ? List(ComparisonFields(), report.fit.memory->comparisons)
-                                  : Value{Value::Array{}};
+                                  : Value{.json = Json::array(), .is_absent = false};
        }},
   });
   table.Describe("memory.tests[].", ComparisonFields());
@@ -142,19 +127,18 @@ Field<Report> Residual(const char* name, const char* unit, const char* label,
   return {std::string("residuals.") + name, unit, label,
           [member](const Report& report) {
             const ResidualStatistics& residuals = report.fit.residuals;
-            return residuals.samples > 0 ? Number(residuals.*member) : Missing();
+            return residuals.samples > 0 ? ToValue(residuals.*member) : Missing();
           },
-          [](const Report&) { return std::string("not a finite number"); }};
+          "not a finite number"};
 }
 
 const std::vector<Field<StrokeBin>>& BinFields() {
   static const std::vector<Field<StrokeBin>> fields = {
       {"position", "-", "middle of the part, as a fraction of the travel between reversals",
-       [](const StrokeBin& bin) { return Number(bin.position); }},
-      {"mean", kOfResponse, "mean residual there",
-       [](const StrokeBin& bin) { return Number(bin.mean); }},
+       &StrokeBin::position},
+      {"mean", kOfResponse, "mean residual there", &StrokeBin::mean},
       {"standard_error", kOfResponse, "of the mean, from the scatter between strokes",
-       [](const StrokeBin& bin) { return Number(bin.standard_error); }},
+       &StrokeBin::standard_error},
   };
   return fields;
 }
@@ -163,12 +147,11 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
   using Item = StrokeResiduals;
   static const std::vector<Field<Item>> fields = {
       {"direction", "", "up or down",
-       [](const Item& item) { return Text(item.direction > 0 ? "up" : "down"); }},
+       [](const Item& item) { return item.direction > 0 ? "up" : "down"; }},
       {"strokes", "", "strokes that count, those at least three quarters as long as the longest",
-       [](const Item& item) { return Count(item.strokes); }},
-      {"mean", kOfResponse, "mean residual", [](const Item& item) { return Number(item.mean); }},
-      {"rms", kOfResponse, "root mean square of the residual",
-       [](const Item& item) { return Number(item.rms); }},
+       &Item::strokes},
+      {"mean", kOfResponse, "mean residual", &Item::mean},
+      {"rms", kOfResponse, "root mean square of the residual", &Item::rms},
       {"along_stroke", "", "parts of the stroke",
        [](const Item& item) { return List(BinFields(), item.bins); }},
   };
@@ -178,7 +161,7 @@ const std::vector<Field<StrokeResiduals>>& StrokeFields() {
 const std::vector<Field<RecordFit>>& StructureFields() {
   static const std::vector<Field<RecordFit>> fields = {
       {"repeatable_share", "-", "fraction of the variance that repeats in every stroke",
-       [](const RecordFit& item) { return Number(item.structure.repeatable_share); }},
+       [](const RecordFit& item) { return item.structure.repeatable_share; }},
       {"directions", "", "growing, then falling displacement",
        [](const RecordFit& item) {
          const auto& directions = item.structure.directions;
@@ -208,14 +191,14 @@ void AddResidualFields(FieldTable& table) {
       Residual("degrees_of_freedom", "-", "degrees of freedom of errors and tests",
                &ResidualStatistics::degrees_of_freedom),
       {"residuals.channel", "", "the one that is fitted, whose unit residuals have",
-       [](const Report& report) { return Text(Name(report.fit.response)); }},
+       [](const Report& report) { return Name(report.fit.response); }},
       {"residuals.force_noise", "N",
        "standard deviation of the force, given or estimated; 0 where it is imposed",
        [](const Report& report) {
-         return report.failed() ? Missing() : Number(report.fit.force_noise);
+         return report.failed() ? Missing() : ToValue(report.fit.force_noise);
        }},
       {"residuals.outliers", "", "samples that the loss gives less than half their weight",
-       [](const Report& report) { return Count(report.fit.outliers); }},
+       [](const Report& report) { return report.fit.outliers; }},
       {"residual_structure", "", "the repeatable residual, one entry a file",
        [](const Report& report) { return List(StructureFields(), report.fit.records); }},
   });

@@ -111,18 +111,15 @@ std::vector<TrimmedItem> TrimmedItems(const Report& report) {
 const std::vector<Field<TrimmedItem>>& TrimmedFields() {
   using Item = TrimmedItem;
   static const std::vector<Field<Item>> fields = {
-      {"file", "", "name of the record", [](const Item& item) { return Text(item.file); }},
+      {"file", "", "name of the record", &Item::file},
       {"reason", "", "rest, ramp of the amplitude, or running_in",
-       [](const Item& item) { return Text(loop::NameOf(item.part.reason)); }},
-      {"first_line", "", "of the file, counted from 1",
-       [](const Item& item) { return Count(item.first_line); }},
-      {"last_line", "", "likewise", [](const Item& item) { return Count(item.last_line); }},
-      {"samples", "", "that do not count",
-       [](const Item& item) { return Count(item.part.samples()); }},
-      {"cycles", "", "closed ones among them",
-       [](const Item& item) { return Count(item.part.cycles); }},
+       [](const Item& item) { return loop::NameOf(item.part.reason); }},
+      {"first_line", "", "of the file, counted from 1", &Item::first_line},
+      {"last_line", "", "likewise", &Item::last_line},
+      {"samples", "", "that do not count", [](const Item& item) { return item.part.samples(); }},
+      {"cycles", "", "closed ones among them", [](const Item& item) { return item.part.cycles; }},
       {"first_loading", "", "whether what comes before the first turning point is left out by it",
-       [](const Item& item) { return Flag(item.part.has_first_loading); }},
+       [](const Item& item) { return item.part.has_first_loading; }},
   };
   return fields;
 }
