@@ -56,81 +56,44 @@ void AddConvertCommand(CLI::App& app, Console& console) {
       {"mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to dahl",
        "mindahl convert --sigma 4e7 --slip-force 40 --amplitude 1.2e-6 --to iwan --elements 5 \\",
        "    --input-lines contact.tcl"});
-  const std::string contact = "The contact";
-  command
-      ->add_option("--sigma", options->asked.law.tangential_stiffness, "tangential stiffness [N/m]")
-      ->required()
-      ->type_name("N/M")
-      ->group(contact);
-  command
-      ->add_option("--alpha", options->asked.law.shape_exponent, "shape exponent [-], default 1/3")
-      ->type_name("ALPHA")
-      ->group(contact);
-  command->add_option("--slip-force", options->asked.law.slip_force, "slip force Tc [N]")
-      ->required()
-      ->type_name("N")
-      ->group(contact);
-  command
-      ->add_option("--from", options->asked.from,
-                   "law that they are of: of fit --model mindlin-dahl, or --model dahl")
-      ->capture_default_str()
-      ->check(OneOf({"masing", "dahl"}))
-      ->group(contact);
-  command
-      ->add_option("--amplitude", options->asked.options.amplitude,
-                   "X of the steady loop [m], the contact's, without a rig's share")
-      ->required()
-      ->type_name("M")
-      ->group(contact);
-  const std::string result = "What it becomes";
+  const OptionGroup contact(*command, "The contact");
+  contact
+      .Add("--sigma", options->asked.law.tangential_stiffness, "tangential stiffness [N/m]", "N/M")
+      ->required();
+  contact.Add("--alpha", options->asked.law.shape_exponent, "shape exponent [-], default 1/3",
+              "ALPHA");
+  contact.Add("--slip-force", options->asked.law.slip_force, "slip force Tc [N]", "N")->required();
+  contact
+      .AddShown("--from", options->asked.from,
+                "law that they are of: of fit --model mindlin-dahl, or --model dahl")
+      ->check(OneOf({"masing", "dahl"}));
+  contact
+      .Add("--amplitude", options->asked.options.amplitude,
+           "X of the steady loop [m], the contact's, without a rig's share", "M")
+      ->required();
+  const OptionGroup result(*command, "What it becomes");
   std::vector<std::string> names;
   for (const convert::TargetRow& row : convert::Targets()) names.emplace_back(row.name);
-  command->add_option("--to", options->asked.to, "law or program")
-      ->required()
-      ->check(OneOf(names))
-      ->group(result);
-  AddOptional(*command, "--least-amplitude", options->asked.least_amplitude,
-              "from here [m] what cannot be exact is fitted; default the amplitude", "M")
-      ->group(result);
-  AddOptional(*command, "--largest-amplitude", options->asked.largest_amplitude,
-              "to here [m]; likewise", "M")
-      ->group(result);
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "of force and energy, which are within it where said: 0.01 or 1%")
-      ->capture_default_str()
-      ->type_name("E")
-      ->group(result);
-  command->add_option("--elements", options->asked.options.elements, "of --to iwan")
-      ->capture_default_str()
-      ->check(WholeNumber(1, kMostElements))
-      ->group(result);
-  command
-      ->add_option("--beta", options->asked.options.beta,
-                   "of --to bouc-wen in T/Tc, where beta + gamma = 1; in (0, 1]")
-      ->capture_default_str()
-      ->type_name("BETA")
-      ->group(result);
-  AddOptional(*command, "--normal-load", options->asked.normal.normal_load,
-              "of --to lammps, liggghts and yade [N]: friction coefficient is Tc/N", "N")
-      ->group(result);
-  AddOptional(*command, "--contact-radius", options->asked.normal.contact_radius,
-              "of --to lammps [m]: for a stiffness that follows the radius", "M")
-      ->group(result);
-  command
-      ->add_option("--viscous", options->asked.normal.viscous,
-                   "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf")
-      ->type_name("C")
-      ->group(result);
-  const std::string outputs = "Output";
-  command
-      ->add_option("--input-lines", options->input_lines_path,
-                   "lines as the other program reads them; - for standard output")
-      ->type_name("PATH")
-      ->group(outputs);
-  command->add_option("--json", options->json_path, "result as JSON; - for standard output")
-      ->type_name("PATH")
-      ->group(outputs);
+  result.Add("--to", options->asked.to, "law or program")->required()->check(OneOf(names));
+  result.Add("--least-amplitude", options->asked.least_amplitude,
+             "from here [m] what cannot be exact is fitted; default the amplitude", "M");
+  result.Add("--largest-amplitude", options->asked.largest_amplitude, "to here [m]; likewise", "M");
+  result.AddShown("--tolerance", options->tolerance,
+                  "of force and energy, which are within it where said: 0.01 or 1%", "E");
+  result.AddShown("--elements", options->asked.options.elements, "of --to iwan")
+      ->check(WholeNumber(1, kMostElements));
+  result.AddShown("--beta", options->asked.options.beta,
+                  "of --to bouc-wen in T/Tc, where beta + gamma = 1; in (0, 1]", "BETA");
+  result.Add("--normal-load", options->asked.normal.normal_load,
+             "of --to lammps, liggghts and yade [N]: friction coefficient is Tc/N", "N");
+  result.Add("--contact-radius", options->asked.normal.contact_radius,
+             "of --to lammps [m]: for a stiffness that follows the radius", "M");
+  result.Add("--viscous", options->asked.normal.viscous,
+             "force per speed [N s/m]: lugre, mujoco, mujoco-joint, urdf, sdf", "C");
+  const OptionGroup outputs(*command, "Output");
+  outputs.Add("--input-lines", options->input_lines_path,
+              "lines as the other program reads them; - for standard output", "PATH");
+  outputs.Add("--json", options->json_path, "result as JSON; - for standard output", "PATH");
   command->callback([options, &console] { RunConvert(*options, console); });
 }
 

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/options.h"
 #include "mindahl/core/error.h"
 
 namespace mindahl::cli {
@@ -50,22 +51,20 @@ void ReadList(std::istream& stream, std::vector<std::string>& files) {
 }  // namespace
 
 void AddFilesFrom(CLI::App& command, FileList& options) {
-  command
-      .add_option("--files-from", options.list,
-                  "takes the files that LIST names too, one a line, after those that are\n"
-                  "named here; lines that are empty or begin with # are left out, - is\n"
-                  "standard input")
-      ->type_name("LIST")
-      ->group(kFilesGroup);
+  OptionGroup(command, kFilesGroup)
+      .Add("--files-from", options.list,
+           "takes the files that LIST names too, one a line, after those that are\n"
+           "named here; lines that are empty or begin with # are left out, - is\n"
+           "standard input",
+           "LIST");
 }
 
 void AddShard(CLI::App& command, FileList& options) {
-  command
-      .add_option("--shard", options.shard,
-                  "takes the K-th of N parts of the files, in their order: the tables of\n"
-                  "all parts, one after the other, are that of all files")
-      ->type_name("K/N")
-      ->group(kFilesGroup);
+  OptionGroup(command, kFilesGroup)
+      .Add("--shard", options.shard,
+           "takes the K-th of N parts of the files, in their order: the tables of\n"
+           "all parts, one after the other, are that of all files",
+           "K/N");
 }
 
 std::vector<std::string> FilesOf(const std::vector<std::string>& named, const FileList& options) {

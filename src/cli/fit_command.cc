@@ -160,59 +160,40 @@ void AddFitCommand(CLI::App& app, Console& console) {
       ->required();
   AddJoin(*command, options->request);
   AddFitOptions(*command, options->request, NormalLoads::kOneAFile);
-  const std::string sweeps = "Amplitude sweeps";
-  command
-      ->add_option("--sweep", options->sweep,
-                   "the file holds a stiffness or compliance over the amplitude of a force\n"
-                   "or a displacement, as lock-in rigs report: secant, of the loop from end\n"
-                   "to end, or tangent, of a small oscillation at a force that was reached")
-      ->check(OneOf({"secant", "tangent"}))
-      ->group(sweeps);
-  command
-      ->add_option("--response", options->response.column,
-                   "column of the stiffness or compliance; default a recognised name. The\n"
-                   "amplitude's is --displacement or --force")
-      ->type_name("COL")
-      ->group(sweeps);
-  command
-      ->add_option("--response-unit", options->response.unit,
-                   "a force over a length, N/um, or the other way round; default the\n"
-                   "header's, else N/m or m/N")
-      ->type_name("UNIT")
-      ->group(sweeps);
-  AddOptional(*command, "--response-noise", options->response_noise,
-              "known standard deviation of a response [N/m] or [m/N]", "S")
-      ->group(sweeps);
-  const std::string group = "Results";
-  command->add_option("--json", options->json_path, "result as JSON; - for standard output alone")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--residuals", options->residuals_path,
-                   "measured and fitted force of every sample as CSV")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--backbone", options->backbone_path,
-                   "the force over the displacement of first loading, of no law's\n"
-                   "shape, with its confidence band and the law, as CSV")
-      ->type_name("PATH")
-      ->group(group);
-  command->add_option("--plot", options->plot_path, "loop and residuals as svg or png")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_option("--report", options->report_path,
-                   "everything as one page of HTML with its figures, to read,\n"
-                   "send and print; it loads nothing")
-      ->type_name("PATH")
-      ->group(group);
-  command
-      ->add_flag("--regions", options->request.regions,
-                 "joint confidence regions of sigma and alpha and of slip_force and\n"
-                 "alpha, in the JSON and on the page; --report has them too")
-      ->group(group);
-  AddStrict(*command, options->strict, "exit status 3", group);
+  const OptionGroup sweeps(*command, "Amplitude sweeps");
+  sweeps
+      .Add("--sweep", options->sweep,
+           "the file holds a stiffness or compliance over the amplitude of a force\n"
+           "or a displacement, as lock-in rigs report: secant, of the loop from end\n"
+           "to end, or tangent, of a small oscillation at a force that was reached")
+      ->check(OneOf({"secant", "tangent"}));
+  sweeps.Add("--response", options->response.column,
+             "column of the stiffness or compliance; default a recognised name. The\n"
+             "amplitude's is --displacement or --force",
+             "COL");
+  sweeps.Add("--response-unit", options->response.unit,
+             "a force over a length, N/um, or the other way round; default the\n"
+             "header's, else N/m or m/N",
+             "UNIT");
+  sweeps.Add("--response-noise", options->response_noise,
+             "known standard deviation of a response [N/m] or [m/N]", "S");
+  const OptionGroup group(*command, "Results");
+  group.Add("--json", options->json_path, "result as JSON; - for standard output alone", "PATH");
+  group.Add("--residuals", options->residuals_path,
+            "measured and fitted force of every sample as CSV", "PATH");
+  group.Add("--backbone", options->backbone_path,
+            "the force over the displacement of first loading, of no law's\n"
+            "shape, with its confidence band and the law, as CSV",
+            "PATH");
+  group.Add("--plot", options->plot_path, "loop and residuals as svg or png", "PATH");
+  group.Add("--report", options->report_path,
+            "everything as one page of HTML with its figures, to read,\n"
+            "send and print; it loads nothing",
+            "PATH");
+  group.AddFlag("--regions", options->request.regions,
+                "joint confidence regions of sigma and alpha and of slip_force and\n"
+                "alpha, in the JSON and on the page; --report has them too");
+  AddStrict(group, options->strict, "exit status 3");
   command->callback([options, command, &console] { RunFit(*options, *command, console); });
 }
 

@@ -137,57 +137,49 @@ CLI::Option* AddRange(CLI::App& command, const std::string& name, std::optional<
 }
 
 void AddLimitOptions(CLI::App& command, FitRequest& options) {
-  const std::string group(kColumnGroup);
-  command
-      .add_option("--max-rows", options.max_rows,
-                  "refuse files of more rows than that, all together")
-      ->capture_default_str()
-      ->check(WholeNumber(1, 1'000'000'000'000))
-      ->group(group);
-  command
-      .add_option("--max-memory", options.max_memory,
-                  "refuse files of which a fit needs more memory [B], as 4GB or 500MB;\n"
-                  "default what the machine has, or the process may have")
+  const OptionGroup group(command, std::string(kColumnGroup));
+  group
+      .AddShown("--max-rows", options.max_rows, "refuse files of more rows than that, all together")
+      ->check(WholeNumber(1, 1'000'000'000'000));
+  group
+      .Add("--max-memory", options.max_memory,
+           "refuse files of which a fit needs more memory [B], as 4GB or 500MB;\n"
+           "default what the machine has, or the process may have",
+           "SIZE")
       ->check(WholeNumber(1, 1'000'000'000'000'000'000))
-      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true))
-      ->type_name("SIZE")
-      ->group(group);
+      ->transform(CLI::AsSizeValue(/*kb_is_1000=*/true));
 }
 
 void AddWindowOptions(CLI::App& command, FitRequest& options) {
-  const std::string group(kColumnGroup);
+  const OptionGroup group(command, std::string(kColumnGroup));
   AddRange(command, "--time-window", options.time_window, "LO:HI in seconds",
            "fit only samples from LO to HI [s]", &ParseInterval)
-      ->group(group);
+      ->group(group.name());
   AddRange(command, "--load-window", options.load_window, "LO:HI in newtons",
            "fit only samples under a normal load from LO to HI [N]; the others still make "
            "history",
            &ParseInterval)
-      ->group(group);
+      ->group(group.name());
   const std::string counted = "LO:HI, counted from 1, e.g. 2:5";
   AddRange(command, "--cycles", options.cycles, counted,
            "fit only samples of the cycles LO to HI, counted from 1;\n"
            "the others still make history",
            &ParseCountRange)
-      ->group(group);
+      ->group(group.name());
   AddRange(command, "--samples", options.samples, counted,
            "fit only the samples LO to HI of each record, counted from 1;\n"
            "the others still make history",
            &ParseCountRange)
-      ->group(group);
-  command
-      .add_option("--skip-cycles", options.skip_cycles,
-                  "leave out so many cycles at the start; they still make history")
-      ->capture_default_str()
-      ->check(WholeNumber(0, 1'000'000'000))
-      ->group(group);
-  command
-      .add_option("--trim", options.trim,
-                  "auto leaves out, and says, what at the ends is not the test:\n"
-                  "rests, ramps of load and amplitude, cycles of running in")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kTrims))
-      ->group(group);
+      ->group(group.name());
+  group
+      .AddShown("--skip-cycles", options.skip_cycles,
+                "leave out so many cycles at the start; they still make history")
+      ->check(WholeNumber(0, 1'000'000'000));
+  group
+      .AddShown("--trim", options.trim,
+                "auto leaves out, and says, what at the ends is not the test:\n"
+                "rests, ramps of load and amplitude, cycles of running in")
+      ->check(OneOfWords(request::kTrims));
 }
 
 void AddTermOptions(CLI::App& command, FitRequest& options, const std::string& group) {
@@ -252,21 +244,20 @@ std::string DescribeParameters() {
 }  // namespace
 
 void AddJoin(CLI::App& command, FitRequest& options) {
-  command
-      .add_flag("--join", options.join,
-                "the files are pieces of one record, in their order, as of a logger\n"
-                "that begins a file with every stroke: the contact remembers from one\n"
-                "to the next, and a clock that begins anew goes on")
-      ->group("Files");
+  OptionGroup(command, "Files")
+      .AddFlag("--join", options.join,
+               "the files are pieces of one record, in their order, as of a logger\n"
+               "that begins a file with every stroke: the contact remembers from one\n"
+               "to the next, and a clock that begins anew goes on");
 }
 
 void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
-  const std::string group(kColumnGroup);
+  const OptionGroup group(command, std::string(kColumnGroup));
   const auto column = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    command.add_option(name, choice.column, description)->type_name("COL")->group(group);
+    group.Add(name, choice.column, description, "COL");
   };
   const auto unit = [&](const char* name, io::ColumnChoice& choice, const char* description) {
-    command.add_option(name, choice.unit, description)->type_name("UNIT")->group(group);
+    group.Add(name, choice.unit, description, "UNIT");
   };
   column("--displacement", columns.displacement,
          "column by header name or 1-based number; default a recognised name,\n"
@@ -284,27 +275,21 @@ void AddColumnOptions(CLI::App& command, io::RecordColumns& columns) {
   unit("--normal-load-unit", columns.normal_load, "as --force-unit of a force");
   const auto calibration = [&](const std::string& name, io::ColumnChoice& choice,
                                const std::string& description) {
-    AddOptional(command, name + "-gain", choice.gain,
-                "gain [unit of the " + description + "/number]: the " + description +
-                    " is\nG*(number - zero) in " + name +
-                    "-unit, else in\nthe header's unit where that is one, else in SI",
-                "G")
-        ->group(group);
-    command
-        .add_option(name + "-zero", choice.zero, "number [-] in the column that stands for zero")
-        ->type_name("Z")
-        ->group(group);
+    group.Add(name + "-gain", choice.gain,
+              "gain [unit of the " + description + "/number]: the " + description +
+                  " is\nG*(number - zero) in " + name +
+                  "-unit, else in\nthe header's unit where that is one, else in SI",
+              "G");
+    group.Add(name + "-zero", choice.zero, "number [-] in the column that stands for zero", "Z");
   };
   calibration("--displacement", columns.displacement, "displacement");
   calibration("--force", columns.force, "force");
   calibration("--time", columns.time, "time");
   calibration("--normal-load", columns.normal_load, "normal load");
-  command
-      .add_option("--encoding", columns.encoding,
-                  "of the files, by the names of iconv [latin1, sjis, utf-16le];\n"
-                  "default UTF-8, or found by their first bytes")
-      ->type_name("NAME")
-      ->group(group);
+  group.Add("--encoding", columns.encoding,
+            "of the files, by the names of iconv [latin1, sjis, utf-16le];\n"
+            "default UTF-8, or found by their first bytes",
+            "NAME");
 }
 
 void RequireNoColumns(const io::RecordColumns& columns) {
@@ -334,7 +319,7 @@ std::string InLines(std::string names, int in_a_line) {
 }
 
 void AddModelOptions(CLI::App& command, FitRequest& options) {
-  const std::string group = "Model";
+  const OptionGroup group(command, "Model");
   const std::vector<std::string_view> models = request::ModelNames();
   std::string description = "friction model:";
   for (const models::FrictionModel& model : models::FrictionModels()) {
@@ -342,46 +327,33 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
     description += fmt::format(" {} ({});", model.name, model.title);
   }
   description += " auto (chosen by AICc and held-out cycles, each with and without a rig).";
-  command.add_option("--model", options.model, description)
-      ->capture_default_str()
-      ->check(OneOfWords(models))
-      ->group(group);
-  command
-      .add_option("--initial-state", options.initial_state,
-                  "does the record start from an unloaded contact; auto fits both and keeps the "
-                  "smaller AICc")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kInitialStates))
-      ->group(group);
-  command
-      .add_option(
+  group.AddShown("--model", options.model, description)->check(OneOfWords(models));
+  group
+      .AddShown("--initial-state", options.initial_state,
+                "does the record start from an unloaded contact; auto fits both and keeps the "
+                "smaller AICc")
+      ->check(OneOfWords(request::kInitialStates));
+  group
+      .AddShown(
           "--force-sign", options.force_sign,
           "have force and displacement the same sign in the file; auto decides from the sign of "
           "the loop's energy")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kForceSigns))
-      ->group(group);
-  command
-      .add_option("--noise-in", options.noise_in,
-                  "the channel that is fitted, and whose noise the residuals are: the\n"
-                  "displacement where a force is imposed, which is taken as exact")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kNoiseIn))
-      ->group(group);
-  command.add_option("--offsets", options.offsets, "fit offsets of force and displacement")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kOnOff))
-      ->group(group);
-  AddTermOptions(command, options, group);
-  command
-      .add_option("--terms", options.term_choice,
-                  "auto adds the terms that the record requires, one at a time by\n"
-                  "cycles held out of the fit; NAME,NAME,... fits these:\n" +
-                      InLines(TermGroupNames(), 4) +
-                      "\nnot given: as auto, of one record that the law follows to no better\n"
-                      "than 5 % and without options for terms, else none; of track none")
-      ->type_name("auto|none|NAME,...")
-      ->group(group);
+      ->check(OneOfWords(request::kForceSigns));
+  group
+      .AddShown("--noise-in", options.noise_in,
+                "the channel that is fitted, and whose noise the residuals are: the\n"
+                "displacement where a force is imposed, which is taken as exact")
+      ->check(OneOfWords(request::kNoiseIn));
+  group.AddShown("--offsets", options.offsets, "fit offsets of force and displacement")
+      ->check(OneOfWords(request::kOnOff));
+  AddTermOptions(command, options, group.name());
+  group.Add("--terms", options.term_choice,
+            "auto adds the terms that the record requires, one at a time by\n"
+            "cycles held out of the fit; NAME,NAME,... fits these:\n" +
+                InLines(TermGroupNames(), 4) +
+                "\nnot given: as auto, of one record that the law follows to no better\n"
+                "than 5 % and without options for terms, else none; of track none",
+            "auto|none|NAME,...");
   command
       .add_flag_callback(
           "--follow-load",
@@ -402,7 +374,7 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
             },
             help)
         ->type_name(type)
-        ->group(group);
+        ->group(group.name());
   };
   constexpr const char* kValue = "NAME=VALUE, e.g. alpha=0.3333";
   add_assignments("--fix", options.fix, "NAME=VALUE", kValue, &ParseNumber, DescribeParameters());
@@ -420,38 +392,26 @@ void AddModelOptions(CLI::App& command, FitRequest& options) {
             value));
       },
       "known of a parameter beforehand, in its unit [SI]; V+-U, V±5%");
-  command.add_option("--confidence", options.confidence, "confidence of every interval [-]")
-      ->type_name("C")
-      ->capture_default_str()
-      ->group(group);
-  AddOptional(command, "--force-noise", options.force_noise,
-              "known standard deviation of the force [N]; default from the residuals", "N")
-      ->group(group);
-  AddOptional(command, "--displacement-noise", options.displacement_noise,
-              "known standard deviation of the displacement [m]; default from the data where "
-              "they show any",
-              "M")
-      ->group(group);
-  command
-      .add_option("--loss", options.loss,
-                  "what large residuals count; the scale is the data's: huber and cauchy less, "
-                  "tukey in the end nothing")
-      ->capture_default_str()
-      ->check(OneOfWords(request::kLosses))
-      ->group(group);
-  command
-      .add_option("--starts", options.starts,
-                  "starting points refined: the best looks, beyond four drawn at random")
-      ->capture_default_str()
-      ->check(WholeNumber(1, 1000))
-      ->group(group);
-  command.add_option("--seed", options.seed, "of starting points drawn at random")
-      ->capture_default_str()
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
-      ->group(group);
-  AddOptional(command, "--reversal-gate", options.reversal_gate,
-              "excursions up to this [m] are noise, not reversals; default from the data", "M")
-      ->group(group);
+  group.AddShown("--confidence", options.confidence, "confidence of every interval [-]", "C");
+  group.Add("--force-noise", options.force_noise,
+            "known standard deviation of the force [N]; default from the residuals", "N");
+  group.Add("--displacement-noise", options.displacement_noise,
+            "known standard deviation of the displacement [m]; default from the data where "
+            "they show any",
+            "M");
+  group
+      .AddShown("--loss", options.loss,
+                "what large residuals count; the scale is the data's: huber and cauchy less, "
+                "tukey in the end nothing")
+      ->check(OneOfWords(request::kLosses));
+  group
+      .AddShown("--starts", options.starts,
+                "starting points refined: the best looks, beyond four drawn at random")
+      ->check(WholeNumber(1, 1000));
+  group.AddShown("--seed", options.seed, "of starting points drawn at random")
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
+  group.Add("--reversal-gate", options.reversal_gate,
+            "excursions up to this [m] are noise, not reversals; default from the data", "M");
 }
 
 void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
@@ -462,8 +422,7 @@ void AddFitOptions(CLI::App& command, FitRequest& request, NormalLoads loads) {
   AddContactOptions(command, request.contact, loads);
 }
 
-void AddStrict(CLI::App& command, Strictness& strictness, const std::string& otherwise,
-               const std::string& group) {
+void AddStrict(const OptionGroup& group, Strictness& strictness, const std::string& otherwise) {
   // A configuration has `strict = true`.
   static const std::map<std::string, Strictness> levels = {{"adequate", Strictness::kAdequate},
                                                            {"true", Strictness::kAdequate},
@@ -478,14 +437,13 @@ void AddStrict(CLI::App& command, Strictness& strictness, const std::string& oth
     }
     strictness = level->second;
   };
-  command
-      .add_flag("--strict{adequate}", *text,
-                otherwise +
-                    " unless the model is adequate and every free\n"
-                    "parameter identifiable; --strict=doubtful accepts a doubtful\n"
-                    "model and parameters that are effective")
-      ->each(read)
-      ->group(group);
+  group
+      .AddFlag("--strict{adequate}", *text,
+               otherwise +
+                   " unless the model is adequate and every free\n"
+                   "parameter identifiable; --strict=doubtful accepts a doubtful\n"
+                   "model and parameters that are effective")
+      ->each(read);
 }
 
 void Messages::Note(std::string_view text) const {

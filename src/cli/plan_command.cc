@@ -113,78 +113,43 @@ void AddPlanCommand(CLI::App& app, Console& console) {
        "mindahl plan --record loop.csv --cycles 10 --json plan.json",
        "mindahl plan --sigma 4e7 --slip-force 40 --force-noise 0.1 --load-ratio 0.5,1,2"});
   AddLawOptions(*command, options->plan.law);
-  const std::string expected = "What is expected";
-  command
-      ->add_option("--record", options->record,
-                   "take contact and noise from a fit of this record; --alpha is used\n"
-                   "where the record does not determine it")
-      ->type_name("FILE")
-      ->group(expected);
+  const OptionGroup expected(*command, "What is expected");
+  expected.Add("--record", options->record,
+               "take contact and noise from a fit of this record; --alpha is used\n"
+               "where the record does not determine it",
+               "FILE");
   AddColumnOptions(*command, options->columns);
-  AddOptional(*command, "--rig-stiffness", options->plan.rig_stiffness,
-              "of the rig in series [N/m]; known, but for --with rig_stiffness", "K")
-      ->group(expected);
-  AddOptional(*command, "--force-noise", options->plan.force_noise,
-              "standard deviation of the force noise [N]", "S")
-      ->group(expected);
-  command
-      ->add_option("--displacement-noise", options->plan.displacement_noise,
-                   "standard deviation of the displacement noise [m], white; default 0")
-      ->type_name("S")
-      ->group(expected);
-  command
-      ->add_option("--autocorrelation", options->plan.autocorrelation,
-                   "of the force noise between samples, in [0, 1) [-]; default 0")
-      ->type_name("RHO")
-      ->group(expected);
-  AddOptional(*command, "--load-exponent", options->plan.load_exponent,
-              "p of sigma ~ N^p between these loads [-]; default 1/3, Hertz's", "P")
-      ->group(expected);
-  const std::string loop = "The loop";
-  command
-      ->add_option("--amplitude", options->plan.amplitudes,
-                   "amplitude X [m], repeatable; default 13 about slip")
-      ->type_name("X")
-      ->group(loop);
-  command
-      ->add_option("--load-ratio", options->plan.load_ratios,
-                   "loads over this contact's own [-], a loop at each: 0.5,1,2")
-      ->type_name("R")
-      ->delimiter(',')
-      ->group(loop);
-  command->add_option("--cycles", options->plan.cycles, "cycles of the sine, >= 1")
-      ->capture_default_str()
-      ->type_name("M")
-      ->group(loop);
-  command
-      ->add_option("--samples-per-cycle", options->plan.samples_per_cycle, "samples of each cycle")
-      ->capture_default_str()
-      ->check(WholeNumber(4, 1'000'000))
-      ->group(loop);
-  command
-      ->add_option("--initial-state", options->initial_state,
-                   "virgin: with the first loading; steady: begun later")
-      ->capture_default_str()
-      ->check(OneOf({"virgin", "steady", "both"}))
-      ->group(loop);
-  const std::string fit = "The fit";
-  command
-      ->add_option("--with", options->plan.with,
-                   "terms that are fitted too: rig_stiffness, plateau_slope …")
-      ->type_name("TERM")
-      ->delimiter(',')
-      ->group(fit);
-  command->add_option("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%")
-      ->type_name("NAME=ERROR")
-      ->delimiter(',')
-      ->group(fit);
-  const std::string output = "Output";
-  command->add_option("--json", options->json, "results for scripts; - is standard output")
-      ->type_name("PATH")
-      ->group(output);
-  command->add_option("--plot", options->plot, "errors against the amplitude, svg or png")
-      ->type_name("PATH")
-      ->group(output);
+  expected.Add("--rig-stiffness", options->plan.rig_stiffness,
+               "of the rig in series [N/m]; known, but for --with rig_stiffness", "K");
+  expected.Add("--force-noise", options->plan.force_noise,
+               "standard deviation of the force noise [N]", "S");
+  expected.Add("--displacement-noise", options->plan.displacement_noise,
+               "standard deviation of the displacement noise [m], white; default 0", "S");
+  expected.Add("--autocorrelation", options->plan.autocorrelation,
+               "of the force noise between samples, in [0, 1) [-]; default 0", "RHO");
+  expected.Add("--load-exponent", options->plan.load_exponent,
+               "p of sigma ~ N^p between these loads [-]; default 1/3, Hertz's", "P");
+  const OptionGroup loop(*command, "The loop");
+  loop.Add("--amplitude", options->plan.amplitudes,
+           "amplitude X [m], repeatable; default 13 about slip", "X");
+  loop.Add("--load-ratio", options->plan.load_ratios,
+           "loads over this contact's own [-], a loop at each: 0.5,1,2", "R")
+      ->delimiter(',');
+  loop.AddShown("--cycles", options->plan.cycles, "cycles of the sine, >= 1", "M");
+  loop.AddShown("--samples-per-cycle", options->plan.samples_per_cycle, "samples of each cycle")
+      ->check(WholeNumber(4, 1'000'000));
+  loop.AddShown("--initial-state", options->initial_state,
+                "virgin: with the first loading; steady: begun later")
+      ->check(OneOf({"virgin", "steady", "both"}));
+  const OptionGroup fit(*command, "The fit");
+  fit.Add("--with", options->plan.with, "terms that are fitted too: rig_stiffness, plateau_slope …",
+          "TERM")
+      ->delimiter(',');
+  fit.Add("--want", options->want, "wanted standard errors: alpha=0.01,slip_force=1%", "NAME=ERROR")
+      ->delimiter(',');
+  const OptionGroup output(*command, "Output");
+  output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
+  output.Add("--plot", options->plot, "errors against the amplitude, svg or png", "PATH");
   command->callback([options, &console] { RunPlan(*options, console); });
 }
 

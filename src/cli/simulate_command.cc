@@ -85,9 +85,9 @@ void RequireForces(const AddedForces& forces) {
 }
 
 void AddAddedForceOptions(CLI::App& command, AddedForces& forces) {
-  const std::string group = "Forces in addition to the contact's";
+  const OptionGroup group(command, "Forces in addition to the contact's");
   const auto add = [&](const char* name, auto& value, const char* help, const char* unit) {
-    command.add_option(name, value, help)->type_name(unit)->group(group);
+    group.Add(name, value, help, unit);
   };
   add("--viscous", forces.viscous, "C of a viscous force C·dδ/dt [N s/m]", "C");
   add("--speed-exponent", forces.speed_exponent, "of C·sgn(v)|v|^M in its place, v in m/s [-]",
@@ -444,32 +444,20 @@ void AddSimulateCommand(CLI::App& app, Console& console) {
   AddLoadColumnOptions(*command, options->drive);
   AddForcePathOptions(*command, options->drive);
 
-  const std::string noise = "Noise";
-  command->add_option("--noise-force", options->force_noise, "standard deviation [N]")
-      ->type_name("N")
-      ->group(noise);
-  command->add_option("--noise-displacement", options->displacement_noise, "standard deviation [m]")
-      ->type_name("M")
-      ->group(noise);
-  command->add_option("--seed", options->drive.seed, "of the noise and of the random waveform")
-      ->capture_default_str()
-      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()))
-      ->group(noise);
+  const OptionGroup noise(*command, "Noise");
+  noise.Add("--noise-force", options->force_noise, "standard deviation [N]", "N");
+  noise.Add("--noise-displacement", options->displacement_noise, "standard deviation [m]", "M");
+  noise.AddShown("--seed", options->drive.seed, "of the noise and of the random waveform")
+      ->check(WholeNumber(0, std::numeric_limits<std::uint64_t>::max()));
 
-  const std::string method = "Method";
-  command->add_option("--method", options->method, MethodHelp())
-      ->capture_default_str()
-      ->check(OneOf(MethodNames()))
-      ->group(method);
-  command
-      ->add_option("--steps", options->steps,
-                   "substeps a sample, elements of iwan, intervals of table")
-      ->type_name("N")
-      ->check(WholeNumber(1, 1'000'000'000))
-      ->group(method);
-  AddOptional(*command, "--tolerance", options->tolerance,
-              "of dopri5: largest local error of T/Tc a step [-], default 1e-6", "E")
-      ->group(method);
+  const OptionGroup method(*command, "Method");
+  method.AddShown("--method", options->method, MethodHelp())->check(OneOf(MethodNames()));
+  method
+      .Add("--steps", options->steps, "substeps a sample, elements of iwan, intervals of table",
+           "N")
+      ->check(WholeNumber(1, 1'000'000'000));
+  method.Add("--tolerance", options->tolerance,
+             "of dopri5: largest local error of T/Tc a step [-], default 1e-6", "E");
   command->add_option("-o,--output", options->output, "CSV file; default standard output")
       ->type_name("FILE");
   command->callback([options, &console] { RunSimulate(*options, console); });

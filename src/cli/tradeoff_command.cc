@@ -80,40 +80,25 @@ void AddTradeoffCommand(CLI::App& app, Console& console) {
                "mindahl tradeoff --path path.csv --path-unit um --sigma 4e7 --slip-force 40 --csv "
                "points.csv"});
   AddLawOptions(*command, options->study.law);
-  const std::string group = "Excitation";
+  const OptionGroup group(*command, "Excitation");
   CLI::Option* scenes =
-      command
-          ->add_option("--excitation", options->study.excitations,
-                       "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
-                       "default all")
-          ->check(OneOf(request::ExcitationNames()))
-          ->group(group);
-  CLI::Option* path = command
-                          ->add_option("--path", options->path,
-                                       "CSV file whose first column is the displacement [m]")
-                          ->type_name("FILE")
-                          ->excludes(scenes)
-                          ->group(group);
-  command
-      ->add_option("--path-unit", options->path_unit, "unit of that column, default the header's")
-      ->type_name("UNIT")
-      ->needs(path)
-      ->group(group);
-  const std::string output = "Output";
-  command->add_option("--csv", options->csv, "every point, as CSV")
-      ->type_name("PATH")
-      ->group(output);
-  command
-      ->add_option("--regions-csv", options->regions_csv,
-                   "amplitudes at which models serve, as CSV")
-      ->type_name("PATH")
-      ->group(output);
-  command->add_option("--plot", options->plot, "work-precision diagrams, svg or png")
-      ->type_name("PATH")
-      ->group(output);
-  command->add_option("--json", options->json, "results for scripts; - is standard output")
-      ->type_name("PATH")
-      ->group(output);
+      group
+          .Add("--excitation", options->study.excitations,
+               "micro (sine, lambda 0.8), macro (sine, 1.2), growing, random, nested; "
+               "default all")
+          ->check(OneOf(request::ExcitationNames()));
+  CLI::Option* path = group
+                          .Add("--path", options->path,
+                               "CSV file whose first column is the displacement [m]", "FILE")
+                          ->excludes(scenes);
+  group.Add("--path-unit", options->path_unit, "unit of that column, default the header's", "UNIT")
+      ->needs(path);
+  const OptionGroup output(*command, "Output");
+  output.Add("--csv", options->csv, "every point, as CSV", "PATH");
+  output.Add("--regions-csv", options->regions_csv, "amplitudes at which models serve, as CSV",
+             "PATH");
+  output.Add("--plot", options->plot, "work-precision diagrams, svg or png", "PATH");
+  output.Add("--json", options->json, "results for scripts; - is standard output", "PATH");
   command->callback([options, &console] { RunTradeoff(*options, console); });
 }
 
