@@ -43,23 +43,6 @@ bool IsShown(const FitResult& fit, std::string_view parameter) {
 
 // --- the verdict
 
-/// Returns "identifiable: sigma, alpha": parameters by their verdicts.
-std::vector<std::string> ParameterVerdicts(const FitResult& fit) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
-  for (const ParameterEstimate& estimate : fit.parameters) {
-    const std::string verdict = VerdictWords(estimate);
-    auto group = std::ranges::find(groups, verdict, &decltype(groups)::value_type::first);
-    if (group == groups.end()) group = groups.insert(group, {verdict, {}});
-    group->second.push_back(estimate.name);
-  }
-  std::vector<std::string> sentences;
-  sentences.reserve(groups.size());
-  for (const auto& [verdict, names] : groups) {
-    sentences.push_back(fmt::format("{}: {}", verdict, fmt::join(names, ", ")));
-  }
-  return sentences;
-}
-
 std::string VerdictSection(const Report& report) {
   // The sentence begins with the verdict itself.
   std::string sentence = VerdictSentence(report);
@@ -67,7 +50,6 @@ std::string VerdictSection(const Report& report) {
   if (sentence.starts_with(word + ": ")) sentence.erase(0, word.size() + 2);
   if (!report.fit.converged) sentence = report.fit.solver.message;
   std::string html = VerdictBlock(CssClass(JudgementOf(word)), word, sentence);
-  html += SentenceList(ParameterVerdicts(report.fit));
   const identification::Adequacy& adequacy = report.fit.adequacy;
   if (!IsJudged(report) || adequacy.verdict == AdequacyVerdict::kAdequate) return html;
   const std::string next = NextStep(report);
@@ -85,7 +67,7 @@ std::string VerdictSection(const Report& report) {
 std::string ParameterSection(const Report& report) {
   const std::string heading = ConfidenceWords(report.fit) + " interval";
   Table table("fitted and given, with one standard error and the " + heading,
-              {"parameter", "value", "unit", heading, "verdict"});
+              {"parameter", "value", heading, "verdict"});
   for (const ParameterEstimate& estimate : report.fit.parameters) {
     const Shown shown = WhatIsShown(estimate);
     const double magnitude =
@@ -103,8 +85,10 @@ std::string ParameterSection(const Report& report) {
       value = NumberWithError(estimate.value, estimate.standard_error, unit.factor);
       interval = IntervalText(estimate.lower95, estimate.upper95, unit.factor);
     }
-    table.Row(estimate.name, {Number(value), Number(unit.name), Number(interval),
-                              Words(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
+    if (value != kNone && !unit.name.empty()) value += " " + unit.name;
+    table.Row(PlainName(estimate.name),
+              {Number(value), Number(interval),
+               Number(VerdictWords(estimate), CssClass(JudgementOf(estimate)))});
   }
   const FitResult& fit = report.fit;
   std::string about = fmt::format("{}; initial state {}", fit.model->title,
@@ -199,7 +183,7 @@ std::string TextOf(const DescribedValue& item) {
   return item.value.is_string() ? item.value.get<std::string>() : item.value.dump();
 }
 
-/// Adds the rows of the report's fields of one subject, named as the JSON names them.
+/// Adds the rows of the report's fields of one subject.
 void AddFields(const Report& report, std::string_view prefix, Table& table,
                const std::vector<std::string_view>& without = {}) {
   for (const DescribedValue& item : ValuesUnder(report, prefix)) {
@@ -209,7 +193,7 @@ void AddFields(const Report& report, std::string_view prefix, Table& table,
     // "half_gap.value" of "measured.": what follows a subject is name enough in its table.
     const std::string name =
         prefix.ends_with('.') ? item.field.path.substr(prefix.size()) : item.field.path;
-    table.Row(name, {Number(text), Words(item.field.label)});
+    table.Row(PlainName(name), {Number(text), Words(item.field.label)});
   }
 }
 
@@ -240,15 +224,20 @@ std::string Grid(const std::string& figures) {
   return figures.empty() ? "" : fmt::format("<div class=\"figures\">\n{}</div>\n", figures);
 }
 
+/// Makes what is seen first: the verdict and the parameters with the loop at their side.
+std::string FirstScreen(const Report& report) {
+  return "<div class=\"first\">\n<div>\n" + VerdictSection(report) + ParameterSection(report) +
+         "</div>\n" +
+         Figure(LoopPanel(report, PrefixedUnits(report), LoopColours::kByCycle), "loop",
+                "Measured and fitted loop",
+                "Where the line leaves the points, the model misses something; circles are where "
+                "the motion was found to turn.") +
+         "</div>\n";
+}
+
 std::string FigureSection(const Report& report) {
   const PanelUnits units = PrefixedUnits(report);
-  std::string html = Heading("Loop and residuals");
-  html +=
-      "<div class=\"wide\">\n" +
-      Figure(LoopPanel(report, units, LoopColours::kByCycle), "loop", "Measured and fitted loop",
-             "Where the line leaves the points, the model misses something; circles are where "
-             "the motion was found to turn.") +
-      "</div>\n";
+  std::string html = Heading("Residuals");
   std::string figures =
       Figure(ResidualAlongStroke(report, units, LoopColours::kByCycle), "residual-stroke",
              "Residual along the stroke",
@@ -501,8 +490,8 @@ std::string ToPage(const Report& report, const Provenance& provenance) {
   if (report.failed()) {
     body += FailedBody(report);
   } else {
-    body += VerdictSection(report) + ParameterSection(report) + WarningSection(report, provenance) +
-            MeasuredSection(report) + FigureSection(report);
+    body += FirstScreen(report) + WarningSection(report, provenance) + MeasuredSection(report) +
+            FigureSection(report);
     if (IsInadequate(report)) {
       body += Heading("The contact") +
               Paragraph(
